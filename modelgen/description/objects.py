@@ -1,0 +1,150 @@
+"""What an arm is, as frozen objects: geometry, drives, effects, limits, nominal inertials.
+
+Units are SI with radians; a motor coordinate is in the drive's own unit (rad, increments, ...).
+A `Scalar` is a number, or a SymPy expression in the arm's named geometry symbols.
+Every object has been validated when it exists; later stages need not check again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TypeAlias
+
+import sympy as sp
+
+from modelgen.errors import Location
+
+Scalar: TypeAlias = float | sp.Expr
+Range: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of a joint coordinate: rad or m, per s, per s^2, and N m or N at the joint."""
+
+    position: Range | None = None
+    velocity: float | None = None
+    acceleration: float | None = None
+    effort: float | None = None
+
+
+@dataclass(frozen=True)
+class MotorLimits:
+    """Limits in the motor coordinate: unit/s, unit/s^2, A."""
+
+    velocity: float | None = None
+    acceleration: float | None = None
+    current: float | None = None
+
+
+@dataclass(frozen=True)
+class NoDrive:
+    """The joint's input is its effort: K = 1, q_m = q."""
+
+
+@dataclass(frozen=True)
+class DirectDrive:
+    """q_m = ratio q. `torque_constant` in N m/A at the motor coordinate."""
+
+    ratio: Scalar
+    torque_constant: float
+    limits: MotorLimits = MotorLimits()
+
+
+@dataclass(frozen=True)
+class LeveredDrive:
+    """Linear actuator of length q_p between points at l1 and l2 [m] from the joint axis.
+
+    q = rev q_j + offset with q_j the inner angle in (0, pi); q_p runs from length[0] to length[1]
+    while q_m runs from motor[0] to motor[1]. `torque_constant` in J per motor unit per A.
+    """
+
+    l1: Scalar
+    l2: Scalar
+    length: tuple[Scalar, Scalar]
+    motor: Range
+    rev: int
+    offset: Scalar
+    torque_constant: float
+    limits: MotorLimits = MotorLimits()
+
+
+Drive: TypeAlias = NoDrive | DirectDrive | LeveredDrive
+
+
+@dataclass(frozen=True)
+class EffectUse:
+    """One entry of a joint's `effects`: the effect's name and nominal values of its parameters."""
+
+    name: str
+    values: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    where: Location | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One joint and the link that it carries, frame j by modified DH (Khalil-Kleinfinger).
+
+    T(antecedent -> j) = Rot(z, gamma) Trans(z, b) Rot(x, alpha) Trans(x, d) Rot(z, theta) Trans(z, r),
+    with the joint coordinate added to theta (revolute) or r (prismatic).
+    `antecedent` is the index of another joint of the arm, None for the base.
+    `locked` holds the coordinate of a joint that has left the model's coordinates.
+    """
+
+    name: str
+    type: str  # "revolute", "prismatic" or "fixed"
+    alpha: Scalar = 0.0
+    d: Scalar = 0.0
+    r: Scalar = 0.0
+    theta: Scalar = 0.0
+    gamma: Scalar = 0.0
+    b: Scalar = 0.0
+    antecedent: int | None = None
+    limits: Limits = Limits()
+    drive: Drive = NoDrive()
+    effects: tuple[EffectUse, ...] = ()
+    locked: float | None = None
+    where: Location | None = field(default=None, compare=False)
+
+    @property
+    def moving(self) -> bool:
+        """Whether the joint has a coordinate in the model."""
+        return self.type != "fixed" and self.locked is None
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Nominal inertials of a link in its frame: kg, m, and kg m^2 about the centre of mass.
+
+    `inertia` is (ixx, ixy, ixz, iyy, iyz, izz).
+    """
+
+    mass: float
+    com: tuple[float, float, float]
+    inertia: tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One arm: joints in YAML order, an antecedent always before its successors.
+
+    `links[i]` belongs to `joints[i]`. `symbols` maps the names of geometry symbols to their values.
+    `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    links: tuple[Inertial | None, ...]
+    gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
+    fluid_density: float = 0.0
+    source: str = ""
+    symbols: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    notes: tuple[str, ...] = ()
+    where: Location | None = field(default=None, compare=False)
+
+    @property
+    def coordinates(self) -> tuple[int, ...]:
+        """Indices into `joints` of the model's coordinates q1..qn, in order."""
+        return tuple(i for i, joint in enumerate(self.joints) if joint.moving)
