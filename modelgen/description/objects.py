@@ -128,7 +128,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Arm:
-    """One arm: joints in YAML order, an antecedent always before its successors.
+    """One arm: joints in YAML order; an antecedent may stand later in the file, without cycles.
 
     `links[i]` belongs to `joints[i]`. `symbols` maps the names of geometry symbols to their values.
     `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
@@ -148,3 +148,15 @@ class Arm:
     def coordinates(self) -> tuple[int, ...]:
         """Indices into `joints` of the model's coordinates q1..qn, in order."""
         return tuple(i for i, joint in enumerate(self.joints) if joint.moving)
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Indices into `joints`, every antecedent before its successors, else in YAML order."""
+        done: list[int] = []
+        while len(done) < len(self.joints):
+            done += [
+                i
+                for i, joint in enumerate(self.joints)
+                if i not in done and (joint.antecedent is None or joint.antecedent in done)
+            ]
+        return tuple(done)
