@@ -1,0 +1,36 @@
+"""Where templates and shipped arms are: beside the package in a checkout, inside it when installed."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+
+def templates_folder() -> Path:
+    """Folder of the Jinja templates.
+
+    Raises FileNotFoundError where the installation is incomplete.
+    """
+    return _find("templates")
+
+
+def shipped_arms() -> Path:
+    """The arms.yaml that comes with modelgen.
+
+    Raises FileNotFoundError where the installation is incomplete.
+    """
+    return _find("arms.yaml")
+
+
+def _find(name: str) -> Path:
+    package = Path(str(files("modelgen")))
+    checkout = package.parent
+    # The checkout comes first: an editable installation leaves a copy that ages. pyproject.toml tells it
+    # from a site-packages folder, where `templates` may belong to somebody else.
+    candidates = [checkout / name] if (checkout / "pyproject.toml").is_file() else []
+    candidates.append(package / f"_{name}")
+    for path in candidates:
+        if path.exists():
+            return path
+    looked = " or ".join(str(path) for path in candidates)
+    raise FileNotFoundError(f"modelgen's {name} is missing: expected {looked}; reinstall modelgen")
