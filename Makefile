@@ -1,6 +1,7 @@
 # Needs Python 3.11 or later, a C and C++ compiler and make; everything else goes into $(VENV).
 #   make run     generate every arm of arms.yaml into generated/
 #   make test    lint, then every test
+#   make pytest  every test
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
 #   make bench   CPU time of generation, per arm and over the number of joints
@@ -11,12 +12,14 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test lint format bench clean
+.PHONY: run test pytest lint format bench clean
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
 
-test: lint
+test: lint pytest
+
+pytest: $(INSTALLED)
 	$(BIN)/python -m pytest -n auto --dist loadgroup
 
 lint: $(INSTALLED)
