@@ -1,0 +1,34 @@
+"""What a grouping is: base parameters as combinations of standard parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from modelgen.description.objects import Scalar
+
+
+@dataclass(frozen=True)
+class BaseParameter:
+    """One base parameter: the sum of `terms`, pairs of (index of a standard parameter, factor).
+
+    The first term is the representative, with factor 1: the column of the regressor that belongs to
+    the base parameter is the representative's. `expression` is the sum in print.
+    """
+
+    name: str
+    unit: str
+    terms: tuple[tuple[int, Scalar], ...]
+    expression: str
+
+    @property
+    def representative(self) -> int:
+        """Index of the standard parameter whose regressor column this parameter takes."""
+        return self.terms[0][0]
+
+
+@dataclass(frozen=True)
+class Grouping:
+    """The base parameters, and the standard parameters that have no effect at all on the input."""
+
+    base: tuple[BaseParameter, ...]
+    without_effect: tuple[int, ...]

@@ -1,0 +1,1 @@
+"""Effects: each is one definition in SymPy."""

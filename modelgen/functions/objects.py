@@ -1,0 +1,93 @@
+"""What is emitted: functions as programs with named inputs and outputs, and the model they make up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from modelgen.base_parameters import Grouping
+from modelgen.description.objects import Arm
+from modelgen.graph import Program
+from modelgen.model.parameters import StandardParameter
+
+STATUS_STROKE = 1  # a lever has left its stroke
+STATUS_PIVOT = 2  # a pivot of the mass matrix has vanished
+STATUS_INPUT = 4  # an input is not finite or beyond its bound
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An input vector. `bound` is the largest magnitude of an element that is accepted."""
+
+    name: str
+    size: int
+    unit: str
+    text: str
+    bound: float
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output: rows x columns, row-major where it is a flat array."""
+
+    name: str
+    rows: int
+    columns: int
+    unit: str
+    text: str
+
+    @property
+    def size(self) -> int:
+        """Number of elements."""
+        return self.rows * self.columns
+
+
+@dataclass(frozen=True)
+class InputRange:
+    """An element of an input must stay within [low, high], else `status` is set."""
+
+    argument: str
+    index: int
+    low: float
+    high: float
+    status: int
+
+
+@dataclass(frozen=True)
+class Function:
+    """One emitted function.
+
+    Elements of an output that `program` does not set are zero. A statement ("guard", bit) of the
+    program demands that its term is positive. With `stacked` the outputs are one array where a
+    backend knows arrays only.
+    """
+
+    name: str
+    text: str
+    arguments: tuple[Argument, ...]
+    outputs: tuple[Output, ...]
+    program: Program
+    operations: Mapping[str, int]
+    ranges: tuple[InputRange, ...] = ()
+    stacked: bool = False
+
+
+@dataclass(frozen=True)
+class SparsityTable:
+    """Rows and columns (from 0) of the structural non-zeros of the regressor, row after row."""
+
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Model:
+    """Everything that a backend needs of one arm."""
+
+    arm: Arm
+    standard: tuple[StandardParameter, ...]
+    grouping: Grouping
+    functions: tuple[Function, ...]
+    packed: SparsityTable
+    geometry: tuple[str, ...] = ()  # names of the run-time geometry, in the order of its input
+    states: tuple[str, ...] = ()  # names of the effects' states

@@ -1,0 +1,7 @@
+"""Where frames lie and how they turn: modified DH in the expression graph."""
+
+from modelgen.geometry.frames import Frame, Frames
+from modelgen.geometry.scalars import Scalars
+from modelgen.geometry.trigonometry import Trigonometry
+
+__all__ = ["Frame", "Frames", "Scalars", "Trigonometry"]

@@ -1,0 +1,258 @@
+"""The expression graph: every value has one node, negation is a bit in the reference.
+
+A reference ("key") is twice the node's index plus one where the value is negated. `a - b` and
+`b - a` are thus one node, and a negation costs nothing until a program is printed. Constants are
+folded and 0 and 1 disappear while nodes are made, so no pass has to clean up afterwards.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+Number: TypeAlias = int | float
+
+CONST, INPUT, ADD, MUL, DIV, CALL = range(6)
+
+ODD = frozenset({"sin", "tan", "asin", "atan", "tanh", "sign"})
+EVEN = frozenset({"cos", "abs"})
+UNARY = {
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
+    "asin": math.asin,
+    "acos": math.acos,
+    "atan": math.atan,
+    "sqrt": math.sqrt,
+    "exp": math.exp,
+    "log": math.log,
+    "tanh": math.tanh,
+    "abs": abs,
+    "sign": lambda x: float((x > 0) - (x < 0)),
+}
+BINARY = {
+    "atan2": math.atan2,
+    "pow": math.pow,
+    "min": min,
+    "max": max,
+}
+# select(c, a, b) is a where c > 0, else b
+FUNCTIONS = frozenset(UNARY) | frozenset(BINARY) | {"select"}
+
+
+class Expr:
+    """A value in a graph, with Python's arithmetic."""
+
+    __slots__ = ("graph", "key")
+
+    def __init__(self, graph: Graph, key: int) -> None:
+        self.graph = graph
+        self.key = key
+
+    def __add__(self, other: Expr | Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.add(self.key, graph.key(other)))
+
+    def __sub__(self, other: Expr | Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.add(self.key, graph.key(other) ^ 1))
+
+    def __rsub__(self, other: Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.add(graph.key(other), self.key ^ 1))
+
+    def __mul__(self, other: Expr | Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.mul(self.key, graph.key(other)))
+
+    def __truediv__(self, other: Expr | Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.div(self.key, graph.key(other)))
+
+    def __rtruediv__(self, other: Number) -> Expr:
+        graph = self.graph
+        return Expr(graph, graph.div(graph.key(other), self.key))
+
+    def __neg__(self) -> Expr:
+        return Expr(self.graph, self.key ^ 1)
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+    @property
+    def value(self) -> float | None:
+        """The number that this expression is, None where it is not constant."""
+        return self.graph.constant(self.key)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether this is the constant 0."""
+        return self.key <= 1
+
+
+class Graph:
+    """The nodes of one or several functions that share their sub-expressions."""
+
+    def __init__(self) -> None:
+        self.op: list[int] = []
+        self.args: list[tuple[int, ...]] = []
+        self.name: list[str] = []  # input: its vector's name; call: the function
+        self.number: list[float] = []  # constant: magnitude; input: index
+        self._ids: dict[object, int] = {}
+        self.zero = Expr(self, self._node((CONST, 0.0), CONST, number=0.0))
+        self.one = Expr(self, self._node((CONST, 1.0), CONST, number=1.0))
+
+    def __len__(self) -> int:
+        return len(self.op)
+
+    def _node(
+        self, identity: object, op: int, args: tuple[int, ...] = (), name: str = "", number: float = 0.0
+    ) -> int:
+        found = self._ids.get(identity)
+        if found is None:
+            found = len(self.op)
+            self._ids[identity] = found
+            self.op.append(op)
+            self.args.append(args)
+            self.name.append(name)
+            self.number.append(number)
+        return 2 * found
+
+    # -- leaves ---------------------------------------------------------------------------
+
+    def const(self, value: Number) -> Expr:
+        """The constant `value`; raises ValueError where it is not finite."""
+        return Expr(self, self._const(value))
+
+    def input(self, name: str, index: int) -> Expr:
+        """Element `index` of the input vector `name`."""
+        return Expr(self, self._node((INPUT, name, index), INPUT, name=name, number=index))
+
+    def key(self, value: Expr | Number) -> int:
+        """The reference of an expression or a number."""
+        return value.key if isinstance(value, Expr) else self._const(value)
+
+    def constant(self, key: int) -> float | None:
+        """The value of a constant's reference, else None."""
+        node = key >> 1
+        if self.op[node] != CONST:
+            return None
+        return -self.number[node] if key & 1 else self.number[node]
+
+    def _const(self, value: Number) -> int:
+        value = float(value)
+        if not math.isfinite(value):
+            raise ValueError(f"a constant of the model is {value}")
+        magnitude = abs(value)
+        return self._node((CONST, magnitude), CONST, number=magnitude) | (value < 0)
+
+    # -- operations on references ---------------------------------------------------------
+
+    def _factored(self, key: int) -> tuple[float, int]:
+        """A reference as coefficient times a positive reference."""
+        sign = -1.0 if key & 1 else 1.0
+        node = key >> 1
+        if self.op[node] == MUL:
+            left, right = self.args[node]
+            number = self.constant(left)
+            if number is not None:
+                return sign * number, right
+        return sign, key & ~1
+
+    def add(self, x: int, y: int) -> int:
+        """x + y."""
+        if x <= 1:
+            return y
+        if y <= 1:
+            return x
+        if x == y ^ 1:
+            return 0
+        op, args = self.op, self.args
+        a, b = self.constant(x), self.constant(y)
+        if a is not None and b is not None:
+            return self._const(a + b)
+        if x >> 1 > y >> 1:
+            x, y = y, x
+            a, b = b, a
+        # (u + v) - v and constants met again in a sum
+        for inner, other in ((x, y), (y, x)):
+            if op[inner >> 1] == ADD:
+                u, v = args[inner >> 1]
+                u, v = u ^ (inner & 1), v ^ (inner & 1)
+                if other == u ^ 1:
+                    return v
+                if other == v ^ 1:
+                    return u
+                value, first = self.constant(other), self.constant(u)
+                if value is not None and first is not None:
+                    return self.add(self._const(first + value), v)
+        if a is None:
+            cx, ux = self._factored(x)
+            cy, uy = self._factored(y)
+            if ux == uy:
+                return self.mul(self._const(cx + cy), ux)
+        if x & 1:
+            return self._node((ADD, x ^ 1, y ^ 1), ADD, (x ^ 1, y ^ 1)) ^ 1
+        return self._node((ADD, x, y), ADD, (x, y))
+
+    def mul(self, x: int, y: int) -> int:
+        """x y."""
+        if x <= 1 or y <= 1:
+            return 0
+        sign = (x ^ y) & 1
+        x &= ~1
+        y &= ~1
+        if x == 2:
+            return y | sign
+        if y == 2:
+            return x | sign
+        if self.op[y >> 1] == CONST or (self.op[x >> 1] != CONST and x > y):
+            x, y = y, x
+        a = self.constant(x)
+        if a is not None:
+            b = self.constant(y)
+            if b is not None:
+                return self._const(a * b) ^ sign
+            if self.op[y >> 1] == MUL:
+                c = self.constant(self.args[y >> 1][0])
+                if c is not None:
+                    return self.mul(self._const(a * c), self.args[y >> 1][1]) ^ sign
+        return self._node((MUL, x, y), MUL, (x, y)) | sign
+
+    def div(self, x: int, y: int) -> int:
+        """x / y; a division by a constant becomes a multiplication."""
+        if x <= 1:
+            return 0
+        value = self.constant(y)
+        if value is not None:
+            if value == 0.0:
+                raise ZeroDivisionError("the model divides by a constant zero")
+            return self.mul(x, self._const(1.0 / value))
+        sign = (x ^ y) & 1
+        x &= ~1
+        y &= ~1
+        if x == y:
+            return 2 | sign
+        return self._node((DIV, x, y), DIV, (x, y)) | sign
+
+    def call(self, name: str, *arguments: Expr | Number) -> Expr:
+        """One of FUNCTIONS of the arguments; odd and even functions absorb the sign."""
+        keys = tuple(self.key(a) for a in arguments)
+        values = [self.constant(k) for k in keys]
+        numbers = [v for v in values if v is not None]
+        if len(numbers) == len(values) and name != "select":
+            function = UNARY.get(name) or BINARY[name]
+            return self.const(function(*numbers))
+        if name == "select" and values[0] is not None:
+            return Expr(self, keys[1] if values[0] > 0 else keys[2])
+        sign = 0
+        if name in ODD:
+            sign = keys[0] & 1
+            keys = (keys[0] & ~1,)
+        elif name in EVEN:
+            keys = (keys[0] & ~1,)
+        return Expr(self, self._node((CALL, name, keys), CALL, keys, name=name) | sign)
+
+    def sqrt(self, x: Expr) -> Expr:
+        """Square root of x."""
+        return self.call("sqrt", x)

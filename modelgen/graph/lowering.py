@@ -1,0 +1,154 @@
+"""From a graph to a straight-line program: order, signs, and which values get a name.
+
+The program is what every backend prints, so the operations that it counts are those that run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from modelgen.graph.graph import ADD, CALL, CONST, DIV, EVEN, INPUT, MUL, ODD, Expr, Graph
+from modelgen.graph.polarity import choose_polarity
+
+# ("const", value) ("in", vector, index) ("let", number) ("neg", t) ("add"|"sub"|"mul"|"div", t, t)
+# ("call", function, t, ...)
+Term: TypeAlias = tuple  # type: ignore[type-arg]
+
+INLINE_SIZE = 6  # leaves of an expression printed on one line
+
+
+@dataclass(frozen=True)
+class Statement:
+    """`target` is a temporary's number, (output name, element), or ("guard", bit).
+
+    `term` is the value. A guard says that the value must be positive for what follows to make sense;
+    `bit` is the status to report where it is not.
+    """
+
+    target: int | tuple[str, int]
+    term: Term
+
+
+@dataclass(frozen=True)
+class Program:
+    """Statements in order of execution. Outputs that are constant zero are not among them."""
+
+    statements: tuple[Statement, ...]
+    temporaries: int
+
+
+def reachable(graph: Graph, roots: Sequence[int]) -> list[int]:
+    """Nodes that the references in `roots` need, operands before results (by construction: by index)."""
+    seen: set[int] = set()
+    stack = [key >> 1 for key in roots]
+    while stack:
+        node = stack.pop()
+        if node not in seen:
+            seen.add(node)
+            stack.extend(key >> 1 for key in graph.args[node])
+    return sorted(seen)
+
+
+class _Lowering:
+    def __init__(self, graph: Graph, roots: Sequence[int], guards: Mapping[int, tuple[int, int]]) -> None:
+        self.graph = graph
+        self.guards = guards  # node -> (reference that must be positive, status bit)
+        nodes = reachable(graph, roots)
+        self.polarity = choose_polarity(graph, nodes, roots)
+        self.uses: dict[int, int] = dict.fromkeys(nodes, 0)
+        for node in nodes:
+            for key in graph.args[node]:
+                self.uses[key >> 1] += 1
+        for key in roots:
+            self.uses[key >> 1] += 1
+        self.number: dict[int, int] = {}
+        self.terms: dict[int, tuple[Term, int]] = {}
+        self.statements: list[Statement] = []
+
+    def visit(self, root: int) -> None:
+        """Emit what the reference `root` needs, operands first, without recursion."""
+        stack = [(root >> 1, False)]
+        while stack:
+            node, ready = stack.pop()
+            if node in self.terms:
+                continue
+            if not ready:
+                stack.append((node, True))
+                stack.extend((key >> 1, False) for key in reversed(self.graph.args[node]))
+                continue
+            term, size = self._term(node)
+            op = self.graph.op[node]
+            named = op not in (CONST, INPUT) and (
+                self.uses[node] > 1 or size > INLINE_SIZE or op in (DIV, CALL) or node in self.guards
+            )
+            if named:
+                self.number[node] = len(self.number)
+                self.statements.append(Statement(self.number[node], term))
+                term, size = ("let", self.number[node]), 1
+            self.terms[node] = (term, size)
+            if node in self.guards:
+                key, bit = self.guards[node]
+                self.statements.append(Statement(("guard", bit), self.signed(key)))
+
+    def signed(self, key: int) -> Term:
+        """The term of a reference, negated where the program computes its negative."""
+        term, _, negative = self.operand(key)
+        if not negative:
+            return term
+        return ("const", -term[1]) if term[0] == "const" else ("neg", term)
+
+    def operand(self, key: int) -> tuple[Term, int, bool]:
+        """The term of a reference, its size, and whether the reference is its negative."""
+        term, size = self.terms[key >> 1]
+        return term, size, bool((key & 1) ^ self.polarity[key >> 1])
+
+    def _term(self, node: int) -> tuple[Term, int]:
+        graph = self.graph
+        op, args = graph.op[node], graph.args[node]
+        if op == CONST:
+            return ("const", graph.number[node]), 1
+        if op == INPUT:
+            return ("in", graph.name[node], int(graph.number[node])), 1
+        operands = [self.operand(key) for key in args]
+        size = sum(s for _, s, _ in operands)
+        if op == CALL:
+            odd_or_even = graph.name[node] in ODD | EVEN
+            terms = [("neg", t) if n and not odd_or_even else t for t, _, n in operands]
+            return ("call", graph.name[node], *terms), size
+        negated = bool(self.polarity[node])
+        (a, _, na), (b, _, nb) = operands
+        if op == ADD:
+            na, nb = na ^ negated, nb ^ negated
+            if a[0] == "const":
+                value = -a[1] if na else a[1]
+                if nb:
+                    return ("sub", ("const", value), b), size
+                return (("add", b, ("const", value)) if value >= 0 else ("sub", b, ("const", -value))), size
+            if na:
+                return (("sub", b, a) if not nb else ("neg", ("add", a, b))), size
+            return ("sub" if nb else "add", a, b), size
+        if a[0] == "const":
+            a = ("const", -a[1] if na ^ nb ^ negated else a[1])
+        return ("mul" if op == MUL else "div", a, b), size
+
+
+def lower(outputs: Mapping[str, Sequence[Expr]], guards: Sequence[tuple[Expr, int]] = ()) -> Program:
+    """The program that computes `outputs`, in their order; constant zeros are left out.
+
+    `guards` are values that must be positive, with the status bit to report where one is not; each
+    is tested as soon as it is known, before anything is divided by it.
+    A value used once is written where it is used, as long as the line stays readable. Each output
+    follows at once on what it needs, which keeps few values alive.
+    """
+    flat = [(name, i, e) for name, vector in outputs.items() for i, e in enumerate(vector) if not e.is_zero]
+    if not flat:
+        return Program((), 0)
+    tested = {e.key >> 1: (e.key, bit) for e, bit in guards if e.value is None}
+    roots = [e.key for _, _, e in flat] + [key for key, _ in tested.values()]
+    lowering = _Lowering(flat[0][2].graph, roots, tested)
+    for name, i, expression in flat:
+        lowering.visit(expression.key)
+        lowering.statements.append(Statement((name, i), lowering.signed(expression.key)))
+    return Program(tuple(lowering.statements), len(lowering.number))

@@ -1,0 +1,47 @@
+"""The standard parameters of an arm: ten a link, then those of the effects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LINK_PARAMETERS = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
+FLUID_PARAMETERS = ("VX", "VY", "VZ", "V")
+_UNITS = {"M": "kg", "V": "m^3"}
+
+
+@dataclass(frozen=True)
+class StandardParameter:
+    """One standard parameter.
+
+    `joint` is the index of its link or joint in `arm.joints`; `name` carries that number from 1.
+    """
+
+    name: str
+    unit: str
+    joint: int
+    text: str
+
+
+def link_parameters(index: int, joint_name: str, fluid: bool) -> list[StandardParameter]:
+    """The parameters of one link: inertia tensor and first moments about the origin of its frame."""
+    result = []
+    for symbol in LINK_PARAMETERS + (FLUID_PARAMETERS if fluid else ()):
+        if symbol in _UNITS:
+            unit = _UNITS[symbol]
+        elif len(symbol) == 2 and symbol[0] == "M":
+            unit = "kg m"
+        elif symbol[0] == "V":
+            unit = "m^4"
+        else:
+            unit = "kg m^2"
+        result.append(StandardParameter(f"{symbol}{index + 1}", unit, index, f"{_TEXT[symbol]} of link {joint_name}"))
+    return result
+
+
+_TEXT = {
+    **{s: f"inertia tensor element {s.lower()} about the frame origin" for s in LINK_PARAMETERS[:6]},
+    **{f"M{a}": f"first moment of mass along {a.lower()}" for a in "XYZ"},
+    "M": "mass",
+    **{f"V{a}": f"first moment of the displaced volume along {a.lower()}" for a in "XYZ"},
+    "V": "displaced volume",
+}

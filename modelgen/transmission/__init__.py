@@ -1,0 +1,1 @@
+"""Drives: each is one function q_m(q)."""
