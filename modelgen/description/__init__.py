@@ -1,0 +1,40 @@
+"""Description of arms: arms.yaml to frozen, validated objects."""
+
+from modelgen.description.build import DEFAULT_EFFECTS
+from modelgen.description.loading import load, loads
+from modelgen.description.objects import (
+    Arm,
+    DirectDrive,
+    Drive,
+    EffectUse,
+    Inertial,
+    Joint,
+    LeveredDrive,
+    Limits,
+    MotorLimits,
+    NoDrive,
+    Range,
+    Scalar,
+)
+from modelgen.description.schema import json_schema
+from modelgen.description.starter import starter
+
+__all__ = [
+    "DEFAULT_EFFECTS",
+    "Arm",
+    "DirectDrive",
+    "Drive",
+    "EffectUse",
+    "Inertial",
+    "Joint",
+    "LeveredDrive",
+    "Limits",
+    "MotorLimits",
+    "NoDrive",
+    "Range",
+    "Scalar",
+    "json_schema",
+    "load",
+    "loads",
+    "starter",
+]

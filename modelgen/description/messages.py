@@ -1,0 +1,137 @@
+"""One line per mistake: where it is, what was found, what was expected, what comes nearest."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from pydantic import ValidationError
+
+from modelgen.description.document import Node, Path_
+from modelgen.errors import InputError
+
+_EXPECTED = {
+    "string_type": "text (put quotes around it)",
+    "list_type": "a list",
+    "dict_type": "a mapping of keys to values",
+    "model_type": "a mapping of keys to values",
+    "model_attributes_type": "a mapping of keys to values",
+    "number": "a number or an expression such as pi/2",
+    "union_tag_not_found": "an effect's name, or its name with values as in {coulomb_friction: {magnitude: 0.2}}",
+}
+
+
+def describe(value: Any) -> str:
+    """A value of the document in a few words."""
+    match value:
+        case None:
+            return "nothing"
+        case bool():
+            return "true" if value else "false"
+        case str():
+            line = " ".join(value.split())
+            return f"'{line if len(line) <= 40 else line[:37] + '...'}'"
+        case int() | float():
+            return f"{value:g}"
+        case list():
+            return f"a list of {len(value)}"
+        case dict():
+            return "a mapping"
+        case _:
+            return type(value).__name__
+
+
+def suggest(name: str, options: Iterable[str]) -> str:
+    """The nearest of the names that exist, and all of them where there are few or none comes near."""
+    known = list(options)
+    if not known:
+        return ""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if not near:
+        near = [known_name for known_name in known if known_name.lower() == name.lower()]
+    listed = "available: " + ", ".join(known)
+    if near:
+        return f", did you mean '{near[0]}'?" + (f" ({listed})" if len(known) <= 12 else "")
+    return f", {listed}"
+
+
+def label(path: Path_) -> str:
+    """The path as the messages show it: my_arm.joints.1.drive.type (indices count from 0)."""
+    steps = path[1:] if len(path) > 1 and path[0] == "arms" else path
+    return ".".join(str(step) for step in steps)
+
+
+def mistake(root: Node, path: Path_, message: str, key: bool = False) -> InputError:
+    """The error for the value at `path`, or for its key."""
+    prefix = label(path)
+    return InputError(f"{prefix}: {message}" if prefix else message, root.locate(path, key))
+
+
+def first_mistake(root: Node, error: ValidationError) -> InputError:
+    """The first of the structural mistakes in reading order; missing keys last, a misspelt one explains them."""
+    found = [_structural(root, dict(entry)) for entry in error.errors(include_url=False)]
+    return min(found, key=lambda item: item[0])[1]
+
+
+def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[bool, int, int], InputError]:
+    kind, context, value = entry["type"], entry.get("ctx", {}), entry["input"]
+    path = _path(root, entry["loc"])
+    key = False
+    if kind == "unknown_key":
+        path, key = [*path, context["key"]], True
+        message = f"found the unknown key '{context['key']}'{suggest(context['key'], context['options'])}"
+    elif kind == "missing":
+        message = f"the key '{entry['loc'][-1]}' is missing"
+    elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
+        message = "the key 'type' is missing, expected one of none, direct, levered"
+    elif kind == "union_tag_invalid":
+        path = [*path, "type"]
+        options = re.findall(r"'(\w+)'", context["expected_tags"])
+        message = f"found {describe(context['tag'])}{_one_of(context['tag'], options)}"
+    elif kind == "literal_error":
+        options = re.findall(r"-?\w+", context["expected"].replace(" or ", " "))
+        message = f"found {describe(value)}{_one_of(value, options)}"
+    elif kind == "string_pattern_mismatch":
+        key = entry["loc"][-1] == "[key]"
+        expected = "a letter, then letters, digits and _"
+        expected += " and -" if "-" in context["pattern"].split("0-9")[-1] else ""
+        message = f"found {describe(value)}, expected a name: {expected} (ASCII)"
+    elif kind in ("too_short", "too_long"):
+        message = _length(value, context)
+    elif kind == "string_too_short":
+        message = "found an empty text, expected a name"
+    elif kind in _EXPECTED:
+        message = f"found {describe(value)}, expected {_EXPECTED[kind]}"
+    else:
+        message = f"found {describe(value)}: {entry['msg']}"
+    result = mistake(root, path, message, key)
+    where = result.where
+    assert where is not None
+    return (kind == "missing", where.line, where.column), result
+
+
+def _one_of(value: Any, options: list[str]) -> str:
+    expected = options[0] if len(options) == 1 else f"one of {', '.join(options)}"
+    near = difflib.get_close_matches(value, options, n=1) if isinstance(value, str) else []
+    return f", expected {expected}" + (f", did you mean '{near[0]}'?" if near else "")
+
+
+def _length(value: Any, context: dict[str, Any]) -> str:
+    bound = context.get("min_length", context.get("max_length"))
+    least = "at least " if bound == 1 and not value else ""
+    things = "entry" if bound == 1 else "entries"
+    return f"found {len(value) if value else 'no'} entries, expected {least}{bound} {things}"
+
+
+def _path(root: Node, location: tuple[int | str, ...]) -> list[str | int]:
+    """The part of pydantic's location that exists in the document: without its names of union members."""
+    path: list[str | int] = []
+    node: Node = root
+    for step in location:
+        child = node.child(step)
+        if child is not None:
+            path.append(step)
+            node = child
+    return path

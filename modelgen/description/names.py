@@ -1,0 +1,50 @@
+"""Names that become part of generated code, and names that are taken."""
+
+from __future__ import annotations
+
+import keyword
+import re
+
+from modelgen.description.expressions import FUNCTIONS, UNITS
+
+C_KEYWORDS = frozenset(
+    """auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
+    co_yield compl concept consteval constexpr constinit const_cast decltype delete dynamic_cast explicit export
+    false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+    reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
+    typeof typeof_unqual using virtual wchar_t xor xor_eq""".split()
+)
+# Inertial and buoyancy parameters of links, coefficients of drives and frictions, logged signals; base parameters
+# carry an R behind the number.
+_STANDARD = re.compile(
+    r"(XX|XY|XZ|YY|YZ|ZZ|MX|MY|MZ|M|VX|VY|VZ|V|FV|FC|FS|FO|IA|JM|J|K|KT|q|qm|dq|ddq|dqm|ddqm|tau|i)[0-9]+R?"
+)
+_ARGUMENTS = frozenset("q dq ddq qm dqm ddqm dq_r ddq_r t dt input parameters state out load".split())
+
+
+def arm_name_problem(name: str) -> str | None:
+    """What is wrong with the name of an arm, None where it will do."""
+    if name in C_KEYWORDS:
+        return f"'{name}' is a keyword of C or C++; it prefixes the generated functions, choose another name"
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
+        return "expected a C identifier that begins with a letter: letters, digits and _ (ASCII)"
+    if "__" in name:
+        return f"'{name}' holds two _ in a row, which C++ reserves"
+    return None if len(name) <= 48 else "the name is longer than 48 characters"
+
+
+def symbol_name_problem(name: str) -> str | None:
+    """What is wrong with the name of a geometry symbol, None where it will do."""
+    if name == "pi" or name in FUNCTIONS:
+        return f"'{name}' is taken by the expressions themselves, choose another name"
+    if name in UNITS:
+        return f"'{name}' is a unit, choose another name"
+    if name in C_KEYWORDS or keyword.iskeyword(name):
+        return f"'{name}' is a keyword, choose another name"
+    if name in _ARGUMENTS:
+        return f"'{name}' is an argument of the generated functions, choose another name"
+    if _STANDARD.fullmatch(name):
+        return f"'{name}' is the name of a standard parameter or a signal, choose another name"
+    return None

@@ -1,0 +1,223 @@
+"""Structure of arms.yaml as pydantic models: keys, types, units in words, and the JSON Schema for editors.
+
+Quantities stay as written here (number or expression); `build` evaluates them, since an expression may use
+the arm's symbols and the unit of some depends on the joint's type.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from modelgen.description.expressions import MAX_LENGTH
+
+JOINT_NAME = r"^[A-Za-z_][A-Za-z0-9_-]*$"
+ARM_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
+SYMBOL_NAME = r"^[A-Za-z_][A-Za-z0-9_]*$"
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float | str) or value == "":
+        raise PydanticCustomError("number", "expected a number or an expression such as pi/2")
+    return value
+
+
+def _effect_form(value: Any) -> str | None:
+    if isinstance(value, str):
+        return "<name>"
+    return "<values>" if isinstance(value, dict) else None
+
+
+Number: TypeAlias = Annotated[
+    float | str,
+    BeforeValidator(_number),
+    WithJsonSchema({"type": ["number", "string"], "minLength": 1, "maxLength": MAX_LENGTH}),
+]
+Pair: TypeAlias = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Triple: TypeAlias = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Sextuple: TypeAlias = Annotated[list[Number], Field(min_length=6, max_length=6)]
+JointName: TypeAlias = Annotated[str, Field(pattern=JOINT_NAME)]
+EffectEntry: TypeAlias = Annotated[
+    Annotated[str, Field(min_length=1), Tag("<name>")]
+    | Annotated[dict[str, dict[str, Number]], Field(min_length=1, max_length=1), Tag("<values>")],
+    Discriminator(_effect_form),
+]
+
+
+class Model(BaseModel):
+    """Strict about types, and closed: an unknown key is an error that says which keys there are."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, populate_by_name=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            options = [field.alias or name for name, field in cls.model_fields.items()]
+            for key in data:
+                if key not in options:
+                    raise PydanticCustomError("unknown_key", "unknown key", {"key": key, "options": options})
+        return data
+
+
+class LimitsModel(Model):
+    """Limits of a joint coordinate q. Angles may be written with deg, lengths with mm, cm or m."""
+
+    position: Pair | None = Field(None, description="Lowest and highest q [rad, or m for a prismatic joint].")
+    velocity: Number | None = Field(None, description="Largest speed |dq| [rad/s or m/s]; '28 deg' is 28 deg/s.")
+    acceleration: Number | None = Field(None, description="Largest |ddq| [rad/s^2 or m/s^2].")
+    effort: Number | None = Field(None, description="Largest effort at the joint [N m or N].")
+
+
+class NoDriveModel(Model):
+    """No drive: the input of the model is the joint's effort [N m or N]."""
+
+    type: Literal["none"] = Field(description="none: the input is the joint's effort.")
+
+
+class MotorModel(Model):
+    """What every motor has: its torque constant and its limits in its own coordinate."""
+
+    torque_constant: Number = Field(
+        description="Generalised force at the motor coordinate per ampere: N m/A for a direct drive, "
+        "J per motor unit per A for a levered one. Not zero."
+    )
+    motor_velocity: Number | None = Field(None, description="Largest motor speed [motor units/s].")
+    motor_acceleration: Number | None = Field(None, description="Largest motor acceleration [motor units/s^2].")
+    current: Number | None = Field(None, description="Largest motor current [A].")
+
+
+class DirectDriveModel(MotorModel):
+    """A geared motor on the joint, q_m = ratio q; a ball-screw axis has ratio = 2 pi / lead [rad/m]."""
+
+    type: Literal["direct"] = Field(description="direct: q_m = ratio q.")
+    ratio: Number = Field(description="Motor coordinate per joint coordinate [1, or rad/m for a prismatic joint].")
+
+
+class LeveredDriveModel(MotorModel):
+    """A linear actuator between two points at l1 and l2 from the axis of a revolute joint."""
+
+    type: Literal["levered"] = Field(description="levered: a linear actuator turns the joint through a lever.")
+    l1: Number = Field(description="Distance from the joint axis to one end of the actuator [m].")
+    l2: Number = Field(description="Distance from the joint axis to the other end of the actuator [m].")
+    length: Pair = Field(description="Actuator length between its ends at the two motor values of `motor` [m].")
+    motor: Pair = Field(description="Motor coordinate at the two lengths of `length` [any unit, increments usually].")
+    rev: Literal[1, -1] = Field(description="Branch: q = rev q_j + offset, q_j the inner angle of the lever.")
+    offset: Number = Field(description="Joint angle minus rev times the lever's inner angle [rad].")
+
+
+DriveModel: TypeAlias = Annotated[NoDriveModel | DirectDriveModel | LeveredDriveModel, Field(discriminator="type")]
+
+
+class JointModel(Model):
+    """One joint and its link's frame: Rot(x, alpha) Trans(x, d) Rot(z, theta) Trans(z, r), q added to theta or r."""
+
+    name: JointName = Field(description="Name of the joint, unique in the arm; not 'base'.")
+    type: Literal["revolute", "prismatic", "fixed"] = Field(
+        "revolute", description="Kind of joint; a fixed one only carries a frame and a link."
+    )
+    alpha: Number = Field(0.0, description="Angle about x from the antecedent's z axis to this one [rad].")
+    d: Number = Field(0.0, description="Distance along x between the two z axes [m].")
+    r: Number = Field(0.0, description="Distance along z [m]; a prismatic joint adds q to it.")
+    theta: Number = Field(0.0, description="Angle about z [rad]; a revolute joint adds q to it.")
+    gamma: Number = Field(0.0, description="Trees: angle about the antecedent's z axis before alpha [rad].")
+    b: Number = Field(0.0, description="Trees: distance along the antecedent's z axis before alpha [m].")
+    antecedent: JointName | None = Field(
+        None, description="The joint that carries this one, or 'base'. Default: the joint before."
+    )
+    limits: LimitsModel = Field(LimitsModel(), description="Limits of the joint coordinate.")
+    drive: DriveModel = Field(NoDriveModel(type="none"), description="How the joint is driven. Default: not at all.")
+    effects: list[EffectEntry] | None = Field(
+        None,
+        description="Effects beyond rigid-body dynamics: a name, or a name with nominal values of the effect's "
+        "parameters (see `modelgen effects` for names and units). Default: viscous_friction, coulomb_friction "
+        "and drive_inertia for a driven joint, none for another.",
+    )
+
+
+class LinkModel(Model):
+    """Nominal inertials of a link, in the frame of its joint."""
+
+    mass: Number = Field(description="Mass [kg].")
+    com: Triple = Field(description="Centre of mass x, y, z [m].")
+    inertia: Sextuple = Field(description="ixx, ixy, ixz, iyy, iyz, izz about the centre of mass [kg m^2].")
+
+
+class ArmModel(Model):
+    """One arm: joints in the order of the coordinates, and what surrounds it."""
+
+    source: str = Field("", description="Where the figures come from; free text.")
+    gravity: Triple = Field([0.0, 0.0, -9.81], description="Acceleration of gravity in the base frame [m/s^2].")
+    fluid_density: Number = Field(0.0, description="Density of the surrounding fluid [kg/m^3]; 0: no buoyancy.")
+    symbols: dict[Annotated[str, Field(pattern=SYMBOL_NAME)], Number] = Field(
+        {}, description="Named geometry: name to value [rad or m]; the names may be used in expressions."
+    )
+    locked: dict[str, Number] = Field(
+        {}, description="Joints held in place: name to coordinate [rad or m]; they leave the model's coordinates."
+    )
+    joints: Annotated[list[JointModel], Field(min_length=1)] = Field(description="The joints, base first.")
+    links: dict[str, LinkModel] = Field({}, description="Nominal inertials by name of the joint that moves the link.")
+
+
+class Document(Model):
+    """The whole file."""
+
+    schema_version: Literal[1] = Field(alias="schema", description="Version of this format: 1.")
+    convention: Literal["khalil_kleinfinger"] = Field(
+        description="Frames by modified Denavit-Hartenberg parameters (Khalil and Kleinfinger, 1986)."
+    )
+    arms: Annotated[dict[Annotated[str, Field(pattern=ARM_NAME)], ArmModel], Field(min_length=1)] = Field(
+        description="The arms by name; a name becomes the prefix of the generated functions."
+    )
+
+
+def json_schema(known_effects: Mapping[str, Collection[str]] | None = None) -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of arms.yaml, for editors.
+
+    `known_effects` maps the names of the effects to the names of their parameters; with it, misspelt effects
+    are marked as well.
+    """
+    schema = Document.model_json_schema(by_alias=True)
+    head: dict[str, Any] = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "modelgen arms",
+    }
+    if known_effects is not None:
+        number = {"type": ["number", "string"]}
+        values = {
+            effect: {
+                "type": "object",
+                "properties": dict.fromkeys(sorted(parameters), number),
+                "additionalProperties": False,
+            }
+            for effect, parameters in sorted(known_effects.items())
+        }
+        entry = {
+            "anyOf": [
+                {"enum": sorted(known_effects)},
+                {
+                    "type": "object",
+                    "properties": values,
+                    "additionalProperties": False,
+                    "minProperties": 1,
+                    "maxProperties": 1,
+                },
+            ]
+        }
+        effects = schema["$defs"]["JointModel"]["properties"]["effects"]
+        for option in effects["anyOf"]:
+            if option.get("type") == "array":
+                option["items"] = entry
+    return head | {key: value for key, value in schema.items() if key != "title"}
