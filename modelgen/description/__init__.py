@@ -1,6 +1,6 @@
 """Description of arms: arms.yaml to frozen, validated objects."""
 
-from modelgen.description.build import DEFAULT_EFFECTS
+from modelgen.description.joints import DEFAULT_EFFECTS
 from modelgen.description.loading import load, loads
 from modelgen.description.objects import (
     Arm,

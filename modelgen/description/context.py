@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from modelgen.description.document import Node, Path_
+from modelgen.description.document import Node, Steps
 from modelgen.description.expressions import ExpressionError, Quantity, evaluate
 from modelgen.description.messages import describe, mistake
 from modelgen.errors import InputError, Location
 
 _NEEDS = {
-    "angle": 'an angle (a number in rad, or an expression such as pi/2 or "90 deg")',
-    "length": 'a length (a number in m, or an expression such as "50 mm")',
+    "angle": 'an angle such as 1.57, pi/2 or "90 deg"',
+    "length": 'a length such as 0.05 or "50 mm"',
     "plain": "a number",
     "any": "a number",
 }
@@ -28,17 +28,19 @@ class Context:
     symbols: Mapping[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
-    def path(self, steps: Path_) -> list[str | int]:
+    def path(self, steps: Steps) -> list[str | int]:
+        """Path in the document of the arm's value at `steps`."""
         return ["arms", self.arm, *steps]
 
-    def where(self, steps: Path_, key: bool = False) -> Location:
+    def where(self, steps: Steps, key: bool = False) -> Location:
+        """Place of the arm's value at `steps`, or of its key."""
         return self.root.locate(self.path(steps), key)
 
-    def error(self, message: str, steps: Path_, key: bool = False) -> InputError:
+    def error(self, message: str, steps: Steps, key: bool = False) -> InputError:
         """The InputError for the value (or the key) at `steps` of this arm."""
         return mistake(self.root, self.path(steps), message, key)
 
-    def quantity(self, raw: float | str, kind: str, steps: Path_) -> Quantity:
+    def quantity(self, raw: float | str, kind: str, steps: Steps) -> Quantity:
         """The value as written, in SI units; `kind` as in `expressions.evaluate`."""
         try:
             return evaluate(raw, kind, self.symbols)
@@ -46,13 +48,15 @@ class Context:
             found, expected = describe(raw), _NEEDS[kind]
             raise self.error(f"found {found}, expected {expected}: {error}", steps) from None
 
-    def number(self, raw: float | str, kind: str, steps: Path_) -> float:
+    def number(self, raw: float | str, kind: str, steps: Steps) -> float:
+        """As `quantity`, a number alone."""
         return self.quantity(raw, kind, steps).value
 
-    def numbers(self, raw: list[float | str], kind: str, steps: Path_) -> tuple[float, ...]:
+    def numbers(self, raw: list[float | str], kind: str, steps: Steps) -> tuple[float, ...]:
+        """As `number`, for a list."""
         return tuple(self.number(value, kind, [*steps, i]) for i, value in enumerate(raw))
 
-    def positive(self, raw: float | str | None, kind: str, steps: Path_) -> float | None:
+    def positive(self, raw: float | str | None, kind: str, steps: Steps) -> float | None:
         """A magnitude: None where it is not given, an error unless it is above zero."""
         if raw is None:
             return None
@@ -61,7 +65,8 @@ class Context:
             raise self.error(f"found {value:g}, expected a magnitude above 0", steps)
         return value
 
-    def nonzero(self, raw: float | str, kind: str, steps: Path_) -> Quantity:
+    def nonzero(self, raw: float | str, kind: str, steps: Steps) -> Quantity:
+        """As `quantity`, but 0 is an error."""
         quantity = self.quantity(raw, kind, steps)
         if quantity.value == 0.0:
             raise self.error("found 0, expected a value other than 0", steps)

@@ -32,7 +32,7 @@ MAX_CHARACTERS = 1_000_000
 MAX_DEPTH = 24
 MAX_NODES = 100_000
 
-Path_: TypeAlias = Sequence[str | int]
+Steps: TypeAlias = Sequence[str | int]
 
 _INT = re.compile(r"[-+]?[0-9]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
@@ -53,7 +53,7 @@ class Node:
     `keys` gives the places of a mapping's keys; `size` and `height` count the nodes below, aliases expanded.
     """
 
-    value: None | bool | int | float | str | list[Node] | dict[str, Node]
+    value: bool | int | float | str | list[Node] | dict[str, Node] | None
     where: Location
     keys: Mapping[str, Location] = field(default_factory=dict)
     size: int = 1
@@ -75,8 +75,8 @@ class Node:
             return self.value[step]
         return None
 
-    def locate(self, path: Path_, key: bool = False) -> Location:
-        """Place of the value at `path`, of its key with `key`; the nearest enclosing one where it is missing."""
+    def locate(self, path: Steps, key: bool = False) -> Location:
+        """Place of the value at `path`, or of its key; of the nearest enclosing one where it is missing."""
         node, where = self, self.where
         for step in path:
             key_place = node.keys.get(step) if isinstance(step, str) else None
@@ -86,6 +86,12 @@ class Node:
             where = key_place if key and key_place is not None else child.where
             node = child
         return where
+
+
+def one_line(text: str, length: int = 40) -> str:
+    """Text of the document as a message may repeat it: printable, on one line, cut to `length`."""
+    line = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
+    return line if len(line) <= length else line[: length - 3] + "..."
 
 
 def read_text(path: Path) -> str:
@@ -136,10 +142,10 @@ def _events(text: str, file: str) -> Iterator[Event]:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             where = Location(file, mark.line + 1, mark.column + 1) if mark else Location(file, 1, 1)
-            reason = " ".join(str(error.problem or error.context or "syntax error").split())
+            reason = one_line(str(error.problem or error.context or "syntax error"), 120)
             raise InputError(f"this is no valid YAML: {reason}", where) from None
         except Exception as error:
-            reason = " ".join(str(error).split())[:120] or type(error).__name__
+            reason = one_line(str(error), 120) or type(error).__name__
             raise InputError(f"this is no valid YAML: {reason}", Location(file, 1, 1)) from None
         yield event
 
@@ -165,7 +171,7 @@ class _Tree:
             raise InputError(f"the document is nested deeper than {MAX_DEPTH} levels", where)
         if getattr(event, "tag", None) is not None:
             raise InputError("found a YAML tag, expected a plain value (tags are not used here)", where)
-        anchor = event.anchor
+        anchor = getattr(event, "anchor", None)
         if anchor is not None:
             self.anchors[anchor] = None
         if isinstance(event, MappingStartEvent):
@@ -173,6 +179,7 @@ class _Tree:
         elif isinstance(event, SequenceStartEvent):
             node = self._sequence(depth, where)
         else:
+            assert isinstance(event, ScalarEvent)
             node = Node(_scalar(event), where)
         if node.size > MAX_NODES:
             raise InputError(f"the document has more than {MAX_NODES} values, aliases expanded", where)
@@ -182,7 +189,7 @@ class _Tree:
 
     def _alias(self, event: AliasEvent, depth: int, where: Location) -> Node:
         if event.anchor not in self.anchors:
-            raise InputError(f"found the alias *{event.anchor}, but no anchor &{event.anchor} before it", where)
+            raise InputError(f"found the alias *{event.anchor}, expected its anchor before it", where)
         target = self.anchors[event.anchor]
         if target is None:
             raise InputError(f"the alias *{event.anchor} stands inside its own anchor", where)
@@ -202,21 +209,16 @@ class _Tree:
         while not isinstance(event := next(self.events), MappingEndEvent):
             place = _place(event, self.file)
             if not isinstance(event, ScalarEvent) or getattr(event, "tag", None) is not None:
-                raise InputError("found a list, a mapping, an alias or a tag as a key, expected a name", place)
+                raise InputError("found a key that is no plain text, expected a name", place)
             key = str(event.value)
             if key == "<<" and event.style is None:
                 raise InputError("merge keys (<<) are not part of YAML 1.2; write the keys out", place)
             if key in keys:
                 first = keys[key].line
-                raise InputError(f"the key '{_short(key)}' stands here a second time, first on line {first}", place)
+                raise InputError(f"the key '{one_line(key)}' is given twice, first on line {first}", place)
             keys[key] = place
             values[key] = self.node(next(self.events), depth + 1)
         return Node(values, where, keys, *_extent(values.values()))
-
-
-def _short(text: str) -> str:
-    line = " ".join(text.split())
-    return line if len(line) <= 40 else line[:37] + "..."
 
 
 def _extent(nodes: Any) -> tuple[int, int]:
@@ -224,14 +226,14 @@ def _extent(nodes: Any) -> tuple[int, int]:
     return 1 + sum(node.size for node in items), 1 + max((node.height for node in items), default=0)
 
 
-def _scalar(event: ScalarEvent) -> None | bool | int | float | str:
+def _scalar(event: ScalarEvent) -> bool | int | float | str | None:
     """The YAML 1.2 core schema; quoted and block scalars are text. Octal and hexadecimal stay text."""
     text = str(event.value)
     if event.style is not None:
         return text
     if text in _WORDS:
         return _WORDS[text]
-    if len(text) <= 400 and _INT.fullmatch(text):
+    if len(text) <= 15 and _INT.fullmatch(text):
         return int(text)
     if len(text) <= 400 and _FLOAT.fullmatch(text):
         return float(text)

@@ -1,11 +1,11 @@
-"""Drives of the description: their figures, the triangle of a lever and the joint range that its stroke allows."""
+"""Drives of the description: their figures, a lever's triangle, the joint range that its stroke allows."""
 
 from __future__ import annotations
 
 import math
 
 from modelgen.description.context import Context, show
-from modelgen.description.document import Path_
+from modelgen.description.document import Steps
 from modelgen.description.expressions import Quantity
 from modelgen.description.objects import (
     DirectDrive,
@@ -15,7 +15,13 @@ from modelgen.description.objects import (
     NoDrive,
     Range,
 )
-from modelgen.description.schema import DirectDriveModel, LeveredDriveModel, MotorModel, NoDriveModel
+from modelgen.description.schema import (
+    AnyDriveModel,
+    DirectDriveModel,
+    LeveredDriveModel,
+    MotorModel,
+    NoDriveModel,
+)
 
 # Nearer than this to a dead centre the lever passes on next to no effort, and rounding decides its branch.
 DEAD_CENTRE_MARGIN = math.radians(0.5)
@@ -25,9 +31,7 @@ ROUNDING = math.radians(0.01)
 DISAGREEMENT = math.radians(0.5)
 
 
-def read_drive(
-    context: Context, model: NoDriveModel | DirectDriveModel | LeveredDriveModel, joint_type: str, steps: Path_
-) -> Drive:
+def read_drive(context: Context, model: AnyDriveModel, joint_type: str, steps: Steps) -> Drive:
     """The drive of a joint of the given type. Raises InputError."""
     match model:
         case NoDriveModel():
@@ -50,14 +54,14 @@ def read_drive(
             return _levered(context, model, steps)
 
 
-def _levered(context: Context, model: LeveredDriveModel, steps: Path_) -> LeveredDrive:
+def _levered(context: Context, model: LeveredDriveModel, steps: Steps) -> LeveredDrive:
     l1, l2 = (_length(context, raw, [*steps, name]) for name, raw in (("l1", model.l1), ("l2", model.l2)))
     ends = [_length(context, raw, [*steps, "length", i]) for i, raw in enumerate(model.length)]
     if ends[0].value == ends[1].value:
         raise context.error(f"both lengths are {ends[0].value:g} m, expected a stroke", [*steps, "length"])
     motor = context.numbers(model.motor, "plain", [*steps, "motor"])
     if motor[0] == motor[1]:
-        raise context.error(f"both motor values are {motor[0]:g}, expected two different ones", [*steps, "motor"])
+        raise context.error(f"both motor values are {motor[0]:g}, expected a range", [*steps, "motor"])
     _check_triangle(context, l1.value, l2.value, [end.value for end in ends], [*steps, "length"])
     return LeveredDrive(
         l1=l1.scalar,
@@ -71,18 +75,18 @@ def _levered(context: Context, model: LeveredDriveModel, steps: Path_) -> Levere
     )
 
 
-def _length(context: Context, raw: float | str, steps: Path_) -> Quantity:
+def _length(context: Context, raw: float | str, steps: Steps) -> Quantity:
     quantity = context.quantity(raw, "length", steps)
     if quantity.value <= 0.0:
         raise context.error(f"found {quantity.value:g} m, expected a length above 0", steps)
     return quantity
 
 
-def _torque_constant(context: Context, model: MotorModel, steps: Path_) -> float:
+def _torque_constant(context: Context, model: MotorModel, steps: Steps) -> float:
     return context.nonzero(model.torque_constant, "plain", [*steps, "torque_constant"]).value
 
 
-def _motor_limits(context: Context, model: MotorModel, steps: Path_) -> MotorLimits:
+def _motor_limits(context: Context, model: MotorModel, steps: Steps) -> MotorLimits:
     return MotorLimits(
         velocity=context.positive(model.motor_velocity, "plain", [*steps, "motor_velocity"]),
         acceleration=context.positive(model.motor_acceleration, "plain", [*steps, "motor_acceleration"]),
@@ -91,13 +95,13 @@ def _motor_limits(context: Context, model: MotorModel, steps: Path_) -> MotorLim
 
 
 def inner_angle(l1: float, l2: float, length: float) -> float:
-    """Angle [rad] at the joint axis of the triangle l1, l2, length [m], by the law of cosines; clipped to [0, pi]."""
+    """Angle [rad] at the joint axis of the triangle l1, l2, length [m] (law of cosines), within [0, pi]."""
     # The squares are taken of ratios, so that no length is too large or too small for them.
     cosine = (l1 / l2 + l2 / l1 - (length / l1) * (length / l2)) / 2
     return math.acos(min(1.0, max(-1.0, cosine)))
 
 
-def _check_triangle(context: Context, l1: float, l2: float, ends: list[float], steps: Path_) -> None:
+def _check_triangle(context: Context, l1: float, l2: float, ends: list[float], steps: Steps) -> None:
     low, high = abs(l1 - l2), l1 + l2
     for i, length in enumerate(ends):
         if not low <= length <= high:
@@ -110,14 +114,14 @@ def _check_triangle(context: Context, l1: float, l2: float, ends: list[float], s
         if not DEAD_CENTRE_MARGIN <= angle <= math.pi - DEAD_CENTRE_MARGIN:
             centre = "0" if angle < 1.0 else "180"
             raise context.error(
-                f"at the actuator length {length:g} m the stroke reaches the lever's dead centre (inner angle "
-                f"{math.degrees(angle):.3g} deg, dead centre at {centre} deg); keep it "
-                f"{math.degrees(DEAD_CENTRE_MARGIN):g} deg away",
+                f"at the length {length:g} m the stroke reaches the lever's dead centre: inner angle "
+                f"{math.degrees(angle):.3g} deg, expected at least {math.degrees(DEAD_CENTRE_MARGIN):g} deg "
+                f"from {centre} deg",
                 [*steps, i],
             )
 
 
-def stroke_range(context: Context, model: LeveredDriveModel, steps: Path_) -> Range:
+def stroke_range(context: Context, model: LeveredDriveModel, steps: Steps) -> Range:
     """Joint range [rad] that the actuator's stroke allows."""
     l1, l2 = context.number(model.l1, "length", steps), context.number(model.l2, "length", steps)
     offset = context.number(model.offset, "angle", steps)
@@ -126,7 +130,7 @@ def stroke_range(context: Context, model: LeveredDriveModel, steps: Path_) -> Ra
     return ends[0], ends[1]
 
 
-def within_stroke(context: Context, joint: str, position: Range | None, stroke: Range, steps: Path_) -> Range:
+def within_stroke(context: Context, joint: str, position: Range | None, stroke: Range, steps: Steps) -> Range:
     """The joint range, cut to the stroke where they disagree a little. Raises InputError where by more.
 
     Without a joint range, the stroke's is taken.

@@ -18,7 +18,7 @@ import sympy as sp
 from modelgen.description.objects import Scalar
 
 MAX_LENGTH = 200
-MAX_DEPTH = 24
+MAX_DEPTH = 64
 MAX_EXPONENT = 64
 MAX_DEGREE = 64
 
@@ -45,7 +45,9 @@ _OPERATORS: Mapping[type[ast.operator], str] = {
     ast.Div: "/",
     ast.Pow: "**",
 }
-_UNIT_AT_END = re.compile(r"(.*?)\s*(?<![A-Za-z_])(deg|rad|mm|cm|m)\s*", re.DOTALL)
+# "90 deg", "90deg", "(a + b) mm"; but "d3m" is a name.
+_UNIT_AT_END = re.compile(r"(.*?)(?<![A-Za-z0-9_])([0-9]+(?:[eE][0-9]+)?)?(deg|rad|mm|cm|m)\s*", re.DOTALL)
+_HINTS = {"^": "; a power is written **", "°": '; degrees are written "90 deg"', "π": "; write pi"}
 _FOREIGN = re.compile(r"[^0-9A-Za-z_.+\-*/() ]")
 
 
@@ -104,7 +106,7 @@ def _split_unit(raw: str, kind: str) -> tuple[str, float]:
     match = _UNIT_AT_END.fullmatch(raw)
     if match is None:
         return raw.strip(), 1.0
-    text, unit = match[1].strip(), match[2]
+    text, unit = (match[1] + (match[2] or "")).strip(), match[3]
     if not text:
         raise ExpressionError(f"a number is missing before the unit '{unit}'")
     of, factor = UNITS[unit]
@@ -123,8 +125,7 @@ def _with_article(kind: str) -> str:
 def _parse(text: str, unit: bool) -> ast.expr:
     foreign = _FOREIGN.search(text)
     if foreign:
-        hint = {"^": "; a power is written **", "°": '; degrees are written "90 deg"', "π": "; write pi"}
-        raise ExpressionError(f"{foreign[0]!r} cannot stand in an expression{hint.get(foreign[0], '')}")
+        raise ExpressionError(f"{foreign[0]!r} cannot stand in an expression{_HINTS.get(foreign[0], '')}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -133,8 +134,15 @@ def _parse(text: str, unit: bool) -> ast.expr:
         many = re.search(r"\b(deg|rad|mm|cm|m)\b", text) or re.search(r"\d(deg|rad|mm|cm|m)\b", text)
         hint = "; a unit stands once, at the end, for the whole expression" if many else ""
         raise ExpressionError(f"this is no arithmetic expression{hint}") from None
-    if unit and isinstance(tree, ast.BinOp) and isinstance(tree.op, ast.Add | ast.Sub) and tree.col_offset == 0:
-        raise ExpressionError(f"the unit could belong to the last term or to the sum; write ({text}) with the unit")
+    if (
+        unit
+        and isinstance(tree, ast.BinOp)
+        and isinstance(tree.op, ast.Add | ast.Sub)
+        and tree.col_offset == 0
+    ):
+        raise ExpressionError(
+            f"the unit could belong to the last term or to the sum; write ({text}) with the unit"
+        )
     return tree
 
 
@@ -166,7 +174,9 @@ def _walk(node: ast.expr, symbols: Mapping[str, float], depth: int) -> Quantity:
             raise ExpressionError(f"the function '{name}' is not known, available: {', '.join(FUNCTIONS)}")
         case _:
             pass
-    raise ExpressionError("only numbers, + - * / **, parentheses, pi, functions and the arm's symbols are allowed")
+    raise ExpressionError(
+        "only numbers, + - * / **, parentheses, pi, functions and the arm's symbols are allowed"
+    )
 
 
 def _name(name: str, symbols: Mapping[str, float]) -> Quantity:
@@ -196,7 +206,9 @@ def _combine(operator: str, a: Quantity, b: Quantity) -> Quantity:
     result = Quantity(value)
     if a.expression is not None or b.expression is not None:
         x, y = a.symbolic, b.symbolic
-        expression = {"+": lambda: x + y, "-": lambda: x - y, "*": lambda: x * y, "/": lambda: x / y}[operator]()
+        expression = {"+": lambda: x + y, "-": lambda: x - y, "*": lambda: x * y, "/": lambda: x / y}[
+            operator
+        ]()
         degree = a.degree + b.degree if operator in "*/" else max(a.degree, b.degree)
         result = _bounded(value, expression, degree)
     return _finite(result)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.description.context import Context
-from modelgen.description.document import Path_
+from modelgen.description.document import Steps
 from modelgen.description.objects import Inertial
 from modelgen.description.schema import LinkModel
 
@@ -13,8 +13,8 @@ from modelgen.description.schema import LinkModel
 TOLERANCE = 1e-6
 
 
-def read_inertial(context: Context, model: LinkModel, steps: Path_) -> Inertial:
-    """Mass [kg], centre of mass [m], inertia about it [kg m^2]. Raises InputError where no body can have them.
+def read_inertial(context: Context, model: LinkModel, steps: Steps) -> Inertial:
+    """Mass [kg], centre of mass [m], inertia about it [kg m^2]. Raises InputError if no body has them.
 
     The principal moments of a body are not negative, and none exceeds the sum of the other two
     (Traversaro et al., 2016); a body without mass has no inertia.
@@ -42,8 +42,8 @@ def read_inertial(context: Context, model: LinkModel, steps: Path_) -> Inertial:
             )
         if small + middle < large - slack:
             raise context.error(
-                f"no body has this inertia: its principal moments are {shown} kg m^2, and the largest exceeds the "
-                "sum of the others (order ixx, ixy, ixz, iyy, iyz, izz, about the centre of mass)",
+                f"no body has this inertia: its principal moments are {shown} kg m^2, the largest exceeds "
+                "the sum of the others (order ixx, ixy, ixz, iyy, iyz, izz, about the centre of mass)",
                 at,
             )
     return Inertial(mass, (com[0], com[1], com[2]), _six(inertia))

@@ -18,7 +18,8 @@ from modelgen.errors import InputError
 def load(path: Path | str, known_effects: Mapping[str, Collection[str]] | None = None) -> dict[str, Arm]:
     """The arms of a file, by name, in its order. Raises InputError at the first mistake.
 
-    `known_effects` maps the names of the effects to the names of their parameters; with it, other names are errors.
+    `known_effects` maps the names of the effects to the names of their parameters; any other name is then
+    an error.
     """
     return loads(read_text(Path(path)), str(path), known_effects)
 
@@ -30,7 +31,8 @@ def loads(
     root = parse(text, file)
     if not isinstance(root.value, dict):
         raise InputError(
-            f"found {describe(root.plain())}, expected a mapping with `schema`, `convention` and `arms`", root.where
+            f"found {describe(root.plain())}, expected a mapping with `schema`, `convention` and `arms`",
+            root.where,
         )
     try:
         document = Document.model_validate(root.plain())

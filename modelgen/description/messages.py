@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from modelgen.description.document import Node, Path_
+from modelgen.description.document import Node, Steps, one_line
 from modelgen.errors import InputError
 
 _EXPECTED = {
@@ -19,7 +19,8 @@ _EXPECTED = {
     "model_type": "a mapping of keys to values",
     "model_attributes_type": "a mapping of keys to values",
     "number": "a number or an expression such as pi/2",
-    "union_tag_not_found": "an effect's name, or its name with values as in {coulomb_friction: {magnitude: 0.2}}",
+    "whole": "a whole number",
+    "union_tag_not_found": "an effect's name, or a name with values: {coulomb_friction: {magnitude: 0.2}}",
 }
 
 
@@ -31,8 +32,7 @@ def describe(value: Any) -> str:
         case bool():
             return "true" if value else "false"
         case str():
-            line = " ".join(value.split())
-            return f"'{line if len(line) <= 40 else line[:37] + '...'}'"
+            return f"'{one_line(value)}'"
         case int() | float():
             return f"{value:g}"
         case list():
@@ -57,20 +57,20 @@ def suggest(name: str, options: Iterable[str]) -> str:
     return f", {listed}"
 
 
-def label(path: Path_) -> str:
+def label(path: Steps) -> str:
     """The path as the messages show it: my_arm.joints.1.drive.type (indices count from 0)."""
     steps = path[1:] if len(path) > 1 and path[0] == "arms" else path
-    return ".".join(str(step) for step in steps)
+    return ".".join(one_line(str(step)) for step in steps)
 
 
-def mistake(root: Node, path: Path_, message: str, key: bool = False) -> InputError:
+def mistake(root: Node, path: Steps, message: str, key: bool = False) -> InputError:
     """The error for the value at `path`, or for its key."""
     prefix = label(path)
     return InputError(f"{prefix}: {message}" if prefix else message, root.locate(path, key))
 
 
 def first_mistake(root: Node, error: ValidationError) -> InputError:
-    """The first of the structural mistakes in reading order; missing keys last, a misspelt one explains them."""
+    """The first structural mistake in reading order; missing keys last: a misspelt one explains them."""
     found = [_structural(root, dict(entry)) for entry in error.errors(include_url=False)]
     return min(found, key=lambda item: item[0])[1]
 
@@ -81,7 +81,9 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[bool, int, int
     key = False
     if kind == "unknown_key":
         path, key = [*path, context["key"]], True
-        message = f"found the unknown key '{context['key']}'{suggest(context['key'], context['options'])}"
+        message = (
+            f"found the unknown key {describe(context['key'])}{suggest(context['key'], context['options'])}"
+        )
     elif kind == "missing":
         message = f"the key '{entry['loc'][-1]}' is missing"
     elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
@@ -114,7 +116,8 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[bool, int, int
 
 def _one_of(value: Any, options: list[str]) -> str:
     expected = options[0] if len(options) == 1 else f"one of {', '.join(options)}"
-    near = difflib.get_close_matches(value, options, n=1) if isinstance(value, str) else []
+    several = isinstance(value, str) and len(options) > 1
+    near = difflib.get_close_matches(value, options, n=1) if several else []
     return f", expected {expected}" + (f", did you mean '{near[0]}'?" if near else "")
 
 

@@ -7,21 +7,25 @@ import re
 
 from modelgen.description.expressions import FUNCTIONS, UNITS
 
-C_KEYWORDS = frozenset(
-    """auto break case char const continue default do double else enum extern float for goto if inline int long
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
-    alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
-    co_yield compl concept consteval constexpr constinit const_cast decltype delete dynamic_cast explicit export
-    false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
-    reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
-    typeof typeof_unqual using virtual wchar_t xor xor_eq""".split()
-)
-# Inertial and buoyancy parameters of links, coefficients of drives and frictions, logged signals; base parameters
-# carry an R behind the number.
+_C_KEYWORDS = """
+auto break case char const continue default do double else enum extern float for goto if inline int
+long register restrict return short signed sizeof static struct switch typedef union unsigned void
+volatile while alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t
+class co_await co_return co_yield compl concept consteval constexpr constinit const_cast decltype
+delete dynamic_cast explicit export false friend mutable namespace new noexcept not not_eq nullptr
+operator or or_eq private protected public reinterpret_cast requires static_assert static_cast
+template this thread_local throw true try typeid typename typeof typeof_unqual using virtual wchar_t
+xor xor_eq
+"""
+C_KEYWORDS = frozenset(_C_KEYWORDS.split())
+# Inertial and buoyancy parameters of links, coefficients of drives and frictions, logged signals.
+# Base parameters carry an R behind the number.
 _STANDARD = re.compile(
     r"(XX|XY|XZ|YY|YZ|ZZ|MX|MY|MZ|M|VX|VY|VZ|V|FV|FC|FS|FO|IA|JM|J|K|KT|q|qm|dq|ddq|dqm|ddqm|tau|i)[0-9]+R?"
 )
-_ARGUMENTS = frozenset("q dq ddq qm dqm ddqm dq_r ddq_r t dt input parameters state out load".split())
+_ARGUMENTS = frozenset(
+    ("q", "dq", "ddq", "qm", "dqm", "ddqm", "dq_r", "ddq_r", "t", "dt", "input", "parameters", "state", "out")
+)
 
 
 def arm_name_problem(name: str) -> str | None:

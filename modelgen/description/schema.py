@@ -34,6 +34,14 @@ def _number(value: Any) -> Any:
     return value
 
 
+def _whole(value: Any) -> Any:
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise PydanticCustomError("whole", "expected a whole number")
+    return value
+
+
 def _effect_form(value: Any) -> str | None:
     if isinstance(value, str):
         return "<name>"
@@ -75,10 +83,14 @@ class Model(BaseModel):
 class LimitsModel(Model):
     """Limits of a joint coordinate q. Angles may be written with deg, lengths with mm, cm or m."""
 
-    position: Pair | None = Field(None, description="Lowest and highest q [rad, or m for a prismatic joint].")
-    velocity: Number | None = Field(None, description="Largest speed |dq| [rad/s or m/s]; '28 deg' is 28 deg/s.")
-    acceleration: Number | None = Field(None, description="Largest |ddq| [rad/s^2 or m/s^2].")
-    effort: Number | None = Field(None, description="Largest effort at the joint [N m or N].")
+    position: Pair | None = Field(
+        default=None, description="Lowest and highest q [rad, or m for a prismatic joint]."
+    )
+    velocity: Number | None = Field(
+        default=None, description="Largest |dq| [rad/s or m/s]; '28 deg' is 28 deg/s."
+    )
+    acceleration: Number | None = Field(default=None, description="Largest |ddq| [rad/s^2 or m/s^2].")
+    effort: Number | None = Field(default=None, description="Largest effort at the joint [N m or N].")
 
 
 class NoDriveModel(Model):
@@ -94,56 +106,67 @@ class MotorModel(Model):
         description="Generalised force at the motor coordinate per ampere: N m/A for a direct drive, "
         "J per motor unit per A for a levered one. Not zero."
     )
-    motor_velocity: Number | None = Field(None, description="Largest motor speed [motor units/s].")
-    motor_acceleration: Number | None = Field(None, description="Largest motor acceleration [motor units/s^2].")
-    current: Number | None = Field(None, description="Largest motor current [A].")
+    motor_velocity: Number | None = Field(default=None, description="Largest motor speed [units/s].")
+    motor_acceleration: Number | None = Field(
+        default=None, description="Largest motor acceleration [units/s^2]."
+    )
+    current: Number | None = Field(default=None, description="Largest motor current [A].")
 
 
 class DirectDriveModel(MotorModel):
     """A geared motor on the joint, q_m = ratio q; a ball-screw axis has ratio = 2 pi / lead [rad/m]."""
 
     type: Literal["direct"] = Field(description="direct: q_m = ratio q.")
-    ratio: Number = Field(description="Motor coordinate per joint coordinate [1, or rad/m for a prismatic joint].")
+    ratio: Number = Field(description="Motor coordinate per joint coordinate [1; prismatic: rad/m].")
 
 
 class LeveredDriveModel(MotorModel):
     """A linear actuator between two points at l1 and l2 from the axis of a revolute joint."""
 
-    type: Literal["levered"] = Field(description="levered: a linear actuator turns the joint through a lever.")
+    type: Literal["levered"] = Field(description="levered: a linear actuator on a lever.")
     l1: Number = Field(description="Distance from the joint axis to one end of the actuator [m].")
     l2: Number = Field(description="Distance from the joint axis to the other end of the actuator [m].")
-    length: Pair = Field(description="Actuator length between its ends at the two motor values of `motor` [m].")
-    motor: Pair = Field(description="Motor coordinate at the two lengths of `length` [any unit, increments usually].")
-    rev: Literal[1, -1] = Field(description="Branch: q = rev q_j + offset, q_j the inner angle of the lever.")
+    length: Pair = Field(description="Actuator length at the two values of `motor` [m].")
+    motor: Pair = Field(description="Motor coordinate at the two lengths [any unit, increments usually].")
+    rev: Annotated[Literal[1, -1], BeforeValidator(_whole)] = Field(
+        description="Branch: q = rev q_j + offset, q_j the inner angle of the lever."
+    )
     offset: Number = Field(description="Joint angle minus rev times the lever's inner angle [rad].")
 
 
-DriveModel: TypeAlias = Annotated[NoDriveModel | DirectDriveModel | LeveredDriveModel, Field(discriminator="type")]
+AnyDriveModel: TypeAlias = NoDriveModel | DirectDriveModel | LeveredDriveModel
+DriveModel: TypeAlias = Annotated[AnyDriveModel, Field(discriminator="type")]
 
 
 class JointModel(Model):
-    """One joint and its link's frame: Rot(x, alpha) Trans(x, d) Rot(z, theta) Trans(z, r), q added to theta or r."""
+    """One joint and its link's frame by modified DH parameters; q adds to theta (revolute) or r."""
 
     name: JointName = Field(description="Name of the joint, unique in the arm; not 'base'.")
     type: Literal["revolute", "prismatic", "fixed"] = Field(
-        "revolute", description="Kind of joint; a fixed one only carries a frame and a link."
+        default="revolute", description="Kind of joint; a fixed one only carries a frame and a link."
     )
-    alpha: Number = Field(0.0, description="Angle about x from the antecedent's z axis to this one [rad].")
-    d: Number = Field(0.0, description="Distance along x between the two z axes [m].")
-    r: Number = Field(0.0, description="Distance along z [m]; a prismatic joint adds q to it.")
-    theta: Number = Field(0.0, description="Angle about z [rad]; a revolute joint adds q to it.")
-    gamma: Number = Field(0.0, description="Trees: angle about the antecedent's z axis before alpha [rad].")
-    b: Number = Field(0.0, description="Trees: distance along the antecedent's z axis before alpha [m].")
+    alpha: Number = Field(default=0.0, description="Angle about x from the antecedent's z to this z [rad].")
+    d: Number = Field(default=0.0, description="Distance along x between the two z axes [m].")
+    r: Number = Field(default=0.0, description="Distance along z [m]; a prismatic joint adds q to it.")
+    theta: Number = Field(default=0.0, description="Angle about z [rad]; a revolute joint adds q to it.")
+    gamma: Number = Field(
+        default=0.0, description="Trees: angle about the antecedent's z axis before alpha [rad]."
+    )
+    b: Number = Field(
+        default=0.0, description="Trees: distance along the antecedent's z axis before alpha [m]."
+    )
     antecedent: JointName | None = Field(
-        None, description="The joint that carries this one, or 'base'. Default: the joint before."
+        default=None, description="The joint that carries this one, or 'base'. Default: the joint before."
     )
-    limits: LimitsModel = Field(LimitsModel(), description="Limits of the joint coordinate.")
-    drive: DriveModel = Field(NoDriveModel(type="none"), description="How the joint is driven. Default: not at all.")
+    limits: LimitsModel = Field(default=LimitsModel(), description="Limits of the joint coordinate.")
+    drive: DriveModel = Field(
+        default=NoDriveModel(type="none"), description="How the joint is driven; default: not at all."
+    )
     effects: list[EffectEntry] | None = Field(
-        None,
-        description="Effects beyond rigid-body dynamics: a name, or a name with nominal values of the effect's "
-        "parameters (see `modelgen effects` for names and units). Default: viscous_friction, coulomb_friction "
-        "and drive_inertia for a driven joint, none for another.",
+        default=None,
+        description="Effects beyond rigid-body dynamics: a name, or a name with nominal values of its "
+        "parameters (`modelgen effects` lists names and units). Default: viscous_friction, "
+        "coulomb_friction and drive_inertia for a driven joint, none for another.",
     )
 
 
@@ -158,23 +181,32 @@ class LinkModel(Model):
 class ArmModel(Model):
     """One arm: joints in the order of the coordinates, and what surrounds it."""
 
-    source: str = Field("", description="Where the figures come from; free text.")
-    gravity: Triple = Field([0.0, 0.0, -9.81], description="Acceleration of gravity in the base frame [m/s^2].")
-    fluid_density: Number = Field(0.0, description="Density of the surrounding fluid [kg/m^3]; 0: no buoyancy.")
+    source: str = Field(default="", description="Where the figures come from; free text.")
+    gravity: Triple = Field(
+        default=[0.0, 0.0, -9.81], description="Acceleration of gravity, base frame [m/s^2]."
+    )
+    fluid_density: Number = Field(
+        default=0.0, description="Density of the fluid around [kg/m^3]; 0: no buoyancy."
+    )
     symbols: dict[Annotated[str, Field(pattern=SYMBOL_NAME)], Number] = Field(
-        {}, description="Named geometry: name to value [rad or m]; the names may be used in expressions."
+        default={},
+        description="Named geometry: name to value [rad or m]; the names may be used in expressions.",
     )
     locked: dict[str, Number] = Field(
-        {}, description="Joints held in place: name to coordinate [rad or m]; they leave the model's coordinates."
+        default={}, description="Joints held in place: name to coordinate [rad or m]; they leave the model."
     )
     joints: Annotated[list[JointModel], Field(min_length=1)] = Field(description="The joints, base first.")
-    links: dict[str, LinkModel] = Field({}, description="Nominal inertials by name of the joint that moves the link.")
+    links: dict[str, LinkModel] = Field(
+        default={}, description="Nominal inertials by the name of the link's joint."
+    )
 
 
 class Document(Model):
     """The whole file."""
 
-    schema_version: Literal[1] = Field(alias="schema", description="Version of this format: 1.")
+    schema_version: Annotated[Literal[1], BeforeValidator(_whole)] = Field(
+        alias="schema", description="Version of this format: 1."
+    )
     convention: Literal["khalil_kleinfinger"] = Field(
         description="Frames by modified Denavit-Hartenberg parameters (Khalil and Kleinfinger, 1986)."
     )
@@ -220,4 +252,17 @@ def json_schema(known_effects: Mapping[str, Collection[str]] | None = None) -> d
         for option in effects["anyOf"]:
             if option.get("type") == "array":
                 option["items"] = entry
+    _close(schema)
     return head | {key: value for key, value in schema.items() if key != "title"}
+
+
+def _close(schema: Any) -> None:
+    """Where names follow a pattern, no other names are allowed; pydantic leaves that open."""
+    if isinstance(schema, dict):
+        if "patternProperties" in schema:
+            schema["additionalProperties"] = False
+        for value in schema.values():
+            _close(value)
+    elif isinstance(schema, list):
+        for value in schema:
+            _close(value)
