@@ -23,6 +23,21 @@ def turn_z(pair: Pair, v: Vector) -> Vector:
     return (c * v[0] - s * v[1], s * v[0] + c * v[1], v[2])
 
 
+def turn_z_factored(pair: Pair, v: Vector) -> Vector:
+    """Rot(z) v, with a factor common to both components taken out first.
+
+    A vector known up to a factor (the first axis of an arm, say) is then turned once for all that is
+    proportional to it.
+    """
+    graph = v[0].graph
+    shared = graph.common_factor(v[0], v[1])
+    if shared is None:
+        return turn_z(pair, v)
+    factor, x, y = shared
+    tx, ty, _ = turn_z(pair, (x, y, v[2]))
+    return (factor * tx, factor * ty, v[2])
+
+
 def turn_x(pair: Pair, v: Vector) -> Vector:
     """Rot(x) v."""
     s, c = pair
@@ -46,21 +61,31 @@ class Frame:
     theta: Pair
     foot: Vector  # of the common normal on the axis of joint j, in the antecedent's frame [m]
     origin: Vector  # of frame j, in the antecedent's frame [m]
+    factored: bool  # take common factors out of what is turned
     r: Expr  # from the foot to the origin along z of frame j [m]
 
     def to_link(self, v: Vector) -> Vector:
         """A free vector of the antecedent's frame in frame j."""
-        return turn_z(_back(self.theta), turn_x(_back(self.alpha), turn_z(_back(self.gamma), v)))
+        turn = turn_z_factored if self.factored else turn_z
+        return turn(_back(self.theta), turn_x(_back(self.alpha), turn_z(_back(self.gamma), v)))
 
     def to_antecedent(self, v: Vector) -> Vector:
         """A free vector of frame j in the antecedent's frame."""
         return turn_z(self.gamma, turn_x(self.alpha, turn_z(self.theta, v)))
 
+    def to_antecedent_fixed(self, v: Vector) -> Vector:
+        """As `to_antecedent`, without theta where the joint turns: directions that a turn leaves alone."""
+        turning = self.coordinate is not None and not self.prismatic
+        return turn_z(self.gamma, turn_x(self.alpha, v if turning else turn_z(self.theta, v)))
+
 
 class Frames:
     """All frames of an arm; `frames[i]` belongs to `arm.joints[i]`, `order` lists antecedents first."""
 
-    def __init__(self, arm: Arm, scalars: Scalars, trigonometry: Trigonometry) -> None:
+    def __init__(
+        self, arm: Arm, scalars: Scalars, trigonometry: Trigonometry, factored: bool = False
+    ) -> None:
+        self.factored = factored
         self.arm = arm
         self.graph = scalars.graph
         self.scalars = scalars
@@ -92,7 +117,7 @@ class Frames:
         along = turn_x(alpha, (zero, zero, r))
         foot = turn_z(gamma, (d, zero, b))
         origin = turn_z(gamma, (d + along[0], along[1], along[2] + b))
-        return Frame(index, joint.antecedent, coordinate, prismatic, gamma, alpha, theta, foot, origin, r)
+        return Frame(index, joint.antecedent, coordinate, prismatic, gamma, alpha, theta, foot, origin, self.factored, r)
 
     def path(self, index: int) -> list[int]:
         """Indices of the frames from the base to `index`."""

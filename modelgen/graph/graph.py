@@ -159,6 +159,17 @@ class Graph:
                 return sign * number, right
         return sign, key & ~1
 
+    def common_factor(self, x: Expr, y: Expr) -> tuple[Expr, Expr, Expr] | None:
+        """(f, u, v) with x = f u and y = f v for a factor f that is no constant, else None."""
+        a, b = x.key >> 1, y.key >> 1
+        if self.op[a] != MUL or self.op[b] != MUL or a == b:
+            return None
+        for f, u in (self.args[a], self.args[a][::-1]):
+            for h, v in (self.args[b], self.args[b][::-1]):
+                if f == h and self.op[f >> 1] != CONST:
+                    return Expr(self, f), Expr(self, u | (x.key & 1)), Expr(self, v | (y.key & 1))
+        return None
+
     def add(self, x: int, y: int) -> int:
         """x + y."""
         if x <= 1:

@@ -12,21 +12,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from modelgen.geometry import Frames
+from modelgen.geometry import Frame, Frames
 from modelgen.graph import Expr
-from modelgen.graph.vectors import Matrix, Vector, add, cross, times
+from modelgen.graph.vectors import Matrix, Vector, add, times
 
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Angular velocity and its derivative, acceleration of the origin, gravity; all in frame j.
+    """Motion of one link in its frame.
 
-    A point r of the link accelerates by `acceleration` + `field` r.
+    A point r of the link accelerates by `acceleration` + U r, where U = [reference derivative]x
+    + [reference]x [velocity]x, 3 x 3 [1/s^2], is kept as its symmetric part (products of the two
+    velocities) and the axial vector of its antisymmetric part.
     """
 
     velocity: Vector  # [rad/s] of the motion itself
     reference: Vector  # [rad/s] of the reference motion; the same object without one
-    derivative: Vector  # [rad/s^2] inertial derivative of `reference`
+    axial: Vector  # [rad/s^2]; without a reference motion the angular acceleration
     acceleration: Vector  # [m/s^2] of the origin, less gravity
     gravity: Vector  # [m/s^2]
 
@@ -41,17 +43,8 @@ class LinkMotion:
         return squares, (mixed[0], mixed[1], mixed[2])
 
     @cached_property
-    def axial(self) -> Vector:
-        """Axial vector of the antisymmetric part of `field`."""
-        d = self.derivative
-        if self.velocity is self.reference:
-            return d
-        half = cross(self.velocity, self.reference)
-        return (d[0] - half[0] * 0.5, d[1] - half[1] * 0.5, d[2] - half[2] * 0.5)
-
-    @cached_property
     def field(self) -> Matrix:
-        """U = [derivative]x + [reference]x [velocity]x, 3 x 3 [1/s^2]."""
+        """U."""
         (xx, yy, zz), (yz, xz, xy) = self.products
         x, y, z = self.axial
         return (
@@ -62,7 +55,7 @@ class LinkMotion:
 
     @cached_property
     def stretch(self) -> Vector:
-        """Differences of the diagonal of `field`: (U22 - U33, U33 - U11, U11 - U22)."""
+        """Differences of the diagonal of U: (U22 - U33, U33 - U11, U11 - U22)."""
         xx, yy, zz = self.products[0]
         return (yy - zz, zz - xx, xx - yy)
 
@@ -76,16 +69,17 @@ class Rates:
     reference: Sequence[Expr] | None = None
 
 
-def link_motions(frames: Frames, rates: Rates, gravity: Sequence[float] | None = None) -> list[LinkMotion]:
-    """The motion of every link, indexed as `arm.joints`.
-
-    `gravity` [m/s^2] in the base frame replaces the arm's own.
-    """
+def base_motion(frames: Frames) -> LinkMotion:
+    """The base at rest, accelerated against gravity."""
     graph = frames.graph
-    g = [graph.const(x) for x in (frames.arm.gravity if gravity is None else gravity)]
+    x, y, z = (graph.const(component) for component in frames.arm.gravity)
     zero: Vector = (graph.zero, graph.zero, graph.zero)
-    base = LinkMotion(zero, zero, zero, (-g[0], -g[1], -g[2]), (g[0], g[1], g[2]))
-    motions: dict[int | None, LinkMotion] = {None: base}
+    return LinkMotion(zero, zero, zero, (-x, -y, -z), (x, y, z))
+
+
+def link_motions(frames: Frames, rates: Rates) -> list[LinkMotion]:
+    """The motion of every link, indexed as `arm.joints`."""
+    motions: dict[int | None, LinkMotion] = {None: base_motion(frames)}
     for i in frames.order:
         motions[i] = _link_motion(frames, i, motions[frames[i].antecedent], rates)
     return [motions[i] for i in range(len(frames.frames))]
@@ -93,24 +87,38 @@ def link_motions(frames: Frames, rates: Rates, gravity: Sequence[float] | None =
 
 def _link_motion(frames: Frames, i: int, parent: LinkMotion, rates: Rates) -> LinkMotion:
     frame = frames[i]
-    single = rates.reference is None
     velocity = frame.to_link(parent.velocity)
-    reference = velocity if single else frame.to_link(parent.reference)
-    derivative = frame.to_link(parent.derivative)
-    carried = add(parent.acceleration, times(parent.field, frame.origin))
-    acceleration = frame.to_link(carried)
+    reference = velocity if rates.reference is None else frame.to_link(parent.reference)
+    axial = frame.to_link(parent.axial)
+    acceleration = frame.to_link(add(parent.acceleration, times(parent.field, frame.origin)))
     gravity = frame.to_link(parent.gravity)
     n = frame.coordinate
-    if n is not None:
-        dq, ddq = rates.dq[n], rates.ddq[n]
-        dr = dq if rates.reference is None else rates.reference[n]
-        if frame.prismatic:
-            x, y, z = acceleration
-            w, v = velocity, reference
-            acceleration = (x + w[1] * dr + v[1] * dq, y - w[0] * dr - v[0] * dq, z + ddq)
-        else:
-            x, y, z = derivative
-            derivative = (x + velocity[1] * dr, y - velocity[0] * dr, z + ddq)
-            velocity = (velocity[0], velocity[1], velocity[2] + dq)
-            reference = velocity if single else (reference[0], reference[1], reference[2] + dr)
-    return LinkMotion(velocity, reference, derivative, acceleration, gravity)
+    if n is None:
+        return LinkMotion(velocity, reference, axial, acceleration, gravity)
+    dq, ddq = rates.dq[n], rates.ddq[n]
+    dr = dq if rates.reference is None else rates.reference[n]
+    # derivative of the axis' direction, times the rates
+    x = velocity[1] * dr + reference[1] * dq
+    y = -(velocity[0] * dr + reference[0] * dq)
+    if frame.prismatic:
+        acceleration = (acceleration[0] + x, acceleration[1] + y, acceleration[2] + ddq)
+        return LinkMotion(velocity, reference, axial, acceleration, gravity)
+    along = _axis_in_antecedent(frame)
+    spun = (velocity[0], velocity[1], velocity[2] + dq)
+    spun_reference = spun if rates.reference is None else (reference[0], reference[1], reference[2] + dr)
+    turned = (axial[0] + x * 0.5, axial[1] + y * 0.5, axial[2] + ddq)
+    if along is not None:
+        # Points of the axis belong to both links: U z is the antecedent's. That spares the terms
+        # of the joint's own rate, where z is an axis of the antecedent's frame.
+        u13, u23, _ = frame.to_link(times(parent.field, along))
+        yz, xz, _ = LinkMotion(spun, spun_reference, turned, acceleration, gravity).products[1]
+        turned = (yz - u23, u13 - xz, turned[2])
+    return LinkMotion(spun, spun_reference, turned, acceleration, gravity)
+
+
+def _axis_in_antecedent(frame: Frame) -> Vector | None:
+    """The joint's axis in the antecedent's frame where it is one of that frame's axes."""
+    zero = frame.r * 0.0
+    one = zero + 1.0
+    axis = frame.to_antecedent_fixed((zero, zero, one))
+    return axis if all(x.value in (0.0, 1.0, -1.0) for x in axis) else None

@@ -1,41 +1,36 @@
-"""Partial velocities: what a unit speed of one joint does to a link."""
+"""Partial velocities: what a unit speed of one joint does to a link (Kane and Levinson 1983)."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 from modelgen.geometry import Frames
-from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 
-Screw = tuple[Vector, Vector]  # angular velocity, velocity of the frame's origin, both in that frame
+Screw = tuple[Vector, Vector]  # angular velocity, velocity of a point
 
 
-def partial_velocities(frames: Frames, slid: Collection[int] = ()) -> list[dict[int, Screw]]:
-    """For every link, by coordinate: angular velocity and velocity of its origin, in its frame.
+class PartialVelocities:
+    """Screws of every link, by coordinate; only the coordinates that move the link are listed."""
 
-    Only the coordinates that move the link are listed. For the links in `slid` the velocity is that
-    of the foot of the common normal on the joint's axis, r below the origin.
-    """
-    graph = frames.graph
-    zero: Vector = (graph.zero, graph.zero, graph.zero)
-    z: Vector = (graph.zero, graph.zero, graph.one)
-    origins: dict[int, dict[int, Screw]] = {}
-    chosen: list[dict[int, Screw]] = [{} for _ in frames.frames]
-    for i in frames.order:
-        frame = frames[i]
-        point = frame.foot if i in slid else frame.origin
-        own: dict[int, Screw] = {}
-        if frame.antecedent is not None:
-            for n, (e, v) in origins[frame.antecedent].items():
-                own[n] = frame.to_link(e), frame.to_link(add(v, cross(e, point)))
-        if frame.coordinate is not None:
-            own[frame.coordinate] = (zero, z) if frame.prismatic else (z, zero)
-        chosen[i] = own
-        origins[i] = own if i not in slid else {n: (e, _along(e, v, frame.r)) for n, (e, v) in own.items()}
-    return chosen
+    def __init__(self, frames: Frames) -> None:
+        self.frames = frames
+        graph = frames.graph
+        self._zero: Vector = (graph.zero, graph.zero, graph.zero)
+        self._z: Vector = (graph.zero, graph.zero, graph.one)
+        self.of_link: list[dict[int, Screw]] = [{} for _ in frames.frames]
+        for i in frames.order:
+            frame = frames[i]
+            for n, (e, v) in self.carried(i, frame.origin).items():
+                self.of_link[i][n] = frame.to_link(e), frame.to_link(v)
+            if frame.coordinate is not None:
+                self.of_link[i][frame.coordinate] = self.own(i)
 
+    def own(self, i: int) -> Screw:
+        """The screw of the link's own joint at any point of its axis, in the link's frame."""
+        return (self._zero, self._z) if self.frames[i].prismatic else (self._z, self._zero)
 
-def _along(e: Vector, v: Vector, r: Expr) -> Vector:
-    """Velocity of the point r further along z."""
-    return (v[0] + r * e[1], v[1] - r * e[0], v[2])
+    def carried(self, i: int, point: Vector) -> dict[int, Screw]:
+        """Screws of the joints before link i at `point`, in the axes of the antecedent's frame."""
+        antecedent = self.frames[i].antecedent
+        if antecedent is None:
+            return {}
+        return {n: (e, add(v, cross(e, point))) for n, (e, v) in self.of_link[antecedent].items()}
