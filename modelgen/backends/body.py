@@ -1,0 +1,73 @@
+"""The statements of a function, one after the other, in the words of a dialect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Protocol
+
+from modelgen.backends.elements import Element
+from modelgen.backends.printing import Dialect, expression
+from modelgen.functions.objects import Function
+from modelgen.graph import Term
+
+
+class Statements(Dialect, Protocol):
+    """A dialect that can also assign."""
+
+    def load(self, element: Element, source: str) -> str:
+        """Give an element of an input its name."""
+
+    def let(self, number: int, text: str) -> str:
+        """Define an intermediate value."""
+
+    def store(self, output: str, index: int, text: str) -> str:
+        """Set an element of an output."""
+
+    def guard(self, status: int, text: str) -> str:
+        """Leave with `status` unless the value is positive; nothing where a language has no status."""
+
+
+def body(
+    function: Function,
+    named: Mapping[str, Sequence[Element | None]],
+    dialect: Statements,
+) -> Iterator[str]:
+    """The statements in print. An element with a name is loaded right before its first use.
+
+    Late loading keeps few values alive, and a loaded value survives the stores that follow it.
+    """
+    loaded: set[tuple[str, int]] = set()
+    for statement in function.program.statements:
+        for vector, index in _inputs(statement.term):
+            elements = named.get(vector, ())
+            element = elements[index] if elements else None
+            if element is not None and (vector, index) not in loaded:
+                loaded.add((vector, index))
+                yield dialect.load(element, f"{vector}[{index}]")
+        text = expression(statement.term, dialect)
+        if isinstance(statement.target, int):
+            yield dialect.let(statement.target, text)
+        elif statement.target[0] == "guard":
+            guard = dialect.guard(statement.target[1], text)
+            if guard:
+                yield guard
+        else:
+            yield dialect.store(*statement.target, text)
+
+
+def _inputs(term: Term) -> Iterator[tuple[str, int]]:
+    if term[0] == "in":
+        yield term[1], term[2]
+        return
+    for part in term[1:]:
+        if isinstance(part, tuple):
+            yield from _inputs(part)
+
+
+def unset(function: Function) -> dict[str, list[int]]:
+    """By output, the elements that the program leaves zero."""
+    written = {s.target for s in function.program.statements}
+    return {
+        output.name: [i for i in range(output.size) if (output.name, i) not in written]
+        for output in function.outputs
+    }

@@ -1,0 +1,106 @@
+"""Header of an arm: sizes, names of the parameters, prototypes and what they mean."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from modelgen.backends.c.dialect import arrays, destinations
+from modelgen.backends.documentation import (
+    argument_text,
+    function_operations,
+    model_sections,
+    output_text,
+    unit,
+)
+from modelgen.backends.elements import Element, base_parameters, standard_parameters
+from modelgen.backends.text import plain, table, wrapped
+from modelgen.functions.objects import Function, Model
+
+_UNBROKEN = "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True)
+class FunctionText:
+    """A function's prototype and documentation, ready for the templates."""
+
+    name: str
+    summary: tuple[str, ...]
+    parameters: tuple[str, ...]  # lines of Doxygen
+    operations: str
+    signature: str
+
+
+def function_text(model: Model, function: Function) -> FunctionText:
+    """The texts of one function."""
+    arm = model.arm.name
+    real = f"{arm}_real_t"
+    rows = [("@param[in]", a.name, f"[{a.size}]", unit(a.unit), argument_text(a)) for a in function.arguments]
+    places = destinations(function)
+    lengths = arrays(function)
+    for output in function.outputs:
+        array, offset = places[output.name]
+        if lengths[array] == output.size:
+            rows.append(("@param[out]", array, f"[{output.size}]", unit(output.unit), output_text(output)))
+        else:
+            if offset == 0:
+                rows.append(("@param[out]", array, f"[{lengths[array]}]", "", "one after the other:"))
+            span = f"{array}[{offset}] to [{offset + output.size - 1}]"
+            text = f"{span}: {output.name}, {output_text(output)}"
+            rows.append(("", "", "", unit(output.unit), text))
+    declared = [f"const {real} {a.name}[]" for a in function.arguments]
+    declared += [f"{real} {name}[]" for name in lengths]
+    arguments = ",\n".join(f"    {argument}" for argument in declared)
+    return FunctionText(
+        name=function.name,
+        summary=tuple(wrapped(plain(function.text), width=100).split("\n")),
+        parameters=tuple(table(rows)),
+        operations=function_operations(function),
+        signature=f"int {arm}_{function.name}(\n{arguments})",
+    )
+
+
+def header_values(model: Model, functions: list[FunctionText]) -> dict[str, object]:
+    """What the template of the header needs beside the names."""
+    macro = model.arm.name.upper()
+    sizes = [
+        ("N_JOINTS", len(model.arm.coordinates), "coordinates"),
+        ("N_LINKS", len(model.arm.joints), "links, those behind locked and fixed joints included"),
+        ("N_PARAMETERS", len(model.grouping.base), "base parameters"),
+        ("N_STANDARD_PARAMETERS", len(model.standard), "standard parameters"),
+    ]
+    packed = any(function.name == "regressor_packed" for function in model.functions)
+    if packed:
+        sizes.append(("N_PACKED", len(model.packed.rows), "structural non-zeros of the regressor"))
+    if model.geometry:
+        sizes.append(("N_GEOMETRY", len(model.geometry), "lengths and angles given at run time"))
+    if model.states:
+        sizes.append(("N_STATES", len(model.states), "states of the effects"))
+    return {
+        "source": plain(model.arm.source),
+        "gravity": ", ".join(f"{value:g}" for value in model.arm.gravity),
+        "notes": [plain(note) for note in model.arm.notes],
+        "sections": model_sections(model),
+        "sizes": [
+            row.rstrip()
+            for row in table(
+                (f"#define {macro}_{name}", str(size), f"/**< {text} */") for name, size, text in sizes
+            )
+        ],
+        "parameters": _indices(macro, "PARAMETER", base_parameters(model)),
+        "standard": _indices(macro, "STANDARD", standard_parameters(model)),
+        "packed": packed,
+        "functions": functions,
+    }
+
+
+def _indices(macro: str, kind: str, elements: tuple[Element, ...]) -> list[str]:
+    """Enumerators with the elements' names, each with its unit and meaning."""
+    rows = []
+    for i, element in enumerate(elements):
+        name = re.sub(r"\W", "_", element.name, flags=re.ASCII)
+        comma = "," if i + 1 < len(elements) else ""
+        meaning = f"{unit(element.unit)} {plain(element.text)}".strip()
+        # The comment's end stays on the line of the last word.
+        rows.append((f"{macro}_{kind}_{name} = {i}{comma}", f"/**< {meaning}{_UNBROKEN}*/"))
+    return [line.replace(_UNBROKEN, " ") for line in table(rows)]

@@ -1,0 +1,107 @@
+"""How C spells the terms and statements of a program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from modelgen.backends.elements import Element
+from modelgen.backends.text import wrapped
+from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
+
+STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
+INDENT = "    "
+
+# Normal numbers of IEEE 754 single precision: every constant must be one, or zero.
+_SMALLEST, _LARGEST = 1.1754943508222875e-38, 3.4028234663852886e38
+
+
+def literal(arm: str, value: float) -> str:
+    """A number in the arm's precision, in the fewest digits that give back the double.
+
+    Raises ValueError where single precision cannot hold it.
+    """
+    if value and not _SMALLEST <= abs(value) <= _LARGEST:
+        raise ValueError(f"{arm}: the constant {value!r} is out of the range of single precision")
+    digits = repr(float(value))
+    if digits.endswith("00.0"):
+        mantissa, exponent = f"{value:.16e}".split("e")
+        digits = f"{mantissa.rstrip('0')}e{int(exponent)}".replace(".e", ".0e")
+    return f"{arm.upper()}_C({digits})"
+
+
+def destinations(function: Function) -> dict[str, tuple[str, int]]:
+    """By output, the array argument that holds it and where it begins there."""
+    if len(function.outputs) == 1:
+        return {function.outputs[0].name: ("out", 0)}
+    if not function.stacked:
+        return {output.name: (output.name, 0) for output in function.outputs}
+    result, offset = {}, 0
+    for output in function.outputs:
+        result[output.name] = ("out", offset)
+        offset += output.size
+    return result
+
+
+def arrays(function: Function) -> dict[str, int]:
+    """The output arguments and their lengths."""
+    lengths: dict[str, int] = {}
+    places = destinations(function)
+    for output in function.outputs:
+        array, _ = places[output.name]
+        lengths[array] = lengths.get(array, 0) + output.size
+    return lengths
+
+
+class CDialect:
+    """Statements of one function in C99."""
+
+    def __init__(self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> None:
+        self.arm = arm
+        self.macro = arm.upper()
+        self.named = named
+        self.places = destinations(function)
+        self.real = f"const {arm}_real_t"
+        self.zeros = [f"{arm}_zero({array}, {size});" for array, size in arrays(function).items()]
+
+    def constant(self, value: float) -> str:
+        """As `literal`."""
+        return literal(self.arm, value)
+
+    def element(self, vector: str, index: int) -> str:
+        """The element's own name where it has one."""
+        elements = self.named.get(vector)
+        element = elements[index] if elements else None
+        return element.name if element else f"{vector}[{index}]"
+
+    def temporary(self, number: int) -> str:
+        """t0, t1, ..."""
+        return f"t{number}"
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """A macro for what the C library has, an inline function of the private header for the rest."""
+        listed = ", ".join(arguments)
+        if function in ("sign", "min", "max", "select"):
+            return f"{self.arm}_{function}({listed})"
+        return f"{self.macro}_{function.upper()}({listed})"
+
+    def load(self, element: Element, source: str) -> str:
+        """A parameter with its unit."""
+        return f"{INDENT}{self.real} {element.name} = {source}; /* {element.unit} */"
+
+    def let(self, number: int, text: str) -> str:
+        """An intermediate value is defined once and never changes."""
+        return wrapped(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
+
+    def store(self, output: str, index: int, text: str) -> str:
+        """An element of the array that holds the output."""
+        array, offset = self.places[output]
+        return wrapped(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
+
+    def guard(self, status: int, text: str) -> str:
+        """Zeros and a status; the comparison is false for what is not a number."""
+        return self.leave(f"!({text} > {self.constant(0.0)})", f"{self.macro}_STATUS_{STATUS[status]}")
+
+    def leave(self, condition: str, status: str) -> str:
+        """Write zeros and return."""
+        inner = "\n".join(f"{INDENT * 2}{zero}" for zero in self.zeros)
+        return f"{INDENT}if ({condition}) {{\n{inner}\n{INDENT * 2}return {status};\n{INDENT}}}"

@@ -1,0 +1,73 @@
+"""The files of one arm in C."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Mapping
+
+from modelgen.backends.c.declarations import FunctionText, function_text, header_values
+from modelgen.backends.c.source import statements
+from modelgen.backends.documentation import function_sections
+from modelgen.backends.elements import local_names
+from modelgen.backends.provenance import Provenance
+from modelgen.backends.text import render, wrapped
+from modelgen.functions.objects import Function, Model
+
+# Stands for the generation's number until every file of it is known.
+_PENDING = "0xFFFFFFFFUL /* pending */"
+_COMMENT = re.compile(r"/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
+    """Text of the arm's C files by path below the arm's folder.
+
+    The header and the sources carry the same number, made from the text of all of them, so that files
+    of two generations do not compile together. Raises ValueError where a constant does not fit into
+    single precision.
+    """
+    arm = model.arm.name
+    common = {
+        "arm": arm,
+        "macro": arm.upper(),
+        "provenance": provenance.lines(arm),
+        "generation": _PENDING,
+    }
+    texts = [function_text(model, function) for function in model.functions]
+    files = {
+        f"include/{arm}.h": render("c/header.h.j2", **common, **header_values(model, texts)),
+        f"src/{arm}_private.h": render("c/private.h.j2", **common),
+    }
+    for function, text in zip(model.functions, texts, strict=True):
+        files[f"src/{arm}_{function.name}.c"] = render(
+            "c/function.c.j2", **common, **_values(model, function, text)
+        )
+    digest = hashlib.sha256("".join(files[name] for name in sorted(files)).encode()).hexdigest()
+    return {name: text.replace(_PENDING, f"0x{digest[:8].upper()}UL") for name, text in files.items()}
+
+
+def c_symbols(arm: str, files: Mapping[str, str]) -> set[str]:
+    """Names in lower case that the arm's headers declare or define: functions, macros, enumerators."""
+    prefix = f"{arm.lower()}_"
+    return {
+        word.lower()
+        for name, text in files.items()
+        if name.endswith(".h")
+        for word in _IDENTIFIER.findall(_COMMENT.sub(" ", text))
+        if word.lower().startswith(prefix)
+    }
+
+
+def _values(model: Model, function: Function, text: FunctionText) -> dict[str, object]:
+    tables = []
+    if function.name == "regressor_packed":
+        for name, numbers in (("rows", model.packed.rows), ("columns", model.packed.columns)):
+            listed = ", ".join(str(i) for i in numbers)
+            tables.append((name, wrapped(listed, "    ")))
+    return {
+        "text": text,
+        "sections": function_sections(model, function),
+        "statements": statements(model.arm.name, function, local_names(model, function)),
+        "tables": tables,
+    }

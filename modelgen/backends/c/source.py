@@ -1,0 +1,79 @@
+"""The body of one C function: checks of the inputs, the program, checks of the outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from modelgen.backends.body import body, unset
+from modelgen.backends.c.dialect import INDENT, STATUS, CDialect, arrays, literal
+from modelgen.backends.elements import Element
+from modelgen.backends.text import wrapped
+from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, Function
+
+# Sum of squares of the outputs where these are checked: far below the largest number of single precision.
+OUTPUT_LIMIT = 1e30
+# Functions that make large numbers of small ones; what divides is guarded by the model.
+_UNBOUNDED = frozenset({"exp", "pow", "tan", "log"})
+
+
+def statements(arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> list[str]:
+    """The body of the function, line by line. Raises ValueError as `literal` does."""
+    dialect = CDialect(arm, function, named)
+    macro = arm.upper()
+    lines = [f"{INDENT}int status = {macro}_STATUS_OK;", ""]
+    lines += _checks(arm, function)
+    lines += [dialect.leave(f"status != {macro}_STATUS_OK", "status"), ""]
+    lines += body(function, named, dialect)
+    lines += _zeros(arm, function, dialect)
+    bit = _checked_output(function)
+    if bit:
+        limit = literal(arm, OUTPUT_LIMIT)
+        inside = " && ".join(f"{arm}_within({name}, {n}, {limit})" for name, n in arrays(function).items())
+        condition = inside if "&&" not in inside else f"({inside})"
+        lines.append(dialect.leave(f"!{condition}", f"{macro}_STATUS_{STATUS[bit]}"))
+    lines.append(f"{INDENT}return {macro}_STATUS_OK;")
+    return lines
+
+
+def _checks(arm: str, function: Function) -> list[str]:
+    """Every test of an input, those that report the same bit in one condition."""
+    tests: dict[int, list[str]] = {}
+    for a in function.arguments:
+        if a.size:
+            outside = f"!{arm}_within({a.name}, {a.size}, {literal(arm, a.bound * a.bound)})"
+            tests.setdefault(STATUS_INPUT, []).append(outside)
+    for r in function.ranges:
+        element = f"{r.argument}[{r.index}]"
+        outside = f"{element} < {literal(arm, r.low)} || {element} > {literal(arm, r.high)}"
+        tests.setdefault(r.status, []).append(outside)
+    lines = []
+    for bit, conditions in tests.items():
+        listed = f"\n{INDENT * 2}|| ".join(conditions)
+        lines += [
+            f"{INDENT}if ({listed}) {{",
+            f"{INDENT * 2}status |= {arm.upper()}_STATUS_{STATUS[bit]};",
+            f"{INDENT}}}",
+        ]
+    return lines
+
+
+def _zeros(arm: str, function: Function, dialect: CDialect) -> list[str]:
+    """Elements that are zero whatever the inputs: one statement for each row of a matrix."""
+    lines = []
+    missing = unset(function)
+    for output in function.outputs:
+        array, offset = dialect.places[output.name]
+        for row in range(output.rows):
+            columns = [i for i in missing[output.name] if i // output.columns == row]
+            if columns:
+                chain = "".join(f"{array}[{offset + i}] = " for i in columns)
+                lines.append(wrapped(f"{chain}{literal(arm, 0.0)};", INDENT, INDENT * 2))
+    return lines
+
+
+def _checked_output(function: Function) -> int:
+    """The status to report where an output is not finite, 0 where that cannot happen."""
+    if any(isinstance(s.target, tuple) and s.target[0] == "guard" for s in function.program.statements):
+        return STATUS_PIVOT
+    calls = {s.term[1] for s in function.program.statements if s.term[0] == "call"}
+    return STATUS_INPUT if calls & _UNBOUNDED else 0

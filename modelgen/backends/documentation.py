@@ -1,0 +1,71 @@
+"""What the generated files say about a function: inputs, outputs, units, lengths, meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from modelgen.backends.elements import base_parameters, coordinates, elements
+from modelgen.backends.text import operations, plain, table, wrapped
+from modelgen.functions.objects import Argument, Function, Model, Output
+
+
+@dataclass(frozen=True)
+class Section:
+    """A titled list."""
+
+    title: str
+    lines: tuple[str, ...]
+
+
+def unit(text: str) -> str:
+    """A unit in brackets, nothing where there is none."""
+    return f"[{text}]" if text else ""
+
+
+def argument_text(argument: Argument) -> str:
+    """Meaning and bound of an input."""
+    return f"{plain(argument.text)}; Euclidean norm at most {argument.bound:g}"
+
+
+def output_text(output: Output) -> str:
+    """Meaning and shape of an output."""
+    shape = f"; {output.rows} x {output.columns}, row-major" if output.columns > 1 else ""
+    return f"{plain(output.text)}{shape}"
+
+
+def model_sections(model: Model) -> list[Section]:
+    """The coordinates and parameters of an arm."""
+    sections = [Section("Coordinates", _numbered(coordinates(model)))]
+    sections.append(Section("Base parameters", _numbered(base_parameters(model))))
+    return [section for section in sections if section.lines]
+
+
+def function_sections(model: Model, function: Function) -> list[Section]:
+    """What a reader of one function needs: the elements of its inputs, the columns of its output."""
+    sections = [Section("Coordinates", _numbered(coordinates(model)))]
+    for argument in function.arguments:
+        found = elements(model, function, argument)
+        if found:
+            sections.append(Section(f"Elements of {argument.name}", _numbered(found)))
+    if "regressor" in function.name:
+        standard = function.name.endswith("_standard")
+        of = "standard" if standard else "base"
+        names = [p.name for p in (model.standard if standard else model.grouping.base)]
+        listed = ", ".join(f"{i} {name}" for i, name in enumerate(names))
+        sections.append(
+            Section(f"Columns of the matrix: {of} parameters", tuple(wrapped(listed, width=100).split("\n")))
+        )
+    return sections
+
+
+def function_operations(function: Function) -> str:
+    """The operations that one call costs."""
+    return operations(function.operations)
+
+
+def _numbered(found: tuple[object, ...]) -> tuple[str, ...]:
+    rows = []
+    for i, element in enumerate(found):
+        name, of_unit, text = (getattr(element, key) for key in ("name", "unit", "text"))
+        rows.append((str(i), name, unit(of_unit), plain(text)))
+    return tuple(table(rows))
