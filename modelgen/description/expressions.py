@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from modelgen.description.objects import Scalar
+from modelgen.description.objects import Scalar, geometry_symbol
 
 MAX_LENGTH = 200
 MAX_DEPTH = 64
@@ -183,7 +183,7 @@ def _name(name: str, symbols: Mapping[str, float]) -> Quantity:
     if name == "pi":
         return Quantity(math.pi)
     if name in symbols:
-        return Quantity(symbols[name], sp.Symbol(name), 1)
+        return Quantity(symbols[name], geometry_symbol(name), 1)
     if name in UNITS:
         raise ExpressionError(f"'{name}' is a unit; a unit stands once, at the end, for the whole expression")
     if name in FUNCTIONS:

@@ -20,6 +20,11 @@ Scalar: TypeAlias = float | sp.Expr
 Range: TypeAlias = tuple[float, float]
 
 
+def geometry_symbol(name: str) -> sp.Symbol:
+    """The SymPy symbol of one of an arm's named geometry values."""
+    return sp.Symbol(name, real=True)
+
+
 @dataclass(frozen=True)
 class Limits:
     """Limits of a joint coordinate: rad or m, per s, per s^2, and N m or N at the joint."""

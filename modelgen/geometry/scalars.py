@@ -6,7 +6,7 @@ import math
 
 import sympy as sp
 
-from modelgen.description.objects import Arm, Scalar
+from modelgen.description.objects import Arm, Scalar, geometry_symbol
 from modelgen.graph import Expr, Graph
 from modelgen.graph.from_sympy import from_sympy
 
@@ -29,7 +29,7 @@ class Scalars:
     def __init__(self, graph: Graph, arm: Arm, runtime: bool = False) -> None:
         self.graph = graph
         self.symbols = {
-            sp.Symbol(name, real=True): graph.input("geometry", k) if runtime else graph.const(value)
+            geometry_symbol(name): graph.input("geometry", k) if runtime else graph.const(value)
             for k, (name, value) in enumerate(arm.symbols.items())
         }
 

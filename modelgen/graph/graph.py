@@ -257,6 +257,9 @@ class Graph:
         if name == "select" and values[0] is not None:
             return Expr(self, keys[1] if values[0] > 0 else keys[2])
         sign = 0
+        if name == "sign":  # of a product with a constant: of the other factor
+            factor, rest = self._factored(keys[0])
+            keys = (rest | (factor < 0),)
         if name in ODD:
             sign = keys[0] & 1
             keys = (keys[0] & ~1,)

@@ -134,15 +134,21 @@ class _Lowering:
         return ("mul" if op == MUL else "div", a, b), size
 
 
-def lower(outputs: Mapping[str, Sequence[Expr]], guards: Sequence[tuple[Expr, int]] = ()) -> Program:
-    """The program that computes `outputs`, in their order; constant zeros are left out.
+def lower(
+    outputs: Mapping[str, Sequence[Expr]],
+    guards: Sequence[tuple[Expr, int]] = (),
+    order: Sequence[tuple[str, int]] | None = None,
+) -> Program:
+    """The program that computes `outputs`; constant zeros are left out.
 
     `guards` are values that must be positive, with the status bit to report where one is not; each
-    is tested as soon as it is known, before anything is divided by it.
+    is tested as soon as it is known, before anything is divided by it. `order` lists (output,
+    element) in the order of computation, by default that of `outputs`.
     A value used once is written where it is used, as long as the line stays readable. Each output
     follows at once on what it needs, which keeps few values alive.
     """
-    flat = [(name, i, e) for name, vector in outputs.items() for i, e in enumerate(vector) if not e.is_zero]
+    places = order or [(name, i) for name, vector in outputs.items() for i in range(len(vector))]
+    flat = [(name, i, outputs[name][i]) for name, i in places if not outputs[name][i].is_zero]
     if not flat:
         return Program((), 0)
     tested = {e.key >> 1: (e.key, bit) for e, bit in guards if e.value is None}

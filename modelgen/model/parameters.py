@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from modelgen.description.objects import Arm
+from modelgen.effects import AppliedEffect
+from modelgen.transmission import of_joint
+
 LINK_PARAMETERS = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 FLUID_PARAMETERS = ("VX", "VY", "VZ", "V")
 _UNITS = {"M": "kg", "V": "m^3"}
@@ -45,3 +49,35 @@ _TEXT = {
     **{f"V{a}": f"first moment of the displaced volume along {a.lower()}" for a in "XYZ"},
     "V": "displaced volume",
 }
+
+
+def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter]:
+    """The linear parameters of one effect, named by the number of its joint."""
+    joint = arm.joints[effect.joint]
+    return [
+        StandardParameter(
+            symbol.name,
+            unit_of(parameter.unit, coordinate_unit(arm, effect)),
+            effect.joint,
+            f"{parameter.text} ({effect.effect.name}) of joint {joint.name}",
+        )
+        for parameter, symbol in effect.parameters
+    ]
+
+
+def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:
+    """Unit of the coordinate that the effect belongs to: rad, m, or the motor's unit."""
+    joint = arm.joints[effect.joint]
+    transmission = of_joint(arm, joint)
+    if effect.side == "motor" and transmission.driven:
+        return transmission.unit
+    return "m" if joint.type == "prismatic" else "rad"
+
+
+def unit_of(pattern: str, coordinate: str) -> str:
+    """A parameter's unit from its pattern over {f}, the force, and {x}, the coordinate."""
+    force = {"rad": "N m", "m": "N"}.get(coordinate)
+    if force:
+        return pattern.format(f=force, x=coordinate)
+    times = pattern.replace("{f}", "J").split("/")[0]
+    return f"{times}/{coordinate}" + ("^2" if "{x}" in pattern else "")

@@ -146,6 +146,21 @@ class Regressor:
                 values = _moved_along_z(values, frame.r)
             for k, value in enumerate(values):
                 columns[k][n] = value
+        return columns + self._volume_columns(i)
+
+    def _volume_columns(self, i: int) -> list[dict[int, Expr]]:
+        """Columns of VX, VY, VZ and V: gravity on the displaced fluid, upwards."""
+        density = self.frames.arm.fluid_density
+        if not density:
+            return []
+        zero = self.graph.zero
+        x, y, z = self.motions[i].gravity
+        moments: list[Vector] = [(zero, -z, y), (z, zero, -x), (-y, x, zero)]
+        columns: list[dict[int, Expr]] = [{} for _ in range(4)]
+        for n, (e, v) in self.velocities.of_link[i].items():
+            for k, moment in enumerate(moments):
+                columns[k][n] = dot(e, moment) * density
+            columns[3][n] = dot(v, (x, y, z)) * density
         return columns
 
     def _acceleration(self, i: int, point: Vector) -> Vector:

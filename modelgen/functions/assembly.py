@@ -1,0 +1,138 @@
+"""From expressions to a `Function`: inputs in contract order, ranges, guards, operation counts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from modelgen.base_parameters import Grouping
+from modelgen.functions.arguments import arguments
+from modelgen.functions.objects import STATUS_STROKE, Argument, Function, InputRange, Output
+from modelgen.functions.options import Options
+from modelgen.graph import Expr, count_operations, lower
+from modelgen.graph.from_sympy import from_sympy
+from modelgen.model.equations import Equations
+from modelgen.transmission import STROKE_MARGIN, Levered
+
+Result = tuple[Output, Sequence[Expr]]
+
+
+@dataclass
+class Assembly:
+    """What the functions of one arm share.
+
+    real: equations with the frames as described. base: the same with the last links' frames at the
+    foot of the common normal, where the base parameters live.
+    """
+
+    options: Options
+    real: Equations
+    base: Equations
+    grouping: Grouping
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.real.n
+
+    @cached_property
+    def known(self) -> Mapping[str, Argument]:
+        """Every possible input by name."""
+        count = len(self.grouping.base)
+        sizes = [
+            ("parameters", count, "base parameters"),
+            ("standard_parameters", len(self.real.standard), "standard parameters"),
+        ]
+        return arguments(self.real, sizes)
+
+    def function(
+        self,
+        name: str,
+        text: str,
+        inputs: Sequence[str],
+        results: Sequence[Result],
+        *,
+        drives: bool = True,
+        guards: Sequence[tuple[Expr, int]] = (),
+        order: Sequence[tuple[str, int]] | None = None,
+        stacked: bool = False,
+    ) -> Function:
+        """A function of the named inputs. `drives`: it makes sense within the levers' strokes only."""
+        outputs = {output.name: list(expressions) for output, expressions in results}
+        if drives:
+            guards = [*guards, *self.stroke_guards(results)]
+        program = lower(outputs, guards, order)
+        return Function(
+            name,
+            text,
+            tuple(self._arguments(inputs)),
+            tuple(output for output, _ in results),
+            program,
+            count_operations(program),
+            self.ranges(inputs) if drives else (),
+            stacked,
+        )
+
+    def _arguments(self, inputs: Sequence[str]) -> list[Argument]:
+        names: list[str] = []
+        for name in inputs:
+            names.append(name)
+            if name == "q" and self.options.sincos:
+                names += ["sin_q", "cos_q"]
+        if self.options.runtime_geometry and self.real.arm.symbols:
+            names.append("geometry")
+        if self.real.state_names() and "state" not in names and "dq" in names:
+            names.append("state")
+        found = []
+        for name in names:
+            if name == "standard_parameters":  # the same place in every signature
+                found.append(replace(self.known[name], name="parameters"))
+            else:
+                found.append(self.known[name])
+        return found
+
+    def ranges(self, inputs: Sequence[str]) -> tuple[InputRange, ...]:
+        """Strokes of the levers, a little widened, on q or q_m where the function has it."""
+        if self.options.runtime_geometry:
+            return ()
+        result = []
+        for n, drive in enumerate(self.real.drives):
+            joint, motor = drive.transmission.joint_range(), drive.transmission.motor_range()
+            if joint and "q" in inputs:
+                result.append(_range("q", n, joint, STROKE_MARGIN))
+            if motor and "q_m" in inputs:
+                result.append(_range("q_m", n, motor, 1e-3 * (motor[1] - motor[0])))
+        return tuple(result)
+
+    def stroke_guards(self, results: Sequence[Result]) -> list[tuple[Expr, int]]:
+        """With run-time geometry the stroke is checked on the cylinder's length in the program."""
+        if not self.options.runtime_geometry:
+            return []
+        graphs = {e.graph for _, expressions in results for e in expressions}
+        guards = []
+        for equations in (self.real, self.base):
+            if equations.graph not in graphs:
+                continue
+            for n, drive in enumerate(equations.drives):
+                if isinstance(drive.transmission, Levered):
+                    guards.append((self._within_stroke(equations, n, drive.transmission), STATUS_STROKE))
+        return guards
+
+    def _within_stroke(self, equations: Equations, n: int, lever: Levered) -> Expr:
+        """Positive while the length is between its ends, widened by a thousandth of the stroke."""
+        return from_sympy(
+            equations.graph,
+            lever.clearance(),
+            {**equations.scalars.symbols, lever.q: equations.graph.input("q", n)},
+            lambda angle: equations.trigonometry.lookup(n, lever.q, angle),
+        )
+
+
+def _range(name: str, index: int, span: tuple[float, float], margin: float) -> InputRange:
+    return InputRange(name, index, span[0] - margin, span[1] + margin, STATUS_STROKE)
+
+
+def vector(name: str, size: int, unit: str, text: str) -> Output:
+    """A column vector."""
+    return Output(name, size, 1, unit, text)

@@ -1,0 +1,92 @@
+"""All functions of one arm."""
+
+from __future__ import annotations
+
+from modelgen.base_parameters import Grouping, group
+from modelgen.base_parameters.analytic import slid
+from modelgen.description.objects import Arm
+from modelgen.errors import InputError
+from modelgen.functions.assembly import Assembly
+from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.kinematic import kinematic_functions
+from modelgen.functions.objects import Function, Model
+from modelgen.functions.options import Options, prepared
+from modelgen.functions.parametric import (
+    base_values,
+    folded_values,
+    parametric_functions,
+    row_wise_functions,
+    standard_values,
+)
+from modelgen.functions.regressors import regressor_functions
+from modelgen.model.equations import Equations
+
+DEFAULTS = Options()
+
+
+def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
+    """The functions of `arm` as programs, with its parameters and their grouping.
+
+    Raises InputError for an effect that does not exist or lacks a value, for an unknown link of the
+    Jacobian, and for identified values that are not those of the base parameters.
+    """
+    arm = prepared(arm, options)
+    real = Equations(arm, options.runtime_geometry, options.sincos)
+    base = Equations(slid(arm), options.runtime_geometry, options.sincos)
+    plain = Equations(arm)
+    rows = [group(plain, row) for row in range(plain.n)] if options.gains == "row_wise" else []
+    grouping = _stacked(rows) if rows else group(plain)
+    a = Assembly(options, real, base, grouping)
+    functions: list[Function] = []
+    if rows:
+        functions += row_wise_functions(a, rows)
+    else:
+        dynamics = Dynamics(base, base_values(base, grouping))
+        functions += parametric_functions(a, dynamics, "", ["parameters"])
+    regressors, packed = regressor_functions(a, _representatives(a.n, grouping, rows))
+    functions += regressors
+    functions += parametric_functions(
+        a, Dynamics(real, standard_values(real)), "_standard", ["standard_parameters"]
+    )
+    if options.identified:
+        _check(options, grouping)
+        dynamics = Dynamics(base, folded_values(base, grouping, options.identified))
+        functions += parametric_functions(a, dynamics, "_identified", [])
+    functions += kinematic_functions(a)
+    return Model(
+        arm,
+        real.standard,
+        grouping,
+        tuple(functions),
+        packed,
+        tuple(arm.symbols) if options.runtime_geometry else (),
+        tuple(real.state_names()),
+    )
+
+
+def _stacked(rows: list[Grouping]) -> Grouping:
+    """The rows' base parameters one after the other."""
+    without = set(rows[0].without_effect).intersection(*(row.without_effect for row in rows))
+    return Grouping(tuple(b for row in rows for b in row.base), tuple(sorted(without)))
+
+
+def _representatives(n: int, grouping: Grouping, rows: list[Grouping]) -> list[list[int]]:
+    """For every row of the regressor, its columns' standard parameters; -1 where the row has none."""
+    if not rows:
+        return [[base.representative for base in grouping.base]] * n
+    table = []
+    for own in range(n):
+        table.append([b.representative if k == own else -1 for k, row in enumerate(rows) for b in row.base])
+    return table
+
+
+def _check(options: Options, grouping: Grouping) -> None:
+    expected = [base.name for base in grouping.base]
+    missing = [name for name in expected if name not in options.identified]
+    extra = [name for name in options.identified if name not in expected]
+    if options.gains == "row_wise":
+        raise InputError("identified parameters cannot be folded in with row-wise gains")
+    if missing or extra:
+        what = [f"missing {', '.join(missing)}"] if missing else []
+        what += [f"unknown {', '.join(extra)}"] if extra else []
+        raise InputError(f"identified parameters do not fit the arm: {'; '.join(what)}")

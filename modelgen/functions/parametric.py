@@ -1,0 +1,126 @@
+"""Functions of the state and of parameters: efforts, mass matrix, accelerations, energy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from modelgen.base_parameters import Grouping
+from modelgen.functions.arguments import input_units, joint_units
+from modelgen.functions.assembly import Assembly, vector
+from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.objects import STATUS_PIVOT, Function, Output
+from modelgen.graph import Expr
+from modelgen.model.equations import Equations
+
+
+def standard_values(equations: Equations) -> list[Expr]:
+    """All standard parameters as inputs."""
+    return [equations.graph.input("parameters", k) for k in range(len(equations.standard))]
+
+
+def base_values(equations: Equations, grouping: Grouping, first: int = 0) -> list[Expr]:
+    """Base parameters as inputs from element `first` on, each in its representative's place."""
+    values = [equations.graph.zero] * len(equations.standard)
+    for k, base in enumerate(grouping.base):
+        values[base.representative] = equations.graph.input("parameters", first + k)
+    return values
+
+
+def folded_values(equations: Equations, grouping: Grouping, given: Mapping[str, float]) -> list[Expr]:
+    """Base parameters as constants."""
+    values = [equations.graph.zero] * len(equations.standard)
+    for base in grouping.base:
+        values[base.representative] = equations.graph.const(given[base.name])
+    return values
+
+
+def parametric_functions(a: Assembly, dynamics: Dynamics, suffix: str, parameters: Sequence[str]) -> list[Function]:
+    """The six functions for one way of giving parameters.
+
+    suffix: "", "_standard" or "_identified"; parameters: names of the parameter inputs, if any.
+    """
+    e, n = dynamics.equations, a.n
+    dq, ddq = e.vector("dq"), e.vector("ddq")
+    zeros = e.zeros()
+    with_what = {
+        "": "base parameters",
+        "_standard": "standard parameters",
+        "_identified": "identified parameters, folded in",
+    }[suffix]
+    effort = vector("input", n, input_units(e), "inputs: motor currents, efforts where undriven")
+    matrix = dynamics.mass_matrix()
+    accelerations, pivots = dynamics.forward_dynamics(dq, e.vector("input"))
+    kinetic, potential = dynamics.energy(dq)
+    return [
+        a.function(
+            f"inverse_dynamics{suffix}",
+            f"Inputs that give the accelerations ddq in the state q, dq; {with_what}.",
+            ["q", "dq", "ddq", *parameters],
+            [(effort, dynamics.inverse_dynamics(dq, ddq))],
+        ),
+        a.function(
+            f"gravity{suffix}",
+            f"Inputs that hold the arm at rest at q, dry friction apart; {with_what}.",
+            ["q", *parameters],
+            [(effort, dynamics.inverse_dynamics(zeros, zeros))],
+        ),
+        a.function(
+            f"bias{suffix}",
+            f"Inputs without acceleration in the state q, dq; {with_what}.",
+            ["q", "dq", *parameters],
+            [(effort, dynamics.inverse_dynamics(dq, zeros))],
+        ),
+        a.function(
+            f"mass_matrix{suffix}",
+            f"Mass matrix in joint space, drives included; {with_what}.",
+            ["q", *parameters],
+            [(Output("mass", n, n, "kg m^2, kg m, kg", "mass matrix"), [x for row in matrix for x in row])],
+        ),
+        a.function(
+            f"forward_dynamics{suffix}",
+            f"Accelerations that the inputs give in the state q, dq; {with_what}.",
+            ["q", "dq", "input", *parameters],
+            [(vector("ddq", n, joint_units(e.arm, "/s^2"), "joint accelerations"), accelerations)],
+            guards=[(pivot, STATUS_PIVOT) for pivot in pivots],
+        ),
+        a.function(
+            f"energy{suffix}",
+            f"Kinetic and potential energy, drives and springs included; {with_what}.",
+            ["q", "dq", *parameters],
+            [
+                (vector("kinetic", 1, "J", "kinetic energy"), [kinetic]),
+                (vector("potential", 1, "J", "potential energy, up to a constant"), [potential]),
+            ],
+        ),
+    ]
+
+
+def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
+    """Inverse dynamics and its parts where every row has base parameters of its own scale.
+
+    Mass matrix, forward dynamics and energy need one scale for all rows and do not exist here.
+    """
+    e = a.base
+    effort = vector("input", a.n, input_units(e), "inputs: motor currents, efforts where undriven")
+    firsts = [sum(len(g.base) for g in rows[:k]) for k in range(len(rows))]
+    by_row = [Dynamics(e, base_values(e, g, first)) for g, first in zip(rows, firsts, strict=True)]
+
+    def inputs(dq: Sequence[Expr], ddq: Sequence[Expr]) -> list[Expr]:
+        return [dynamics.inverse_dynamics(dq, ddq)[k] for k, dynamics in enumerate(by_row)]
+
+    dq, ddq, zeros = e.vector("dq"), e.vector("ddq"), e.zeros()
+    text = "row-wise base parameters"
+    return [
+        a.function(
+            "inverse_dynamics",
+            f"Inputs that give the accelerations ddq in the state q, dq; {text}.",
+            ["q", "dq", "ddq", "parameters"],
+            [(effort, inputs(dq, ddq))],
+        ),
+        a.function(
+            "gravity", f"Inputs that hold the arm at rest at q; {text}.", ["q", "parameters"], [(effort, inputs(zeros, zeros))]
+        ),
+        a.function(
+            "bias", f"Inputs without acceleration; {text}.", ["q", "dq", "parameters"], [(effort, inputs(dq, zeros))]
+        ),
+    ]

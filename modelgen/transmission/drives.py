@@ -1,0 +1,201 @@
+"""Drives, each written once as the motor coordinate q_m(q) in SymPy.
+
+The generalised force at q_m is torque_constant i. Everything else follows from q_m(q): by
+differentiation dq_m = k1 dq and ddq_m = k1 ddq + k2 with k1 = dq_m/dq and k2 = k1' dq^2, and by
+virtual work the joint effort K i with K = torque_constant k1.
+A new kind of drive is one more class here and its entry in `of_joint`.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import replace
+
+import sympy as sp
+
+from modelgen.description.objects import (
+    Arm,
+    DirectDrive,
+    Joint,
+    LeveredDrive,
+    Range,
+    Scalar,
+    geometry_symbol,
+)
+
+
+class Transmission(ABC):
+    """One joint's drive: `q` and `q_m` are the symbols of the two coordinates."""
+
+    q = sp.Symbol("q", real=True)
+    q_m = sp.Symbol("q_m", real=True)
+
+    def __init__(self, torque_constant: float) -> None:
+        self.torque_constant = torque_constant
+
+    driven = True
+    unit = "unit"  # of the motor coordinate; a lever's may be anything, increments usually
+
+    @abstractmethod
+    def motor(self) -> sp.Expr:
+        """q_m as a function of q."""
+
+    @abstractmethod
+    def joint(self) -> sp.Expr:
+        """q as a function of q_m: the inverse of `motor` on the drive's range."""
+
+    def k1(self) -> sp.Expr:
+        """dq_m/dq."""
+        return sp.diff(self.motor(), self.q)
+
+    def slope(self) -> sp.Expr:
+        """d^2 q_m/dq^2: k2 is this times dq^2."""
+        return sp.diff(self.motor(), self.q, 2)
+
+    def inverse_gain(self) -> sp.Expr:
+        """1/K [A per N m or N]."""
+        return 1 / (self.torque_constant * self.k1())
+
+    def joint_range(self) -> Range | None:
+        """Range of q [rad] within which the drive works, None where it has no end."""
+        return None
+
+    def motor_range(self) -> Range | None:
+        """The same in the motor coordinate."""
+        return None
+
+
+class Undriven(Transmission):
+    """No drive: the input is the joint's effort, q_m = q."""
+
+    driven = False
+
+    def __init__(self) -> None:
+        super().__init__(1.0)
+
+    def motor(self) -> sp.Expr:
+        """q_m = q."""
+        return self.q
+
+    def joint(self) -> sp.Expr:
+        """q = q_m."""
+        return self.q_m
+
+
+class Direct(Transmission):
+    """A geared motor, or a motor on a ball screw: q_m = ratio q."""
+
+    unit = "rad"
+
+    def __init__(self, drive: DirectDrive) -> None:
+        super().__init__(drive.torque_constant)
+        self.ratio = sp.sympify(drive.ratio)
+
+    def motor(self) -> sp.Expr:
+        """q_m = ratio q."""
+        return self.ratio * self.q
+
+    def joint(self) -> sp.Expr:
+        """q = q_m / ratio."""
+        return self.q_m / self.ratio
+
+
+class Levered(Transmission):
+    """A linear actuator on a lever: length q_p by the law of cosines, affine in q_m.
+
+    Leborne, Creuze, Chemori and Brignone (2018); docs/theory.md says where the printed equations
+    differ. With rev = +-1, q = rev q_j + offset and cos q_j = cos(q - offset).
+    """
+
+    def __init__(self, drive: LeveredDrive, values: dict[sp.Symbol, float]) -> None:
+        super().__init__(drive.torque_constant)
+        self.drive = drive
+        self.values = values
+        low, high = drive.length
+        self.per_length = (drive.motor[1] - drive.motor[0]) / sp.sympify(high - low)  # motor unit per m
+        self.low = sp.sympify(low)
+
+    def _length(self) -> sp.Expr:
+        """Cylinder length q_p [m] as a function of q."""
+        l1, l2 = sp.sympify(self.drive.l1), sp.sympify(self.drive.l2)
+        return sp.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(self.q - self.drive.offset))
+
+    def motor(self) -> sp.Expr:
+        """q_m = m0 + (m1 - m0) (q_p - L0) / (L1 - L0)."""
+        return self.drive.motor[0] + self.per_length * (self._length() - self.low)
+
+    def joint(self) -> sp.Expr:
+        """q = rev arccos((l1^2 + l2^2 - q_p^2) / (2 l1 l2)) + offset."""
+        l1, l2 = sp.sympify(self.drive.l1), sp.sympify(self.drive.l2)
+        length = self.low + (self.q_m - self.drive.motor[0]) / self.per_length
+        return self.drive.rev * sp.acos((l1**2 + l2**2 - length**2) / (2 * l1 * l2)) + self.drive.offset
+
+    def clearance(self) -> sp.Expr:
+        """(q_p - L0) (L1 - q_p), widened by a thousandth of the stroke [m^2]: positive on the stroke."""
+        low, high = (sp.sympify(end) for end in self.drive.length)
+        length = self._length()
+        return (length - low) * (high - length) + sp.Float(1e-3) * (high - low) ** 2
+
+    def inverse_gain(self) -> sp.Expr:
+        """1/K = q_p / (torque_constant (m1 - m0)/(L1 - L0) l1 l2 sin(q - offset)): one division."""
+        l1, l2 = sp.sympify(self.drive.l1), sp.sympify(self.drive.l2)
+        scale = self.torque_constant * self.per_length * l1 * l2
+        return self._length() / (scale * sp.sin(self.q - self.drive.offset))
+
+    def joint_range(self) -> Range | None:
+        """From the ends of the stroke."""
+        ends = [float(self.joint().subs(self.q_m, m).subs(self.values)) for m in self.drive.motor]
+        return min(ends), max(ends)
+
+    def motor_range(self) -> Range | None:
+        """The ends of the stroke themselves."""
+        return min(self.drive.motor), max(self.drive.motor)
+
+
+STROKE_MARGIN = math.radians(0.05)  # [rad] beyond a lever's stroke before the status says so
+
+
+def of_joint(arm: Arm, joint: Joint) -> Transmission:
+    """The transmission that a joint's drive describes."""
+    if isinstance(joint.drive, DirectDrive):
+        return Direct(joint.drive)
+    if isinstance(joint.drive, LeveredDrive):
+        return Levered(joint.drive, {geometry_symbol(n): v for n, v in arm.symbols.items()})
+    return Undriven()
+
+
+def with_lever_symbols(arm: Arm) -> Arm:
+    """The arm with lever geometry and joint offsets as named symbols, for use as run-time parameters.
+
+    Symbols are called l1_2, l2_2, length0_2, length1_2, offset_2 and theta_2 for joint 2, and keep
+    their present values; what is symbolic already stays.
+    """
+    symbols = dict(arm.symbols)
+
+    def named(name: str, value: Scalar) -> Scalar:
+        if isinstance(value, sp.Expr) or name in symbols:
+            return value
+        symbols[name] = value
+        return geometry_symbol(name)
+
+    joints = []
+    for number, joint in enumerate(arm.joints, 1):
+        if joint.type == "revolute" and joint.locked is None and joint.theta != 0:
+            joint = replace(joint, theta=named(f"theta_{number}", joint.theta))
+        if isinstance(joint.drive, LeveredDrive) and joint.moving:
+            drive = joint.drive
+            drive = replace(
+                drive,
+                l1=named(f"l1_{number}", drive.l1),
+                l2=named(f"l2_{number}", drive.l2),
+                length=(
+                    named(f"length0_{number}", drive.length[0]),
+                    named(f"length1_{number}", drive.length[1]),
+                ),
+                offset=named(f"offset_{number}", drive.offset),
+            )
+            joint = replace(joint, drive=drive)
+        joints.append(joint)
+    return replace(arm, joints=tuple(joints), symbols=symbols)
+
