@@ -15,6 +15,7 @@ from modelgen.description.objects import (
     NoDrive,
     Range,
     Scalar,
+    geometry_symbol,
 )
 from modelgen.description.schema import json_schema
 from modelgen.description.starter import starter
@@ -33,6 +34,7 @@ __all__ = [
     "NoDrive",
     "Range",
     "Scalar",
+    "geometry_symbol",
     "json_schema",
     "load",
     "loads",

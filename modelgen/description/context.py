@@ -62,7 +62,7 @@ class Context:
             return None
         value = self.number(raw, kind, steps)
         if value <= 0.0:
-            raise self.error(f"found {value:g}, expected a magnitude above 0", steps)
+            raise self.error(f"found {describe(raw)}, expected a magnitude above 0", steps)
         return value
 
     def nonzero(self, raw: float | str, kind: str, steps: Steps) -> Quantity:

@@ -188,11 +188,12 @@ class _Tree:
         return node
 
     def _alias(self, event: AliasEvent, depth: int, where: Location) -> Node:
+        name = one_line(str(event.anchor))
         if event.anchor not in self.anchors:
-            raise InputError(f"found the alias *{event.anchor}, expected its anchor before it", where)
+            raise InputError(f"found the alias *{name}, expected its anchor before it", where)
         target = self.anchors[event.anchor]
         if target is None:
-            raise InputError(f"the alias *{event.anchor} stands inside its own anchor", where)
+            raise InputError(f"the alias *{name} stands inside its own anchor", where)
         if depth + target.height > MAX_DEPTH + 1:
             raise InputError(f"the document is nested deeper than {MAX_DEPTH} levels", where)
         return target

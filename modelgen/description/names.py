@@ -18,11 +18,9 @@ template this thread_local throw true try typeid typename typeof typeof_unqual u
 xor xor_eq
 """
 C_KEYWORDS = frozenset(_C_KEYWORDS.split())
-# Inertial and buoyancy parameters of links, coefficients of drives and frictions, logged signals.
-# Base parameters carry an R behind the number.
-_STANDARD = re.compile(
-    r"(XX|XY|XZ|YY|YZ|ZZ|MX|MY|MZ|M|VX|VY|VZ|V|FV|FC|FS|FO|IA|JM|J|K|KT|q|qm|dq|ddq|dqm|ddqm|tau|i)[0-9]+R?"
-)
+# Standard parameters are capitals with the number of the joint, base parameters carry an R
+# behind it; signals are numbered as in logs.
+_STANDARD = re.compile(r"[A-Z]{1,4}[0-9]+R?|(q|qm|dq|ddq|dqm|ddqm|tau|i|temperature)[0-9]+")
 _ARGUMENTS = frozenset(
     ("q", "dq", "ddq", "qm", "dqm", "ddqm", "dq_r", "ddq_r", "t", "dt", "input", "parameters", "state", "out")
 )
@@ -50,5 +48,5 @@ def symbol_name_problem(name: str) -> str | None:
     if name in _ARGUMENTS:
         return f"'{name}' is an argument of the generated functions, choose another name"
     if _STANDARD.fullmatch(name):
-        return f"'{name}' is the name of a standard parameter or a signal, choose another name"
+        return f"'{name}' could be a standard parameter or a signal (XX2, M3, q1), choose another name"
     return None

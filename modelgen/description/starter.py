@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from modelgen.description.document import one_line
 from modelgen.description.names import arm_name_problem
 from modelgen.errors import InputError
 
@@ -58,7 +59,7 @@ def starter(name: str) -> str:
     """
     problem = arm_name_problem(name)
     if problem:
-        raise InputError(f"the arm name '{name[:60]}' cannot be used: {problem}")
+        raise InputError(f"the arm name '{one_line(name, 60)}' cannot be used: {problem}")
     return _TEXT.format(name=_quoted(name))
 
 
