@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -118,8 +119,6 @@ def slid(arm: Arm) -> Arm:
     How far a last link's frame sits along its own axis is a choice of drawing, not of dynamics. Its
     base parameters are taken about the foot, which spares every function the offset r.
     """
-    from dataclasses import replace
-
     carrying = {joint.antecedent for joint in arm.joints}
     joints = tuple(
         replace(joint, r=0.0) if i not in carrying and joint.type == "revolute" and joint.moving else joint

@@ -33,10 +33,13 @@ def closed_forms(
     generator = np.random.default_rng(1)
     names = list(symbols)
     points = [
-        {name: symbols[name] * (1.0 + 0.4 * generator.uniform(-1, 1)) for name in names} for _ in range(_SAMPLES)
+        {name: symbols[name] * (1.0 + 0.4 * generator.uniform(-1, 1)) for name in names}
+        for _ in range(_SAMPLES)
     ]
     answers = [factors_at(point) for point in points]
-    return {key: _formula(names, points, [a.get(key) for a in answers], value) for key, value in found.items()}
+    return {
+        key: _formula(names, points, [a.get(key) for a in answers], value) for key, value in found.items()
+    }
 
 
 def _formula(

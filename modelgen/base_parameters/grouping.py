@@ -54,7 +54,9 @@ def group(equations: Equations, row: int | None = None) -> Grouping:
     rules += [{k: 1.0} for k in range(len(rules), len(equations.standard))]
     candidates = sorted({k for combination in rules for k in combination})
     settled = _settled(moved, candidates, row)
-    return _grouping(equations, composed(rules, settled), [k for k in candidates if settled[k] == {k: 1.0}], row)
+    return _grouping(
+        equations, composed(rules, settled), [k for k in candidates if settled[k] == {k: 1.0}], row
+    )
 
 
 def _settled(arm: Arm, candidates: Sequence[int], row: int | None) -> list[Combination]:

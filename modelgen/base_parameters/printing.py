@@ -63,6 +63,4 @@ def _shortest(value: float) -> str:
 
 def _plain(expression: sp.Expr) -> sp.Expr:
     """Floats that are whole numbers as such."""
-    return expression.replace(
-        lambda e: e.is_Float and e == int(e), lambda e: sp.Integer(int(e))
-    )
+    return expression.replace(lambda e: e.is_Float and e == int(e), lambda e: sp.Integer(int(e)))

@@ -67,7 +67,9 @@ def applied_effects(arm: Arm) -> list[AppliedEffect]:
         seen: set[str] = set()
         for use in arm.joints[index].effects:
             if use.name in seen:
-                raise InputError(f"effect {use.name} stands twice at joint {arm.joints[index].name}", use.where)
+                raise InputError(
+                    f"effect {use.name} stands twice at joint {arm.joints[index].name}", use.where
+                )
             seen.add(use.name)
             result.append(_applied(use, index, coordinate))
     return result
@@ -86,18 +88,23 @@ def _applied(use: EffectUse, index: int, coordinate: int) -> AppliedEffect:
         if not low <= value <= high:
             raise InputError(f"{use.name}: {name} is {value}, expected {low} to {high}", use.where)
     number = f"{index + 1}"
+    position, velocity, acceleration = (
+        sp.Symbol(f"{kind}{number}", real=True) for kind in ("position", "velocity", "acceleration")
+    )
     x = Variables(
-        *(sp.Symbol(f"{kind}{number}", real=True) for kind in ("position", "velocity", "acceleration")),
+        position,
+        velocity,
+        acceleration,
         sp.Symbol("time", real=True),
         {name: sp.Symbol(f"{use.name}_{name}_{number}", real=True) for name in effect.states},
     )
     parameters = tuple((p, sp.Symbol(f"{p.symbol}{number}", real=True)) for p in effect.linear)
     values: dict[str, sp.Expr] = {p.name: symbol for p, symbol in parameters}
     for p in effect.nonlinear:
-        value = use.values.get(p.name, p.default)
-        if value is None:
+        given = {p.name: p.default, **use.values}[p.name]
+        if given is None:
             raise InputError(f"{use.name} needs a value for {p.name} [{p.unit}]: {p.text}", use.where)
-        values[p.name] = sp.Integer(int(value)) if value == int(value) else sp.Float(value)
+        values[p.name] = sp.Integer(int(given)) if given == int(given) else sp.Float(given)
     return AppliedEffect(
         effect,
         index,

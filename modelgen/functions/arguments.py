@@ -63,8 +63,12 @@ def arguments(equations: Equations, parameters: Sequence[tuple[str, int, str]]) 
         Argument("sin_q", n, "1", "sines of the joint angles", 10.0),
         Argument("cos_q", n, "1", "cosines of the joint angles", 10.0),
         Argument("dt", 1, "s", "time step", 1e4),
-        Argument("state", len(equations.state_names()), "see the list of states", "states of the effects", 1e9),
+        Argument(
+            "state", len(equations.state_names()), "see the list of states", "states of the effects", 1e9
+        ),
         Argument("geometry", len(arm.symbols), "m, rad", "geometry, in the order of the list", 1e6),
     ]
-    listed += [Argument(name, size, "see the list of parameters", text, 1e9) for name, size, text in parameters]
+    listed += [
+        Argument(name, size, "see the list of parameters", text, 1e9) for name, size, text in parameters
+    ]
     return {argument.name: argument for argument in listed}

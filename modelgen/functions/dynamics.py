@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from modelgen.functions.search import cost
 from modelgen.geometry import Frames
 from modelgen.graph import Expr
+from modelgen.graph.live import cost
 from modelgen.model.composite import mass_matrix as links_mass_matrix
 from modelgen.model.composite import solve
 from modelgen.model.dynamics import joint_efforts

@@ -18,7 +18,13 @@ from modelgen.model.motion import Rates
 
 def kinematic_functions(a: Assembly) -> list[Function]:
     """Everything that needs neither parameters nor a regressor."""
-    functions = [_forward_kinematics(a), _jacobian(a), _motor_from_joint(a), _joint_from_motor(a), _drive_gain(a)]
+    functions = [
+        _forward_kinematics(a),
+        _jacobian(a),
+        _motor_from_joint(a),
+        _joint_from_motor(a),
+        _drive_gain(a),
+    ]
     return functions + ([_effects_step(a)] if a.real.state_names() else [])
 
 
@@ -55,7 +61,9 @@ def _motor_from_joint(a: Assembly) -> Function:
         (vector("dq_m", a.n, motor_units(e, "/s"), "motor velocities"), [s[0] for s in speeds]),
         (vector("ddq_m", a.n, motor_units(e, "/s^2"), "motor accelerations"), [s[1] for s in speeds]),
     ]
-    return a.function("motor_from_joint", "Motor coordinates from joint coordinates.", ["q", "dq", "ddq"], results)
+    return a.function(
+        "motor_from_joint", "Motor coordinates from joint coordinates.", ["q", "dq", "ddq"], results
+    )
 
 
 def _joint_from_motor(a: Assembly) -> Function:
@@ -101,4 +109,6 @@ def _effects_step(a: Assembly) -> Function:
         states += [from_sympy(e.graph, effect.steps[name], bound) for name in effect.variables.state]
     output = vector("state_next", len(states), "see the list of states", "states after dt")
     inputs = ["q", "dq", "dt", "standard_parameters", "state"]
-    return a.function("effects_step", "States of the effects after dt at constant velocity.", inputs, [(output, states)])
+    return a.function(
+        "effects_step", "States of the effects after dt at constant velocity.", inputs, [(output, states)]
+    )

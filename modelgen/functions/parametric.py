@@ -34,7 +34,9 @@ def folded_values(equations: Equations, grouping: Grouping, given: Mapping[str, 
     return values
 
 
-def parametric_functions(a: Assembly, dynamics: Dynamics, suffix: str, parameters: Sequence[str]) -> list[Function]:
+def parametric_functions(
+    a: Assembly, dynamics: Dynamics, suffix: str, parameters: Sequence[str]
+) -> list[Function]:
     """The six functions for one way of giving parameters.
 
     suffix: "", "_standard" or "_identified"; parameters: names of the parameter inputs, if any.
@@ -118,9 +120,15 @@ def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
             [(effort, inputs(dq, ddq))],
         ),
         a.function(
-            "gravity", f"Inputs that hold the arm at rest at q; {text}.", ["q", "parameters"], [(effort, inputs(zeros, zeros))]
+            "gravity",
+            f"Inputs that hold the arm at rest at q; {text}.",
+            ["q", "parameters"],
+            [(effort, inputs(zeros, zeros))],
         ),
         a.function(
-            "bias", f"Inputs without acceleration; {text}.", ["q", "dq", "parameters"], [(effort, inputs(dq, zeros))]
+            "bias",
+            f"Inputs without acceleration; {text}.",
+            ["q", "dq", "parameters"],
+            [(effort, inputs(dq, zeros))],
         ),
     ]

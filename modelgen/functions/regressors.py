@@ -51,7 +51,9 @@ def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[lis
     by_column = sorted(range(len(places)), key=lambda i: places[i][::-1])
     functions = [
         _matrix(a, "regressor", "Inputs per unit of each base parameter.", inputs, columns, unit),
-        _matrix(a, "regressor_standard", "Inputs per unit of each standard parameter.", inputs, standard, unit),
+        _matrix(
+            a, "regressor_standard", "Inputs per unit of each standard parameter.", inputs, standard, unit
+        ),
         a.function(
             "regressor_packed",
             "Structural non-zeros of the regressor.",

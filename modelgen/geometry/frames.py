@@ -117,7 +117,19 @@ class Frames:
         along = turn_x(alpha, (zero, zero, r))
         foot = turn_z(gamma, (d, zero, b))
         origin = turn_z(gamma, (d + along[0], along[1], along[2] + b))
-        return Frame(index, joint.antecedent, coordinate, prismatic, gamma, alpha, theta, foot, origin, self.factored, r)
+        return Frame(
+            index,
+            joint.antecedent,
+            coordinate,
+            prismatic,
+            gamma,
+            alpha,
+            theta,
+            foot,
+            origin,
+            self.factored,
+            r,
+        )
 
     def path(self, index: int) -> list[int]:
         """Indices of the frames from the base to `index`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,12 @@ from modelgen.graph.lowering import reachable
 
 Array = NDArray[np.float64]
 
-_FUNCTIONS = {
+
+def _select(condition: Array, a: Array, b: Array) -> Array:
+    return np.asarray(np.where(condition > 0, a, b))
+
+
+_FUNCTIONS: dict[str, Callable[..., Array]] = {
     "sin": np.sin,
     "cos": np.cos,
     "tan": np.tan,
@@ -29,7 +34,7 @@ _FUNCTIONS = {
     "pow": np.power,
     "min": np.minimum,
     "max": np.maximum,
-    "select": lambda c, a, b: np.where(c > 0, a, b),
+    "select": _select,
 }
 
 

@@ -8,6 +8,7 @@ folded and 0 and 1 disappear while nodes are made, so no pass has to clean up af
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TypeAlias
 
 Number: TypeAlias = int | float
@@ -16,7 +17,7 @@ CONST, INPUT, ADD, MUL, DIV, CALL = range(6)
 
 ODD = frozenset({"sin", "tan", "asin", "atan", "tanh", "sign"})
 EVEN = frozenset({"cos", "abs"})
-UNARY = {
+UNARY: dict[str, Callable[[float], float]] = {
     "sin": math.sin,
     "cos": math.cos,
     "tan": math.tan,
@@ -30,7 +31,7 @@ UNARY = {
     "abs": abs,
     "sign": lambda x: float((x > 0) - (x < 0)),
 }
-BINARY = {
+BINARY: dict[str, Callable[[float, float], float]] = {
     "atan2": math.atan2,
     "pow": math.pow,
     "min": min,
@@ -252,8 +253,7 @@ class Graph:
         values = [self.constant(k) for k in keys]
         numbers = [v for v in values if v is not None]
         if len(numbers) == len(values) and name != "select":
-            function = UNARY.get(name) or BINARY[name]
-            return self.const(function(*numbers))
+            return self.const(UNARY[name](numbers[0]) if name in UNARY else BINARY[name](*numbers))
         if name == "select" and values[0] is not None:
             return Expr(self, keys[1] if values[0] > 0 else keys[2])
         sign = 0

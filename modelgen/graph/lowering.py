@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from modelgen.graph.graph import ADD, CALL, CONST, DIV, EVEN, INPUT, MUL, ODD, Expr, Graph
 from modelgen.graph.polarity import choose_polarity
 
 # ("const", value) ("in", vector, index) ("let", number) ("neg", t) ("add"|"sub"|"mul"|"div", t, t)
 # ("call", function, t, ...)
-Term: TypeAlias = tuple  # type: ignore[type-arg]
+Term: TypeAlias = tuple[Any, ...]
 
 INLINE_SIZE = 6  # leaves of an expression printed on one line
 
@@ -41,13 +41,15 @@ class Program:
 
 def reachable(graph: Graph, roots: Sequence[int]) -> list[int]:
     """Nodes that the references in `roots` need, operands before results (by construction: by index)."""
-    seen: set[int] = set()
-    stack = [key >> 1 for key in roots]
+    args = graph.args
+    seen = {key >> 1 for key in roots}
+    stack = list(seen)
     while stack:
-        node = stack.pop()
-        if node not in seen:
-            seen.add(node)
-            stack.extend(key >> 1 for key in graph.args[node])
+        for key in args[stack.pop()]:
+            node = key >> 1
+            if node not in seen:
+                seen.add(node)
+                stack.append(node)
     return sorted(seen)
 
 

@@ -32,7 +32,7 @@ def mass_matrix(frames: Frames, parameters: Parameters) -> list[list[Expr]]:
 def _fill(frames: Frames, i: int, body: Body, matrix: list[list[Expr]]) -> None:
     """Efforts of all joints before link i for a unit acceleration of joint i."""
     frame, zero = frames[i], frames.graph.zero
-    _, _, xz, _, yz, zz, mx, my, mz, m = body
+    _, _, xz, _, yz, zz, mx, my, _, m = body
     force: Vector
     moment: Vector
     if frame.prismatic:
@@ -112,28 +112,12 @@ def _shifted(body: Body, origin: Vector) -> Body:
     )
 
 
-def factor(matrix: Sequence[Sequence[Expr]]) -> tuple[list[list[Expr]], list[Expr]]:
-    """L (unit lower triangle) and D with matrix = L' D L, from the last row to the first.
-
-    That order keeps the zeros of branches that do not touch (Featherstone 2008, section 6.5).
-    """
-    n = len(matrix)
-    lower = [[matrix[i][j] for j in range(i + 1)] for i in range(n)]
-    pivots = [matrix[i][i] for i in range(n)]
-    for k in reversed(range(n)):
-        pivots[k] = lower[k][k]
-        for i in reversed(range(k)):
-            if lower[k][i].is_zero:
-                continue
-            a = lower[k][i] / pivots[k]
-            for j in range(i + 1):
-                lower[i][j] = lower[i][j] - a * lower[k][j]
-            lower[k][i] = a
-    return lower, pivots
-
-
 def solve(matrix: Sequence[Sequence[Expr]], right: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
-    """matrix^-1 right for a symmetric matrix, and the pivots that must be positive."""
+    """matrix^-1 right for a symmetric matrix, and the pivots that must be positive.
+
+    matrix = L' D L, unrolled from the last row to the first: that order keeps the zeros of branches
+    that do not touch (Featherstone 2008, section 6.5).
+    """
     n = len(matrix)
     lower = [[matrix[i][j] for j in range(i + 1)] for i in range(n)]
     x = list(right)

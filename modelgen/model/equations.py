@@ -7,7 +7,7 @@ Row by row, with K = torque_constant k1 and the drive's own terms at the motor c
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -79,7 +79,7 @@ class Equations:
             convert(transmission.inverse_gain()),
         )
 
-    def _converter(self, n: int, transmission: Transmission):  # type: ignore[no-untyped-def]
+    def _converter(self, n: int, transmission: Transmission) -> Callable[[sp.Expr], Expr]:
         symbols = {**self.scalars.symbols, transmission.q: self.graph.input("q", n)}
 
         def convert(expression: sp.Expr) -> Expr:
@@ -122,9 +122,7 @@ class Equations:
         """Symbols of the effects' linear parameters to elements of a standard vector."""
         index = {parameter.name: i for i, parameter in enumerate(self.standard)}
         return {
-            symbol: values[index[symbol.name]]
-            for effect in self.effects
-            for _, symbol in effect.parameters
+            symbol: values[index[symbol.name]] for effect in self.effects for _, symbol in effect.parameters
         }
 
     def in_graph(self, effect: AppliedEffect, law: sp.Expr, bound: Mapping[sp.Symbol, Expr]) -> Expr:

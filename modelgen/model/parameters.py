@@ -38,7 +38,8 @@ def link_parameters(index: int, joint_name: str, fluid: bool) -> list[StandardPa
             unit = "m^4"
         else:
             unit = "kg m^2"
-        result.append(StandardParameter(f"{symbol}{index + 1}", unit, index, f"{_TEXT[symbol]} of link {joint_name}"))
+        text = f"{_TEXT[symbol]} of link {joint_name}"
+        result.append(StandardParameter(f"{symbol}{index + 1}", unit, index, text))
     return result
 
 

@@ -10,8 +10,9 @@ cheapest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from modelgen.geometry import Frames
 from modelgen.graph import Expr
@@ -20,7 +21,8 @@ from modelgen.model.motion import LinkMotion
 from modelgen.model.screws import PartialVelocities
 from modelgen.model.transfer import carried_inertia, invariant_directions
 
-Row = Mapping[int, Expr]  # by coordinate; missing where the link is not moved by it
+Column: TypeAlias = dict[int, Expr]  # by coordinate; missing where the link is not moved by it
+Table: TypeAlias = list[list[Column]]  # [link][parameter]
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,11 @@ class Regressor:
         self.base = base
         self.graph = frames.graph
         self.velocities = PartialVelocities(frames)
-        self._direct: dict[tuple[int, bool, int], list[dict[int, Expr]]] = {}
+        self._direct: dict[tuple[int, bool, int], list[Column]] = {}
+        self.children: list[list[int]] = [[] for _ in frames.frames]
+        for frame in frames.frames:
+            if frame.antecedent is not None:
+                self.children[frame.antecedent].append(frame.index)
 
     # -- what may be chosen ---------------------------------------------------------------
 
@@ -78,26 +84,40 @@ class Regressor:
 
     # -- columns --------------------------------------------------------------------------
 
-    def columns(self, plans: Sequence[Plan]) -> list[list[dict[int, Expr]]]:
-        """[link][parameter] -> {coordinate: expression} under one plan for each link."""
-        table: list[list[dict[int, Expr]]] = [[] for _ in self.frames.frames]
+    def columns(self, plans: Sequence[Plan]) -> Table:
+        """All columns under one plan for each link."""
+        table: Table = [[] for _ in self.frames.frames]
         for i in self.frames.order:
-            plan = plans[i]
-            columns = list(self.direct(i, plan.slid, plan.back))
-            for k in plan.derived:
-                columns[k] = self._derived(i, k, columns, table)
-            table[i] = columns
+            table[i] = self._link(i, plans[i], table)
         return table
 
-    def _derived(
-        self, i: int, k: int, own: Sequence[Row], table: Sequence[Sequence[Row]]
-    ) -> dict[int, Expr]:
+    def changed(self, table: Table, plans: Sequence[Plan], i: int) -> tuple[Table, list[int]]:
+        """The table with a new plan for link i, and the links whose columns differ from `table`'s."""
+        result = list(table)
+        result[i] = self._link(i, plans[i], result)
+        links = [i]
+        for link in links:
+            for child in self.children[link]:
+                if plans[child].derived:
+                    columns = self._link(child, plans[child], result)
+                    if not _same(columns, result[child]):
+                        result[child] = columns
+                        links.append(child)
+        return result, links
+
+    def _link(self, i: int, plan: Plan, table: Table) -> list[Column]:
+        columns = list(self.direct(i, plan.slid, plan.back))
+        for k in sorted(plan.derived):
+            columns[k] = self._derived(i, k, columns, table)
+        return columns
+
+    def _derived(self, i: int, k: int, own: Sequence[Column], table: Table) -> Column:
         """Column k of link i from the antecedent's columns and the link's other ones."""
         frame, graph = self.frames[i], self.graph
         direction = dict(invariant_directions(self.kind(i)))[k]
         p = [graph.const(x) for x in direction]
         carried = carried_inertia(self._axes(i), frame.origin, p)
-        column: dict[int, Expr] = {}
+        column: Column = {}
         for n in self.velocities.of_link[i]:
             total = graph.zero
             if frame.antecedent is not None and n in self.velocities.of_link[frame.antecedent]:
@@ -116,14 +136,14 @@ class Regressor:
         turned = [frame.to_antecedent_fixed((row[0], row[1], row[2])) for row in unit]
         return [[turned[b][a] for b in range(3)] for a in range(3)]
 
-    def direct(self, i: int, slid: bool, back: int) -> list[dict[int, Expr]]:
+    def direct(self, i: int, slid: bool, back: int) -> list[Column]:
         """The ten columns of link i from its own motion."""
         key = (i, slid, back)
         if key not in self._direct:
             self._direct[key] = self._build(i, slid, back)
         return self._direct[key]
 
-    def _build(self, i: int, slid: bool, back: int) -> list[dict[int, Expr]]:
+    def _build(self, i: int, slid: bool, back: int) -> list[Column]:
         frame, motion, graph = self.frames[i], self.motions[i], self.graph
         acceleration = self._acceleration(i, frame.foot) if slid else motion.acceleration
         forces = [column(motion.field, f) for f in range(3)] + [acceleration]
@@ -135,7 +155,7 @@ class Regressor:
         zero = graph.zero
         ax, ay, az = acceleration
         moments: list[Vector] = [(zero, -az, ay), (az, zero, -ax), (-ay, ax, zero)]
-        columns: list[dict[int, Expr]] = [{} for _ in range(10)]
+        columns: list[Column] = [{} for _ in range(10)]
         for n, (e, _) in self.velocities.of_link[i].items():
             values = _inertia_columns(motion, e)
             v = velocities[n]
@@ -148,7 +168,7 @@ class Regressor:
                 columns[k][n] = value
         return columns + self._volume_columns(i)
 
-    def _volume_columns(self, i: int) -> list[dict[int, Expr]]:
+    def _volume_columns(self, i: int) -> list[Column]:
         """Columns of VX, VY, VZ and V: gravity on the displaced fluid, upwards."""
         density = self.frames.arm.fluid_density
         if not density:
@@ -156,7 +176,7 @@ class Regressor:
         zero = self.graph.zero
         x, y, z = self.motions[i].gravity
         moments: list[Vector] = [(zero, -z, y), (z, zero, -x), (-y, x, zero)]
-        columns: list[dict[int, Expr]] = [{} for _ in range(4)]
+        columns: list[Column] = [{} for _ in range(4)]
         for n, (e, v) in self.velocities.of_link[i].items():
             for k, moment in enumerate(moments):
                 columns[k][n] = dot(e, moment) * density
@@ -196,6 +216,12 @@ class Regressor:
         return carried
 
 
+def _same(a: Sequence[Column], b: Sequence[Column]) -> bool:
+    return all(
+        x.keys() == y.keys() and all(x[n].key == y[n].key for n in x) for x, y in zip(a, b, strict=True)
+    )
+
+
 def _inertia_columns(motion: LinkMotion, e: Vector) -> list[Expr]:
     """Columns of XX ... ZZ dotted with the angular velocity e."""
     u, (ax, ay, az) = motion.field, motion.axial
@@ -216,4 +242,5 @@ def _moved_along_z(values: Sequence[Expr], r: Expr) -> list[Expr]:
     """Columns about a point r below the origin turned into columns about the origin."""
     xx, xy, xz, yy, yz, zz, mx, my, mz, m = values
     rod = xx + yy
-    return [xx, xy, xz, yy, yz, zz, mx - r * xz, my - r * yz, mz + (r * 2.0) * rod, m + r * mz + (r * r) * rod]
+    moments = [mx - r * xz, my - r * yz, mz + (r * 2.0) * rod]
+    return [xx, xy, xz, yy, yz, zz, *moments, m + r * mz + (r * r) * rod]

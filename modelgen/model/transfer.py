@@ -19,9 +19,7 @@ def carried_inertia(rotation: Sequence[Sequence[Any]], origin: Sequence[Any], p:
     rotation: 3 x 3, axes of frame j in the antecedent's frame; origin: of frame j there [m].
     Steiner's theorem with first moments instead of the centre of mass.
     """
-    turned = [
-        [sum(rotation[a][i] * p[_PLACE[i][j]] for i in range(3)) for j in range(3)] for a in range(3)
-    ]
+    turned = [[sum(rotation[a][i] * p[_PLACE[i][j]] for i in range(3)) for j in range(3)] for a in range(3)]
     moments = [sum(rotation[a][i] * p[6 + i] for i in range(3)) for a in range(3)]
     mass = p[9]
     along = sum(origin[a] * (2 * moments[a] + mass * origin[a]) for a in range(3))

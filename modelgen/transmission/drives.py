@@ -179,23 +179,20 @@ def with_lever_symbols(arm: Arm) -> Arm:
         symbols[name] = value
         return geometry_symbol(name)
 
-    joints = []
-    for number, joint in enumerate(arm.joints, 1):
-        if joint.type == "revolute" and joint.locked is None and joint.theta != 0:
+    def joint_with_symbols(number: int, joint: Joint) -> Joint:
+        if joint.type == "revolute" and joint.moving and joint.theta != 0:
             joint = replace(joint, theta=named(f"theta_{number}", joint.theta))
-        if isinstance(joint.drive, LeveredDrive) and joint.moving:
-            drive = joint.drive
-            drive = replace(
-                drive,
-                l1=named(f"l1_{number}", drive.l1),
-                l2=named(f"l2_{number}", drive.l2),
-                length=(
-                    named(f"length0_{number}", drive.length[0]),
-                    named(f"length1_{number}", drive.length[1]),
-                ),
-                offset=named(f"offset_{number}", drive.offset),
-            )
-            joint = replace(joint, drive=drive)
-        joints.append(joint)
-    return replace(arm, joints=tuple(joints), symbols=symbols)
+        if not (isinstance(joint.drive, LeveredDrive) and joint.moving):
+            return joint
+        low, high = joint.drive.length
+        drive = replace(
+            joint.drive,
+            l1=named(f"l1_{number}", joint.drive.l1),
+            l2=named(f"l2_{number}", joint.drive.l2),
+            length=(named(f"length0_{number}", low), named(f"length1_{number}", high)),
+            offset=named(f"offset_{number}", joint.drive.offset),
+        )
+        return replace(joint, drive=drive)
 
+    joints = tuple(joint_with_symbols(number, joint) for number, joint in enumerate(arm.joints, 1))
+    return replace(arm, joints=joints, symbols=symbols)
