@@ -6,16 +6,17 @@ from collections.abc import Mapping, Sequence
 
 from modelgen.backends.body import body
 from modelgen.backends.documentation import (
-    argument_text,
+    argument_row,
     function_operations,
     function_sections,
     model_sections,
     output_text,
+    remarks,
     unit,
 )
 from modelgen.backends.elements import Element, local_names
 from modelgen.backends.provenance import Provenance
-from modelgen.backends.text import plain, render, table, wrapped
+from modelgen.backends.text import plain, render, table, wrapped, wrapped_code
 from modelgen.functions.objects import Function, Model
 
 _SPELLING = {"abs": "fabs", "min": "fmin", "max": "fmax", "pow": "power"}
@@ -28,7 +29,7 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
     text = render(
         "casadi/module.py.j2",
         arm=arm,
-        source=plain(model.arm.source),
+        remarks=remarks(model),
         provenance=provenance.lines(arm),
         sections=model_sections(model),
         functions=[_values(model, function) for function in model.functions],
@@ -82,7 +83,7 @@ class CasadiDialect:
 
 def _assignment(target: str, text: str) -> str:
     line = f"{_INDENT}{target} = {text}"
-    return line if len(line) <= 110 else wrapped(f"{target} = ({text})", _INDENT, _INDENT * 2)
+    return line if len(line) <= 110 else wrapped_code(f"{target} = ({text})", _INDENT, _INDENT * 2)
 
 
 def _variable(function: Function, output: str) -> str:
@@ -99,7 +100,7 @@ def _values(model: Model, function: Function) -> dict[str, object]:
     named = local_names(model, function)
     inputs = ", ".join(a.name for a in function.arguments)
     outputs = ", ".join(o.name for o in function.outputs)
-    rows = [("in", a.name, f"[{a.size}]", unit(a.unit), argument_text(a)) for a in function.arguments]
+    rows = [("in", *argument_row(model, function, a)) for a in function.arguments]
     rows += [("out", o.name, f"[{o.size}]", unit(o.unit), output_text(o)) for o in function.outputs]
     sections = [s for s in function_sections(model, function) if s.title.startswith("Columns of")]
     names = {o.name for o in function.outputs}

@@ -22,15 +22,24 @@ def unit(text: str) -> str:
     return f"[{text}]" if text else ""
 
 
-def argument_text(argument: Argument) -> str:
-    """Meaning and bound of an input."""
-    return f"{plain(argument.text)}; Euclidean norm at most {argument.bound:g}"
+def argument_row(model: Model, function: Function, argument: Argument) -> tuple[str, str, str, str]:
+    """Name, length, unit (nothing where it differs by element), meaning and bound of an input."""
+    of_unit = "" if elements(model, function, argument) else unit(argument.unit)
+    text = f"{plain(argument.text)}; norm at most {argument.bound:g}"
+    return argument.name, f"[{argument.size}]", of_unit, text
 
 
 def output_text(output: Output) -> str:
     """Meaning and shape of an output."""
     shape = f"; {output.rows} x {output.columns}, row-major" if output.columns > 1 else ""
     return f"{plain(output.text)}{shape}"
+
+
+def remarks(model: Model) -> list[str]:
+    """Where the arm's figures come from, and what its description left a note on."""
+    texts = [f"Source of the figures: {model.arm.source}"] if model.arm.source else []
+    texts += [f"Note: {note}" for note in model.arm.notes]
+    return [line for text in texts for line in wrapped(plain(text), width=100).split("\n")]
 
 
 def model_sections(model: Model) -> list[Section]:

@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from modelgen.resources import templates_folder
 
 WIDTH = 110
+_UNBROKEN = "\N{NO-BREAK SPACE}"  # stands for a blank at which a line may not end
 # What would end a comment or a docstring, continue a line, or begin a trigraph.
 _ENDS = {"*/": "* /", "/*": "/ *", "\\": "/", '"': "'", "??": "? ?"}
 
@@ -30,6 +31,17 @@ def wrapped(text: str, indent: str = "", continuation: str | None = None, width:
             break_on_hyphens=False,
         )
     )
+
+
+def wrapped_code(text: str, indent: str, continuation: str) -> str:
+    """A statement on lines of at most WIDTH, broken before a sum's sign or after a comma."""
+    if len(indent) + len(text) <= WIDTH:
+        return indent + text
+    for sign in "*/=":
+        text = text.replace(f" {sign} ", f"{_UNBROKEN}{sign}{_UNBROKEN}")
+    for sign in "+-":
+        text = text.replace(f" {sign} ", f" {sign}{_UNBROKEN}")
+    return wrapped(text, indent, continuation).replace(_UNBROKEN, " ")
 
 
 def table(rows: Iterable[Sequence[str]], width: int = WIDTH - 3) -> list[str]:

@@ -7,7 +7,9 @@ integer powers, or a sum of few such, shows itself so and is checked on values n
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 
 import numpy as np
 import sympy as sp
@@ -16,8 +18,8 @@ from modelgen.description.objects import geometry_symbol
 
 Factors = dict[tuple[int, int], float]  # (dependent, kept) -> factor
 
-_DEGREE = 3
 _SAMPLES = 16
+_DEGREE = 4  # of a single monomial; sums of monomials go to one less
 
 
 def closed_forms(
@@ -51,21 +53,38 @@ def _formula(
     if np.ptp(y) <= 1e-9 * abs(now):
         return now
     table = np.array([[point[name] for name in names] for point in points])
-    powers = [
-        p for p in itertools.product(range(-2, _DEGREE + 1), repeat=len(names)) if sum(map(abs, p)) <= _DEGREE
-    ]
-    columns = np.array([np.prod(table ** np.array(p), axis=1) for p in powers]).T
-    for size in (1, 2, 3):
-        if size == 3 and len(powers) > 30:
-            break
-        for chosen in itertools.combinations(range(len(powers)), size):
-            part = columns[:, chosen]
-            weights = np.linalg.lstsq(part, y, rcond=None)[0]
-            if np.max(np.abs(part @ weights - y)) <= 1e-8 * np.max(np.abs(y)):
-                return sp.Add(*(_term(names, powers[c], w) for c, w in zip(chosen, weights, strict=True)))
+    powers = sorted(
+        (p for p in itertools.product(range(-2, _DEGREE + 1), repeat=len(names)) if _size(p) <= _DEGREE),
+        key=_size,
+    )
+    low = [p for p in powers if _size(p) < _DEGREE]
+    trials = itertools.chain(
+        ((p,) for p in powers),
+        itertools.combinations(low, 2),
+        itertools.combinations([p for p in low if min(p) >= 0], 3),
+    )
+    for chosen in trials:
+        part = np.array([np.prod(table ** np.array(p), axis=1) for p in chosen]).T
+        weights = np.linalg.lstsq(part, y, rcond=None)[0]
+        if np.max(np.abs(part @ weights - y)) <= 1e-8 * np.max(np.abs(y)):
+            return sp.Add(*(_term(names, p, w) for p, w in zip(chosen, weights, strict=True)))
     return now
 
 
+def _size(powers: Sequence[int]) -> int:
+    return sum(map(abs, powers))
+
+
 def _term(names: Sequence[str], powers: Sequence[int], weight: float) -> sp.Expr:
-    number = sp.nsimplify(round(float(weight), 8)) if abs(weight) < 1e6 else sp.Float(weight)
-    return sp.Mul(number, *(geometry_symbol(n) ** p for n, p in zip(names, powers, strict=True)))
+    factors = (geometry_symbol(n) ** p for n, p in zip(names, powers, strict=True))
+    return sp.Mul(_exact(float(weight)), *factors)
+
+
+def _exact(value: float) -> sp.Expr:
+    """A small fraction, or one times pi or pi^2 (screws have 2 pi / lead), where `value` is one."""
+    for power in range(3):
+        ratio = value / math.pi**power
+        fraction = Fraction(ratio).limit_denominator(64)
+        if abs(float(fraction) - ratio) <= 1e-9 * abs(ratio):
+            return sp.Rational(fraction.numerator, fraction.denominator) * sp.pi**power
+    return sp.Float(value)

@@ -113,3 +113,25 @@ def base_values(grouping: Grouping, standard: Sequence[float], symbols: dict[str
         return float(factor.subs(known)) if isinstance(factor, sp.Expr) else factor
 
     return [sum(number(f) * standard[k] for k, f in b.terms) for b in grouping.base]
+
+
+def fluid_remarks(equations: Equations, grouping: Grouping) -> list[str]:
+    """What a fluid makes identifiable: volumes on their own, and those seen only with the mass.
+
+    Gravity sees M - density V, inertia sees M: where a first moment of the mass shows in the inertia
+    as well, that of the volume can be told from it.
+    """
+    if not equations.arm.fluid_density:
+        return []
+
+    def volume(k: int) -> bool:
+        return equations.standard[k].name.startswith("V")
+
+    apart = [b.name for b in grouping.base if volume(b.representative)]
+    mixed = [
+        b.name for b in grouping.base if not volume(b.representative) and any(volume(k) for k, _ in b.terms)
+    ]
+    return [
+        f"identifiable in the fluid besides those in air: {', '.join(apart) or 'none'}",
+        f"mass and displaced volume only together, as gravity sees them: {', '.join(mixed) or 'none'}",
+    ]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from modelgen.base_parameters import Grouping, group
+from modelgen.base_parameters import Grouping, fluid_remarks, group
 from modelgen.base_parameters.analytic import slid
-from modelgen.description.objects import Arm
+from modelgen.description.objects import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.dynamics import Dynamics
@@ -61,7 +61,26 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         packed,
         tuple(arm.symbols) if options.runtime_geometry else (),
         tuple(real.state_names()),
+        tuple([*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)]),
     )
+
+
+def _gain_remarks(options: Options, arm: Arm) -> list[str]:
+    """What the mode of the drive gains means for the parameters."""
+    driven = [
+        f"gamma{n + 1}" for n, i in enumerate(arm.coordinates) if not isinstance(arm.joints[i].drive, NoDrive)
+    ]
+    if options.gains == "estimated" and driven:
+        return [
+            f"estimated gains: {', '.join(driven)}, true over described torque constant, join the parameters; their "
+            "common scale needs a run with a known payload; the functions are those of known gains",
+        ]
+    if options.gains == "row_wise":
+        return [
+            "row-wise gains: each row has parameters of its own scale; mass_matrix, forward_dynamics and energy "
+            "exist for standard parameters only",
+        ]
+    return []
 
 
 def _stacked(rows: list[Grouping]) -> Grouping:

@@ -91,3 +91,4 @@ class Model:
     packed: SparsityTable
     geometry: tuple[str, ...] = ()  # names of the run-time geometry, in the order of its input
     states: tuple[str, ...] = ()  # names of the effects' states
+    remarks: tuple[str, ...] = ()  # for the user: what can be told apart, and what cannot

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from modelgen.backends.c.dialect import arrays, destinations
 from modelgen.backends.documentation import (
-    argument_text,
+    argument_row,
     function_operations,
     model_sections,
     output_text,
+    remarks,
     unit,
 )
-from modelgen.backends.elements import Element, base_parameters, standard_parameters
+from modelgen.backends.elements import base_parameters, standard_parameters
 from modelgen.backends.text import plain, table, wrapped
 from modelgen.functions.objects import Function, Model
 
-_UNBROKEN = "\N{NO-BREAK SPACE}"
+_ONE_LINE = 1000  # the comment of an enumerator is not wrapped
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ def function_text(model: Model, function: Function) -> FunctionText:
     """The texts of one function."""
     arm = model.arm.name
     real = f"{arm}_real_t"
-    rows = [("@param[in]", a.name, f"[{a.size}]", unit(a.unit), argument_text(a)) for a in function.arguments]
+    rows = [("@param[in]", *argument_row(model, function, a)) for a in function.arguments]
     places = destinations(function)
     lengths = arrays(function)
     for output in function.outputs:
@@ -77,9 +79,8 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
     if model.states:
         sizes.append(("N_STATES", len(model.states), "states of the effects"))
     return {
-        "source": plain(model.arm.source),
+        "remarks": remarks(model),
         "gravity": ", ".join(f"{value:g}" for value in model.arm.gravity),
-        "notes": [plain(note) for note in model.arm.notes],
         "sections": model_sections(model),
         "sizes": [
             row.rstrip()
@@ -87,20 +88,25 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
                 (f"#define {macro}_{name}", str(size), f"/**< {text} */") for name, size, text in sizes
             )
         ],
-        "parameters": _indices(macro, "PARAMETER", base_parameters(model)),
-        "standard": _indices(macro, "STANDARD", standard_parameters(model)),
+        "parameters": _indices(macro, "PARAMETER", ((p.name, unit(p.unit)) for p in base_parameters(model))),
+        "standard": _indices(
+            macro,
+            "STANDARD",
+            ((p.name, f"{unit(p.unit)} {plain(p.text)}") for p in standard_parameters(model)),
+        ),
         "packed": packed,
         "functions": functions,
     }
 
 
-def _indices(macro: str, kind: str, elements: tuple[Element, ...]) -> list[str]:
-    """Enumerators with the elements' names, each with its unit and meaning."""
-    rows = []
-    for i, element in enumerate(elements):
-        name = re.sub(r"\W", "_", element.name, flags=re.ASCII)
-        comma = "," if i + 1 < len(elements) else ""
-        meaning = f"{unit(element.unit)} {plain(element.text)}".strip()
-        # The comment's end stays on the line of the last word.
-        rows.append((f"{macro}_{kind}_{name} = {i}{comma}", f"/**< {meaning}{_UNBROKEN}*/"))
-    return [line.replace(_UNBROKEN, " ") for line in table(rows)]
+def _indices(macro: str, kind: str, rows: Iterable[tuple[str, str]]) -> list[str]:
+    """Enumerators in the order of the rows (name, comment)."""
+    named = [(re.sub(r"\W", "_", name, flags=re.ASCII), comment) for name, comment in rows]
+    last = len(named) - 1
+    return table(
+        (
+            (f"{macro}_{kind}_{name} = {i}{',' if i < last else ''}", f"/**< {comment} */")
+            for i, (name, comment) in enumerate(named)
+        ),
+        width=_ONE_LINE,
+    )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 
 from modelgen.backends.elements import Element
-from modelgen.backends.text import wrapped
+from modelgen.backends.text import wrapped_code
 from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
@@ -23,9 +24,10 @@ def literal(arm: str, value: float) -> str:
     if value and not _SMALLEST <= abs(value) <= _LARGEST:
         raise ValueError(f"{arm}: the constant {value!r} is out of the range of single precision")
     digits = repr(float(value))
-    if digits.endswith("00.0"):
-        mantissa, exponent = f"{value:.16e}".split("e")
-        digits = f"{mantissa.rstrip('0')}e{int(exponent)}".replace(".e", ".0e")
+    if "e" in digits or digits.endswith("00.0"):
+        mantissa, exponent = f"{Decimal(digits):e}".split("e")
+        whole, _, decimals = mantissa.partition(".")
+        digits = f"{whole}.{decimals.rstrip('0') or '0'}e{int(exponent)}"
     return f"{arm.upper()}_C({digits})"
 
 
@@ -90,12 +92,12 @@ class CDialect:
 
     def let(self, number: int, text: str) -> str:
         """An intermediate value is defined once and never changes."""
-        return wrapped(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
+        return wrapped_code(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
 
     def store(self, output: str, index: int, text: str) -> str:
         """An element of the array that holds the output."""
         array, offset = self.places[output]
-        return wrapped(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
+        return wrapped_code(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
 
     def guard(self, status: int, text: str) -> str:
         """Zeros and a status; the comparison is false for what is not a number."""
