@@ -84,7 +84,7 @@ def _exact(value: float) -> sp.Expr:
     """A small fraction, or one times pi or pi^2 (screws have 2 pi / lead), where `value` is one."""
     for power in range(3):
         ratio = value / math.pi**power
-        fraction = Fraction(ratio).limit_denominator(64)
+        fraction = Fraction(ratio).limit_denominator(1000)
         if abs(float(fraction) - ratio) <= 1e-9 * abs(ratio):
             return sp.Rational(fraction.numerator, fraction.denominator) * sp.pi**power
     return sp.Float(value)

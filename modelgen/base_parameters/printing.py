@@ -46,7 +46,7 @@ def _split(factor: Scalar) -> tuple[str, str]:
     """Sign and printed magnitude."""
     if isinstance(factor, sp.Expr):
         negative = factor.could_extract_minus_sign()
-        magnitude = sp.nsimplify(-factor if negative else factor, rational=False)
+        magnitude = -factor if negative else factor
         text = str(_plain(magnitude))
         return ("-" if negative else "+"), f"({text})" if isinstance(magnitude, sp.Add) else text
     return ("-" if factor < 0 else "+"), _shortest(abs(factor))

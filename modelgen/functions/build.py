@@ -61,7 +61,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         packed,
         tuple(arm.symbols) if options.runtime_geometry else (),
         tuple(real.state_names()),
-        tuple([*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)]),
+        (*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)),
     )
 
 
@@ -72,13 +72,13 @@ def _gain_remarks(options: Options, arm: Arm) -> list[str]:
     ]
     if options.gains == "estimated" and driven:
         return [
-            f"estimated gains: {', '.join(driven)}, true over described torque constant, join the parameters; their "
-            "common scale needs a run with a known payload; the functions are those of known gains",
+            f"estimated gains: {', '.join(driven)}, true over described torque constant, join the parameters",
+            "their common scale needs a run with a known payload; the functions are those of known gains",
         ]
     if options.gains == "row_wise":
         return [
-            "row-wise gains: each row has parameters of its own scale; mass_matrix, forward_dynamics and energy "
-            "exist for standard parameters only",
+            "row-wise gains: each row has parameters of its own scale",
+            "mass_matrix, forward_dynamics and energy exist for standard parameters only",
         ]
     return []
 
