@@ -63,4 +63,5 @@ def _shortest(value: float) -> str:
 
 def _plain(expression: sp.Expr) -> sp.Expr:
     """Floats that are whole numbers as such."""
-    return expression.replace(lambda e: e.is_Float and e == int(e), lambda e: sp.Integer(int(e)))
+    whole = {f: sp.Integer(int(f)) for f in expression.atoms(sp.Float) if float(f).is_integer()}
+    return expression.xreplace(whole)
