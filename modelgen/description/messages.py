@@ -70,12 +70,12 @@ def mistake(root: Node, path: Steps, message: str, key: bool = False) -> InputEr
 
 
 def first_mistake(root: Node, error: ValidationError) -> InputError:
-    """The first structural mistake in reading order; missing keys last: a misspelt one explains them."""
+    """The first structural mistake in reading order."""
     found = [_structural(root, dict(entry)) for entry in error.errors(include_url=False)]
     return min(found, key=lambda item: item[0])[1]
 
 
-def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[bool, int, int], InputError]:
+def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], InputError]:
     kind, context, value = entry["type"], entry.get("ctx", {}), entry["input"]
     path = _path(root, entry["loc"])
     key = False
@@ -111,7 +111,7 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[bool, int, int
     result = mistake(root, path, message, key)
     where = result.where
     assert where is not None
-    return (kind == "missing", where.line, where.column), result
+    return (where.line, where.column), result
 
 
 def _one_of(value: Any, options: list[str]) -> str:
