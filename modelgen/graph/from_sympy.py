@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 import sympy as sp
 
@@ -41,6 +41,9 @@ def from_sympy(
     looked up twice. Raises KeyError for an unbound symbol and TypeError for an unknown function.
     """
     cache: dict[sp.Basic, Expr] = {}
+    expression = sp.sympify(expression)
+    # What stands under a root is divided by through one reciprocal root: divisions are dear.
+    rooted = {power.base for power in expression.atoms(sp.Pow) if _halves(power.exp) and 2 * power.exp % 2}
 
     def convert(node: sp.Basic) -> Expr:
         if node not in cache:
@@ -55,9 +58,9 @@ def from_sympy(
         if isinstance(node, sp.Add):
             return _sum([convert(a) for a in node.args])
         if isinstance(node, sp.Mul):
-            return _product(graph, node, convert)
+            return _product(graph, node, convert, rooted)
         if isinstance(node, sp.Pow):
-            return _power(graph, node, convert)
+            return _power(graph, node, convert, rooted)
         if isinstance(node, sp.sin | sp.cos) and trigonometry:
             known = trigonometry(node.args[0])
             if known:
@@ -75,7 +78,12 @@ def from_sympy(
             return result
         return graph.call(name, *arguments)
 
-    return convert(sp.sympify(expression))
+    return convert(expression)
+
+
+def _halves(exponent: sp.Expr) -> bool:
+    """Whether the exponent is a small multiple of one half."""
+    return bool(exponent.is_number and (2 * exponent).is_integer and abs(2 * exponent) <= 16)
 
 
 def _sum(terms: list[Expr]) -> Expr:
@@ -85,31 +93,43 @@ def _sum(terms: list[Expr]) -> Expr:
     return total
 
 
-def _product(graph: Graph, node: sp.Mul, convert: Callable[[sp.Basic], Expr]) -> Expr:
+def _product(
+    graph: Graph, node: sp.Mul, convert: Callable[[sp.Basic], Expr], rooted: Collection[sp.Expr]
+) -> Expr:
     """Numerator over denominator, so that a product has at most one division."""
     over, under = graph.one, graph.one
     for factor in node.args:
-        if isinstance(factor, sp.Pow) and factor.exp.is_number and factor.exp < 0:
+        negative = isinstance(factor, sp.Pow) and factor.exp.is_number and factor.exp < 0
+        if negative and factor.base not in rooted:
             under = under * convert(sp.Pow(factor.base, -factor.exp))
         else:
             over = over * convert(factor)
     return over / under
 
 
-def _power(graph: Graph, node: sp.Pow, convert: Callable[[sp.Basic], Expr]) -> Expr:
+def _power(
+    graph: Graph, node: sp.Pow, convert: Callable[[sp.Basic], Expr], rooted: Collection[sp.Expr]
+) -> Expr:
     base, exponent = node.base, node.exp
-    doubled = 2 * exponent
-    if not (exponent.is_number and doubled.is_integer and abs(doubled) <= 16):
+    if not _halves(exponent):
         return graph.call("pow", convert(base), convert(exponent))
-    if exponent < 0:
-        return graph.one / convert(sp.Pow(base, -exponent))
-    whole, half = divmod(int(doubled), 2)
-    result = graph.sqrt(convert(base)) if half else graph.one
-    square, count = convert(base), whole
+    value, count = convert(base), abs(int(2 * exponent))
+    if exponent < 0 and base in rooted:
+        inverse = graph.one / graph.sqrt(value)
+        return _repeated(graph, inverse, count)
+    result = _repeated(graph, value, count // 2)
+    if count % 2:
+        result = result * graph.sqrt(value)
+    return graph.one / result if exponent < 0 else result
+
+
+def _repeated(graph: Graph, value: Expr, count: int) -> Expr:
+    """value to the power `count` by squaring."""
+    result = graph.one
     while count:
         if count & 1:
-            result = result * square
-        square = square * square
+            result = result * value
+        value = value * value
         count >>= 1
     return result
 
