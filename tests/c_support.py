@@ -58,10 +58,18 @@ def shared_library(folder: Path, arm: str, real: str, *, optimise: str = "-O1") 
     return library
 
 
+def one_source(folder: Path) -> str:
+    """A file that includes every source: one call of the compiler instead of two dozen."""
+    path = folder / "all.c"
+    path.write_text("".join(f'#include "{source}"\n' for source in sources(folder)), encoding="utf-8")
+    return str(path)
+
+
 class Library:
     """The functions of a compiled arm, called with NumPy arrays."""
 
     def __init__(self, path: Path, model: Model, real: str) -> None:
+        self.path = path
         self.library = ctypes.CDLL(str(path))
         self.arm = model.arm.name
         self.type = np.dtype(np.float32 if real == "float" else np.float64)

@@ -1,0 +1,169 @@
+"""The commands and their options. What a command needs is imported when it is called: the help is quick."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from modelgen import __version__
+from modelgen.cli.guard import guarded
+
+# ruff: noqa: PLC0415 - see above
+
+app = typer.Typer(
+    name="modelgen",
+    help="From the YAML description of a robot arm to its dynamic model in C99, CasADi and NumPy.",
+    epilog="Exit status: 0 done, 1 a check failed, 2 bad input. Messages go to stderr, data to stdout.",
+    add_completion=False,
+    # A traceback that Python prints itself can be copied into a report.
+    pretty_exceptions_enable=False,
+)
+
+
+class Gains(StrEnum):
+    """How the drive gains enter the model."""
+
+    KNOWN = "known"
+    ESTIMATED = "estimated"
+    ROW_WISE = "row_wise"
+
+
+Arms = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="ARMS",
+        help="Description in YAML. Default: arms.yaml here, else the shipped arms.",
+        show_default=False,
+    ),
+]
+Without = Annotated[
+    str,
+    typer.Option(
+        metavar="PARTS", help="Leave out drives, effects or both: drives,effects.", show_default=False
+    ),
+]
+DriveGains = Annotated[Gains, typer.Option(help="Drive gains: known, estimated, or scaled row by row.")]
+RuntimeGeometry = Annotated[
+    bool, typer.Option("--runtime-geometry", help="Lever geometry, offsets and symbols become an input.")
+]
+SinCos = Annotated[
+    bool, typer.Option("--sincos-inputs", help="Sines and cosines of the joint angles become inputs.")
+]
+JacobianLink = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LINK", help="Link that the Jacobian belongs to. Default: the last.", show_default=False
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
+OnlyArms = Annotated[
+    list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
+]
+OneArm = Annotated[str, typer.Option(metavar="NAME", help="The arm.", show_default=False)]
+OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
+OutFile = Annotated[Path, typer.Option(metavar="FILE", help="File to write; it must not exist.")]
+Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "-j", "--jobs", metavar="N", min=1, help="Processes. Default: one per processor.", show_default=False
+    ),
+]
+NewName = Annotated[str, typer.Argument(help="Name of the arm, a C identifier.", show_default=False)]
+Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
+
+
+@app.callback(invoke_without_command=True)
+def _common(context: typer.Context, version: Version = False) -> None:
+    if version:
+        typer.echo(f"modelgen {__version__}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+        raise typer.Exit
+
+
+@app.command()
+@guarded
+def generate(
+    arms: Arms = None,
+    arm: OnlyArms = None,
+    out: OutFolder = Path("generated"),
+    check: Check = False,
+    without: Without = "",
+    gains: DriveGains = Gains.KNOWN,
+    runtime_geometry: RuntimeGeometry = False,
+    sincos_inputs: SinCos = False,
+    jacobian_link: JacobianLink = None,
+    jobs: Jobs = None,
+    as_json: Json = False,
+) -> None:
+    """Write C99 and CasADi functions of every arm."""
+    from modelgen.cli.generating import run
+    from modelgen.cli.selecting import options, selected
+
+    chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
+    file, found = selected(arms, arm or [])
+    run(found, file, chosen, out, check=check, processes=jobs, as_json=as_json)
+
+
+@app.command()
+@guarded
+def show(
+    arm: OneArm,
+    arms: Arms = None,
+    without: Without = "",
+    gains: DriveGains = Gains.KNOWN,
+    runtime_geometry: RuntimeGeometry = False,
+    sincos_inputs: SinCos = False,
+    jacobian_link: JacobianLink = None,
+    as_json: Json = False,
+) -> None:
+    """Print base parameters, their grouping, and what the functions cost."""
+    from modelgen.cli.selecting import options, selected
+    from modelgen.cli.showing import run
+
+    chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
+    _, (found,) = selected(arms, [arm])
+    run(found, chosen, as_json=as_json)
+
+
+@app.command()
+@guarded
+def effects(as_json: Json = False) -> None:
+    """Print the catalogue of effects: names, parameters, units, bounds."""
+    from modelgen.cli.catalogue import run
+
+    run(as_json=as_json)
+
+
+@app.command()
+@guarded
+def schema() -> None:
+    """Print a JSON Schema of the description, for editors."""
+    import json
+
+    from modelgen.description import json_schema
+    from modelgen.effects import known_effects
+
+    typer.echo(json.dumps(json_schema(known_effects()), indent=2))
+
+
+@app.command()
+@guarded
+def init(
+    name: NewName,
+    out: OutFile = Path("arms.yaml"),
+) -> None:
+    """Write a commented description that generates as it stands."""
+    from modelgen.cli.starting import run
+
+    run(name, out)
+
+
+def main() -> None:
+    """Entry of the command `modelgen`. Ends the process with its exit status."""
+    app(prog_name="modelgen")

@@ -1,0 +1,52 @@
+"""Which arms, with which options."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+
+from modelgen.description import Arm, load
+from modelgen.description.messages import suggest
+from modelgen.effects import known_effects
+from modelgen.errors import InputError
+from modelgen.functions import PARTS, Options
+from modelgen.resources import shipped_arms
+
+
+def selected(path: Path | None, names: Sequence[str]) -> tuple[str, list[Arm]]:
+    """The file as messages name it, and its arms of the given names, all where none are given.
+
+    Without a path arms.yaml of the current folder is read, else the arms that modelgen ships. Raises
+    InputError where the description is wrong or an arm does not exist.
+    """
+    if path is None:
+        here = Path("arms.yaml")
+        path = here if here.exists() else shipped_arms()
+    arms = load(path, known_effects())
+    for name in names:
+        if name not in arms:
+            near = get_close_matches(name, arms, n=1)
+            hint = f", did you mean '{near[0]}'?" if near else ""
+            raise InputError(f"{path}: found no arm '{name}'{hint} (available: {', '.join(arms)})")
+    chosen = [arms[name] for name in dict.fromkeys(names)] if names else list(arms.values())
+    return str(path), chosen
+
+
+def options(
+    without: str, gains: str, runtime_geometry: bool, sincos: bool, jacobian_link: str | None
+) -> Options:
+    """The options of the functions. Raises InputError for a part that cannot be left out."""
+    parts = [part.strip() for part in without.split(",") if part.strip()]
+    for part in parts:
+        if part not in PARTS:
+            raise InputError(
+                f"--without: found '{part}', expected {' or '.join(PARTS)}{suggest(part, PARTS)}"
+            )
+    return Options(
+        without=frozenset(parts),
+        gains=str(gains),
+        runtime_geometry=runtime_geometry,
+        sincos=sincos,
+        jacobian_link=jacobian_link,
+    )

@@ -1,0 +1,91 @@
+"""Everything that is generated for one arm, in memory."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from modelgen import __version__
+from modelgen.backends import Provenance, c_files, casadi_files
+from modelgen.backends.c import c_symbols
+from modelgen.description.objects import Arm
+from modelgen.errors import InputError
+from modelgen.functions import Options, build_model
+from modelgen.functions.objects import Model
+from modelgen.generation.canonical import description_hash
+from modelgen.generation.folders import MARK
+
+
+@dataclass(frozen=True)
+class GeneratedArm:
+    """The files of one arm by path below its folder, and the figures of its model.
+
+    `operations` maps the functions' names to their operations by kind; `symbols` are the names, in
+    lower case, that the C code takes.
+    """
+
+    name: str
+    files: Mapping[str, str]
+    joints: int
+    standard_parameters: int
+    base_parameters: int
+    operations: Mapping[str, Mapping[str, int]]
+    symbols: frozenset[str]
+
+
+def generate_arm(arm: Arm, options: Options) -> GeneratedArm:
+    """Build the arm's model and print it in every language. Raises InputError."""
+    return print_model(build_model(arm, options), arm, shown_options(options))
+
+
+def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> GeneratedArm:
+    """Print a model in every language; `arm` is the description as the user gave it. Raises InputError."""
+    provenance = Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
+    try:
+        files = {**c_files(model, provenance), **casadi_files(model, provenance)}
+    except ValueError as error:
+        raise InputError(str(error), arm.where) from error
+    symbols = frozenset(c_symbols(model.arm.name, files))
+    files[MARK] = _manifest(model.arm.name, provenance, files)
+    return GeneratedArm(
+        name=model.arm.name,
+        files=files,
+        joints=len(model.arm.coordinates),
+        standard_parameters=len(model.standard),
+        base_parameters=len(model.grouping.base),
+        operations={function.name: dict(function.operations) for function in model.functions},
+        symbols=symbols,
+    )
+
+
+def shown_options(options: Options) -> dict[str, str]:
+    """What was asked for beside the description, as the generated files state it."""
+    shown = {}
+    if options.without:
+        shown["without"] = " and ".join(sorted(options.without))
+    if options.gains != "known":
+        shown["gains"] = options.gains
+    if options.runtime_geometry:
+        shown["geometry"] = "at run time"
+    if options.sincos:
+        shown["inputs"] = "sines and cosines"
+    if options.jacobian_link is not None:
+        shown["jacobian"] = options.jacobian_link
+    if options.identified:
+        values = json.dumps(dict(options.identified), sort_keys=True)
+        shown["identified"] = hashlib.sha256(values.encode()).hexdigest()[:16]
+    return shown
+
+
+def _manifest(name: str, provenance: Provenance, files: Mapping[str, str]) -> str:
+    """Where the folder comes from and what it must hold. No date and no path: two machines agree on it."""
+    content = {
+        "arm": name,
+        "tool": provenance.tool,
+        "description_sha256": provenance.description,
+        "options": provenance.options,
+        "files": {path: hashlib.sha256(files[path].encode()).hexdigest() for path in sorted(files)},
+    }
+    return json.dumps(content, indent=2) + "\n"

@@ -1,0 +1,88 @@
+"""From arms to folders of generated code, or to the list of what has drifted from them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from modelgen.description.objects import Arm
+from modelgen.errors import InputError
+from modelgen.functions import Options
+from modelgen.generation.arm import GeneratedArm
+from modelgen.generation.folders import check_output, differences, write_folder
+from modelgen.generation.pool import generate_arms
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A file that differs from what would be generated: "missing", "changed" or "extra"."""
+
+    path: Path
+    kind: str
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was generated; `drift` is filled by a check alone."""
+
+    arms: tuple[GeneratedArm, ...]
+    drift: tuple[Drift, ...] = ()
+
+
+def generate(
+    arms: Sequence[Arm],
+    out: Path,
+    options: Options,
+    *,
+    check: bool = False,
+    processes: int | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Report:
+    """Write the folder `out/<arm>` of every arm, or with `check` compare it and write nothing.
+
+    Nothing is written before every arm has been generated, and each folder is replaced whole.
+    `processes` is one per processor by default. Raises InputError for an arm that has no model, for
+    arms whose names collide in C or on the disk, and where `out` cannot be written.
+    """
+    _refuse_same_folder(arms)
+    if not check:
+        check_output(out, [arm.name for arm in arms])
+    generated = generate_arms(arms, options, processes or os.cpu_count() or 1, progress)
+    refuse_collisions(arms, generated)
+    if check:
+        drift = [
+            Drift(out / arm.name / name, kind)
+            for arm in generated
+            for name, kind in differences(out / arm.name, arm.files)
+        ]
+        return Report(tuple(generated), tuple(drift))
+    for arm in generated:
+        write_folder(out / arm.name, arm.files)
+    return Report(tuple(generated))
+
+
+def refuse_collisions(arms: Sequence[Arm], generated: Sequence[GeneratedArm]) -> None:
+    """Raise InputError where two arms take the same name in C, in whatever case."""
+    taken: dict[str, str] = {}
+    for arm, result in zip(arms, generated, strict=True):
+        for symbol in sorted(result.symbols):
+            other = taken.setdefault(symbol, result.name)
+            if other != result.name:
+                raise InputError(
+                    f"the arms '{other}' and '{result.name}' would both define '{symbol}' in C; rename one",
+                    arm.where,
+                )
+
+
+def _refuse_same_folder(arms: Sequence[Arm]) -> None:
+    seen: dict[str, str] = {}
+    for arm in arms:
+        other = seen.setdefault(arm.name.lower(), arm.name)
+        if other != arm.name:
+            raise InputError(
+                f"the arms '{other}' and '{arm.name}' would share a folder and C names: they differ in case "
+                "alone; rename one",
+                arm.where,
+            )

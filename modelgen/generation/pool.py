@@ -1,0 +1,61 @@
+"""Generating several arms at once, each in a process."""
+
+from __future__ import annotations
+
+import copyreg
+import multiprocessing
+import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from types import MappingProxyType
+from typing import Any
+
+from modelgen.description.objects import Arm
+from modelgen.functions import Options
+from modelgen.generation.arm import GeneratedArm, generate_arm
+
+
+def generate_arms(
+    arms: Sequence[Arm], options: Options, processes: int, done: Callable[[str], None]
+) -> list[GeneratedArm]:
+    """Every arm's files, in the order of the arms; `done` is told the name of each that is ready.
+
+    Raises InputError of the first arm, in that order, that has one.
+    """
+    workers = min(processes, len(arms))
+    results = []
+    if workers <= 1:
+        for arm in arms:
+            results.append(generate_arm(arm, options))
+            done(arm.name)
+        return results
+    # A frozen mapping is pickled by its content.
+    copyreg.pickle(MappingProxyType, _by_content)
+    # Forked from a clean server where that exists: a fork of this process would inherit its threads' locks.
+    methods = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+    if hasattr(context, "set_forkserver_preload"):
+        context.set_forkserver_preload([__name__])
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt) as pool:
+        futures = [pool.submit(generate_arm, arm, options) for arm in arms]
+        try:
+            for arm, future in zip(arms, futures, strict=True):
+                results.append(future.result())
+                done(arm.name)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results
+
+
+def _by_content(mapping: MappingProxyType[Any, Any]) -> tuple[Callable[..., Any], tuple[Any]]:
+    return _frozen, (dict(mapping),)
+
+
+def _frozen(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(content)
+
+
+def _ignore_interrupt() -> None:
+    """Ctrl-C reaches the whole group; the parent process answers for all."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,99 @@
+"""The shipped arms, their models, and inputs for their functions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from math import pi
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from modelgen.description import LeveredDrive, Scalar, load
+from modelgen.effects import known_effects
+from modelgen.functions import Function, Model, Options, build_model
+from modelgen.resources import shipped_arms
+
+ARMS = load(shipped_arms(), known_effects())
+# One worker deals with an arm, so that its model is built once.
+EVERY_ARM = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in ARMS]
+
+
+VARIANTS = {
+    "default": Options(),
+    "row_wise": Options(gains="row_wise"),
+    "runtime_geometry": Options(runtime_geometry=True),
+    "sincos": Options(sincos=True),
+    "links": Options(without=frozenset({"drives", "effects"})),
+}
+
+
+@cache
+def model(name: str, variant: str = "default") -> Model:
+    return build_model(ARMS[name], VARIANTS[variant])
+
+
+def standard_vector(made: Model, rng: np.random.Generator) -> np.ndarray:
+    """Standard parameters of bodies that could exist, with positive frictions and drive inertias."""
+    values: dict[str, float] = {}
+    for i, joint in enumerate(made.arm.joints):
+        mass, com = rng.uniform(1, 5), rng.uniform(-0.2, 0.2, 3)
+        spread = rng.uniform(-0.3, 0.3, (8, 3))
+        cloud = mass * (np.cov(spread.T) + np.outer(com, com))
+        tensor = np.trace(cloud) * np.eye(3) - cloud
+        symbols = ("XX", "XY", "XZ", "YY", "YZ", "ZZ")
+        values |= {f"{s}{i + 1}": v for s, v in zip(symbols, tensor[np.triu_indices(3)], strict=True)}
+        values |= {f"M{a}{i + 1}": mass * c for a, c in zip("XYZ", com, strict=True)}
+        values[f"M{i + 1}"] = mass
+        # A motor coordinate in increments or in radians before the gear.
+        scale = 1e-8 if isinstance(joint.drive, LeveredDrive) else 1e-4
+        values[f"IA{i + 1}"] = rng.uniform(1, 2) * scale
+    return np.array([values.get(p.name, rng.uniform(0.01, 0.02)) for p in made.standard])
+
+
+def number(factor: Scalar, values: Mapping[str, float]) -> float:
+    """The value of a number or of an expression in named symbols."""
+    if isinstance(factor, sp.Expr):
+        factor = factor.subs({symbol: values[symbol.name] for symbol in factor.free_symbols})
+    return float(factor)
+
+
+def base_vector(made: Model, standard: np.ndarray) -> np.ndarray:
+    """Base parameters by the factors of their grouping."""
+    return np.array(
+        [
+            sum(standard[i] * number(factor, made.arm.symbols) for i, factor in parameter.terms)
+            for parameter in made.grouping.base
+        ]
+    )
+
+
+def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np.ndarray]:
+    """One sample of every input, inside its range."""
+    standard = standard_vector(made, rng)
+    result = []
+    q = rng.uniform(-pi, pi, len(made.arm.coordinates))
+    for r in function.ranges:
+        if r.argument == "q":
+            q[r.index] = r.low + (r.high - r.low) * rng.uniform(0.02, 0.98)
+    for a in function.arguments:
+        value = rng.uniform(-1, 1, a.size)
+        if a.name == "q":
+            value = q
+        elif a.name == "sin_q":
+            value = np.sin(q)
+        elif a.name == "cos_q":
+            value = np.cos(q)
+        elif a.name == "geometry":
+            value = np.array([made.arm.symbols[name] for name in made.geometry])
+        elif a.name == "parameters":
+            value = standard if function.name.endswith("_standard") else base_vector(made, standard)
+        elif a.name == "q_m":
+            for r in function.ranges:
+                value[r.index] = r.low + (r.high - r.low) * rng.uniform(0.02, 0.98)
+        result.append(value)
+    return result
+
+
+__all__ = ["ARMS", "EVERY_ARM", "VARIANTS", "base_vector", "inputs", "model", "number", "standard_vector"]
