@@ -15,7 +15,7 @@ class Statements(Dialect, Protocol):
     """A dialect that can also assign."""
 
     def load(self, element: Element, source: str) -> str:
-        """Give an element of an input its name."""
+        """Give an element of an input its name; nothing where the name is known by then."""
 
     def let(self, number: int, text: str) -> str:
         """Define an intermediate value."""
@@ -32,10 +32,7 @@ def body(
     named: Mapping[str, Sequence[Element | None]],
     dialect: Statements,
 ) -> Iterator[str]:
-    """The statements in print. An element with a name is loaded right before its first use.
-
-    Late loading keeps few values alive, and a loaded value survives the stores that follow it.
-    """
+    """The statements in print. An element with a name gets it right before its first use."""
     loaded: set[tuple[str, int]] = set()
     for statement in function.program.statements:
         for vector, index in _inputs(statement.term):
@@ -43,7 +40,9 @@ def body(
             element = elements[index] if elements else None
             if element is not None and (vector, index) not in loaded:
                 loaded.add((vector, index))
-                yield dialect.load(element, f"{vector}[{index}]")
+                load = dialect.load(element, f"{vector}[{index}]")
+                if load:
+                    yield load
         text = expression(statement.term, dialect)
         if isinstance(statement.target, int):
             yield dialect.let(statement.target, text)

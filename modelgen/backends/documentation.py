@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from modelgen.backends.elements import base_parameters, coordinates, elements
-from modelgen.backends.text import operations, plain, table, wrapped
+from modelgen.backends.text import UNBROKEN, operations, plain, table, wrapped
 from modelgen.functions.objects import Argument, Function, Model, Output
 
 
@@ -46,6 +46,9 @@ def model_sections(model: Model) -> list[Section]:
     """The coordinates and parameters of an arm."""
     sections = [Section("Coordinates", _numbered(coordinates(model)))]
     sections.append(Section("Base parameters", _numbered(base_parameters(model))))
+    symbols = [(name, f"{value!r}") for name, value in model.arm.symbols.items()]
+    title = "Symbols of the geometry, values of the description"
+    sections.append(Section(title, tuple(table(symbols))))
     return [section for section in sections if section.lines]
 
 
@@ -60,7 +63,7 @@ def function_sections(model: Model, function: Function) -> list[Section]:
         standard = function.name.endswith("_standard")
         of = "standard" if standard else "base"
         names = [p.name for p in (model.standard if standard else model.grouping.base)]
-        listed = ", ".join(f"{i} {name}" for i, name in enumerate(names))
+        listed = ", ".join(f"{i}{UNBROKEN}{name}" for i, name in enumerate(names))
         sections.append(
             Section(f"Columns of the matrix: {of} parameters", tuple(wrapped(listed, width=100).split("\n")))
         )

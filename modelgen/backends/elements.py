@@ -47,7 +47,9 @@ def elements(model: Model, function: Function, argument: Argument) -> tuple[Elem
     if argument.name == "parameters":
         found = standard_parameters(model) if function.name.endswith("_standard") else base_parameters(model)
     elif argument.name == "geometry":
-        found = tuple(Element(name, "", "") for name in model.geometry)
+        found = tuple(
+            Element(name, "", f"{model.arm.symbols[name]!r} in the description") for name in model.geometry
+        )
     elif argument.name == "state":
         found = tuple(Element(name, "", "") for name in model.states)
     else:
@@ -63,13 +65,15 @@ def elements(model: Model, function: Function, argument: Argument) -> tuple[Elem
 def local_names(model: Model, function: Function) -> dict[str, tuple[Element | None, ...]]:
     """By argument, the elements that the code reads under a name of their own, None for the others."""
     taken = {output.name for output in function.outputs}
-    return {
-        argument.name: tuple(
-            element if _NAME.fullmatch(element.name) and element.name not in taken else None
-            for element in elements(model, function, argument)
-        )
-        for argument in function.arguments
-    }
+    result = {}
+    for argument in function.arguments:
+        named: list[Element | None] = []
+        for element in elements(model, function, argument):
+            free = element.name not in taken and _NAME.fullmatch(element.name) is not None
+            taken.add(element.name)
+            named.append(element if free else None)
+        result[argument.name] = tuple(named)
+    return result
 
 
 def _drive(joint: Joint) -> str:

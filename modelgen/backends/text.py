@@ -12,15 +12,15 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from modelgen.resources import templates_folder
 
 WIDTH = 110
-_UNBROKEN = "\N{NO-BREAK SPACE}"  # stands for a blank at which a line may not end
+UNBROKEN = "\N{NO-BREAK SPACE}"  # stands for a blank at which a line may not end
 # What would end a comment or a docstring, continue a line, or begin a trigraph.
 _ENDS = {"*/": "* /", "/*": "/ *", "\\": "/", '"': "'", "??": "? ?"}
 
 
 def wrapped(text: str, indent: str = "", continuation: str | None = None, width: int = WIDTH) -> str:
-    """The text on lines of at most `width` where its blanks allow it."""
+    """The text on lines of at most `width` where its blanks allow it; UNBROKEN is one that does not."""
     if len(indent) + len(text) <= width:
-        return indent + text
+        return indent + text.replace(UNBROKEN, " ")
     return "\n".join(
         textwrap.wrap(
             text,
@@ -30,7 +30,7 @@ def wrapped(text: str, indent: str = "", continuation: str | None = None, width:
             break_long_words=False,
             break_on_hyphens=False,
         )
-    )
+    ).replace(UNBROKEN, " ")
 
 
 def wrapped_code(text: str, indent: str, continuation: str) -> str:
@@ -38,10 +38,10 @@ def wrapped_code(text: str, indent: str, continuation: str) -> str:
     if len(indent) + len(text) <= WIDTH:
         return indent + text
     for sign in "*/=":
-        text = text.replace(f" {sign} ", f"{_UNBROKEN}{sign}{_UNBROKEN}")
+        text = text.replace(f" {sign} ", f"{UNBROKEN}{sign}{UNBROKEN}")
     for sign in "+-":
-        text = text.replace(f" {sign} ", f" {sign}{_UNBROKEN}")
-    return wrapped(text, indent, continuation).replace(_UNBROKEN, " ")
+        text = text.replace(f" {sign} ", f" {sign}{UNBROKEN}")
+    return wrapped(text, indent, continuation)
 
 
 def table(rows: Iterable[Sequence[str]], width: int = WIDTH - 3) -> list[str]:

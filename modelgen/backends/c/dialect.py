@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
 from modelgen.backends.elements import Element
-from modelgen.backends.text import wrapped_code
+from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
 from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
@@ -70,10 +70,10 @@ class CDialect:
         return literal(self.arm, value)
 
     def element(self, vector: str, index: int) -> str:
-        """The element's own name where it has one."""
+        """The element by its own name where it has one."""
         elements = self.named.get(vector)
         element = elements[index] if elements else None
-        return element.name if element else f"{vector}[{index}]"
+        return f"{vector}[{element.name if element else index}]"
 
     def temporary(self, number: int) -> str:
         """t0, t1, ..."""
@@ -87,8 +87,24 @@ class CDialect:
         return f"{self.macro}_{function.upper()}({listed})"
 
     def load(self, element: Element, source: str) -> str:
-        """A parameter with its unit."""
-        return f"{INDENT}{self.real} {element.name} = {source}; /* {element.unit} */"
+        """Nothing: the names are enumerators of the function's block, see `indices`."""
+        return ""
+
+    def indices(self) -> list[str]:
+        """Declarations of the names by which elements of the inputs are read.
+
+        An index costs nothing, whereas a copy of the element would occupy a register.
+        """
+        lines = []
+        for elements in self.named.values():
+            names = []
+            for i, element in enumerate(elements):
+                if element is not None:
+                    counted = i > 0 and elements[i - 1] is not None
+                    names.append(element.name if counted else f"{element.name}{UNBROKEN}={UNBROKEN}{i}")
+            if names:
+                lines.append(wrapped(f"enum {{ {', '.join(names)} }};", INDENT, INDENT * 2))
+        return lines
 
     def let(self, number: int, text: str) -> str:
         """An intermediate value is defined once and never changes."""

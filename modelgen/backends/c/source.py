@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from modelgen.backends.body import body, unset
 from modelgen.backends.c.dialect import INDENT, STATUS, CDialect, arrays, literal
 from modelgen.backends.elements import Element
-from modelgen.backends.text import wrapped
+from modelgen.backends.text import UNBROKEN, wrapped
 from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, Function
 
 # Sum of squares of the outputs where these are checked: far below the largest number of single precision.
@@ -20,7 +20,7 @@ def statements(arm: str, function: Function, named: Mapping[str, Sequence[Elemen
     """The body of the function, line by line. Raises ValueError as `literal` does."""
     dialect = CDialect(arm, function, named)
     macro = arm.upper()
-    lines = [f"{INDENT}int status = {macro}_STATUS_OK;", ""]
+    lines = [*dialect.indices(), f"{INDENT}int status = {macro}_STATUS_OK;", ""]
     lines += _checks(arm, function)
     lines += [dialect.leave(f"status != {macro}_STATUS_OK", "status"), ""]
     lines += body(function, named, dialect)
@@ -59,14 +59,14 @@ def _checks(arm: str, function: Function) -> list[str]:
 
 def _zeros(arm: str, function: Function, dialect: CDialect) -> list[str]:
     """Elements that are zero whatever the inputs: one statement for each row of a matrix."""
-    lines = []
     missing = unset(function)
+    lines = [f"{INDENT}/* always zero */"] if any(missing.values()) else []
     for output in function.outputs:
         array, offset = dialect.places[output.name]
         for row in range(output.rows):
             columns = [i for i in missing[output.name] if i // output.columns == row]
             if columns:
-                chain = "".join(f"{array}[{offset + i}] = " for i in columns)
+                chain = "".join(f"{array}[{offset + i}]{UNBROKEN}= " for i in columns)
                 lines.append(wrapped(f"{chain}{literal(arm, 0.0)};", INDENT, INDENT * 2))
     return lines
 
