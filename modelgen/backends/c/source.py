@@ -73,7 +73,7 @@ def _zeros(arm: str, function: Function, dialect: CDialect) -> list[str]:
 
 def _checked_output(function: Function) -> int:
     """The status to report where an output is not finite, 0 where that cannot happen."""
-    if any(isinstance(s.target, tuple) and s.target[0] == "guard" for s in function.program.statements):
+    if any(s.target == ("guard", STATUS_PIVOT) for s in function.program.statements):
         return STATUS_PIVOT
     calls = {s.term[1] for s in function.program.statements if s.term[0] == "call"}
     return STATUS_INPUT if calls & _UNBOUNDED else 0
