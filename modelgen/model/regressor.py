@@ -40,14 +40,23 @@ class Plan:
 
 
 class Regressor:
-    """Columns of the regressor, link by link, under any plan; all in one graph."""
+    """Columns of the regressor, link by link, under any plan; all in one graph.
 
-    def __init__(self, frames: Frames, motions: Sequence[LinkMotion], base: LinkMotion) -> None:
+    `scales` multiply the rows.
+    """
+
+    def __init__(
+        self,
+        frames: Frames,
+        motions: Sequence[LinkMotion],
+        base: LinkMotion,
+        scales: Sequence[Expr] | None = None,
+    ) -> None:
         self.frames = frames
         self.motions = motions
         self.base = base
         self.graph = frames.graph
-        self.velocities = PartialVelocities(frames)
+        self.velocities = PartialVelocities(frames, scales)
         self._direct: dict[tuple[int, bool, int], list[Column]] = {}
         self.children: list[list[int]] = [[] for _ in frames.frames]
         for frame in frames.frames:
@@ -192,7 +201,7 @@ class Regressor:
     def _velocities(self, i: int, slid: bool, back: int) -> dict[int, Vector]:
         """Of the link's point per unit speed, in the axes of the frame `back` before it."""
         frame = self.frames[i]
-        own, graph = frame.coordinate, self.graph
+        own = frame.coordinate
         point = frame.foot if slid else frame.origin
         if back == 0 and not slid:
             return {n: v for n, (_, v) in self.velocities.of_link[i].items()}
@@ -201,13 +210,11 @@ class Regressor:
         for _ in range(back - 1):
             current = self.frames[current].antecedent or 0
             before = self.velocities.carried(current, self.frames[current].origin)
-            zero: Vector = (graph.zero, graph.zero, graph.zero)
-            # a joint on the way turns about an axis through the point: its velocity there is zero,
-            # but for a sliding one
-            slides = {n: v for n, v in carried.items() if n not in before}
+            # a joint on the way turns about an axis through the point, where its velocity is zero,
+            # or slides, and then its velocity is turned like the forces
+            passed = {n: v for n, v in carried.items() if n not in before}
             carried = {n: v for n, (_, v) in before.items()}
-            for n in slides:
-                carried[n] = zero
+            carried |= {n: self.frames[current].to_antecedent(v) for n, v in passed.items()}
         if back == 0:
             carried = {n: frame.to_link(v) for n, v in carried.items()}
         if own is not None:
