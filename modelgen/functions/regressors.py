@@ -23,7 +23,7 @@ def input_columns(e: Equations, rates: Rates, needed: Sequence[int]) -> Columns:
     columns: Columns = []
     for k in needed:
         if k < links:
-            columns.append({n: x * e.drives[n].inverse_gain for n, x in bodies[k].items()})
+            columns.append(bodies[k])
         else:
             n, x = effects[k - links]
             columns.append({n: x})

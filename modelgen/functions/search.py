@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from modelgen.graph import Expr
-from modelgen.graph.live import Live
+from modelgen.graph.live import Live, cost
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
 from modelgen.model.regressor import Column, Plan, Regressor
@@ -67,13 +67,65 @@ class PlanSearch:
 
 
 def link_columns(equations: Equations, rates: Rates, needed: Sequence[int]) -> dict[int, Column]:
-    """Columns of the link parameters `needed` (standard indices), efforts by coordinate, cheaply."""
+    """Columns of the link parameters `needed` (standard indices), rows in the unit of the input, cheaply.
+
+    1/K multiplies a row's screw or, where joints on parallel axes share theirs, what is left of it the
+    finished entries; both ways are tried.
+    """
     frames = equations.frames_factored
-    regressor = Regressor(frames, link_motions(frames, rates), base_motion(frames))
+    motions, base = link_motions(frames, rates), base_motion(frames)
     pairs = [divmod(index, equations.per_link) for index in needed]
     links = {link for link, _ in pairs}
-    near = [Plan()] * len(frames.frames)
-    far = [Plan(*regressor.plans(i)[-1]) if i in links else Plan() for i in range(len(near))]
-    searches = [PlanSearch(regressor, pairs, plans) for plans in (near, far)]
-    best = min(searches, key=PlanSearch.run)
-    return {index: best.table[link][k] for index, (link, k) in zip(needed, pairs, strict=True)}
+    candidates = []
+    for scales, rest in (_scaled_first(equations), _scaled_last(equations)):
+        regressor = Regressor(frames, motions, base, scales)
+        near = [Plan()] * len(frames.frames)
+        far = [Plan(*regressor.plans(i)[-1]) if i in links else Plan() for i in range(len(near))]
+        searches = [PlanSearch(regressor, pairs, plans) for plans in (near, far)]
+        best = min(searches, key=PlanSearch.run)
+        candidates.append(
+            {
+                index: {n: e * rest[n] for n, e in best.table[link][k].items()}
+                for index, (link, k) in zip(needed, pairs, strict=True)
+            }
+        )
+        if all(scale.value == 1.0 for scale in scales):
+            break
+
+    def operations(columns: dict[int, Column]) -> int:
+        return cost(equations.graph, (e for column in columns.values() for e in column.values()))
+
+    return min(candidates, key=operations)
+
+
+Scales = tuple[list[Expr], list[Expr]]  # of the screws, of the finished entries
+
+
+def _scaled_first(e: Equations) -> Scales:
+    """1/K at the screws; joints on parallel axes take the first one's."""
+    first = list(range(e.n))
+    number = {index: n for n, index in enumerate(e.arm.coordinates)}
+    for n, index in enumerate(e.arm.coordinates):
+        joint = e.arm.joints[index]
+        before = joint.antecedent
+        if before is None or before not in number:
+            continue
+        turning = joint.type == e.arm.joints[before].type == "revolute"
+        if turning and joint.alpha == 0 and joint.gamma == 0:
+            first[n] = first[number[before]]
+    scales = [e.drives[k].inverse_gain for k in first]
+    rest = [_ratio(e, n, k) for n, k in enumerate(first)]
+    return scales, rest
+
+
+def _ratio(e: Equations, n: int, k: int) -> Expr:
+    """K_k / K_n."""
+    if n == k:
+        return e.graph.one
+    drive = e.drives[k]
+    return e.drives[n].inverse_gain * (drive.k1 * drive.transmission.torque_constant)
+
+
+def _scaled_last(e: Equations) -> Scales:
+    """1/K at the finished entries."""
+    return [e.graph.one] * e.n, [drive.inverse_gain for drive in e.drives]

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from modelgen.geometry import Frames
+from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 
 Screw = tuple[Vector, Vector]  # angular velocity, velocity of a point
 
 
 class PartialVelocities:
-    """Screws of every link, by coordinate; only the coordinates that move the link are listed."""
+    """Screws of every link, by coordinate; only the coordinates that move the link are listed.
 
-    def __init__(self, frames: Frames) -> None:
+    `scales` multiply the joints' speeds: a row of the regressor in another unit costs least so.
+    """
+
+    def __init__(self, frames: Frames, scales: Sequence[Expr] | None = None) -> None:
         self.frames = frames
+        self.scales = scales
         graph = frames.graph
         self._zero: Vector = (graph.zero, graph.zero, graph.zero)
-        self._z: Vector = (graph.zero, graph.zero, graph.one)
         self.of_link: list[dict[int, Screw]] = [{} for _ in frames.frames]
         for i in frames.order:
             frame = frames[i]
@@ -26,7 +32,12 @@ class PartialVelocities:
 
     def own(self, i: int) -> Screw:
         """The screw of the link's own joint at any point of its axis, in the link's frame."""
-        return (self._zero, self._z) if self.frames[i].prismatic else (self._z, self._zero)
+        frame = self.frames[i]
+        unit = self.frames.graph.one
+        if self.scales is not None and frame.coordinate is not None:
+            unit = self.scales[frame.coordinate]
+        along: Vector = (self._zero[0], self._zero[0], unit)
+        return (self._zero, along) if frame.prismatic else (along, self._zero)
 
     def carried(self, i: int, point: Vector) -> dict[int, Screw]:
         """Screws of the joints before link i at `point`, in the axes of the antecedent's frame."""
