@@ -130,7 +130,7 @@ class Regressor:
         for n in self.velocities.of_link[i]:
             total = graph.zero
             if frame.antecedent is not None and n in self.velocities.of_link[frame.antecedent]:
-                for factor, row in zip(carried, table[frame.antecedent], strict=True):
+                for factor, row in zip(carried, table[frame.antecedent][:10], strict=True):
                     total = total + factor * row[n]
             for m, x in enumerate(direction):
                 if x and m != k:
