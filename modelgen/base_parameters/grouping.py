@@ -25,20 +25,21 @@ from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
 from modelgen.model.regressor import Plan, Regressor
 
-Columns = list[dict[int, Expr]]  # standard index -> {coordinate: input per unit}
+Columns = list[dict[int, Expr]]  # standard index -> {coordinate: effort per unit}
 
 
 def standard_columns(equations: Equations) -> Columns:
-    """Columns of the standard regressor, rows in the unit of the input, without a search for plans."""
+    """Columns of the standard regressor, rows as efforts at the joints, without a search for plans.
+
+    Unlike inputs, efforts do not depend on the units of the motor coordinates.
+    """
     rates = Rates(equations.vector("dq"), equations.vector("ddq"))
     frames = equations.frames
     regressor = Regressor(frames, link_motions(frames, rates), base_motion(frames))
     table = regressor.columns([Plan()] * len(equations.arm.joints))
-    columns: Columns = []
-    for link in table:
-        for column in link:
-            columns.append({n: e * equations.drives[n].inverse_gain for n, e in column.items()})
-    columns += [{n: e} for n, e in equations.effect_columns(rates)]
+    gains = [drive.k1 * drive.transmission.torque_constant for drive in equations.drives]
+    columns: Columns = [column for link in table for column in link]
+    columns += [{n: e * gains[n]} for n, e in equations.effect_columns(rates)]
     return columns
 
 
@@ -68,7 +69,8 @@ def _settled(arm: Arm, candidates: Sequence[int], row: int | None) -> list[Combi
         chosen = [columns[k] for k in candidates]
         if row is not None:
             chosen = [{n: e for n, e in column.items() if n == row} for column in chosen]
-        result = rank(regressor_values(chosen, equations))
+        links = sum(k < equations.per_link * len(arm.joints) for k in candidates)
+        result = rank(regressor_values(chosen, equations), links)
         pairs = {
             (candidates[k], candidates[m]): f for k, of in result.dependent.items() for m, f in of.items()
         }

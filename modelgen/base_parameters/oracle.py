@@ -39,7 +39,7 @@ def random_states(equations: Equations, samples: int, seed: int = SEED) -> dict[
     inside = low + (high - low) * (0.02 + 0.96 * generator.random((samples, n)))
     states = {
         "q": inside,
-        "dq": generator.uniform(-2.0, 2.0, (samples, n)),
+        "dq": _speeds(generator, samples, n),
         "ddq": generator.uniform(-5.0, 5.0, (samples, n)),
         "state": generator.uniform(-1.0, 1.0, (samples, max(1, len(equations.state_names())))),
         "sin_q": np.sin(inside),
@@ -50,13 +50,25 @@ def random_states(equations: Equations, samples: int, seed: int = SEED) -> dict[
     return states
 
 
+def _speeds(generator: np.random.Generator, samples: int, n: int) -> Array:
+    """Up to 2 rad/s or m/s, every other sample slower, joint by joint over five decades.
+
+    What shows only near rest (the Stribeck effect of a slow joint) must be met in some sample.
+    """
+    speeds = generator.uniform(-2.0, 2.0, (samples, n))
+    slower = np.geomspace(1.0, 1e-5, samples // 2)
+    speeds[: 2 * len(slower) : 2] *= np.column_stack([generator.permutation(slower) for _ in range(n)])
+    return speeds
+
+
 def regressor_values(columns: Sequence[dict[int, Expr]], equations: Equations, seed: int = SEED) -> Array:
     """The columns at random states, rows stacked: (samples n) x len(columns).
 
     columns: {coordinate: expression}; a missing coordinate is zero.
     """
     n = equations.n
-    samples = max(6 * n, 2 * len(columns) // n + 6)
+    rows = {row for column in columns for row in column}
+    samples = max(6 * n, 2 * len(columns) // max(1, len(rows)) + 6)
     flat = [e for column in columns for e in column.values()]
     values = evaluate(flat, random_states(equations, samples, seed), samples)
     matrix = np.zeros((samples, n, len(columns)))
@@ -68,18 +80,21 @@ def regressor_values(columns: Sequence[dict[int, Expr]], equations: Equations, s
     return matrix.reshape(samples * n, len(columns))
 
 
-def rank(matrix: Array) -> Rank:
+def rank(matrix: Array, links: int) -> Rank:
     """Keep each column that the ones kept before it do not span; express the others in those kept.
 
-    Columns are scaled to unit length; orthogonalisation is done twice, which keeps it accurate.
+    Columns are scaled to unit length; orthogonalisation is done twice, which keeps it accurate. The
+    first `links` columns are those of links: one is zero where it is so beside the largest of them.
+    Those of effects come in the units of the motor coordinates, whatever these are.
     """
     norms = np.linalg.norm(matrix, axis=0)
-    biggest = norms.max(initial=0.0)
+    nothing = np.zeros(matrix.shape[1])
+    nothing[:links] = 1e-13 * norms[:links].max(initial=0.0)
     basis = np.zeros((matrix.shape[0], 0))
     kept: list[int] = []
     rest: list[int] = []
     for k in range(matrix.shape[1]):
-        if norms[k] <= 1e-13 * biggest:
+        if norms[k] <= nothing[k]:
             rest.append(k)
             continue
         column = matrix[:, k] / norms[k]
@@ -95,7 +110,7 @@ def rank(matrix: Array) -> Rank:
     chosen = matrix[:, kept] / norms[kept]
     for k in rest:
         factors: dict[int, float] = {}
-        if norms[k] > 1e-13 * biggest:
+        if norms[k] > nothing[k]:
             solution = np.linalg.lstsq(chosen, matrix[:, k] / norms[k], rcond=None)[0]
             for place, weight in zip(kept, solution, strict=True):
                 if abs(weight) > 1e-8:
