@@ -50,9 +50,15 @@ def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[lis
     inputs = ["q", "dq", "ddq"]
     by_column = sorted(range(len(places)), key=lambda i: places[i][::-1])
     functions = [
-        _matrix(a, "regressor", "Inputs per unit of each base parameter.", inputs, columns, unit),
+        _matrix(a, base, "regressor", "Inputs per unit of each base parameter.", inputs, columns, unit),
         _matrix(
-            a, "regressor_standard", "Inputs per unit of each standard parameter.", inputs, standard, unit
+            a,
+            real,
+            "regressor_standard",
+            "Inputs per unit of each standard parameter.",
+            inputs,
+            standard,
+            unit,
         ),
         a.function(
             "regressor_packed",
@@ -63,6 +69,7 @@ def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[lis
         ),
         _matrix(
             a,
+            base,
             "slotine_li_regressor",
             "Regressor of M ddq_r + C dq_r + g + friction, with dM/dt - 2 C skew-symmetric.",
             ["q", "dq", "dq_r", "ddq_r"],
@@ -90,11 +97,11 @@ def _by_rows(e: Equations, rates: Rates, rows: Sequence[Sequence[int]]) -> Colum
 
 
 def _matrix(
-    a: Assembly, name: str, text: str, inputs: Sequence[str], columns: Columns, unit: str
+    a: Assembly, e: Equations, name: str, text: str, inputs: Sequence[str], columns: Columns, unit: str
 ) -> Function:
     """A dense n x len(columns) matrix, computed column after column."""
     count = len(columns)
-    zero = a.base.graph.zero
+    zero = e.graph.zero
     flat = [columns[k].get(n, zero) for n in range(a.n) for k in range(count)]
     order = [("matrix", n * count + k) for k in range(count) for n in range(a.n)]
     output = Output("matrix", a.n, count, unit, text[:-1].lower())
