@@ -10,7 +10,7 @@ from modelgen.base_parameters import Grouping
 from modelgen.functions.arguments import arguments
 from modelgen.functions.objects import STATUS_STROKE, Argument, Function, InputRange, Output
 from modelgen.functions.options import Options
-from modelgen.graph import Expr, count_operations, lower
+from modelgen.graph import Expr, Program, Term, count_operations, lower
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.model.equations import Equations
 from modelgen.transmission import STROKE_MARGIN, Levered
@@ -66,7 +66,7 @@ class Assembly:
         return Function(
             name,
             text,
-            tuple(self._arguments(inputs)),
+            tuple(self._arguments(inputs, program)),
             tuple(output for output, _ in results),
             program,
             count_operations(program),
@@ -74,7 +74,7 @@ class Assembly:
             stacked,
         )
 
-    def _arguments(self, inputs: Sequence[str]) -> list[Argument]:
+    def _arguments(self, inputs: Sequence[str], program: Program) -> list[Argument]:
         names: list[str] = []
         for name in inputs:
             names.append(name)
@@ -82,7 +82,7 @@ class Assembly:
                 names += ["sin_q", "cos_q"]
         if self.options.runtime_geometry and self.real.arm.symbols:
             names.append("geometry")
-        if self.real.state_names() and "state" not in names and "dq" in names:
+        if "state" not in names and any(_reads(s.term, "state") for s in program.statements):
             names.append("state")
         found = []
         for name in names:
@@ -127,6 +127,11 @@ class Assembly:
             {**equations.scalars.symbols, lever.q: equations.graph.input("q", n)},
             lambda angle: equations.trigonometry.lookup(n, lever.q, angle),
         )
+
+
+def _reads(term: Term, name: str) -> bool:
+    """Whether a term uses an element of the input `name`."""
+    return term[:2] == ("in", name) or any(_reads(part, name) for part in term if isinstance(part, tuple))
 
 
 def _range(name: str, index: int, span: tuple[float, float], margin: float) -> InputRange:
