@@ -6,6 +6,7 @@ from typing import Any
 
 import typer
 
+from modelgen.base_parameters import BaseParameter, for_reading
 from modelgen.cli.generating import total
 from modelgen.cli.output import print_json, print_table
 from modelgen.description import Arm
@@ -34,7 +35,7 @@ def data(model: Model) -> dict[str, Any]:
         ],
         "without_effect": [model.standard[i].name for i in model.grouping.without_effect],
         "functions": {f.name: dict(f.operations) for f in model.functions},
-        "notes": list(arm.notes),
+        "notes": [*arm.notes, *model.remarks],
     }
 
 
@@ -44,12 +45,12 @@ def _print(model: Model) -> None:
     typer.echo(f"{arm.name}: {len(names)} joint{'s' if len(names) > 1 else ''} ({', '.join(names)})")
     if arm.source:
         typer.echo(f"source: {' '.join(arm.source.split())}")
-    for note in arm.notes:
+    for note in (*arm.notes, *model.remarks):
         typer.echo(f"note: {note}")
     print_table(
         f"{len(model.standard)} standard parameters, {len(model.grouping.base)} base parameters",
-        {"": "right", "name": "left", "unit": "left", "combination of standard parameters": "left"},
-        [[str(i), p.name, p.unit, p.expression] for i, p in enumerate(model.grouping.base)],
+        {"": "right", "base parameter": "left", "unit": "left"},
+        [[str(i), _equation(p), p.unit] for i, p in enumerate(model.grouping.base)],
     )
     without = [model.standard[i].name for i in model.grouping.without_effect]
     if without:
@@ -63,3 +64,10 @@ def _print(model: Model) -> None:
             for f in model.functions
         ],
     )
+
+
+def _equation(parameter: BaseParameter) -> str:
+    """MX2R = MX2 + d3 (M3 + M4), or the name alone where it stands for itself."""
+    if parameter.expression == parameter.name:
+        return parameter.name
+    return f"{parameter.name} = {for_reading(parameter.expression)}"
