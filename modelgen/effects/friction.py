@@ -61,6 +61,10 @@ class FrictionOffset(Effect):
         """FO."""
         return p["offset"]
 
+    def potential(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+        """FO x: a constant force is conservative, and cannot be told from a spring's preload."""
+        return p["offset"] * x.position
+
 
 class StribeckFriction(Effect):
     """Dry friction that falls from its value near rest to the Coulomb level."""
