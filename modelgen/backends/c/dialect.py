@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
@@ -11,9 +12,14 @@ from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
+_TEMPORARY = re.compile(r"t[0-9]+")
 
 # Normal numbers of IEEE 754 single precision: every constant must be one, or zero.
 _SMALLEST, _LARGEST = 1.1754943508222875e-38, 3.4028234663852886e38
+# Least pivot of a mass matrix [kg m^2, kg]: its reciprocal is bounded, which a proof can use.
+SMALLEST_PIVOT = 1e-9
+# Largest magnitude of an output where these are checked.
+OUTPUT_LIMIT = 1e15
 
 
 def literal(arm: str, value: float) -> str:
@@ -55,10 +61,13 @@ def arrays(function: Function) -> dict[str, int]:
 
 
 class CDialect:
-    """Statements of one function in C99."""
+    """Statements of one function in C99. `checked`: the status to report for an output beyond the limit."""
 
-    def __init__(self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> None:
+    def __init__(
+        self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]], checked: int = 0
+    ) -> None:
         self.arm = arm
+        self.checked = checked
         self.macro = arm.upper()
         self.named = named
         self.places = destinations(function)
@@ -111,13 +120,20 @@ class CDialect:
         return wrapped_code(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
 
     def store(self, output: str, index: int, text: str) -> str:
-        """An element of the array that holds the output."""
+        """An element of the array that holds the output, checked before anything is made of it."""
         array, offset = self.places[output]
-        return wrapped_code(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
+        element = f"{array}[{offset + index}]"
+        line = wrapped_code(f"{element} = {text};", INDENT, INDENT * 2)
+        if not self.checked:
+            return line
+        value = text if _TEMPORARY.fullmatch(text) else element
+        limits = f"{value} >= {self.constant(-OUTPUT_LIMIT)} && {value} <= {self.constant(OUTPUT_LIMIT)}"
+        return f"{line}\n{self.leave(f'!({limits})', f'{self.macro}_STATUS_{STATUS[self.checked]}')}"
 
     def guard(self, status: int, text: str) -> str:
         """Zeros and a status; the comparison is false for what is not a number."""
-        return self.leave(f"!({text} > {self.constant(0.0)})", f"{self.macro}_STATUS_{STATUS[status]}")
+        least = SMALLEST_PIVOT if status == STATUS_PIVOT else 0.0
+        return self.leave(f"!({text} > {self.constant(least)})", f"{self.macro}_STATUS_{STATUS[status]}")
 
     def leave(self, condition: str, status: str) -> str:
         """Write zeros and return."""
