@@ -146,7 +146,7 @@ def counted(text: str, arm: str) -> dict[str, int]:
         elif token.startswith(f"{arm.upper()}_"):
             word = token[len(arm) + 1 :]
             counts["sqrt"] += word == "SQRT"
-            counts["trig"] += word in TRIGONOMETRY
+            counts["trig"] += 2 if word == "SINCOS" else word in TRIGONOMETRY
             counts["other"] += word in OTHER
         elif token.startswith(f"{arm}_"):
             counts["other"] += token[len(arm) + 1 :] in OTHER

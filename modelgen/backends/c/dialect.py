@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
+from modelgen.backends.c.pairs import Pair
 from modelgen.backends.elements import Element
 from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
 from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
@@ -118,6 +119,15 @@ class CDialect:
     def let(self, number: int, text: str) -> str:
         """An intermediate value is defined once and never changes."""
         return wrapped_code(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
+
+    def pair(self, pair: Pair) -> str:
+        """Sine and cosine of one angle."""
+        sine, cosine = self.temporary(pair.sine), self.temporary(pair.cosine)
+        angle = self.element(*pair.angle[1:])
+        return (
+            f"{INDENT}{self.arm}_real_t {sine}, {cosine};\n"
+            f"{INDENT}{self.macro}_SINCOS({angle}, &{sine}, &{cosine});"
+        )
 
     def store(self, output: str, index: int, text: str) -> str:
         """An element of the array that holds the output, checked before anything is made of it."""

@@ -7,11 +7,12 @@ import re
 from collections.abc import Mapping
 
 from modelgen.backends.c.declarations import FunctionText, function_text, header_values
-from modelgen.backends.c.source import statements
+from modelgen.backends.c.dialect import INDENT
+from modelgen.backends.c.source import statements, unrolled
 from modelgen.backends.documentation import function_sections
 from modelgen.backends.elements import local_names
 from modelgen.backends.provenance import Provenance
-from modelgen.backends.text import render, wrapped
+from modelgen.backends.text import render, wrapped, wrapped_code
 from modelgen.functions.objects import Function, Model
 
 # Stands for the generation's number until every file of it is known.
@@ -37,7 +38,8 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     texts = [function_text(model, function) for function in model.functions]
     files = {
         f"include/{arm}.h": render("c/header.h.j2", **common, **header_values(model, texts)),
-        f"src/{arm}_private.h": render("c/private.h.j2", **common),
+        f"src/{arm}_private.h": render("c/private.h.j2", **common, squares=_squares(model)),
+        f"src/{arm}_sincos.c": render("c/sincos.c.j2", **common),
     }
     for function, text in zip(model.functions, texts, strict=True):
         files[f"src/{arm}_{function.name}.c"] = render(
@@ -59,6 +61,15 @@ def c_symbols(arm: str, files: Mapping[str, str]) -> set[str]:
     }
 
 
+def _squares(model: Model) -> str:
+    """The statement that compares a joint vector's sum of squares, without a loop; none for a long vector."""
+    n = len(model.arm.coordinates)
+    if not unrolled(n):
+        return ""
+    total = " + ".join(f"x[{i}] * x[{i}]" for i in range(n))
+    return wrapped_code(f"return {total} <= limit;", INDENT, INDENT * 2)
+
+
 def _values(model: Model, function: Function, text: FunctionText) -> dict[str, object]:
     tables = []
     if function.name == "regressor_packed":
@@ -68,6 +79,8 @@ def _values(model: Model, function: Function, text: FunctionText) -> dict[str, o
     return {
         "text": text,
         "sections": function_sections(model, function),
-        "statements": statements(model.arm.name, function, local_names(model, function)),
+        "statements": statements(
+            model.arm.name, function, local_names(model, function), len(model.arm.coordinates)
+        ),
         "tables": tables,
     }

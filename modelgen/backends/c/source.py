@@ -3,36 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from modelgen.backends.body import body, unset
 from modelgen.backends.c.dialect import INDENT, STATUS, CDialect, literal
+from modelgen.backends.c.pairs import pairs
 from modelgen.backends.elements import Element
 from modelgen.backends.text import UNBROKEN, wrapped
 from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, Function
 
 # Functions that make large numbers of small ones; what divides is guarded by the model.
 _UNBOUNDED = frozenset({"exp", "pow", "tan", "log"})
+_UNROLLED = 8  # elements up to which a sum without a loop is shorter than the time it saves is worth
 
 
-def statements(arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> list[str]:
-    """The body of the function, line by line. Raises ValueError as `literal` does."""
+def unrolled(joints: int) -> bool:
+    """Whether vectors with an element for each joint are checked without a loop."""
+    return 0 < joints <= _UNROLLED
+
+
+def statements(
+    arm: str, function: Function, named: Mapping[str, Sequence[Element | None]], joints: int
+) -> list[str]:
+    """The body of the function, line by line. `joints`: size of q. Raises ValueError as `literal` does."""
     dialect = CDialect(arm, function, named, _checked_output(function))
     macro = arm.upper()
     lines = [*dialect.indices(), f"{INDENT}int status = {macro}_STATUS_OK;", ""]
-    lines += _checks(arm, function)
+    lines += _checks(arm, function, joints)
     lines += [dialect.leave(f"status != {macro}_STATUS_OK", "status"), ""]
-    lines += body(function, named, dialect)
+    together, rest = pairs(function.program)
+    lines += [dialect.pair(pair) for pair in together]
+    lines += body(replace(function, program=rest), named, dialect)
     lines += _zeros(arm, function, dialect)
     lines.append(f"{INDENT}return {macro}_STATUS_OK;")
     return lines
 
 
-def _checks(arm: str, function: Function) -> list[str]:
+def _checks(arm: str, function: Function, joints: int) -> list[str]:
     """Every test of an input, those that report the same bit in one condition."""
     tests: dict[int, list[str]] = {}
     for a in function.arguments:
         if a.size:
-            outside = f"!{arm}_within({a.name}, {a.size}, {literal(arm, a.bound * a.bound)})"
+            limit = literal(arm, a.bound * a.bound)
+            outside = f"!{arm}_within({a.name}, {a.size}, {limit})"
+            if a.size == joints and unrolled(joints):
+                outside = f"!{arm}_within_joints({a.name}, {limit})"
             tests.setdefault(STATUS_INPUT, []).append(outside)
     for r in function.ranges:
         element = f"{r.argument}[{r.index}]"
