@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from modelgen.functions.arguments import input_units
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.objects import Function, Output, SparsityTable
-from modelgen.functions.search import link_columns
+from modelgen.functions.search import Choice, LinkColumns
 from modelgen.graph import Expr
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates
@@ -15,10 +15,17 @@ from modelgen.model.motion import Rates
 Columns = list[dict[int, Expr]]  # {coordinate: input per unit of the parameter}
 
 
-def input_columns(e: Equations, rates: Rates, needed: Sequence[int]) -> Columns:
-    """Columns of the standard parameters `needed`, rows in the unit of the input."""
+def input_columns(
+    e: Equations, rates: Rates, needed: Sequence[int], choice: Choice | None = None
+) -> tuple[Columns, Choice]:
+    """Columns of the standard parameters `needed`, rows in the unit of the input, and how it was done.
+
+    `choice` repeats how an equal set of columns was computed for another motion.
+    """
     links = e.per_link * len(e.arm.joints)
-    bodies = link_columns(e, rates, [k for k in needed if k < links])
+    link_columns = LinkColumns(e, rates, [k for k in needed if k < links])
+    choice = choice or link_columns.cheapest()
+    bodies = link_columns.columns(choice)
     effects = e.effect_columns(rates)
     columns: Columns = []
     for k in needed:
@@ -27,7 +34,7 @@ def input_columns(e: Equations, rates: Rates, needed: Sequence[int]) -> Columns:
         else:
             n, x = effects[k - links]
             columns.append({n: x})
-    return columns
+    return columns, choice
 
 
 def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[list[Function], SparsityTable]:
@@ -39,10 +46,10 @@ def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[lis
     base, real = a.base, a.real
     motion = Rates(base.vector("dq"), base.vector("ddq"))
     reference = Rates(base.vector("dq"), base.vector("ddq_r"), base.vector("dq_r"))
-    columns = _by_rows(base, motion, rows)
-    adaptive = _by_rows(base, reference, rows)
+    columns, choice = _by_rows(base, motion, rows)
+    adaptive, _ = _by_rows(base, reference, rows, choice)
     real_motion = Rates(real.vector("dq"), real.vector("ddq"))
-    standard = input_columns(real, real_motion, range(len(real.standard)))
+    standard, _ = input_columns(real, real_motion, range(len(real.standard)))
     places = [(n, k) for n in range(a.n) for k, column in enumerate(columns) if _present(column, n)]
     table = SparsityTable(tuple(n for n, _ in places), tuple(k for _, k in places))
     unit = f"{input_units(base)} per unit of the parameter"
@@ -84,16 +91,19 @@ def _present(column: dict[int, Expr], n: int) -> bool:
     return n in column and not column[n].is_zero
 
 
-def _by_rows(e: Equations, rates: Rates, rows: Sequence[Sequence[int]]) -> Columns:
+def _by_rows(
+    e: Equations, rates: Rates, rows: Sequence[Sequence[int]], choice: Choice | None = None
+) -> tuple[Columns, Choice]:
     """Columns of which each row shows those that `rows` gives it."""
     needed = sorted({k for row in rows for k in row if k >= 0})
-    found = dict(zip(needed, input_columns(e, rates, needed), strict=True))
+    values, choice = input_columns(e, rates, needed, choice)
+    found = dict(zip(needed, values, strict=True))
     columns: Columns = [{} for _ in rows[0]]
     for n, row in enumerate(rows):
         for place, k in enumerate(row):
             if k >= 0 and n in found[k]:
                 columns[place][n] = found[k][n]
-    return columns
+    return columns, choice
 
 
 def _matrix(

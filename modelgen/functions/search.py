@@ -7,13 +7,13 @@ arm. The forms share one graph, so that trying one costs no more than the nodes 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from modelgen.graph import Expr
 from modelgen.graph.live import Live, cost
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
-from modelgen.model.regressor import Column, Plan, Regressor
+from modelgen.model.regressor import Column, Plan, Regressor, Table
 
 
 class PlanSearch:
@@ -66,36 +66,59 @@ class PlanSearch:
             self.live.remove(self.roots(table, link))
 
 
-def link_columns(equations: Equations, rates: Rates, needed: Sequence[int]) -> dict[int, Column]:
-    """Columns of the link parameters `needed` (standard indices), rows in the unit of the input, cheaply.
+@dataclass(frozen=True)
+class Choice:
+    """A way to compute the regressor: 1/K at the screws or at the entries, and the links' plans."""
+
+    at_screws: bool
+    plans: Sequence[Plan]
+
+
+class LinkColumns:
+    """Columns of link parameters, rows in the unit of the input.
 
     1/K multiplies a row's screw or, where joints on parallel axes share theirs, what is left of it the
     finished entries; both ways are tried.
     """
-    frames = equations.frames_factored
-    motions, base = link_motions(frames, rates), base_motion(frames)
-    pairs = [divmod(index, equations.per_link) for index in needed]
-    links = {link for link, _ in pairs}
-    candidates = []
-    for scales, rest in (_scaled_first(equations), _scaled_last(equations)):
-        regressor = Regressor(frames, motions, base, scales)
-        near = [Plan()] * len(frames.frames)
+
+    def __init__(self, equations: Equations, rates: Rates, needed: Sequence[int]) -> None:
+        frames = equations.frames_factored
+        self.equations = equations
+        self.needed = needed
+        self.pairs = [divmod(index, equations.per_link) for index in needed]
+        self.motions, self.base = link_motions(frames, rates), base_motion(frames)
+
+    def regressor(self, at_screws: bool) -> tuple[Regressor, list[Expr]]:
+        """Rows scaled at the screws or not at all, and what the finished entries are to be scaled by."""
+        e = self.equations
+        scales, rest = _scaled_first(e) if at_screws else _scaled_last(e)
+        return Regressor(e.frames_factored, self.motions, self.base, scales), rest
+
+    def columns(self, choice: Choice) -> dict[int, Column]:
+        """{standard index: {coordinate: expression}} computed as chosen."""
+        regressor, rest = self.regressor(choice.at_screws)
+        return self._columns(regressor.columns(choice.plans), rest)
+
+    def _columns(self, table: Table, rest: Sequence[Expr]) -> dict[int, Column]:
+        found = zip(self.needed, self.pairs, strict=True)
+        return {k: {n: x * rest[n] for n, x in table[link][place].items()} for k, (link, place) in found}
+
+    def cheapest(self) -> Choice:
+        """The choice that takes the fewest operations of those tried."""
+        driven = any(drive.inverse_gain.value != 1.0 for drive in self.equations.drives)
+        trials = [self._searched(at_screws) for at_screws in ((False, True) if driven else (False,))]
+        return min(trials, key=lambda trial: trial[0])[1]
+
+    def _searched(self, at_screws: bool) -> tuple[int, Choice]:
+        regressor, rest = self.regressor(at_screws)
+        links = {link for link, _ in self.pairs}
+        near = [Plan()] * len(self.motions)
         far = [Plan(*regressor.plans(i)[-1]) if i in links else Plan() for i in range(len(near))]
-        searches = [PlanSearch(regressor, pairs, plans) for plans in (near, far)]
+        searches = [PlanSearch(regressor, self.pairs, plans) for plans in (near, far)]
         best = min(searches, key=PlanSearch.run)
-        candidates.append(
-            {
-                index: {n: e * rest[n] for n, e in best.table[link][k].items()}
-                for index, (link, k) in zip(needed, pairs, strict=True)
-            }
-        )
-        if all(scale.value == 1.0 for scale in scales):
-            break
-
-    def operations(columns: dict[int, Column]) -> int:
-        return cost(equations.graph, (e for column in columns.values() for e in column.values()))
-
-    return min(candidates, key=operations)
+        columns = self._columns(best.table, rest)
+        operations = cost(regressor.graph, (x for column in columns.values() for x in column.values()))
+        return operations, Choice(at_screws, best.plans)
 
 
 Scales = tuple[list[Expr], list[Expr]]  # of the screws, of the finished entries

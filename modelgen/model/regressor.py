@@ -58,6 +58,7 @@ class Regressor:
         self.graph = frames.graph
         self.velocities = PartialVelocities(frames, scales)
         self._direct: dict[tuple[int, bool, int], list[Column]] = {}
+        self._eliminated: dict[tuple[int, int], tuple[list[tuple[int, Expr]], list[int]]] = {}
         self.children: list[list[int]] = [[] for _ in frames.frames]
         for frame in frames.frames:
             if frame.antecedent is not None:
@@ -122,21 +123,28 @@ class Regressor:
 
     def _derived(self, i: int, k: int, own: Sequence[Column], table: Table) -> Column:
         """Column k of link i from the antecedent's columns and the link's other ones."""
-        frame, graph = self.frames[i], self.graph
-        direction = dict(invariant_directions(self.kind(i)))[k]
-        p = [graph.const(x) for x in direction]
-        carried = carried_inertia(self._axes(i), frame.origin, p)
+        before = self.frames[i].antecedent
+        carried, others = self._hidden(i, k)
         column: Column = {}
         for n in self.velocities.of_link[i]:
-            total = graph.zero
-            if frame.antecedent is not None and n in self.velocities.of_link[frame.antecedent]:
-                for factor, row in zip(carried, table[frame.antecedent][:10], strict=True):
-                    total = total + factor * row[n]
-            for m, x in enumerate(direction):
-                if x and m != k:
-                    total = total - own[m][n]
+            total = self.graph.zero
+            if before is not None and n in self.velocities.of_link[before]:
+                for m, factor in carried:
+                    total = total + factor * table[before][m][n]
+            for m in others:
+                total = total - own[m][n]
             column[n] = total
         return column
+
+    def _hidden(self, i: int, k: int) -> tuple[list[tuple[int, Expr]], list[int]]:
+        """What eliminates parameter k: factors on the antecedent's columns, the link's other ones."""
+        if (i, k) not in self._eliminated:
+            direction = dict(invariant_directions(self.kind(i)))[k]
+            p = [self.graph.const(x) for x in direction]
+            carried = carried_inertia(self._axes(i), self.frames[i].origin, p)
+            factors = [(m, factor) for m, factor in enumerate(carried) if not factor.is_zero]
+            self._eliminated[i, k] = factors, [m for m, x in enumerate(direction) if x and m != k]
+        return self._eliminated[i, k]
 
     def _axes(self, i: int) -> list[list[Expr]]:
         """Rotation from frame i to its antecedent's, the joint's own turn left out where it moves."""
