@@ -45,6 +45,30 @@ def function(name: str) -> ca.Function:
     return _BUILDERS[name](name)
 
 
+def export_gravity_arm_model():
+    """The arm as an AcadosModel, in SX: x = [q; dq], u the inputs, p the rest of forward_dynamics' arguments.
+
+    f_impl_expr takes inverse dynamics, the cheaper of the two. A sign of dry friction has no derivative at
+    rest: give it a `smoothing` in the description. acados_template is not on PyPI; it comes with acados.
+    """
+    from acados_template import AcadosModel
+
+    forward, inverse = function("gravity_arm_forward_dynamics"), function("gravity_arm_inverse_dynamics")
+    n = forward.numel_out(0)
+    x, xdot, u = ca.SX.sym("x", 2 * n), ca.SX.sym("xdot", 2 * n), ca.SX.sym("u", n)
+    q, dq, ddq = x[:n], x[n:], xdot[n:]
+    values = {"q": q, "sin_q": ca.sin(q), "cos_q": ca.cos(q), "dq": dq, "ddq": ddq, "input": u}
+    rest = {name: ca.SX.sym(name, forward.size1_in(name)) for name in forward.name_in() if name not in values}
+    values.update(rest)
+    model = AcadosModel()
+    model.name = "gravity_arm"
+    model.x, model.xdot, model.u, model.p = x, xdot, u, ca.vertcat(*rest.values())
+    model.f_expl_expr = ca.vertcat(dq, forward(*(values[name] for name in forward.name_in())))
+    effort = inverse(*(values[name] for name in inverse.name_in()))
+    model.f_impl_expr = ca.vertcat(xdot[:n] - dq, effort - u)
+    return model
+
+
 def _vector(elements: list) -> ca.SX:
     """A dense column."""
     return ca.densify(ca.vertcat(*elements))

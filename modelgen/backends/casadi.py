@@ -32,6 +32,7 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
         remarks=remarks(model),
         provenance=provenance.lines(arm),
         sections=model_sections(model),
+        acados={"forward_dynamics", "inverse_dynamics"} <= {f.name for f in model.functions},
         functions=[_values(model, function) for function in model.functions],
     )
     return {f"{arm}_casadi.py": text}

@@ -66,6 +66,12 @@ OneArm = Annotated[str, typer.Option(metavar="NAME", help="The arm.", show_defau
 OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
 OutFile = Annotated[Path, typer.Option(metavar="FILE", help="File to write; it must not exist.")]
 Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
+Serialised = Annotated[
+    bool, typer.Option("--casadi", help="Also write the CasADi functions serialised: <arm>/casadi/.")
+]
+Plant = Annotated[
+    bool, typer.Option("--casadi-plant", help="Also write the C plant for casadi.external: <arm>/plant/.")
+]
 Jobs = Annotated[
     int | None,
     typer.Option(
@@ -98,6 +104,8 @@ def generate(
     runtime_geometry: RuntimeGeometry = False,
     sincos_inputs: SinCos = False,
     jacobian_link: JacobianLink = None,
+    casadi: Serialised = False,
+    casadi_plant: Plant = False,
     jobs: Jobs = None,
     as_json: Json = False,
 ) -> None:
@@ -107,7 +115,8 @@ def generate(
 
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
     file, found = selected(arms, arm or [])
-    run(found, file, chosen, out, check=check, processes=jobs, as_json=as_json)
+    artefacts = [name for name, asked in (("casadi", casadi), ("plant", casadi_plant)) if asked]
+    run(found, file, chosen, out, check=check, artefacts=artefacts, processes=jobs, as_json=as_json)
 
 
 @app.command()

@@ -24,6 +24,7 @@ def run(
     out: Path,
     *,
     check: bool,
+    artefacts: Sequence[str],
     processes: int | None,
     as_json: bool,
 ) -> None:
@@ -37,6 +38,7 @@ def run(
             out,
             options,
             check=check,
+            artefacts=artefacts,
             processes=processes,
             progress=lambda name: bar.update(task, advance=1, description=name),
         )
@@ -79,7 +81,7 @@ def _table(report: Report) -> None:
             str(arm.joints),
             f"{arm.standard_parameters} → {arm.base_parameters}",
             ", ".join(_costs(arm.operations)),
-            str(len(arm.files)),
+            str(len(arm.files) + len(arm.artefacts)),
         ]
         for arm in report.arms
     ]
@@ -107,5 +109,5 @@ def _arm_data(arm: GeneratedArm) -> dict[str, Any]:
         "standard_parameters": arm.standard_parameters,
         "base_parameters": arm.base_parameters,
         "functions": arm.operations,
-        "files": sorted(arm.files),
+        "files": sorted({**arm.files, **arm.artefacts}),
     }

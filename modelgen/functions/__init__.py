@@ -1,6 +1,7 @@
 """The functions of an arm, ready for any backend."""
 
 from modelgen.functions.build import build_model
+from modelgen.functions.nominal import nominal_base, nominal_standard
 from modelgen.functions.objects import (
     STATUS_INPUT,
     STATUS_PIVOT,
@@ -28,4 +29,6 @@ __all__ = [
     "Output",
     "SparsityTable",
     "build_model",
+    "nominal_base",
+    "nominal_standard",
 ]

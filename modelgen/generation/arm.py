@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 from modelgen import __version__
 from modelgen.backends import Provenance, c_files, casadi_files
@@ -15,7 +15,7 @@ from modelgen.errors import InputError
 from modelgen.functions import Options, build_model
 from modelgen.functions.objects import Model
 from modelgen.generation.canonical import description_hash
-from modelgen.generation.folders import MARK
+from modelgen.generation.folders import ARTEFACTS, MARK
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,8 @@ class GeneratedArm:
     """The files of one arm by path below its folder, and the figures of its model.
 
     `operations` maps the functions' names to their operations by kind; `symbols` are the names, in
-    lower case, that the C code takes.
+    lower case, that the C code takes. `artefacts` are further files that are bound to a release of
+    CasADi: the manifest does not list them.
     """
 
     name: str
@@ -33,11 +34,29 @@ class GeneratedArm:
     base_parameters: int
     operations: Mapping[str, Mapping[str, int]]
     symbols: frozenset[str]
+    artefacts: Mapping[str, str] = field(default_factory=dict)
 
 
-def generate_arm(arm: Arm, options: Options) -> GeneratedArm:
-    """Build the arm's model and print it in every language. Raises InputError."""
-    return print_model(build_model(arm, options), arm, shown_options(options))
+def generate_arm(arm: Arm, options: Options, artefacts: Collection[str] = ()) -> GeneratedArm:
+    """Build the arm's model and print it in every language, with these of ARTEFACTS. Raises InputError."""
+    made = print_model(build_model(arm, options), arm, shown_options(options))
+    if not artefacts:
+        return made
+    # Loads CasADi, which nothing else needs.
+    from modelgen.backends.casadi_artefacts import (  # noqa: PLC0415
+        PLANT,
+        SERIALISED,
+        plant_files,
+        serialised_files,
+    )
+
+    makers = {SERIALISED: serialised_files, PLANT: plant_files}
+    module = made.files[f"{made.name}_casadi.py"]
+    built: dict[str, str] = {}
+    for name in ARTEFACTS:
+        if name in artefacts:
+            built |= makers[name](made.name, module)
+    return replace(made, artefacts=built)
 
 
 def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> GeneratedArm:

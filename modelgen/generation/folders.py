@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from modelgen.errors import InputError
 
 MARK = "manifest.json"  # a folder that holds it was generated, and may be replaced
+ARTEFACTS = ("casadi", "plant")  # folders of files that are bound to a release of CasADi
 _IGNORED = "__pycache__"  # left by Python beside a module that was imported
 
 
@@ -58,8 +59,13 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
         raise InputError(f"cannot write {folder}: {reason}; what was there is unchanged") from error
 
 
-def differences(folder: Path, files: Mapping[str, str]) -> list[tuple[str, str]]:
-    """(path below the folder, "missing", "changed" or "extra") of all that differs, sorted by path."""
+def differences(
+    folder: Path, files: Mapping[str, str], ignored: Collection[str] = ()
+) -> list[tuple[str, str]]:
+    """(path below the folder, "missing", "changed" or "extra") of all that differs, sorted by path.
+
+    What lies in a folder of `ignored`, by its path below the folder, is not extra.
+    """
     found = {}
     for name, text in files.items():
         path = folder / name
@@ -69,6 +75,8 @@ def differences(folder: Path, files: Mapping[str, str]) -> list[tuple[str, str]]
             found[name] = "changed"
     for path in folder.rglob("*") if folder.is_dir() else ():
         name = path.relative_to(folder).as_posix()
+        if name.partition("/")[0] in ignored:
+            continue
         if not path.is_dir() and name not in files and _IGNORED not in path.parts:
             found[name] = "extra"
     return sorted(found.items())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.generation.arm import GeneratedArm
-from modelgen.generation.folders import check_output, differences, write_folder
+from modelgen.generation.folders import ARTEFACTS, check_output, differences, write_folder
 from modelgen.generation.pool import generate_arms
 
 
@@ -37,11 +37,13 @@ def generate(
     options: Options,
     *,
     check: bool = False,
+    artefacts: Collection[str] = (),
     processes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Report:
     """Write the folder `out/<arm>` of every arm, or with `check` compare it and write nothing.
 
+    `artefacts` are those of ARTEFACTS to build as well; a check looks at no others.
     Nothing is written before every arm has been generated, and each folder is replaced whole.
     `processes` is one per processor by default. Raises InputError for an arm that has no model, for
     arms whose names collide in C or on the disk, and where `out` cannot be written.
@@ -49,17 +51,18 @@ def generate(
     _refuse_same_folder(arms)
     if not check:
         check_output(out, [arm.name for arm in arms])
-    generated = generate_arms(arms, options, processes or os.cpu_count() or 1, progress)
+    generated = generate_arms(arms, options, processes or os.cpu_count() or 1, progress, artefacts)
     refuse_collisions(arms, generated)
     if check:
+        unasked = [name for name in ARTEFACTS if name not in artefacts]
         drift = [
             Drift(out / arm.name / name, kind)
             for arm in generated
-            for name, kind in differences(out / arm.name, arm.files)
+            for name, kind in differences(out / arm.name, {**arm.files, **arm.artefacts}, unasked)
         ]
         return Report(tuple(generated), tuple(drift))
     for arm in generated:
-        write_folder(out / arm.name, arm.files)
+        write_folder(out / arm.name, {**arm.files, **arm.artefacts})
     return Report(tuple(generated))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copyreg
 import multiprocessing
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from types import MappingProxyType
 from typing import Any
@@ -16,7 +16,11 @@ from modelgen.generation.arm import GeneratedArm, generate_arm
 
 
 def generate_arms(
-    arms: Sequence[Arm], options: Options, processes: int, done: Callable[[str], None]
+    arms: Sequence[Arm],
+    options: Options,
+    processes: int,
+    done: Callable[[str], None],
+    artefacts: Collection[str] = (),
 ) -> list[GeneratedArm]:
     """Every arm's files, in the order of the arms; `done` is told the name of each that is ready.
 
@@ -26,7 +30,7 @@ def generate_arms(
     results = []
     if workers <= 1:
         for arm in arms:
-            results.append(generate_arm(arm, options))
+            results.append(generate_arm(arm, options, artefacts))
             done(arm.name)
         return results
     # A frozen mapping is pickled by its content.
@@ -37,7 +41,7 @@ def generate_arms(
     if hasattr(context, "set_forkserver_preload"):
         context.set_forkserver_preload([__name__])
     with ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt) as pool:
-        futures = [pool.submit(generate_arm, arm, options) for arm in arms]
+        futures = [pool.submit(generate_arm, arm, options, artefacts) for arm in arms]
         try:
             for arm, future in zip(arms, futures, strict=True):
                 results.append(future.result())

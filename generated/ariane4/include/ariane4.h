@@ -60,7 +60,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0x8DE8D6E4UL
+#define ARIANE4_GENERATION 0xD63F8060UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_REAL
@@ -90,7 +90,7 @@ typedef ARIANE4_REAL ariane4_real_t;
 
 #define ARIANE4_STATUS_OK     0
 #define ARIANE4_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define ARIANE4_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define ARIANE4_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define ARIANE4_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -48,7 +48,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -62,8 +62,8 @@ int ariane4_bias(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -77,8 +77,12 @@ int ariane4_bias(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t12, t13;
+    ARIANE4_SINCOS(q[1], &t12, &t13);
+    ariane4_real_t t24, t23;
+    ARIANE4_SINCOS(q[2], &t24, &t23);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t4 = ARIANE4_C(-1.0) / t3;
@@ -91,8 +95,6 @@ int ariane4_bias(
     const ariane4_real_t t10 = parameters[IA1] * (t4 * t6 * t7) + (parameters[FV1] * t8
         + parameters[FC1] * t9);
     const ariane4_real_t t11 = ARIANE4_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_real_t t12 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t13 = ARIANE4_COS(q[1]);
     const ariane4_real_t t14 = t13 * dq[0];
     const ariane4_real_t t15 = dq[1] * t14;
     const ariane4_real_t t16 = t12 * dq[0];
@@ -103,8 +105,6 @@ int ariane4_bias(
         - parameters[XZ2R] * t19;
     const ariane4_real_t t21 = dq[1] * dq[1];
     const ariane4_real_t t22 = t14 * t14;
-    const ariane4_real_t t23 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t24 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t25 = t23 * t14 - t24 * t16;
     const ariane4_real_t t26 = dq[1] + dq[2];
     const ariane4_real_t t27 = t25 * t26;

@@ -72,7 +72,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -87,8 +87,8 @@ int ariane4_bias_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
         || !ariane4_within(parameters, 49, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -102,8 +102,12 @@ int ariane4_bias_standard(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t12, t13;
+    ARIANE4_SINCOS(q[1], &t12, &t13);
+    ariane4_real_t t28, t26;
+    ARIANE4_SINCOS(q[2], &t28, &t26);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t4 = ARIANE4_C(-1.0) / t3;
@@ -115,8 +119,6 @@ int ariane4_bias_standard(
     const ariane4_real_t t9 = ariane4_sign(t8);
     const ariane4_real_t t10 = t4 * t6 * t7 * parameters[IA1] + (t8 * parameters[FV1] + t9 * parameters[FC1]);
     const ariane4_real_t t11 = ARIANE4_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_real_t t12 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t13 = ARIANE4_COS(q[1]);
     const ariane4_real_t t14 = t13 * dq[0];
     const ariane4_real_t t15 = dq[1] * t14;
     const ariane4_real_t t16 = t12 * dq[0];
@@ -131,9 +133,7 @@ int ariane4_bias_standard(
     const ariane4_real_t t24 = t12 * t23 + ARIANE4_C(9.81) * t13;
     const ariane4_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
         + t24 * parameters[MZ2];
-    const ariane4_real_t t26 = ARIANE4_COS(q[2]);
     const ariane4_real_t t27 = dq[1] + dq[2];
-    const ariane4_real_t t28 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t29 = t26 * t14 - t28 * t16;
     const ariane4_real_t t30 = t27 * t29;
     const ariane4_real_t t31 = t26 * t16 + t28 * t14;

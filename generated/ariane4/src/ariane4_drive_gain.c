@@ -18,7 +18,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -28,7 +28,7 @@ int ariane4_drive_gain(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_C(-1.5716884535778393) || q[0] > ARIANE4_C(0.5593921517178333)
@@ -41,24 +41,24 @@ int ariane4_drive_gain(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t1 = ARIANE4_COS(q[0]);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[0], &t0, &t1);
+    ariane4_real_t t5, t6;
+    ARIANE4_SINCOS(q[1], &t5, &t6);
+    ariane4_real_t t10, t11;
+    ARIANE4_SINCOS(q[2], &t10, &t11);
     const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t1
         + ARIANE4_C(0.9593632378089879) * t0) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t3 = ARIANE4_C(-1.0) / t2;
     const ariane4_real_t t4 = ARIANE4_C(-0.004) * ((ARIANE4_C(-0.28217402066925895) * t0
         + ARIANE4_C(0.9593632378089879) * t1) * (ARIANE4_C(3885.523436256565) * t3));
     out[0] = t4;
-    const ariane4_real_t t5 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t6 = ARIANE4_COS(q[1]);
     const ariane4_real_t t7 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t6
         + ARIANE4_C(0.5568756164881881) * t5) + ARIANE4_C(0.293698));
     const ariane4_real_t t8 = ARIANE4_C(1.0) / t7;
     const ariane4_real_t t9 = ARIANE4_C(0.012) * ((ARIANE4_C(0.8305958991958126) * t5
         + ARIANE4_C(0.5568756164881881) * t6) * (ARIANE4_C(2656.3065671641784) * t8));
     out[1] = t9;
-    const ariane4_real_t t10 = ARIANE4_SIN(q[2]);
-    const ariane4_real_t t11 = ARIANE4_COS(q[2]);
     const ariane4_real_t t12 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t11
         + ARIANE4_C(-0.9979715533496006) * t10) + ARIANE4_C(0.242037));
     const ariane4_real_t t13 = ARIANE4_C(-1.0) / t12;

@@ -49,7 +49,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -64,8 +64,8 @@ int ariane4_energy(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -80,9 +80,13 @@ int ariane4_energy(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[1]);
+    ariane4_real_t t20, t21;
+    ARIANE4_SINCOS(q[0], &t20, &t21);
+    ariane4_real_t t0, t2;
+    ARIANE4_SINCOS(q[1], &t0, &t2);
+    ariane4_real_t t10, t9;
+    ARIANE4_SINCOS(q[2], &t10, &t9);
     const ariane4_real_t t1 = t0 * dq[0];
-    const ariane4_real_t t2 = ARIANE4_COS(q[1]);
     const ariane4_real_t t3 = t2 * dq[0];
     const ariane4_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
     const ariane4_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
@@ -91,8 +95,6 @@ int ariane4_energy(
     const ariane4_real_t t7 = ARIANE4_C(-0.116) * dq[0];
     const ariane4_real_t t8 = ARIANE4_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + ARIANE4_C(0.5) * t6
         + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const ariane4_real_t t9 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t10 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t11 = t9 * t1 + t10 * t3;
     const ariane4_real_t t12 = t9 * t3 - t10 * t1;
     const ariane4_real_t t13 = dq[1] + dq[2];
@@ -105,8 +107,6 @@ int ariane4_energy(
     const ariane4_real_t t18 = t7 + ARIANE4_C(-0.443) * t3;
     const ariane4_real_t t19 = parameters[MX3R] * (t13 * (t9 * t17) - t12 * t18)
         + parameters[MY3R] * (t11 * t18 - t13 * (t10 * t17));
-    const ariane4_real_t t20 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t21 = ARIANE4_COS(q[0]);
     const ariane4_real_t t22 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t21
         + ARIANE4_C(0.9593632378089879) * t20) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t23 = ARIANE4_C(1.0) / t22;

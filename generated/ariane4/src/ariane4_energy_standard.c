@@ -73,7 +73,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,8 +89,8 @@ int ariane4_energy_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
         || !ariane4_within(parameters, 49, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -105,9 +105,13 @@ int ariane4_energy_standard(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[1]);
+    ariane4_real_t t34, t35;
+    ARIANE4_SINCOS(q[0], &t34, &t35);
+    ariane4_real_t t0, t2;
+    ARIANE4_SINCOS(q[1], &t0, &t2);
+    ariane4_real_t t11, t10;
+    ARIANE4_SINCOS(q[2], &t11, &t10);
     const ariane4_real_t t1 = t0 * dq[0];
-    const ariane4_real_t t2 = ARIANE4_COS(q[1]);
     const ariane4_real_t t3 = t2 * dq[0];
     const ariane4_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const ariane4_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
@@ -116,8 +120,6 @@ int ariane4_energy_standard(
     const ariane4_real_t t8 = ARIANE4_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const ariane4_real_t t9 = ARIANE4_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane4_real_t t10 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t11 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t12 = t10 * t1 + t11 * t3;
     const ariane4_real_t t13 = t10 * t3 - t11 * t1;
     const ariane4_real_t t14 = dq[1] + dq[2];
@@ -144,8 +146,6 @@ int ariane4_energy_standard(
         - t13 * t28);
     const ariane4_real_t t33 = t24 + ARIANE4_C(0.5) * (t25 + t26 - t27 + t31) + (t32
         - parameters[MZ4] * (t14 * t28 + t12 * t29));
-    const ariane4_real_t t34 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t35 = ARIANE4_COS(q[0]);
     const ariane4_real_t t36 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t35
         + ARIANE4_C(0.9593632378089879) * t34) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t37 = ARIANE4_C(1.0) / t36;

@@ -50,7 +50,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -65,9 +65,9 @@ int ariane4_forward_dynamics(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(input, 3, ARIANE4_C(1.0e18))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(input, ARIANE4_C(1.0e18))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -81,8 +81,12 @@ int ariane4_forward_dynamics(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t1 = ARIANE4_COS(q[0]);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[0], &t0, &t1);
+    ariane4_real_t t12, t13;
+    ARIANE4_SINCOS(q[1], &t12, &t13);
+    ariane4_real_t t24, t23;
+    ARIANE4_SINCOS(q[2], &t24, &t23);
     const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
@@ -95,8 +99,6 @@ int ariane4_forward_dynamics(
     const ariane4_real_t t10 = dq[0] * dq[0];
     const ariane4_real_t t11 = t6 * (parameters[FV1] * t7) + t6 * (parameters[FC1] * t8)
         + t6 * (parameters[IA1] * (t5 * t9 * t10));
-    const ariane4_real_t t12 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t13 = ARIANE4_COS(q[1]);
     const ariane4_real_t t14 = t13 * dq[0];
     const ariane4_real_t t15 = dq[1] * t14;
     const ariane4_real_t t16 = t12 * dq[0];
@@ -107,8 +109,6 @@ int ariane4_forward_dynamics(
         - parameters[XZ2R] * t19;
     const ariane4_real_t t21 = dq[1] * dq[1];
     const ariane4_real_t t22 = t14 * t14;
-    const ariane4_real_t t23 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t24 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t25 = t24 * t16 - t23 * t14;
     const ariane4_real_t t26 = dq[1] + dq[2];
     const ariane4_real_t t27 = t25 * t26;

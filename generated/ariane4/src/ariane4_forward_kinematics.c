@@ -22,7 +22,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int ariane4_forward_kinematics(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (status != ARIANE4_STATUS_OK) {
@@ -40,18 +40,20 @@ int ariane4_forward_kinematics(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t4, t2;
+    ARIANE4_SINCOS(q[1], &t4, &t2);
+    ariane4_real_t t11, t10;
+    ARIANE4_SINCOS(q[2], &t11, &t10);
     out[0] = t0;
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = ARIANE4_C(1.0);
     out[15] = ARIANE4_C(1.0);
-    const ariane4_real_t t2 = ARIANE4_COS(q[1]);
     const ariane4_real_t t3 = t0 * t2;
     out[16] = t3;
-    const ariane4_real_t t4 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -67,8 +69,6 @@ int ariane4_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = ARIANE4_C(1.0);
-    const ariane4_real_t t10 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t11 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t12 = t10 * t3 - t11 * t5;
     out[32] = t12;
     const ariane4_real_t t13 = t11 * t3 + t10 * t5;

@@ -47,7 +47,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -60,7 +60,7 @@ int ariane4_gravity(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -74,16 +74,16 @@ int ariane4_gravity(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[1]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[1]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[1], &t1, &t0);
+    ariane4_real_t t6, t7;
+    ARIANE4_SINCOS(q[2], &t6, &t7);
     const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t0
         + ARIANE4_C(0.5568756164881881) * t1) + ARIANE4_C(0.293698));
     const ariane4_real_t t3 = ARIANE4_C(0.03137188092799786) * t2 / (ARIANE4_C(0.8305958991958126) * t1
         + ARIANE4_C(0.5568756164881881) * t0);
     const ariane4_real_t t4 = ARIANE4_C(9.81) * t0;
     const ariane4_real_t t5 = ARIANE4_C(-9.81) * t1;
-    const ariane4_real_t t6 = ARIANE4_SIN(q[2]);
-    const ariane4_real_t t7 = ARIANE4_COS(q[2]);
     const ariane4_real_t t8 = parameters[MX3R] * (t6 * t5 + t7 * t4) + parameters[MY3R] * (t7 * t5 - t6 * t4);
     out[1] = t3 * (parameters[MX2R] * t4 + parameters[MY2] * t5 + t8);
     const ariane4_real_t t9 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t7

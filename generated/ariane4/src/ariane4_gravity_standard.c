@@ -71,7 +71,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -85,7 +85,7 @@ int ariane4_gravity_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
         || !ariane4_within(parameters, 49, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -99,17 +99,17 @@ int ariane4_gravity_standard(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t4, t5;
+    ARIANE4_SINCOS(q[1], &t4, &t5);
+    ariane4_real_t t8, t7;
+    ARIANE4_SINCOS(q[2], &t8, &t7);
     const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t0
         + ARIANE4_C(0.9593632378089879) * t1) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t3 = ARIANE4_C(0.06434139546481742) * t2 / (ARIANE4_C(0.28217402066925895) * t1
         + ARIANE4_C(-0.9593632378089879) * t0);
-    const ariane4_real_t t4 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t5 = ARIANE4_COS(q[1]);
     const ariane4_real_t t6 = ARIANE4_C(9.81) * t5;
-    const ariane4_real_t t7 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t8 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t9 = ARIANE4_C(-9.81) * t4;
     const ariane4_real_t t10 = t8 * t9 + t7 * t6;
     const ariane4_real_t t11 = t10 * parameters[MZ3] - t10 * parameters[MY4];

@@ -49,7 +49,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -64,9 +64,9 @@ int ariane4_inverse_dynamics(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(ddq, 3, ARIANE4_C(1.0e16))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(ddq, ARIANE4_C(1.0e16))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -80,8 +80,12 @@ int ariane4_inverse_dynamics(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t1 = ARIANE4_COS(q[0]);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[0], &t0, &t1);
+    ariane4_real_t t13, t15;
+    ARIANE4_SINCOS(q[1], &t13, &t15);
+    ariane4_real_t t33, t29;
+    ARIANE4_SINCOS(q[2], &t33, &t29);
     const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
@@ -95,9 +99,7 @@ int ariane4_inverse_dynamics(
     const ariane4_real_t t11 = parameters[FV1] * t7 + parameters[FC1] * t8 + parameters[IA1] * (t5 * t9 * t10
         + t6 * ddq[0]);
     const ariane4_real_t t12 = ARIANE4_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_real_t t13 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t14 = dq[1] * dq[1];
-    const ariane4_real_t t15 = ARIANE4_COS(q[1]);
     const ariane4_real_t t16 = t15 * dq[0];
     const ariane4_real_t t17 = t16 * t16;
     const ariane4_real_t t18 = dq[1] * t16;
@@ -112,11 +114,9 @@ int ariane4_inverse_dynamics(
     const ariane4_real_t t27 = parameters[XY2] * t24 - (parameters[ZZ2R] * t18 + parameters[XX2R] * t20)
         - parameters[XZ2R] * t26;
     const ariane4_real_t t28 = ARIANE4_C(0.116) * ddq[0];
-    const ariane4_real_t t29 = ARIANE4_COS(q[2]);
     const ariane4_real_t t30 = t28 + ARIANE4_C(-0.443) * t24;
     const ariane4_real_t t31 = dq[1] + dq[2];
     const ariane4_real_t t32 = t31 * t31;
-    const ariane4_real_t t33 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t34 = t13 * t33 - t15 * t29;
     const ariane4_real_t t35 = dq[0] * t34;
     const ariane4_real_t t36 = t35 * t35;

@@ -73,7 +73,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,9 +89,9 @@ int ariane4_inverse_dynamics_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(ddq, 3, ARIANE4_C(1.0e16))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(ddq, ARIANE4_C(1.0e16))
         || !ariane4_within(parameters, 49, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -105,8 +105,12 @@ int ariane4_inverse_dynamics_standard(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t1 = ARIANE4_COS(q[0]);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[0], &t0, &t1);
+    ariane4_real_t t13, t14;
+    ARIANE4_SINCOS(q[1], &t13, &t14);
+    ariane4_real_t t35, t33;
+    ARIANE4_SINCOS(q[2], &t35, &t33);
     const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
@@ -120,8 +124,6 @@ int ariane4_inverse_dynamics_standard(
     const ariane4_real_t t11 = t7 * parameters[FV1] + t8 * parameters[FC1] + (t6 * ddq[0]
         + t5 * t9 * t10) * parameters[IA1];
     const ariane4_real_t t12 = ARIANE4_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_real_t t13 = ARIANE4_SIN(q[1]);
-    const ariane4_real_t t14 = ARIANE4_COS(q[1]);
     const ariane4_real_t t15 = t14 * dq[0];
     const ariane4_real_t t16 = t15 * t15;
     const ariane4_real_t t17 = dq[1] * dq[1];
@@ -142,9 +144,7 @@ int ariane4_inverse_dynamics_standard(
     const ariane4_real_t t31 = ARIANE4_C(-0.116) * ddq[0];
     const ariane4_real_t t32 = (t17 - t16) * parameters[YZ2] + (t26 - t28 * parameters[XZ2])
         + (t30 * parameters[MZ2] - t31 * parameters[MY2]);
-    const ariane4_real_t t33 = ARIANE4_COS(q[2]);
     const ariane4_real_t t34 = t31 + ARIANE4_C(0.443) * t25;
-    const ariane4_real_t t35 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t36 = t14 * t29 + ARIANE4_C(-9.81) * t13;
     const ariane4_real_t t37 = t36 + ARIANE4_C(0.443) * (t16 + t17);
     const ariane4_real_t t38 = t30 + ARIANE4_C(0.443) * t28;

@@ -18,7 +18,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -28,7 +28,7 @@ int ariane4_jacobian(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (status != ARIANE4_STATUS_OK) {
@@ -36,18 +36,18 @@ int ariane4_jacobian(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t0, t10;
+    ARIANE4_SINCOS(q[0], &t0, &t10);
+    ariane4_real_t t6, t2;
+    ARIANE4_SINCOS(q[1], &t6, &t2);
+    ariane4_real_t t5, t4;
+    ARIANE4_SINCOS(q[2], &t5, &t4);
     const ariane4_real_t t1 = ARIANE4_C(-0.116) * t0;
-    const ariane4_real_t t2 = ARIANE4_COS(q[1]);
     const ariane4_real_t t3 = t0 * t2;
-    const ariane4_real_t t4 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t5 = ARIANE4_SIN(q[2]);
-    const ariane4_real_t t6 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t7 = t0 * t6;
     const ariane4_real_t t8 = ARIANE4_C(0.1) * (t4 * t3 - t5 * t7) + ARIANE4_C(0.436) * (t5 * t3 + t4 * t7);
     const ariane4_real_t t9 = t1 + ARIANE4_C(-0.443) * t3 + t8;
     out[0] = t9;
-    const ariane4_real_t t10 = ARIANE4_COS(q[0]);
     const ariane4_real_t t11 = ARIANE4_C(0.1) * (t6 * t4 + t2 * t5) + ARIANE4_C(0.436) * (t6 * t5 - t2 * t4);
     const ariane4_real_t t12 = ARIANE4_C(-0.443) * t6 + t11;
     out[1] = t10 * t12;

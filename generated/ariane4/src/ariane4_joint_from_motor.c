@@ -22,7 +22,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -36,9 +36,9 @@ int ariane4_joint_from_motor(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q_m, 3, ARIANE4_C(1.0e18))
-        || !ariane4_within(dq_m, 3, ARIANE4_C(1.0e18))
-        || !ariane4_within(ddq_m, 3, ARIANE4_C(1.0e18))) {
+    if (!ariane4_within_joints(q_m, ARIANE4_C(1.0e18))
+        || !ariane4_within_joints(dq_m, ARIANE4_C(1.0e18))
+        || !ariane4_within_joints(ddq_m, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q_m[0] < ARIANE4_C(-20.85) || q_m[0] > ARIANE4_C(20870.85)

@@ -47,7 +47,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -60,7 +60,7 @@ int ariane4_mass_matrix(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
         || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -74,23 +74,23 @@ int ariane4_mass_matrix(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[2]);
+    ariane4_real_t t13, t14;
+    ARIANE4_SINCOS(q[0], &t13, &t14);
+    ariane4_real_t t9, t5;
+    ARIANE4_SINCOS(q[1], &t9, &t5);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[2], &t1, &t0);
     const ariane4_real_t t2 = t0 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t1);
     const ariane4_real_t t3 = t0 * t2;
     const ariane4_real_t t4 = parameters[XX2R] + t3;
-    const ariane4_real_t t5 = ARIANE4_COS(q[1]);
     const ariane4_real_t t6 = t0 * parameters[MX3R] - t1 * parameters[MY3R];
     const ariane4_real_t t7 = ARIANE4_C(0.886) * t6;
     const ariane4_real_t t8 = t0 * parameters[MY3R] + t1 * parameters[MX3R];
-    const ariane4_real_t t9 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t10 = (parameters[XY2] + (parameters[XY3R] + t1 * t2
         + ARIANE4_C(-0.443) * t8)) * (ARIANE4_C(2.0) * t9);
     const ariane4_real_t t11 = t5 * (t5 * (parameters[XX3R] - t3 + t7 - t4) + t10);
     const ariane4_real_t t12 = ARIANE4_C(0.232) * (t5 * (parameters[MX2R] + t6) - t9 * (parameters[MY2]
         + t8));
-    const ariane4_real_t t13 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t14 = ARIANE4_COS(q[0]);
     const ariane4_real_t t15 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t14
         + ARIANE4_C(0.9593632378089879) * t13) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t16 = ARIANE4_C(1.0) / t15;

@@ -71,7 +71,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -85,7 +85,7 @@ int ariane4_mass_matrix_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3 };
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
         || !ariane4_within(parameters, 49, ARIANE4_C(1.0e18))) {
         status |= ARIANE4_STATUS_INPUT;
     }
@@ -99,21 +99,24 @@ int ariane4_mass_matrix_standard(
         return status;
     }
 
+    ariane4_real_t t26, t27;
+    ARIANE4_SINCOS(q[0], &t26, &t27);
+    ariane4_real_t t21, t13;
+    ARIANE4_SINCOS(q[1], &t21, &t13);
+    ariane4_real_t t9, t3;
+    ARIANE4_SINCOS(q[2], &t9, &t3);
     const ariane4_real_t t0 = ARIANE4_C(0.1) * parameters[M4];
     const ariane4_real_t t1 = ARIANE4_C(0.1) * (t0 + ARIANE4_C(-2.0) * parameters[MX4]);
     const ariane4_real_t t2 = parameters[YY3] + (parameters[ZZ4] + t1);
-    const ariane4_real_t t3 = ARIANE4_COS(q[2]);
     const ariane4_real_t t4 = ARIANE4_C(0.436) * parameters[M4];
     const ariane4_real_t t5 = ARIANE4_C(0.436) * (t4 + ARIANE4_C(2.0) * parameters[MZ4]);
     const ariane4_real_t t6 = parameters[XX3] + (parameters[XX4] + t5);
     const ariane4_real_t t7 = t0 - parameters[MX4];
     const ariane4_real_t t8 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
         + ARIANE4_C(0.436) * t7));
-    const ariane4_real_t t9 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t10 = t3 * (t6 - t2) - t8 * (ARIANE4_C(2.0) * t9);
     const ariane4_real_t t11 = t3 * t10;
     const ariane4_real_t t12 = parameters[XX2] + (t2 + t11);
-    const ariane4_real_t t13 = ARIANE4_COS(q[1]);
     const ariane4_real_t t14 = parameters[M3] + parameters[M4];
     const ariane4_real_t t15 = ARIANE4_C(0.443) * t14;
     const ariane4_real_t t16 = parameters[MY3] + (parameters[MZ4] + t4);
@@ -121,15 +124,12 @@ int ariane4_mass_matrix_standard(
     const ariane4_real_t t18 = t3 * t17 - t9 * t16;
     const ariane4_real_t t19 = ARIANE4_C(0.443) * (t15 + ARIANE4_C(2.0) * t18);
     const ariane4_real_t t20 = t3 * t16 + t9 * t17;
-    const ariane4_real_t t21 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t22 = (parameters[XY2] + (t8 + t9 * t10
         + ARIANE4_C(-0.443) * t20)) * (ARIANE4_C(2.0) * t21);
     const ariane4_real_t t23 = t13 * (parameters[YY2] + (t6 - t11 + t19) - t12) + t22;
     const ariane4_real_t t24 = t13 * (parameters[MX2] + (t18 + t15)) - t21 * (parameters[MY2] + t20);
     const ariane4_real_t t25 = t12 + t13 * t23 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t14)
         + ARIANE4_C(2.0) * t24);
-    const ariane4_real_t t26 = ARIANE4_SIN(q[0]);
-    const ariane4_real_t t27 = ARIANE4_COS(q[0]);
     const ariane4_real_t t28 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t27
         + ARIANE4_C(0.9593632378089879) * t26) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t29 = ARIANE4_C(1.0) / t28;

@@ -12,7 +12,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define ARIANE4_MATH_double(name) name
 #define ARIANE4_MATH(name) ARIANE4_JOIN(ARIANE4_MATH_, ARIANE4_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DARIANE4_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, ARIANE4_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DARIANE4_SINCOS=my_sincos, or with both of
+ * -DARIANE4_SIN=my_sin -DARIANE4_COS=my_cos; -include my_header.h declares it.
+ */
+#define ARIANE4_SINGLE_float 1
+#define ARIANE4_SINGLE_double 0
+#if !defined(ARIANE4_SINCOS) && !defined(ARIANE4_SIN) && !defined(ARIANE4_COS)
+#define ARIANE4_OWN_SINCOS ARIANE4_JOIN(ARIANE4_SINGLE_, ARIANE4_REAL)
+#else
+#define ARIANE4_OWN_SINCOS 0
+#endif
 #ifndef ARIANE4_SIN
 #define ARIANE4_SIN ARIANE4_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline ariane4_real_t ariane4_select(ariane4_real_t condition, ariane4_re
     return condition > ARIANE4_C(0.0) ? a : b;
 }
 
+#if ARIANE4_OWN_SINCOS
+typedef struct {
+    ariane4_real_t sine;
+    ariane4_real_t cosine;
+} ariane4_pair_t;
+
+/* Two numbers by value travel in registers. */
+ariane4_pair_t ariane4_sincos(ariane4_real_t x);
+#endif
+
+#ifndef ARIANE4_SINCOS
+#define ARIANE4_SINCOS ariane4_sine_cosine
+static inline void ariane4_sine_cosine(ariane4_real_t x, ariane4_real_t *sine, ariane4_real_t *cosine)
+{
+#if ARIANE4_OWN_SINCOS
+    const ariane4_pair_t pair = ariane4_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = ARIANE4_SIN(x);
+    *cosine = ARIANE4_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int ariane4_within(const ariane4_real_t x[], int n, ariane4_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int ariane4_within(const ariane4_real_t x[], int n, ariane4_real_t
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int ariane4_within_joints(const ariane4_real_t x[], ariane4_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] <= limit;
 }
 
 static inline void ariane4_zero(ariane4_real_t x[], int n)

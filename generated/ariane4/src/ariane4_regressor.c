@@ -26,7 +26,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -38,9 +38,9 @@ int ariane4_regressor(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(ddq, 3, ARIANE4_C(1.0e16))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(ddq, ARIANE4_C(1.0e16))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_C(-1.5716884535778393) || q[0] > ARIANE4_C(0.5593921517178333)
@@ -53,17 +53,19 @@ int ariane4_regressor(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t9, t6;
+    ARIANE4_SINCOS(q[1], &t9, &t6);
+    ariane4_real_t t36, t37;
+    ARIANE4_SINCOS(q[2], &t36, &t37);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t4 = ARIANE4_C(-0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t5 = ARIANE4_C(0.06434139546481742) * t3 / t4;
     out[0] = t5 * ddq[0];
-    const ariane4_real_t t6 = ARIANE4_COS(q[1]);
     const ariane4_real_t t7 = t6 * dq[0];
     const ariane4_real_t t8 = dq[1] * t7;
-    const ariane4_real_t t9 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t10 = t9 * ddq[0];
     const ariane4_real_t t11 = t8 + t10;
     const ariane4_real_t t12 = t9 * t5;
@@ -104,8 +106,6 @@ int ariane4_regressor(
     const ariane4_real_t t34 = t6 * t32 + ARIANE4_C(-9.81) * t9;
     out[31] = t20 * t34;
     const ariane4_real_t t35 = dq[1] + dq[2];
-    const ariane4_real_t t36 = ARIANE4_SIN(q[2]);
-    const ariane4_real_t t37 = ARIANE4_COS(q[2]);
     const ariane4_real_t t38 = t6 * t37 - t9 * t36;
     const ariane4_real_t t39 = dq[0] * t38;
     const ariane4_real_t t40 = t35 * t39;

@@ -28,7 +28,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int ariane4_regressor_standard(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(ddq, 3, ARIANE4_C(1.0e16))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(ddq, ARIANE4_C(1.0e16))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_C(-1.5716884535778393) || q[0] > ARIANE4_C(0.5593921517178333)
@@ -55,17 +55,19 @@ int ariane4_regressor_standard(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t7, t9;
+    ARIANE4_SINCOS(q[1], &t7, &t9);
+    ariane4_real_t t41, t40;
+    ARIANE4_SINCOS(q[2], &t41, &t40);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t4 = ARIANE4_C(-0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t5 = ARIANE4_C(-0.06434139546481742) * t3 / t4;
     const ariane4_real_t t6 = t5 * ddq[0];
     out[5] = -t6;
-    const ariane4_real_t t7 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t8 = t7 * ddq[0];
-    const ariane4_real_t t9 = ARIANE4_COS(q[1]);
     const ariane4_real_t t10 = t9 * dq[0];
     const ariane4_real_t t11 = dq[1] * t10;
     const ariane4_real_t t12 = t8 + t11;
@@ -113,8 +115,6 @@ int ariane4_regressor_standard(
     const ariane4_real_t t39 = t9 * t37 + ARIANE4_C(-9.81) * t7;
     out[66] = t22 * t39;
     out[19] = t35 * t34;
-    const ariane4_real_t t40 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t41 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t42 = t7 * t40 + t9 * t41;
     const ariane4_real_t t43 = ddq[0] * t42;
     const ariane4_real_t t44 = t7 * t41 - t9 * t40;

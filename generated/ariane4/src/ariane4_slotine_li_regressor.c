@@ -27,7 +27,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x8DE8D6E4UL
+#if ARIANE4_GENERATION != 0xD63F8060UL
 #error "ariane4.h and ariane4_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -40,10 +40,10 @@ int ariane4_slotine_li_regressor(
 {
     int status = ARIANE4_STATUS_OK;
 
-    if (!ariane4_within(q, 3, ARIANE4_C(1.0e8))
-        || !ariane4_within(dq, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(dq_r, 3, ARIANE4_C(1.0e10))
-        || !ariane4_within(ddq_r, 3, ARIANE4_C(1.0e16))) {
+    if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
+        || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(dq_r, ARIANE4_C(1.0e10))
+        || !ariane4_within_joints(ddq_r, ARIANE4_C(1.0e16))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_C(-1.5716884535778393) || q[0] > ARIANE4_C(0.5593921517178333)
@@ -56,17 +56,19 @@ int ariane4_slotine_li_regressor(
         return status;
     }
 
-    const ariane4_real_t t0 = ARIANE4_COS(q[0]);
-    const ariane4_real_t t1 = ARIANE4_SIN(q[0]);
+    ariane4_real_t t1, t0;
+    ARIANE4_SINCOS(q[0], &t1, &t0);
+    ariane4_real_t t6, t9;
+    ARIANE4_SINCOS(q[1], &t6, &t9);
+    ariane4_real_t t38, t37;
+    ARIANE4_SINCOS(q[2], &t38, &t37);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
     const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t4 = ARIANE4_C(-0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
     const ariane4_real_t t5 = ARIANE4_C(-0.06434139546481742) * t3 / t4;
     out[0] = -(t5 * ddq_r[0]);
-    const ariane4_real_t t6 = ARIANE4_SIN(q[1]);
     const ariane4_real_t t7 = t6 * t5;
     const ariane4_real_t t8 = t6 * ddq_r[0];
-    const ariane4_real_t t9 = ARIANE4_COS(q[1]);
     const ariane4_real_t t10 = t9 * dq[0];
     const ariane4_real_t t11 = t9 * dq_r[0];
     const ariane4_real_t t12 = ARIANE4_C(-0.5) * (t10 * dq_r[1] + dq[1] * t11);
@@ -108,8 +110,6 @@ int ariane4_slotine_li_regressor(
     out[7] = t7 * t32 - t31 * t24;
     const ariane4_real_t t36 = ARIANE4_C(-9.81) * t6 + t9 * t34;
     out[31] = t22 * t36;
-    const ariane4_real_t t37 = ARIANE4_COS(q[2]);
-    const ariane4_real_t t38 = ARIANE4_SIN(q[2]);
     const ariane4_real_t t39 = t6 * t37 + t9 * t38;
     const ariane4_real_t t40 = t5 * t39;
     const ariane4_real_t t41 = t39 * ddq_r[0];

@@ -68,7 +68,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x75B3C9D1UL
+#define ARIANE4_FREE_GENERATION 0xEE13FB90UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_FREE_REAL
@@ -99,7 +99,7 @@ typedef ARIANE4_FREE_REAL ariane4_free_real_t;
 
 #define ARIANE4_FREE_STATUS_OK     0
 #define ARIANE4_FREE_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define ARIANE4_FREE_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define ARIANE4_FREE_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define ARIANE4_FREE_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

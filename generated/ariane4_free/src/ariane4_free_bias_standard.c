@@ -76,7 +76,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -91,8 +91,8 @@ int ariane4_free_bias_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -106,8 +106,14 @@ int ariane4_free_bias_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t12, t13;
+    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
+    ariane4_free_real_t t28, t26;
+    ARIANE4_FREE_SINCOS(q[2], &t28, &t26);
+    ariane4_free_real_t t45, t44;
+    ARIANE4_FREE_SINCOS(q[3], &t45, &t44);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -123,8 +129,6 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t10 = t4 * t6 * t7 * parameters[IA1] + (t8 * parameters[FV1]
         + t9 * parameters[FC1]);
     const ariane4_free_real_t t11 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_free_real_t t12 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t13 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t14 = t13 * dq[0];
     const ariane4_free_real_t t15 = dq[1] * t14;
     const ariane4_free_real_t t16 = t12 * dq[0];
@@ -139,9 +143,7 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t24 = t12 * t23 + ARIANE4_FREE_C(9.81) * t13;
     const ariane4_free_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
         + t24 * parameters[MZ2];
-    const ariane4_free_real_t t26 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t27 = dq[1] + dq[2];
-    const ariane4_free_real_t t28 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t29 = t26 * t14 - t28 * t16;
     const ariane4_free_real_t t30 = t27 * t29;
     const ariane4_free_real_t t31 = t26 * t16 + t28 * t14;
@@ -159,8 +161,6 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t42 = t28 * t40 + t26 * t41;
     const ariane4_free_real_t t43 = t34 - parameters[XZ3] * t35 + parameters[YZ3] * (t36 - t37)
         + (parameters[MZ3] * t42 - parameters[MY3] * t38);
-    const ariane4_free_real_t t44 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t45 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t30;
     const ariane4_free_real_t t47 = t45 * t35 + t44 * t46;
     const ariane4_free_real_t t48 = t44 * t27 + t45 * t31;

@@ -19,7 +19,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int ariane4_free_drive_gain(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)
@@ -42,8 +42,12 @@ int ariane4_free_drive_gain(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
+    ariane4_free_real_t t5, t6;
+    ARIANE4_FREE_SINCOS(q[1], &t5, &t6);
+    ariane4_free_real_t t10, t11;
+    ARIANE4_FREE_SINCOS(q[2], &t10, &t11);
     const ariane4_free_real_t
         t2 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t1
         + ARIANE4_FREE_C(0.9593632378089879) * t0) + ARIANE4_FREE_C(0.10769300000000001));
@@ -51,8 +55,6 @@ int ariane4_free_drive_gain(
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(-0.004) * ((ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1) * (ARIANE4_FREE_C(3885.523436256565) * t3));
     out[0] = t4;
-    const ariane4_free_real_t t5 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t6 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t
         t7 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t6
         + ARIANE4_FREE_C(0.5568756164881881) * t5) + ARIANE4_FREE_C(0.293698));
@@ -60,8 +62,6 @@ int ariane4_free_drive_gain(
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.012) * ((ARIANE4_FREE_C(0.8305958991958126) * t5
         + ARIANE4_FREE_C(0.5568756164881881) * t6) * (ARIANE4_FREE_C(2656.3065671641784) * t8));
     out[1] = t9;
-    const ariane4_free_real_t t10 = ARIANE4_FREE_SIN(q[2]);
-    const ariane4_free_real_t t11 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t
         t12 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t11
         + ARIANE4_FREE_C(-0.9979715533496006) * t10) + ARIANE4_FREE_C(0.242037));

@@ -59,7 +59,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -74,8 +74,8 @@ int ariane4_free_energy(
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
         || !ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -90,9 +90,15 @@ int ariane4_free_energy(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[1]);
+    ariane4_free_real_t t35, t36;
+    ARIANE4_FREE_SINCOS(q[0], &t35, &t36);
+    ariane4_free_real_t t0, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t2);
+    ariane4_free_real_t t10, t9;
+    ARIANE4_FREE_SINCOS(q[2], &t10, &t9);
+    ariane4_free_real_t t23, t22;
+    ARIANE4_FREE_SINCOS(q[3], &t23, &t22);
     const ariane4_free_real_t t1 = t0 * dq[0];
-    const ariane4_free_real_t t2 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t3 = t2 * dq[0];
     const ariane4_free_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
@@ -102,8 +108,6 @@ int ariane4_free_energy(
     const ariane4_free_real_t t7 = ARIANE4_FREE_C(-0.116) * dq[0];
     const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + ARIANE4_FREE_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const ariane4_free_real_t t9 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t10 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t11 = t9 * t1 + t10 * t3;
     const ariane4_free_real_t t12 = t9 * t3 - t10 * t1;
     const ariane4_free_real_t t13 = dq[1] + dq[2];
@@ -118,8 +122,6 @@ int ariane4_free_energy(
     const ariane4_free_real_t t20 = t10 * t17;
     const ariane4_free_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3R] * (t11 * t19
         - t13 * t20);
-    const ariane4_free_real_t t22 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t23 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t24 = t22 * t11 - t23 * t13;
     const ariane4_free_real_t t25 = t23 * t11 + t22 * t13;
     const ariane4_free_real_t t26 = dq[3] + t12;
@@ -134,8 +136,6 @@ int ariane4_free_energy(
     const ariane4_free_real_t t33 = t24 * t31 - t26 * (t22 * t20 + t23 * t30);
     const ariane4_free_real_t t34 = t8 + ARIANE4_FREE_C(0.5) * t16 + t21 + ARIANE4_FREE_C(0.5) * t29
         + (parameters[MX4] * t32 + parameters[MY4] * t33);
-    const ariane4_free_real_t t35 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t36 = ARIANE4_FREE_COS(q[0]);
     const ariane4_free_real_t
         t37 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t36
         + ARIANE4_FREE_C(0.9593632378089879) * t35) + ARIANE4_FREE_C(0.10769300000000001));

@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -93,8 +93,8 @@ int ariane4_free_energy_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -109,9 +109,15 @@ int ariane4_free_energy_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[1]);
+    ariane4_free_real_t t41, t42;
+    ARIANE4_FREE_SINCOS(q[0], &t41, &t42);
+    ariane4_free_real_t t0, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t2);
+    ariane4_free_real_t t11, t10;
+    ARIANE4_FREE_SINCOS(q[2], &t11, &t10);
+    ariane4_free_real_t t25, t26;
+    ARIANE4_FREE_SINCOS(q[3], &t25, &t26);
     const ariane4_free_real_t t1 = t0 * dq[0];
-    const ariane4_free_real_t t2 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t3 = t2 * dq[0];
     const ariane4_free_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2]
         + dq[1] * parameters[XZ2]);
@@ -123,8 +129,6 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane4_free_real_t t10 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t11 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t12 = t10 * t1 + t11 * t3;
     const ariane4_free_real_t t13 = t10 * t3 - t11 * t1;
     const ariane4_free_real_t t14 = dq[1] + dq[2];
@@ -143,8 +147,6 @@ int ariane4_free_energy_standard(
         + t14 * t19);
     const ariane4_free_real_t t24 = t9 + ARIANE4_FREE_C(0.5) * (t15 + t16 + t17 + t22) + (t23
         + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const ariane4_free_real_t t25 = ARIANE4_FREE_SIN(q[3]);
-    const ariane4_free_real_t t26 = ARIANE4_FREE_COS(q[3]);
     const ariane4_free_real_t t27 = t25 * t14 - t26 * t12;
     const ariane4_free_real_t t28 = t26 * t14 + t25 * t12;
     const ariane4_free_real_t t29 = dq[3] + t13;
@@ -164,8 +166,6 @@ int ariane4_free_energy_standard(
         + t29 * t35);
     const ariane4_free_real_t t40 = t24 + ARIANE4_FREE_C(0.5) * (t30 + t31 + t32 + t38) + (t39
         - parameters[MZ4] * (t28 * t35 + t27 * t36));
-    const ariane4_free_real_t t41 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t42 = ARIANE4_FREE_COS(q[0]);
     const ariane4_free_real_t
         t43 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t42
         + ARIANE4_FREE_C(0.9593632378089879) * t41) + ARIANE4_FREE_C(0.10769300000000001));

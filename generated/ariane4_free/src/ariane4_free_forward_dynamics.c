@@ -60,7 +60,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -75,9 +75,9 @@ int ariane4_free_forward_dynamics(
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(input, 4, ARIANE4_FREE_C(1.0e18))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(input, ARIANE4_FREE_C(1.0e18))
         || !ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -91,8 +91,14 @@ int ariane4_free_forward_dynamics(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
+    ariane4_free_real_t t12, t13;
+    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
+    ariane4_free_real_t t24, t23;
+    ARIANE4_FREE_SINCOS(q[2], &t24, &t23);
+    ariane4_free_real_t t37, t36;
+    ARIANE4_FREE_SINCOS(q[3], &t37, &t36);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
@@ -108,8 +114,6 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t10 = dq[0] * dq[0];
     const ariane4_free_real_t t11 = t6 * (parameters[FV1] * t7) + t6 * (parameters[FC1] * t8)
         + t6 * (parameters[IA1] * (t5 * t9 * t10));
-    const ariane4_free_real_t t12 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t13 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t14 = t13 * dq[0];
     const ariane4_free_real_t t15 = dq[1] * t14;
     const ariane4_free_real_t t16 = t12 * dq[0];
@@ -120,8 +124,6 @@ int ariane4_free_forward_dynamics(
         - parameters[XZ2R] * t19;
     const ariane4_free_real_t t21 = dq[1] * dq[1];
     const ariane4_free_real_t t22 = t14 * t14;
-    const ariane4_free_real_t t23 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t24 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t25 = t23 * t14 - t24 * t16;
     const ariane4_free_real_t t26 = dq[1] + dq[2];
     const ariane4_free_real_t t27 = t25 * t26;
@@ -134,8 +136,6 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t33 = t25 * t25;
     const ariane4_free_real_t t34 = t26 * t26;
     const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.886) * t17;
-    const ariane4_free_real_t t36 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t37 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t38 = ARIANE4_FREE_C(2.0) * t27;
     const ariane4_free_real_t t39 = t37 * t31 + t36 * t38;
     const ariane4_free_real_t t40 = t37 * t28 + t36 * t26;

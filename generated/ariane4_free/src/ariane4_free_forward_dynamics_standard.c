@@ -78,7 +78,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -94,9 +94,9 @@ int ariane4_free_forward_dynamics_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(input, 4, ARIANE4_FREE_C(1.0e18))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(input, ARIANE4_FREE_C(1.0e18))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -110,8 +110,14 @@ int ariane4_free_forward_dynamics_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
+    ariane4_free_real_t t12, t13;
+    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
+    ariane4_free_real_t t28, t26;
+    ARIANE4_FREE_SINCOS(q[2], &t28, &t26);
+    ariane4_free_real_t t45, t44;
+    ARIANE4_FREE_SINCOS(q[3], &t45, &t44);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
@@ -127,8 +133,6 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t10 = dq[0] * dq[0];
     const ariane4_free_real_t t11 = t6 * (t7 * parameters[FV1]) + t6 * (t8 * parameters[FC1])
         + t6 * (t5 * t9 * t10 * parameters[IA1]);
-    const ariane4_free_real_t t12 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t13 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t14 = t13 * dq[0];
     const ariane4_free_real_t t15 = dq[1] * t14;
     const ariane4_free_real_t t16 = t12 * dq[0];
@@ -143,9 +147,7 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t24 = t12 * t23 + ARIANE4_FREE_C(-9.81) * t13;
     const ariane4_free_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
         - t24 * parameters[MZ2];
-    const ariane4_free_real_t t26 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t27 = dq[1] + dq[2];
-    const ariane4_free_real_t t28 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t29 = t26 * t14 - t28 * t16;
     const ariane4_free_real_t t30 = t27 * t29;
     const ariane4_free_real_t t31 = t26 * t16 + t28 * t14;
@@ -163,8 +165,6 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t42 = t28 * t40 + t26 * t41;
     const ariane4_free_real_t t43 = t34 - parameters[XZ3] * t35 + parameters[YZ3] * (t36 - t37)
         - (parameters[MY3] * t38 + parameters[MZ3] * t42);
-    const ariane4_free_real_t t44 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t45 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t30;
     const ariane4_free_real_t t47 = t45 * t35 + t44 * t46;
     const ariane4_free_real_t t48 = t44 * t27 + t45 * t31;

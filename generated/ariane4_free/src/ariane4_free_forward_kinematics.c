@@ -23,7 +23,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -33,7 +33,7 @@ int ariane4_free_forward_kinematics(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (status != ARIANE4_FREE_STATUS_OK) {
@@ -41,18 +41,22 @@ int ariane4_free_forward_kinematics(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t4, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t4, &t2);
+    ariane4_free_real_t t11, t10;
+    ARIANE4_FREE_SINCOS(q[2], &t11, &t10);
+    ariane4_free_real_t t22, t21;
+    ARIANE4_FREE_SINCOS(q[3], &t22, &t21);
     out[0] = t0;
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = ARIANE4_FREE_C(1.0);
     out[15] = ARIANE4_FREE_C(1.0);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t3 = t0 * t2;
     out[16] = t3;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -68,8 +72,6 @@ int ariane4_free_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = ARIANE4_FREE_C(1.0);
-    const ariane4_free_real_t t10 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t11 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t12 = t10 * t3 - t11 * t5;
     out[32] = t12;
     const ariane4_free_real_t t13 = t11 * t3 + t10 * t5;
@@ -91,8 +93,6 @@ int ariane4_free_forward_kinematics(
     const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.443) * t4;
     out[43] = t20;
     out[47] = ARIANE4_FREE_C(1.0);
-    const ariane4_free_real_t t21 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t22 = ARIANE4_FREE_SIN(q[3]);
     out[48] = t21 * t12 - t1 * t22;
     out[49] = -(t22 * t12 + t1 * t21);
     out[50] = -t13;

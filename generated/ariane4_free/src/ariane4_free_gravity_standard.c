@@ -75,7 +75,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,7 +89,7 @@ int ariane4_free_gravity_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -103,23 +103,23 @@ int ariane4_free_gravity_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t4, t5;
+    ARIANE4_FREE_SINCOS(q[1], &t4, &t5);
+    ariane4_free_real_t t8, t7;
+    ARIANE4_FREE_SINCOS(q[2], &t8, &t7);
+    ariane4_free_real_t t12, t11;
+    ARIANE4_FREE_SINCOS(q[3], &t12, &t11);
     const ariane4_free_real_t
         t2 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1) + ARIANE4_FREE_C(0.10769300000000001));
     const ariane4_free_real_t
         t3 = ARIANE4_FREE_C(0.06434139546481742) * t2 / (ARIANE4_FREE_C(0.28217402066925895) * t1
         + ARIANE4_FREE_C(-0.9593632378089879) * t0);
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t5 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(9.81) * t5;
-    const ariane4_free_real_t t7 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t8 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(-9.81) * t4;
     const ariane4_free_real_t t10 = t8 * t9 + t7 * t6;
-    const ariane4_free_real_t t11 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t12 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t13 = t7 * t9 - t8 * t6;
     const ariane4_free_real_t t14 = t12 * t13;
     const ariane4_free_real_t t15 = t14 * parameters[MZ4] - t10 * parameters[MY4];

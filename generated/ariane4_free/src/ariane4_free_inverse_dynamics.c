@@ -59,7 +59,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -74,9 +74,9 @@ int ariane4_free_inverse_dynamics(
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq, 4, ARIANE4_FREE_C(1.0e16))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e16))
         || !ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -90,8 +90,14 @@ int ariane4_free_inverse_dynamics(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
+    ariane4_free_real_t t13, t15;
+    ARIANE4_FREE_SINCOS(q[1], &t13, &t15);
+    ariane4_free_real_t t33, t29;
+    ARIANE4_FREE_SINCOS(q[2], &t33, &t29);
+    ariane4_free_real_t t51, t50;
+    ARIANE4_FREE_SINCOS(q[3], &t51, &t50);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
@@ -108,9 +114,7 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t11 = parameters[FV1] * t7 + parameters[FC1] * t8
         + parameters[IA1] * (t5 * t9 * t10 + t6 * ddq[0]);
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_free_real_t t13 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t14 = dq[1] * dq[1];
-    const ariane4_free_real_t t15 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t16 = t15 * dq[0];
     const ariane4_free_real_t t17 = t16 * t16;
     const ariane4_free_real_t t18 = dq[1] * t16;
@@ -125,11 +129,9 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t27 = parameters[XY2] * t24 - (parameters[ZZ2R] * t18 + parameters[XX2R] * t20)
         - parameters[XZ2R] * t26;
     const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.116) * ddq[0];
-    const ariane4_free_real_t t29 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t30 = t28 + ARIANE4_FREE_C(-0.443) * t24;
     const ariane4_free_real_t t31 = dq[1] + dq[2];
     const ariane4_free_real_t t32 = t31 * t31;
-    const ariane4_free_real_t t33 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t34 = t13 * t33 - t15 * t29;
     const ariane4_free_real_t t35 = dq[0] * t34;
     const ariane4_free_real_t t36 = t35 * t35;
@@ -147,8 +149,6 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t48 = t47 - t46;
     const ariane4_free_real_t t49 = parameters[ZZ3R] * t37 - parameters[XX3R] * t40 + parameters[XY3R] * t45
         - parameters[XZ3] * t48;
-    const ariane4_free_real_t t50 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t51 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t52 = t50 * t31 + t51 * t41;
     const ariane4_free_real_t t53 = t52 * t52;
     const ariane4_free_real_t t54 = dq[3] - t35;

@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -93,9 +93,9 @@ int ariane4_free_inverse_dynamics_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq, 4, ARIANE4_FREE_C(1.0e16))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e16))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -109,8 +109,14 @@ int ariane4_free_inverse_dynamics_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[0]);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
+    ariane4_free_real_t t13, t14;
+    ARIANE4_FREE_SINCOS(q[1], &t13, &t14);
+    ariane4_free_real_t t35, t33;
+    ARIANE4_FREE_SINCOS(q[2], &t35, &t33);
+    ariane4_free_real_t t60, t59;
+    ARIANE4_FREE_SINCOS(q[3], &t60, &t59);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
@@ -127,8 +133,6 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t11 = t7 * parameters[FV1] + t8 * parameters[FC1] + (t6 * ddq[0]
         + t5 * t9 * t10) * parameters[IA1];
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_free_real_t t13 = ARIANE4_FREE_SIN(q[1]);
-    const ariane4_free_real_t t14 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t15 = t14 * dq[0];
     const ariane4_free_real_t t16 = t15 * t15;
     const ariane4_free_real_t t17 = dq[1] * dq[1];
@@ -149,9 +153,7 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t31 = ARIANE4_FREE_C(-0.116) * ddq[0];
     const ariane4_free_real_t t32 = (t17 - t16) * parameters[YZ2] + (t26 - t28 * parameters[XZ2])
         + (t30 * parameters[MZ2] - t31 * parameters[MY2]);
-    const ariane4_free_real_t t33 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t34 = t31 + ARIANE4_FREE_C(0.443) * t25;
-    const ariane4_free_real_t t35 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t36 = t14 * t29 + ARIANE4_FREE_C(-9.81) * t13;
     const ariane4_free_real_t t37 = t36 + ARIANE4_FREE_C(0.443) * (t16 + t17);
     const ariane4_free_real_t t38 = t30 + ARIANE4_FREE_C(0.443) * t28;
@@ -177,8 +179,6 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t57 = t55 + t56;
     const ariane4_free_real_t t58 = t39 * parameters[MZ3] - t34 * parameters[MY3] + ((t44
         - t42) * parameters[YZ3] + (t54 - t57 * parameters[XZ3]));
-    const ariane4_free_real_t t59 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t60 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t61 = t60 * t49 + t59 * t43;
     const ariane4_free_real_t t62 = t61 * t61;
     const ariane4_free_real_t t63 = dq[3] + t41;

@@ -19,7 +19,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int ariane4_free_jacobian(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (status != ARIANE4_FREE_STATUS_OK) {
@@ -37,19 +37,19 @@ int ariane4_free_jacobian(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t0, t11;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t11);
+    ariane4_free_real_t t6, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t6, &t2);
+    ariane4_free_real_t t5, t4;
+    ARIANE4_FREE_SINCOS(q[2], &t5, &t4);
     const ariane4_free_real_t t1 = ARIANE4_FREE_C(-0.116) * t0;
-    const ariane4_free_real_t t2 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t3 = t0 * t2;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t5 = ARIANE4_FREE_SIN(q[2]);
-    const ariane4_free_real_t t6 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t7 = t0 * t6;
     const ariane4_free_real_t t8 = t5 * t3 + t4 * t7;
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.1) * (t4 * t3 - t5 * t7) + ARIANE4_FREE_C(0.436) * t8;
     const ariane4_free_real_t t10 = t1 + ARIANE4_FREE_C(-0.443) * t3 + t9;
     out[0] = t10;
-    const ariane4_free_real_t t11 = ARIANE4_FREE_COS(q[0]);
     const ariane4_free_real_t t12 = t2 * t4 - t6 * t5;
     const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.1) * (t6 * t4 + t2 * t5) + ARIANE4_FREE_C(-0.436) * t12;
     const ariane4_free_real_t t14 = ARIANE4_FREE_C(-0.443) * t6 + t13;

@@ -23,7 +23,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int ariane4_free_joint_from_motor(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q_m, 4, ARIANE4_FREE_C(1.0e18))
-        || !ariane4_free_within(dq_m, 4, ARIANE4_FREE_C(1.0e18))
-        || !ariane4_free_within(ddq_m, 4, ARIANE4_FREE_C(1.0e18))) {
+    if (!ariane4_free_within_joints(q_m, ARIANE4_FREE_C(1.0e18))
+        || !ariane4_free_within_joints(dq_m, ARIANE4_FREE_C(1.0e18))
+        || !ariane4_free_within_joints(ddq_m, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q_m[0] < ARIANE4_FREE_C(-20.85) || q_m[0] > ARIANE4_FREE_C(20870.85)

@@ -57,7 +57,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -70,7 +70,7 @@ int ariane4_free_mass_matrix(
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -84,34 +84,34 @@ int ariane4_free_mass_matrix(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_SIN(q[3]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_COS(q[3]);
+    ariane4_free_real_t t24, t25;
+    ARIANE4_FREE_SINCOS(q[0], &t24, &t25);
+    ariane4_free_real_t t20, t15;
+    ARIANE4_FREE_SINCOS(q[1], &t20, &t15);
+    ariane4_free_real_t t11, t5;
+    ARIANE4_FREE_SINCOS(q[2], &t11, &t5);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[3], &t0, &t1);
     const ariane4_free_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(-0.2) * t2;
     const ariane4_free_real_t t4 = parameters[ZZ4] + t3;
-    const ariane4_free_real_t t5 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t6 = parameters[XY4] * (ARIANE4_FREE_C(2.0) * t0) - t1 * parameters[XX4R];
     const ariane4_free_real_t t7 = t1 * t6;
     const ariane4_free_real_t t8 = parameters[XX3R] - t7;
     const ariane4_free_real_t t9 = t1 * parameters[XZ4R] - t0 * parameters[YZ4R];
     const ariane4_free_real_t t10 = parameters[XY3R] + t9;
-    const ariane4_free_real_t t11 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t12 = t5 * (t4 - t8) + t10 * (ARIANE4_FREE_C(2.0) * t11);
     const ariane4_free_real_t t13 = t5 * t12;
     const ariane4_free_real_t t14 = parameters[XX2R] + (t4 - t13);
-    const ariane4_free_real_t t15 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t16 = parameters[MX3R] + t2;
     const ariane4_free_real_t t17 = t5 * t16 - t11 * parameters[MY3R];
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.886) * t17;
     const ariane4_free_real_t t19 = t5 * parameters[MY3R] + t11 * t16;
-    const ariane4_free_real_t t20 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t21 = (parameters[XY2] + (t10 - t11 * t12
         + ARIANE4_FREE_C(-0.443) * t19)) * (ARIANE4_FREE_C(2.0) * t20);
     const ariane4_free_real_t t22 = t15 * (t15 * (t8 + t13 + t18 - t14) + t21);
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.232) * (t15 * (parameters[MX2R] + t17)
         - t20 * (parameters[MY2] + t19));
-    const ariane4_free_real_t t24 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t25 = ARIANE4_FREE_COS(q[0]);
     const ariane4_free_real_t
         t26 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t25
         + ARIANE4_FREE_C(0.9593632378089879) * t24) + ARIANE4_FREE_C(0.10769300000000001));

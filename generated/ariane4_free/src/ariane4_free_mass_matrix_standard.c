@@ -75,7 +75,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,7 +89,7 @@ int ariane4_free_mass_matrix_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
@@ -103,13 +103,18 @@ int ariane4_free_mass_matrix_standard(
         return status;
     }
 
+    ariane4_free_real_t t32, t33;
+    ARIANE4_FREE_SINCOS(q[0], &t32, &t33);
+    ariane4_free_real_t t27, t19;
+    ARIANE4_FREE_SINCOS(q[1], &t27, &t19);
+    ariane4_free_real_t t15, t6;
+    ARIANE4_FREE_SINCOS(q[2], &t15, &t6);
+    ariane4_free_real_t t1, t2;
+    ARIANE4_FREE_SINCOS(q[3], &t1, &t2);
     const ariane4_free_real_t t0 = ARIANE4_FREE_C(0.1) * parameters[M4];
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[3]);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_COS(q[3]);
     const ariane4_free_real_t t3 = t1 * parameters[MY4] - t2 * parameters[MX4];
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.1) * (t0 + ARIANE4_FREE_C(2.0) * t3);
     const ariane4_free_real_t t5 = parameters[YY3] + (parameters[ZZ4] + t4);
-    const ariane4_free_real_t t6 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t7 = t2 * (parameters[YY4] - parameters[XX4])
         + parameters[XY4] * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t8 = t2 * t7;
@@ -120,11 +125,9 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t13 = t3 + t0;
     const ariane4_free_real_t t14 = parameters[XY3] + (t12 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
         + ARIANE4_FREE_C(0.436) * t13));
-    const ariane4_free_real_t t15 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t16 = t6 * (t11 - t5) - t14 * (ARIANE4_FREE_C(2.0) * t15);
     const ariane4_free_real_t t17 = t6 * t16;
     const ariane4_free_real_t t18 = parameters[XX2] + (t5 + t17);
-    const ariane4_free_real_t t19 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t20 = parameters[M3] + parameters[M4];
     const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.443) * t20;
     const ariane4_free_real_t t22 = parameters[MY3] + (parameters[MZ4] + t9);
@@ -132,7 +135,6 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t24 = t6 * t23 - t15 * t22;
     const ariane4_free_real_t t25 = ARIANE4_FREE_C(0.443) * (t21 + ARIANE4_FREE_C(2.0) * t24);
     const ariane4_free_real_t t26 = t6 * t22 + t15 * t23;
-    const ariane4_free_real_t t27 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t28 = (parameters[XY2] + (t14 + t15 * t16
         + ARIANE4_FREE_C(-0.443) * t26)) * (ARIANE4_FREE_C(2.0) * t27);
     const ariane4_free_real_t t29 = t19 * (parameters[YY2] + (t11 - t17 + t25) - t18) + t28;
@@ -140,8 +142,6 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t31 = t18 + t19 * t29
         + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t20)
         + ARIANE4_FREE_C(2.0) * t30);
-    const ariane4_free_real_t t32 = ARIANE4_FREE_SIN(q[0]);
-    const ariane4_free_real_t t33 = ARIANE4_FREE_COS(q[0]);
     const ariane4_free_real_t
         t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t33
         + ARIANE4_FREE_C(0.9593632378089879) * t32) + ARIANE4_FREE_C(0.10769300000000001));

@@ -23,7 +23,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int ariane4_free_motor_from_joint(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq, 4, ARIANE4_FREE_C(1.0e16))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e16))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)
@@ -54,22 +54,22 @@ int ariane4_free_motor_from_joint(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t5, t4;
+    ARIANE4_FREE_SINCOS(q[1], &t5, &t4);
+    ariane4_free_real_t t9, t8;
+    ARIANE4_FREE_SINCOS(q[2], &t9, &t8);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
         + ARIANE4_FREE_C(0.10769300000000001));
     q_m[0] = ARIANE4_FREE_C(207404.90211682316) * t3 - ARIANE4_FREE_C(55554.854866305905);
-    const ariane4_free_real_t t4 = ARIANE4_FREE_COS(q[1]);
-    const ariane4_free_real_t t5 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(0.8305958991958126) * t4
         - ARIANE4_FREE_C(0.5568756164881881) * t5;
     const ariane4_free_real_t t7 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t6
         + ARIANE4_FREE_C(0.293698));
     q_m[1] = ARIANE4_FREE_C(67761.19402985073) * t7 - ARIANE4_FREE_C(32805.36238805969);
-    const ariane4_free_real_t t8 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t9 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t10 = ARIANE4_FREE_C(0.06366143813161289) * t8
         - ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t11 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t10

@@ -12,7 +12,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define ARIANE4_FREE_MATH_double(name) name
 #define ARIANE4_FREE_MATH(name) ARIANE4_FREE_JOIN(ARIANE4_FREE_MATH_, ARIANE4_FREE_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DARIANE4_FREE_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, ARIANE4_FREE_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DARIANE4_FREE_SINCOS=my_sincos, or with both of
+ * -DARIANE4_FREE_SIN=my_sin -DARIANE4_FREE_COS=my_cos; -include my_header.h declares it.
+ */
+#define ARIANE4_FREE_SINGLE_float 1
+#define ARIANE4_FREE_SINGLE_double 0
+#if !defined(ARIANE4_FREE_SINCOS) && !defined(ARIANE4_FREE_SIN) && !defined(ARIANE4_FREE_COS)
+#define ARIANE4_FREE_OWN_SINCOS ARIANE4_FREE_JOIN(ARIANE4_FREE_SINGLE_, ARIANE4_FREE_REAL)
+#else
+#define ARIANE4_FREE_OWN_SINCOS 0
+#endif
 #ifndef ARIANE4_FREE_SIN
 #define ARIANE4_FREE_SIN ARIANE4_FREE_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline ariane4_free_real_t ariane4_free_select(ariane4_free_real_t condit
     return condition > ARIANE4_FREE_C(0.0) ? a : b;
 }
 
+#if ARIANE4_FREE_OWN_SINCOS
+typedef struct {
+    ariane4_free_real_t sine;
+    ariane4_free_real_t cosine;
+} ariane4_free_pair_t;
+
+/* Two numbers by value travel in registers. */
+ariane4_free_pair_t ariane4_free_sincos(ariane4_free_real_t x);
+#endif
+
+#ifndef ARIANE4_FREE_SINCOS
+#define ARIANE4_FREE_SINCOS ariane4_free_sine_cosine
+static inline void ariane4_free_sine_cosine(ariane4_free_real_t x, ariane4_free_real_t *sine, ariane4_free_real_t *cosine)
+{
+#if ARIANE4_FREE_OWN_SINCOS
+    const ariane4_free_pair_t pair = ariane4_free_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = ARIANE4_FREE_SIN(x);
+    *cosine = ARIANE4_FREE_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int ariane4_free_within(const ariane4_free_real_t x[], int n, ariane4_free_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int ariane4_free_within(const ariane4_free_real_t x[], int n, aria
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int ariane4_free_within_joints(const ariane4_free_real_t x[], ariane4_free_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
 
 static inline void ariane4_free_zero(ariane4_free_real_t x[], int n)

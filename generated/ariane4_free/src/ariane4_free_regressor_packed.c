@@ -27,7 +27,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -51,9 +51,9 @@ int ariane4_free_regressor_packed(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq, 4, ARIANE4_FREE_C(1.0e16))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e16))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)
@@ -66,8 +66,14 @@ int ariane4_free_regressor_packed(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t9, t6;
+    ARIANE4_FREE_SINCOS(q[1], &t9, &t6);
+    ariane4_free_real_t t36, t37;
+    ARIANE4_FREE_SINCOS(q[2], &t36, &t37);
+    ariane4_free_real_t t85, t84;
+    ARIANE4_FREE_SINCOS(q[3], &t85, &t84);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -76,10 +82,8 @@ int ariane4_free_regressor_packed(
         + ARIANE4_FREE_C(0.9593632378089879) * t0;
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(0.06434139546481742) * t3 / t4;
     out[0] = t5 * ddq[0];
-    const ariane4_free_real_t t6 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t7 = t6 * dq[0];
     const ariane4_free_real_t t8 = dq[1] * t7;
-    const ariane4_free_real_t t9 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t10 = t9 * ddq[0];
     const ariane4_free_real_t t11 = t8 + t10;
     const ariane4_free_real_t t12 = t9 * t5;
@@ -123,8 +127,6 @@ int ariane4_free_regressor_packed(
     const ariane4_free_real_t t34 = t6 * t32 + ARIANE4_FREE_C(-9.81) * t9;
     out[31] = t20 * t34;
     const ariane4_free_real_t t35 = dq[1] + dq[2];
-    const ariane4_free_real_t t36 = ARIANE4_FREE_SIN(q[2]);
-    const ariane4_free_real_t t37 = ARIANE4_FREE_COS(q[2]);
     const ariane4_free_real_t t38 = t6 * t37 - t9 * t36;
     const ariane4_free_real_t t39 = dq[0] * t38;
     const ariane4_free_real_t t40 = t35 * t39;
@@ -195,8 +197,6 @@ int ariane4_free_regressor_packed(
     const ariane4_free_real_t t83 = t20 * t82;
     out[38] = t69 * t76 + (t67 + t62) * t77 + t83;
     out[55] = t57 * t83;
-    const ariane4_free_real_t t84 = ARIANE4_FREE_COS(q[3]);
-    const ariane4_free_real_t t85 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t86 = t84 * t35 + t85 * t45;
     const ariane4_free_real_t t87 = dq[3] + t39;
     const ariane4_free_real_t t88 = t86 * t87;

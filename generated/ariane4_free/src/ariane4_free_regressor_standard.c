@@ -30,7 +30,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int ariane4_free_regressor_standard(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq, 4, ARIANE4_FREE_C(1.0e16))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e16))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)
@@ -57,8 +57,14 @@ int ariane4_free_regressor_standard(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t7, t9;
+    ARIANE4_FREE_SINCOS(q[1], &t7, &t9);
+    ariane4_free_real_t t41, t40;
+    ARIANE4_FREE_SINCOS(q[2], &t41, &t40);
+    ariane4_free_real_t t97, t98;
+    ARIANE4_FREE_SINCOS(q[3], &t97, &t98);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -68,9 +74,7 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t4;
     const ariane4_free_real_t t6 = t5 * ddq[0];
     out[5] = -t6;
-    const ariane4_free_real_t t7 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t8 = t7 * ddq[0];
-    const ariane4_free_real_t t9 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t10 = t9 * dq[0];
     const ariane4_free_real_t t11 = dq[1] * t10;
     const ariane4_free_real_t t12 = t8 + t11;
@@ -121,8 +125,6 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t39 = t9 * t37 + ARIANE4_FREE_C(-9.81) * t7;
     out[69] = t22 * t39;
     out[19] = t35 * t34;
-    const ariane4_free_real_t t40 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t41 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t42 = t7 * t40 + t9 * t41;
     const ariane4_free_real_t t43 = ddq[0] * t42;
     const ariane4_free_real_t t44 = t9 * t40 - t7 * t41;
@@ -209,8 +211,6 @@ int ariane4_free_regressor_standard(
     out[80] = ARIANE4_FREE_C(-0.443) * t33;
     out[29] = t83 * t82;
     out[81] = t90 * t87 - t94 * t86;
-    const ariane4_free_real_t t97 = ARIANE4_FREE_SIN(q[3]);
-    const ariane4_free_real_t t98 = ARIANE4_FREE_COS(q[3]);
     const ariane4_free_real_t t99 = t98 * t65 - t97 * t78;
     const ariane4_free_real_t t100 = t97 * t50 + t98 * t46;
     const ariane4_free_real_t t101 = dq[3] + t45;

@@ -30,7 +30,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x75B3C9D1UL
+#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
 #error "ariane4_free.h and ariane4_free_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -43,10 +43,10 @@ int ariane4_free_slotine_li_regressor(
 {
     int status = ARIANE4_FREE_STATUS_OK;
 
-    if (!ariane4_free_within(q, 4, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(dq, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(dq_r, 4, ARIANE4_FREE_C(1.0e10))
-        || !ariane4_free_within(ddq_r, 4, ARIANE4_FREE_C(1.0e16))) {
+    if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
+        || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(dq_r, ARIANE4_FREE_C(1.0e10))
+        || !ariane4_free_within_joints(ddq_r, ARIANE4_FREE_C(1.0e16))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)
@@ -59,8 +59,14 @@ int ariane4_free_slotine_li_regressor(
         return status;
     }
 
-    const ariane4_free_real_t t0 = ARIANE4_FREE_COS(q[0]);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_SIN(q[0]);
+    ariane4_free_real_t t1, t0;
+    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
+    ariane4_free_real_t t6, t9;
+    ARIANE4_FREE_SINCOS(q[1], &t6, &t9);
+    ariane4_free_real_t t38, t37;
+    ARIANE4_FREE_SINCOS(q[2], &t38, &t37);
+    ariane4_free_real_t t91, t89;
+    ARIANE4_FREE_SINCOS(q[3], &t91, &t89);
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -69,10 +75,8 @@ int ariane4_free_slotine_li_regressor(
         + ARIANE4_FREE_C(0.9593632378089879) * t0;
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t4;
     out[0] = -(t5 * ddq_r[0]);
-    const ariane4_free_real_t t6 = ARIANE4_FREE_SIN(q[1]);
     const ariane4_free_real_t t7 = t6 * t5;
     const ariane4_free_real_t t8 = t6 * ddq_r[0];
-    const ariane4_free_real_t t9 = ARIANE4_FREE_COS(q[1]);
     const ariane4_free_real_t t10 = t9 * dq[0];
     const ariane4_free_real_t t11 = t9 * dq_r[0];
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.5) * (t10 * dq_r[1] + dq[1] * t11);
@@ -117,8 +121,6 @@ int ariane4_free_slotine_li_regressor(
     out[7] = t7 * t32 - t31 * t24;
     const ariane4_free_real_t t36 = ARIANE4_FREE_C(-9.81) * t6 + t9 * t34;
     out[41] = t22 * t36;
-    const ariane4_free_real_t t37 = ARIANE4_FREE_COS(q[2]);
-    const ariane4_free_real_t t38 = ARIANE4_FREE_SIN(q[2]);
     const ariane4_free_real_t t39 = t6 * t37 + t9 * t38;
     const ariane4_free_real_t t40 = t5 * t39;
     const ariane4_free_real_t t41 = t39 * ddq_r[0];
@@ -193,9 +195,7 @@ int ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t t88 = t22 * t87;
     out[48] = t80 * t74 + t82 * (t67 + t72) + t88;
     out[82] = t62 * t88;
-    const ariane4_free_real_t t89 = ARIANE4_FREE_COS(q[3]);
     const ariane4_free_real_t t90 = t89 * t40;
-    const ariane4_free_real_t t91 = ARIANE4_FREE_SIN(q[3]);
     const ariane4_free_real_t t92 = t89 * t63 - t91 * t74;
     const ariane4_free_real_t t93 = t89 * t45 + t91 * t50;
     const ariane4_free_real_t t94 = dq_r[3] + t46;

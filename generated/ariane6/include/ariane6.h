@@ -85,7 +85,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x21DEB7ABUL
+#define ARIANE6_GENERATION 0xFF706B1FUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE6_REAL
@@ -115,7 +115,7 @@ typedef ARIANE6_REAL ariane6_real_t;
 
 #define ARIANE6_STATUS_OK     0
 #define ARIANE6_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define ARIANE6_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define ARIANE6_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define ARIANE6_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

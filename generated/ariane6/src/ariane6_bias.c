@@ -80,7 +80,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -95,8 +95,8 @@ int ariane6_bias(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -111,10 +111,20 @@ int ariane6_bias(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[0], &t0, &t3);
+    ariane6_real_t t10, t11;
+    ARIANE6_SINCOS(q[1], &t10, &t11);
+    ariane6_real_t t22, t21;
+    ARIANE6_SINCOS(q[2], &t22, &t21);
+    ariane6_real_t t35, t34;
+    ARIANE6_SINCOS(q[3], &t35, &t34);
+    ariane6_real_t t62, t61;
+    ARIANE6_SINCOS(q[4], &t62, &t61);
+    ariane6_real_t t86, t85;
+    ARIANE6_SINCOS(q[5], &t86, &t85);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     const ariane6_real_t t2 = ARIANE6_C(-1.0) / t1;
-    const ariane6_real_t t3 = ARIANE6_COS(q[0]);
     const ariane6_real_t t4 = ARIANE6_C(-4063.3400000000006) * t0
         + ARIANE6_C(-82.55365977800001) * (t2 * t2) * (t3 * t3);
     const ariane6_real_t t5 = dq[0] * dq[0];
@@ -122,8 +132,6 @@ int ariane6_bias(
     const ariane6_real_t t7 = ariane6_sign(t6);
     const ariane6_real_t t8 = parameters[FV1] * t6 + parameters[FC1] * t7 - parameters[IA1] * (t2 * t4 * t5);
     const ariane6_real_t t9 = ARIANE6_C(0.061525739908548135) * t1 / t3;
-    const ariane6_real_t t10 = ARIANE6_SIN(q[1]);
-    const ariane6_real_t t11 = ARIANE6_COS(q[1]);
     const ariane6_real_t t12 = t11 * dq[0];
     const ariane6_real_t t13 = dq[1] * t12;
     const ariane6_real_t t14 = t10 * dq[0];
@@ -134,8 +142,6 @@ int ariane6_bias(
         + parameters[XZ2R] * t17;
     const ariane6_real_t t19 = dq[1] * dq[1];
     const ariane6_real_t t20 = t12 * t12;
-    const ariane6_real_t t21 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t22 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t23 = t21 * t12 - t22 * t14;
     const ariane6_real_t t24 = dq[1] + dq[2];
     const ariane6_real_t t25 = t23 * t24;
@@ -148,8 +154,6 @@ int ariane6_bias(
     const ariane6_real_t t31 = t23 * t23;
     const ariane6_real_t t32 = t24 * t24;
     const ariane6_real_t t33 = ARIANE6_C(1.37) * t15;
-    const ariane6_real_t t34 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t35 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t36 = ARIANE6_C(2.0) * t25;
     const ariane6_real_t t37 = t35 * t29 + t34 * t36;
     const ariane6_real_t t38 = t35 * t26 + t34 * t24;
@@ -176,8 +180,6 @@ int ariane6_bias(
     const ariane6_real_t t58 = t26 * t26;
     const ariane6_real_t t59 = t58 + t32;
     const ariane6_real_t t60 = t57 + (ARIANE6_C(-0.17) * t29 + ARIANE6_C(-0.488) * t59);
-    const ariane6_real_t t61 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t62 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t63 = t27 - t47;
     const ariane6_real_t t64 = t40 + t41;
     const ariane6_real_t t65 = t62 * t63 + t61 * t64;
@@ -201,8 +203,6 @@ int ariane6_bias(
     const ariane6_real_t t82 = t80 + (ARIANE6_C(-0.17) * t81 + ARIANE6_C(-0.488) * t29);
     const ariane6_real_t t83 = t33 - (ARIANE6_C(0.34) * t27 + ARIANE6_C(-0.976) * t25);
     const ariane6_real_t t84 = t35 * t82 - t34 * t83;
-    const ariane6_real_t t85 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t86 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t87 = t45 + t75;
     const ariane6_real_t t88 = t68 + t69;
     const ariane6_real_t t89 = t86 * t87 + t85 * t88;

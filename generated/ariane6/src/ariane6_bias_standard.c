@@ -104,7 +104,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -120,8 +120,8 @@ int ariane6_bias_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within(parameters, 78, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -136,10 +136,20 @@ int ariane6_bias_standard(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[0], &t0, &t3);
+    ariane6_real_t t10, t11;
+    ARIANE6_SINCOS(q[1], &t10, &t11);
+    ariane6_real_t t26, t24;
+    ARIANE6_SINCOS(q[2], &t26, &t24);
+    ariane6_real_t t43, t42;
+    ARIANE6_SINCOS(q[3], &t43, &t42);
+    ariane6_real_t t70, t69;
+    ARIANE6_SINCOS(q[4], &t70, &t69);
+    ariane6_real_t t92, t91;
+    ARIANE6_SINCOS(q[5], &t92, &t91);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     const ariane6_real_t t2 = ARIANE6_C(-1.0) / t1;
-    const ariane6_real_t t3 = ARIANE6_COS(q[0]);
     const ariane6_real_t t4 = ARIANE6_C(-4063.3400000000006) * t0
         + ARIANE6_C(-82.55365977800001) * (t2 * t2) * (t3 * t3);
     const ariane6_real_t t5 = dq[0] * dq[0];
@@ -147,8 +157,6 @@ int ariane6_bias_standard(
     const ariane6_real_t t7 = ariane6_sign(t6);
     const ariane6_real_t t8 = t6 * parameters[FV1] + t7 * parameters[FC1] - t2 * t4 * t5 * parameters[IA1];
     const ariane6_real_t t9 = ARIANE6_C(0.061525739908548135) * t1 / t3;
-    const ariane6_real_t t10 = ARIANE6_SIN(q[1]);
-    const ariane6_real_t t11 = ARIANE6_COS(q[1]);
     const ariane6_real_t t12 = t11 * dq[0];
     const ariane6_real_t t13 = dq[1] * t12;
     const ariane6_real_t t14 = t10 * dq[0];
@@ -163,9 +171,7 @@ int ariane6_bias_standard(
     const ariane6_real_t t22 = t10 * t21 + ARIANE6_C(9.81) * t11;
     const ariane6_real_t t23 = t17 + t18 * parameters[XZ2] + (t19 - t20) * parameters[YZ2]
         - t22 * parameters[MZ2];
-    const ariane6_real_t t24 = ARIANE6_COS(q[2]);
     const ariane6_real_t t25 = dq[1] + dq[2];
-    const ariane6_real_t t26 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t27 = t26 * t14 - t24 * t12;
     const ariane6_real_t t28 = t25 * t27;
     const ariane6_real_t t29 = t24 * t14 + t26 * t12;
@@ -183,8 +189,6 @@ int ariane6_bias_standard(
     const ariane6_real_t t40 = t26 * t38 + t24 * t39;
     const ariane6_real_t t41 = t32 - parameters[XZ3] * t33 + parameters[YZ3] * (t35 - t34)
         + (parameters[MY3] * t36 - parameters[MZ3] * t40);
-    const ariane6_real_t t42 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t43 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t44 = ARIANE6_C(2.0) * t28;
     const ariane6_real_t t45 = t43 * t33 + t42 * t44;
     const ariane6_real_t t46 = t42 * t25 + t43 * t29;
@@ -212,8 +216,6 @@ int ariane6_bias_standard(
     const ariane6_real_t t67 = t42 * t66 - t43 * t65;
     const ariane6_real_t t68 = t55 + parameters[XZ4] * t57 - parameters[YZ4] * (t58 - t59)
         - (parameters[MY4] * t62 + parameters[MZ4] * t67);
-    const ariane6_real_t t69 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t70 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t71 = t30 - t56;
     const ariane6_real_t t72 = t49 - t48;
     const ariane6_real_t t73 = t70 * t71 + t69 * t72;
@@ -236,8 +238,6 @@ int ariane6_bias_standard(
     const ariane6_real_t t89 = t70 * t88 + t69 * t62;
     const ariane6_real_t t90 = t83 + parameters[XZ5] * t85 + parameters[YZ5] * (t86 - t87)
         + (parameters[MY5] * t67 - parameters[MZ5] * t89);
-    const ariane6_real_t t91 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t92 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t93 = t53 - t84;
     const ariane6_real_t t94 = t76 + t77;
     const ariane6_real_t t95 = t92 * t93 + t91 * t94;

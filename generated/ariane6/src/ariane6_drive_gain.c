@@ -21,7 +21,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int ariane6_drive_gain(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)
@@ -45,21 +45,23 @@ int ariane6_drive_gain(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t1 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[0], &t1, &t0);
+    ariane6_real_t t4, t5;
+    ARIANE6_SINCOS(q[1], &t4, &t5);
+    ariane6_real_t t9, t10;
+    ARIANE6_SINCOS(q[2], &t9, &t10);
+    ariane6_real_t t15, t14;
+    ARIANE6_SINCOS(q[4], &t15, &t14);
     const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
     const ariane6_real_t t3 = ARIANE6_C(1.0) / t2;
     out[0] = ARIANE6_C(0.004) * (t0 * (ARIANE6_C(4063.3400000000006) * t3));
-    const ariane6_real_t t4 = ARIANE6_SIN(q[1]);
-    const ariane6_real_t t5 = ARIANE6_COS(q[1]);
     const ariane6_real_t t6 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t5
         + ARIANE6_C(0.6427876096865393) * t4) + ARIANE6_C(0.420682));
     const ariane6_real_t t7 = ARIANE6_C(1.0) / t6;
     const ariane6_real_t t8 = ARIANE6_C(0.004) * ((ARIANE6_C(0.766044443118978) * t4
         + ARIANE6_C(0.6427876096865393) * t5) * (ARIANE6_C(12691.800000000003) * t7));
     out[1] = t8;
-    const ariane6_real_t t9 = ARIANE6_SIN(q[2]);
-    const ariane6_real_t t10 = ARIANE6_COS(q[2]);
     const ariane6_real_t t11 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t10
         + ARIANE6_C(-0.9986295347545738) * t9) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t12 = ARIANE6_C(1.0) / t11;
@@ -67,8 +69,6 @@ int ariane6_drive_gain(
         + ARIANE6_C(-0.9986295347545738) * t10) * (ARIANE6_C(8377.600000000002) * t12));
     out[2] = t13;
     out[3] = ARIANE6_C(5.0);
-    const ariane6_real_t t14 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t15 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t16 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t15 + ARIANE6_C(0.097));
     const ariane6_real_t t17 = ARIANE6_C(1.0) / t16;
     out[4] = ARIANE6_C(0.004) * (t14 * (ARIANE6_C(3549.6000000000004) * t17));

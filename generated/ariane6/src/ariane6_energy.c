@@ -81,7 +81,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -97,8 +97,8 @@ int ariane6_energy(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -114,9 +114,19 @@ int ariane6_energy(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[1]);
+    ariane6_real_t t60, t59;
+    ARIANE6_SINCOS(q[0], &t60, &t59);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[1], &t0, &t2);
+    ariane6_real_t t10, t9;
+    ARIANE6_SINCOS(q[2], &t10, &t9);
+    ariane6_real_t t23, t22;
+    ARIANE6_SINCOS(q[3], &t23, &t22);
+    ariane6_real_t t38, t37;
+    ARIANE6_SINCOS(q[4], &t38, &t37);
+    ariane6_real_t t49, t48;
+    ARIANE6_SINCOS(q[5], &t49, &t48);
     const ariane6_real_t t1 = t0 * dq[0];
-    const ariane6_real_t t2 = ARIANE6_COS(q[1]);
     const ariane6_real_t t3 = t2 * dq[0];
     const ariane6_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
     const ariane6_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
@@ -125,8 +135,6 @@ int ariane6_energy(
     const ariane6_real_t t7 = ARIANE6_C(-0.18) * dq[0];
     const ariane6_real_t t8 = ARIANE6_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + ARIANE6_C(0.5) * t6
         + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const ariane6_real_t t9 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t10 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t11 = t9 * t1 + t10 * t3;
     const ariane6_real_t t12 = t9 * t3 - t10 * t1;
     const ariane6_real_t t13 = dq[1] + dq[2];
@@ -140,8 +148,6 @@ int ariane6_energy(
     const ariane6_real_t t20 = t10 * t17;
     const ariane6_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3R] * (t11 * t19
         - t13 * t20);
-    const ariane6_real_t t22 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t23 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t24 = t22 * t11 - t23 * t13;
     const ariane6_real_t t25 = t23 * t11 + t22 * t13;
     const ariane6_real_t t26 = dq[3] + t12;
@@ -156,8 +162,6 @@ int ariane6_energy(
     const ariane6_real_t t35 = parameters[MX4] * (t25 * t33 - t26 * t32) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
     const ariane6_real_t t36 = t8 + ARIANE6_C(0.5) * t16 + t21 + ARIANE6_C(0.5) * t29 + t35;
-    const ariane6_real_t t37 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t38 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t39 = t37 * t24 + t38 * t26;
     const ariane6_real_t t40 = t37 * t26 - t38 * t24;
     const ariane6_real_t t41 = dq[4] + t25;
@@ -168,8 +172,6 @@ int ariane6_energy(
     const ariane6_real_t t46 = t37 * t34 - t38 * t33;
     const ariane6_real_t t47 = parameters[MX5] * (t41 * t45 - t40 * t32) + parameters[MY5R] * (t39 * t32
         + t41 * t46);
-    const ariane6_real_t t48 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t49 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t50 = t48 * t39 - t49 * t41;
     const ariane6_real_t t51 = t49 * t39 + t48 * t41;
     const ariane6_real_t t52 = dq[5] + t40;
@@ -182,8 +184,6 @@ int ariane6_energy(
     const ariane6_real_t t57 = t50 * t45 + t52 * (t48 * t46 + t49 * t32);
     const ariane6_real_t t58 = t36 + ARIANE6_C(0.5) * t44 + t47 + ARIANE6_C(0.5) * t55
         + (parameters[MX6] * t56 + parameters[MY6] * t57);
-    const ariane6_real_t t59 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t60 = ARIANE6_SIN(q[0]);
     const ariane6_real_t t61 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t60 + ARIANE6_C(0.10828541));
     const ariane6_real_t t62 = ARIANE6_C(1.0) / t61;
     const ariane6_real_t t63 = t59 * (ARIANE6_C(4063.3400000000006) * t62);

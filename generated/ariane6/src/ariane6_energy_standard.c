@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,8 +122,8 @@ int ariane6_energy_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within(parameters, 78, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -139,9 +139,19 @@ int ariane6_energy_standard(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[1]);
+    ariane6_real_t t72, t71;
+    ARIANE6_SINCOS(q[0], &t72, &t71);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[1], &t0, &t2);
+    ariane6_real_t t11, t10;
+    ARIANE6_SINCOS(q[2], &t11, &t10);
+    ariane6_real_t t25, t26;
+    ARIANE6_SINCOS(q[3], &t25, &t26);
+    ariane6_real_t t43, t42;
+    ARIANE6_SINCOS(q[4], &t43, &t42);
+    ariane6_real_t t57, t56;
+    ARIANE6_SINCOS(q[5], &t57, &t56);
     const ariane6_real_t t1 = t0 * dq[0];
-    const ariane6_real_t t2 = ARIANE6_COS(q[1]);
     const ariane6_real_t t3 = t2 * dq[0];
     const ariane6_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const ariane6_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
@@ -150,8 +160,6 @@ int ariane6_energy_standard(
     const ariane6_real_t t8 = ARIANE6_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const ariane6_real_t t9 = ARIANE6_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane6_real_t t10 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t11 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t12 = t10 * t1 + t11 * t3;
     const ariane6_real_t t13 = t10 * t3 - t11 * t1;
     const ariane6_real_t t14 = dq[1] + dq[2];
@@ -167,8 +175,6 @@ int ariane6_energy_standard(
         + t14 * t19);
     const ariane6_real_t t24 = t9 + ARIANE6_C(0.5) * (t15 + t16 + t17 + t22) + (t23
         + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const ariane6_real_t t25 = ARIANE6_SIN(q[3]);
-    const ariane6_real_t t26 = ARIANE6_COS(q[3]);
     const ariane6_real_t t27 = t26 * t12 - t25 * t14;
     const ariane6_real_t t28 = t26 * t14 + t25 * t12;
     const ariane6_real_t t29 = dq[3] + t13;
@@ -185,8 +191,6 @@ int ariane6_energy_standard(
     const ariane6_real_t t40 = parameters[MX4] * (t29 * t36 + t28 * t38) + parameters[MY4] * (t27 * t38
         - t29 * t35);
     const ariane6_real_t t41 = t24 + ARIANE6_C(0.5) * t39 + (t40 - parameters[MZ4] * (t28 * t35 + t27 * t36));
-    const ariane6_real_t t42 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t43 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t44 = t42 * t27 + t43 * t29;
     const ariane6_real_t t45 = t43 * t27 - t42 * t29;
     const ariane6_real_t t46 = dq[4] + t28;
@@ -200,8 +204,6 @@ int ariane6_energy_standard(
     const ariane6_real_t t54 = parameters[MX5] * (t46 * t51 + t45 * t36) + parameters[MY5] * (t44 * t36
         + t46 * t50);
     const ariane6_real_t t55 = t41 + ARIANE6_C(0.5) * t53 + (parameters[MZ5] * (t44 * t51 - t45 * t50) - t54);
-    const ariane6_real_t t56 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t57 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t58 = t57 * t46 - t56 * t44;
     const ariane6_real_t t59 = t57 * t44 + t56 * t46;
     const ariane6_real_t t60 = t45 - dq[5];
@@ -216,8 +218,6 @@ int ariane6_energy_standard(
     const ariane6_real_t t69 = parameters[MX6] * (t60 * t67 - t59 * t51) + parameters[MY6] * (t58 * t51
         + t60 * t66);
     const ariane6_real_t t70 = t55 + ARIANE6_C(0.5) * t68 + (t69 - parameters[MZ6] * (t59 * t66 + t58 * t67));
-    const ariane6_real_t t71 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t72 = ARIANE6_SIN(q[0]);
     const ariane6_real_t t73 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t72 + ARIANE6_C(0.10828541));
     const ariane6_real_t t74 = ARIANE6_C(1.0) / t73;
     const ariane6_real_t t75 = t71 * (ARIANE6_C(4063.3400000000006) * t74);

@@ -27,7 +27,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int ariane6_forward_kinematics(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (status != ARIANE6_STATUS_OK) {
@@ -45,18 +45,26 @@ int ariane6_forward_kinematics(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[0]);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[0], &t1, &t0);
+    ariane6_real_t t4, t2;
+    ARIANE6_SINCOS(q[1], &t4, &t2);
+    ariane6_real_t t11, t10;
+    ARIANE6_SINCOS(q[2], &t11, &t10);
+    ariane6_real_t t22, t21;
+    ARIANE6_SINCOS(q[3], &t22, &t21);
+    ariane6_real_t t33, t32;
+    ARIANE6_SINCOS(q[4], &t33, &t32);
+    ariane6_real_t t41, t40;
+    ARIANE6_SINCOS(q[5], &t41, &t40);
     out[0] = t0;
-    const ariane6_real_t t1 = ARIANE6_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = ARIANE6_C(1.0);
     out[15] = ARIANE6_C(1.0);
-    const ariane6_real_t t2 = ARIANE6_COS(q[1]);
     const ariane6_real_t t3 = t0 * t2;
     out[16] = t3;
-    const ariane6_real_t t4 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -72,8 +80,6 @@ int ariane6_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = ARIANE6_C(1.0);
-    const ariane6_real_t t10 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t11 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t12 = t10 * t3 - t11 * t5;
     out[32] = t12;
     const ariane6_real_t t13 = t11 * t3 + t10 * t5;
@@ -95,8 +101,6 @@ int ariane6_forward_kinematics(
     const ariane6_real_t t20 = ARIANE6_C(0.685) * t4;
     out[43] = t20;
     out[47] = ARIANE6_C(1.0);
-    const ariane6_real_t t21 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t22 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t23 = t21 * t12 - t1 * t22;
     out[48] = t23;
     const ariane6_real_t t24 = t22 * t12 + t1 * t21;
@@ -119,8 +123,6 @@ int ariane6_forward_kinematics(
     const ariane6_real_t t31 = t20 + (ARIANE6_C(-0.17) * t18 + ARIANE6_C(0.488) * t19);
     out[59] = t31;
     out[63] = ARIANE6_C(1.0);
-    const ariane6_real_t t32 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t33 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t34 = t32 * t23 - t33 * t13;
     out[64] = t34;
     const ariane6_real_t t35 = t33 * t23 + t32 * t13;
@@ -140,8 +142,6 @@ int ariane6_forward_kinematics(
     out[74] = t30;
     out[75] = t31;
     out[79] = ARIANE6_C(1.0);
-    const ariane6_real_t t40 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t41 = ARIANE6_SIN(q[5]);
     out[80] = t40 * t34 - t41 * t24;
     out[81] = -(t41 * t34 + t40 * t24);
     out[82] = -t35;

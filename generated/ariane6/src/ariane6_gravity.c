@@ -79,7 +79,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -93,7 +93,7 @@ int ariane6_gravity(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -108,28 +108,28 @@ int ariane6_gravity(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[0], &t0, &t2);
+    ariane6_real_t t4, t9;
+    ARIANE6_SINCOS(q[1], &t4, &t9);
+    ariane6_real_t t7, t5;
+    ARIANE6_SINCOS(q[2], &t7, &t5);
+    ariane6_real_t t13, t6;
+    ARIANE6_SINCOS(q[3], &t13, &t6);
+    ariane6_real_t t17, t12;
+    ARIANE6_SINCOS(q[4], &t17, &t12);
+    ariane6_real_t t21, t16;
+    ARIANE6_SINCOS(q[5], &t21, &t16);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t2 = ARIANE6_COS(q[0]);
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
-    const ariane6_real_t t4 = ARIANE6_SIN(q[1]);
-    const ariane6_real_t t5 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t6 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t7 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t8 = ARIANE6_C(-9.81) * t4;
-    const ariane6_real_t t9 = ARIANE6_COS(q[1]);
     const ariane6_real_t t10 = ARIANE6_C(9.81) * t9;
     const ariane6_real_t t11 = t7 * t8 + t5 * t10;
-    const ariane6_real_t t12 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t13 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t14 = t5 * t8 - t7 * t10;
     const ariane6_real_t t15 = t13 * t14;
-    const ariane6_real_t t16 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t17 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t18 = t6 * t14;
     const ariane6_real_t t19 = t17 * t18 + t12 * t11;
     const ariane6_real_t t20 = parameters[MY6] * t19;
-    const ariane6_real_t t21 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t22 = parameters[MX6] * t19;
     const ariane6_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY5R] * t15;
     const ariane6_real_t t24 = t12 * t18 - t17 * t11;

@@ -81,7 +81,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -97,9 +97,9 @@ int ariane6_inverse_dynamics(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq, 6, ARIANE6_C(1.0e16))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))
         || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -114,8 +114,18 @@ int ariane6_inverse_dynamics(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t1 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[0], &t1, &t0);
+    ariane6_real_t t11, t13;
+    ARIANE6_SINCOS(q[1], &t11, &t13);
+    ariane6_real_t t31, t27;
+    ARIANE6_SINCOS(q[2], &t31, &t27);
+    ariane6_real_t t49, t48;
+    ARIANE6_SINCOS(q[3], &t49, &t48);
+    ariane6_real_t t78, t77;
+    ARIANE6_SINCOS(q[4], &t78, &t77);
+    ariane6_real_t t103, t102;
+    ARIANE6_SINCOS(q[5], &t103, &t102);
     const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
     const ariane6_real_t t3 = ARIANE6_C(-1.0) / t2;
     const ariane6_real_t t4 = t0 * (ARIANE6_C(-4063.3400000000006) * t3);
@@ -127,9 +137,7 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t9 = parameters[FV1] * t5 + parameters[FC1] * t6 + parameters[IA1] * (t4 * ddq[0]
         - t3 * t7 * t8);
     const ariane6_real_t t10 = ARIANE6_C(0.061525739908548135) * t2 / t0;
-    const ariane6_real_t t11 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t12 = dq[1] * dq[1];
-    const ariane6_real_t t13 = ARIANE6_COS(q[1]);
     const ariane6_real_t t14 = t13 * dq[0];
     const ariane6_real_t t15 = t14 * t14;
     const ariane6_real_t t16 = dq[1] * t14;
@@ -144,11 +152,9 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t25 = parameters[ZZ2R] * t16 + parameters[XX2R] * t18 + parameters[XY2] * t22
         + parameters[XZ2R] * t24;
     const ariane6_real_t t26 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t27 = ARIANE6_COS(q[2]);
     const ariane6_real_t t28 = t26 + ARIANE6_C(-0.685) * t22;
     const ariane6_real_t t29 = dq[1] + dq[2];
     const ariane6_real_t t30 = t29 * t29;
-    const ariane6_real_t t31 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t32 = t11 * t31 - t13 * t27;
     const ariane6_real_t t33 = dq[0] * t32;
     const ariane6_real_t t34 = t33 * t33;
@@ -166,8 +172,6 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t46 = t45 - t44;
     const ariane6_real_t t47 = parameters[XZ3] * t46 - (parameters[ZZ3R] * t35 + parameters[XX3R] * t38
         + parameters[XY3R] * t43);
-    const ariane6_real_t t48 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t49 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t50 = t48 * t29 + t49 * t39;
     const ariane6_real_t t51 = t50 * t50;
     const ariane6_real_t t52 = t33 - dq[3];
@@ -196,8 +200,6 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t74 = t39 * t39;
     const ariane6_real_t t75 = t30 + t74;
     const ariane6_real_t t76 = t73 + (ARIANE6_C(-0.488) * t75 + ARIANE6_C(-0.17) * t46);
-    const ariane6_real_t t77 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t78 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t79 = t77 * t52 - t78 * t59;
     const ariane6_real_t t80 = t79 * t79;
     const ariane6_real_t t81 = dq[4] + t50;
@@ -222,8 +224,6 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t99 = t97 + (ARIANE6_C(-0.17) * t98 + ARIANE6_C(0.488) * t55);
     const ariane6_real_t t100 = ARIANE6_C(0.17) * t43 + ARIANE6_C(0.488) * t56 - t28;
     const ariane6_real_t t101 = t49 * t99 + t48 * t100;
-    const ariane6_real_t t102 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t103 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t104 = t102 * t81 - t103 * t88;
     const ariane6_real_t t105 = t104 * t104;
     const ariane6_real_t t106 = t79 - dq[5];

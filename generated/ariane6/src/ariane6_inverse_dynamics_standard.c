@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,9 +122,9 @@ int ariane6_inverse_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq, 6, ARIANE6_C(1.0e16))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))
         || !ariane6_within(parameters, 78, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -139,8 +139,18 @@ int ariane6_inverse_dynamics_standard(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t1 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[0], &t1, &t0);
+    ariane6_real_t t11, t12;
+    ARIANE6_SINCOS(q[1], &t11, &t12);
+    ariane6_real_t t33, t31;
+    ARIANE6_SINCOS(q[2], &t33, &t31);
+    ariane6_real_t t58, t57;
+    ARIANE6_SINCOS(q[3], &t58, &t57);
+    ariane6_real_t t87, t86;
+    ARIANE6_SINCOS(q[4], &t87, &t86);
+    ariane6_real_t t110, t109;
+    ARIANE6_SINCOS(q[5], &t110, &t109);
     const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
     const ariane6_real_t t3 = ARIANE6_C(-1.0) / t2;
     const ariane6_real_t t4 = t0 * (ARIANE6_C(-4063.3400000000006) * t3);
@@ -152,8 +162,6 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t9 = t5 * parameters[FV1] + t6 * parameters[FC1] + (t4 * ddq[0]
         - t3 * t7 * t8) * parameters[IA1];
     const ariane6_real_t t10 = ARIANE6_C(0.061525739908548135) * t2 / t0;
-    const ariane6_real_t t11 = ARIANE6_SIN(q[1]);
-    const ariane6_real_t t12 = ARIANE6_COS(q[1]);
     const ariane6_real_t t13 = t12 * dq[0];
     const ariane6_real_t t14 = t13 * t13;
     const ariane6_real_t t15 = dq[1] * dq[1];
@@ -174,9 +182,7 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t29 = ARIANE6_C(-0.18) * ddq[0];
     const ariane6_real_t t30 = (t14 - t15) * parameters[YZ2] + (t24 + t26 * parameters[XZ2])
         + (t29 * parameters[MY2] - t28 * parameters[MZ2]);
-    const ariane6_real_t t31 = ARIANE6_COS(q[2]);
     const ariane6_real_t t32 = t29 + ARIANE6_C(-0.685) * t23;
-    const ariane6_real_t t33 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t34 = t12 * t27 + ARIANE6_C(-9.81) * t11;
     const ariane6_real_t t35 = t34 + ARIANE6_C(0.685) * (t14 + t15);
     const ariane6_real_t t36 = t28 + ARIANE6_C(0.685) * t26;
@@ -202,8 +208,6 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t55 = t53 + t54;
     const ariane6_real_t t56 = t32 * parameters[MY3] - t37 * parameters[MZ3] + ((t40 - t42) * parameters[YZ3]
         + (t52 + t55 * parameters[XZ3]));
-    const ariane6_real_t t57 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t58 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t59 = t58 * t47 + t57 * t41;
     const ariane6_real_t t60 = t59 * t59;
     const ariane6_real_t t61 = dq[3] + t39;
@@ -233,8 +237,6 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t84 = t57 * t83 - t58 * t82;
     const ariane6_real_t t85 = (t60 - t62) * parameters[YZ4] + (t73 + t76 * parameters[XZ4])
         + (t79 * parameters[MY4] + t84 * parameters[MZ4]);
-    const ariane6_real_t t86 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t87 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t88 = t86 * t61 - t87 * t68;
     const ariane6_real_t t89 = t88 * t88;
     const ariane6_real_t t90 = dq[4] + t59;
@@ -258,8 +260,6 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t107 = t87 * t106 + t86 * t79;
     const ariane6_real_t t108 = (t89 - t91) * parameters[YZ5] + (t102 + t105 * parameters[XZ5])
         + (t84 * parameters[MY5] - t107 * parameters[MZ5]);
-    const ariane6_real_t t109 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t110 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t111 = t110 * t97 + t109 * t90;
     const ariane6_real_t t112 = t111 * t111;
     const ariane6_real_t t113 = dq[5] + t88;

@@ -21,7 +21,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int ariane6_jacobian(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (status != ARIANE6_STATUS_OK) {
@@ -39,22 +39,22 @@ int ariane6_jacobian(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t13;
+    ARIANE6_SINCOS(q[0], &t0, &t13);
+    ariane6_real_t t7, t2;
+    ARIANE6_SINCOS(q[1], &t7, &t2);
+    ariane6_real_t t6, t5;
+    ARIANE6_SINCOS(q[2], &t6, &t5);
+    ariane6_real_t t14, t12;
+    ARIANE6_SINCOS(q[3], &t14, &t12);
+    ariane6_real_t t11, t15;
+    ARIANE6_SINCOS(q[4], &t11, &t15);
     const ariane6_real_t t1 = ARIANE6_C(-0.18) * t0;
-    const ariane6_real_t t2 = ARIANE6_COS(q[1]);
     const ariane6_real_t t3 = t0 * t2;
     const ariane6_real_t t4 = t1 + ARIANE6_C(-0.685) * t3;
-    const ariane6_real_t t5 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t6 = ARIANE6_SIN(q[2]);
-    const ariane6_real_t t7 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t8 = t0 * t7;
     const ariane6_real_t t9 = t5 * t3 - t6 * t8;
     const ariane6_real_t t10 = t6 * t3 + t5 * t8;
-    const ariane6_real_t t11 = ARIANE6_SIN(q[4]);
-    const ariane6_real_t t12 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t13 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t14 = ARIANE6_SIN(q[3]);
-    const ariane6_real_t t15 = ARIANE6_COS(q[4]);
     const ariane6_real_t t16 = t11 * (t12 * t9 + t13 * t14) + t15 * t10;
     const ariane6_real_t t17 = ARIANE6_C(0.3) * t16;
     const ariane6_real_t t18 = t4 + (ARIANE6_C(0.17) * t9 + ARIANE6_C(0.488) * t10) + t17;

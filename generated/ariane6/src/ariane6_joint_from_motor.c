@@ -28,7 +28,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int ariane6_joint_from_motor(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q_m, 6, ARIANE6_C(1.0e18))
-        || !ariane6_within(dq_m, 6, ARIANE6_C(1.0e18))
-        || !ariane6_within(ddq_m, 6, ARIANE6_C(1.0e18))) {
+    if (!ariane6_within_joints(q_m, ARIANE6_C(1.0e18))
+        || !ariane6_within_joints(dq_m, ARIANE6_C(1.0e18))
+        || !ariane6_within_joints(ddq_m, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q_m[0] < ARIANE6_C(-20.0) || q_m[0] > ARIANE6_C(20020.0)

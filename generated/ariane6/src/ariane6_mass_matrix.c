@@ -79,7 +79,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -93,7 +93,7 @@ int ariane6_mass_matrix(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -108,22 +108,28 @@ int ariane6_mass_matrix(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t1 = ARIANE6_SIN(q[5]);
+    ariane6_real_t t57, t56;
+    ARIANE6_SINCOS(q[0], &t57, &t56);
+    ariane6_real_t t52, t46;
+    ARIANE6_SINCOS(q[1], &t52, &t46);
+    ariane6_real_t t42, t23;
+    ARIANE6_SINCOS(q[2], &t42, &t23);
+    ariane6_real_t t12, t15;
+    ARIANE6_SINCOS(q[3], &t12, &t15);
+    ariane6_real_t t8, t5;
+    ARIANE6_SINCOS(q[4], &t8, &t5);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[5], &t1, &t0);
     const ariane6_real_t t2 = parameters[XY6] * (ARIANE6_C(2.0) * t1) - t0 * parameters[XX6R];
     const ariane6_real_t t3 = t0 * t2;
     const ariane6_real_t t4 = parameters[XX5R] - t3;
-    const ariane6_real_t t5 = ARIANE6_COS(q[4]);
     const ariane6_real_t t6 = t0 * parameters[XZ6R] - t1 * parameters[YZ6R];
     const ariane6_real_t t7 = parameters[XY5] + t6;
-    const ariane6_real_t t8 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (ARIANE6_C(2.0) * t8);
     const ariane6_real_t t10 = t5 * t9;
     const ariane6_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    const ariane6_real_t t12 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t13 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t14 = parameters[MY4R] + t13;
-    const ariane6_real_t t15 = ARIANE6_COS(q[3]);
     const ariane6_real_t t16 = t1 * parameters[MY6] - t0 * parameters[MX6];
     const ariane6_real_t t17 = t16 - parameters[MX5];
     const ariane6_real_t t18 = t8 * parameters[MY5R] + t5 * t17;
@@ -131,7 +137,6 @@ int ariane6_mass_matrix(
     const ariane6_real_t t20 = t12 * t14 - t15 * t19;
     const ariane6_real_t t21 = ARIANE6_C(0.34) * t20;
     const ariane6_real_t t22 = t11 + t21;
-    const ariane6_real_t t23 = ARIANE6_COS(q[2]);
     const ariane6_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
     const ariane6_real_t t25 = parameters[XX4R] + (parameters[ZZ6] - t10);
     const ariane6_real_t t26 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
@@ -150,24 +155,19 @@ int ariane6_mass_matrix(
     const ariane6_real_t t39 = t15 * t36 + t12 * t38;
     const ariane6_real_t t40 = ARIANE6_C(0.488) * t20;
     const ariane6_real_t t41 = parameters[XY3R] + (t39 + (t40 + ARIANE6_C(-0.17) * t33));
-    const ariane6_real_t t42 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t43 = t23 * (t22 - t35) + t41 * (ARIANE6_C(2.0) * t42);
     const ariane6_real_t t44 = t23 * t43;
     const ariane6_real_t t45 = parameters[XX2R] + (t22 - t44);
-    const ariane6_real_t t46 = ARIANE6_COS(q[1]);
     const ariane6_real_t t47 = t33 - parameters[MY3R];
     const ariane6_real_t t48 = parameters[MX3R] - t20;
     const ariane6_real_t t49 = t42 * t47 + t23 * t48;
     const ariane6_real_t t50 = ARIANE6_C(1.37) * t49;
     const ariane6_real_t t51 = t23 * t47 - t42 * t48;
-    const ariane6_real_t t52 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t53 = (parameters[XY2] + (t41 - t42 * t43
         + ARIANE6_C(0.685) * t51)) * (ARIANE6_C(2.0) * t52);
     const ariane6_real_t t54 = t46 * (t46 * (t35 + t44 + t50 - t45) + t53);
     const ariane6_real_t t55 = ARIANE6_C(0.36) * (t52 * (t51 - parameters[MY2]) + t46 * (parameters[MX2R]
         + t49));
-    const ariane6_real_t t56 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t57 = ARIANE6_SIN(q[0]);
     const ariane6_real_t t58 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t57 + ARIANE6_C(0.10828541));
     const ariane6_real_t t59 = ARIANE6_C(1.0) / t58;
     const ariane6_real_t t60 = t56 * (ARIANE6_C(4063.3400000000006) * t59);

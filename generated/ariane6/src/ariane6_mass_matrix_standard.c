@@ -103,7 +103,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int ariane6_mass_matrix_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within(parameters, 78, ARIANE6_C(1.0e18))) {
         status |= ARIANE6_STATUS_INPUT;
     }
@@ -133,29 +133,35 @@ int ariane6_mass_matrix_standard(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t1 = ARIANE6_SIN(q[5]);
+    ariane6_real_t t69, t68;
+    ARIANE6_SINCOS(q[0], &t69, &t68);
+    ariane6_real_t t63, t55;
+    ARIANE6_SINCOS(q[1], &t63, &t55);
+    ariane6_real_t t51, t29;
+    ARIANE6_SINCOS(q[2], &t51, &t29);
+    ariane6_real_t t18, t21;
+    ARIANE6_SINCOS(q[3], &t18, &t21);
+    ariane6_real_t t12, t7;
+    ARIANE6_SINCOS(q[4], &t12, &t7);
+    ariane6_real_t t1, t0;
+    ARIANE6_SINCOS(q[5], &t1, &t0);
     const ariane6_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
         + parameters[XY6] * (ARIANE6_C(2.0) * t1);
     const ariane6_real_t t3 = t0 * t2;
     const ariane6_real_t t4 = ARIANE6_C(0.3) * parameters[M6];
     const ariane6_real_t t5 = ARIANE6_C(0.3) * (t4 + ARIANE6_C(2.0) * parameters[MZ6]);
     const ariane6_real_t t6 = parameters[XX5] + (parameters[YY6] - t3 + t5);
-    const ariane6_real_t t7 = ARIANE6_COS(q[4]);
     const ariane6_real_t t8 = parameters[YY5] + parameters[ZZ6];
     const ariane6_real_t t9 = t1 * parameters[MY6] - t0 * parameters[MX6];
     const ariane6_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + ARIANE6_C(0.3) * t9;
     const ariane6_real_t t11 = parameters[XY5] + t10;
-    const ariane6_real_t t12 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t13 = t7 * (t8 - t6) + t11 * (ARIANE6_C(2.0) * t12);
     const ariane6_real_t t14 = t7 * t13;
     const ariane6_real_t t15 = parameters[ZZ4] + (t6 + t14);
     const ariane6_real_t t16 = parameters[M4] + (parameters[M5] + parameters[M6]);
     const ariane6_real_t t17 = ARIANE6_C(0.17) * t16;
-    const ariane6_real_t t18 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t19 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t20 = parameters[MY4] + (t19 - parameters[MZ5]);
-    const ariane6_real_t t21 = ARIANE6_COS(q[3]);
     const ariane6_real_t t22 = parameters[MY5] + (parameters[MZ6] + t4);
     const ariane6_real_t t23 = t9 - parameters[MX5];
     const ariane6_real_t t24 = t12 * t22 + t7 * t23;
@@ -163,7 +169,6 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t26 = t18 * t20 - t21 * t25;
     const ariane6_real_t t27 = ARIANE6_C(0.17) * (t17 + ARIANE6_C(2.0) * t26);
     const ariane6_real_t t28 = parameters[YY3] + (t15 + t27);
-    const ariane6_real_t t29 = ARIANE6_COS(q[2]);
     const ariane6_real_t t30 = parameters[ZZ5] + (parameters[XX6] + t3 + t5);
     const ariane6_real_t t31 = parameters[YY4] + t30;
     const ariane6_real_t t32 = parameters[XX4] + (t8 - t14);
@@ -185,11 +190,9 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t48 = t21 * t45 + t18 * t47;
     const ariane6_real_t t49 = t26 + t17;
     const ariane6_real_t t50 = parameters[XY3] + (t48 + (ARIANE6_C(0.17) * t42 + ARIANE6_C(0.488) * t49));
-    const ariane6_real_t t51 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t52 = t29 * (t44 - t28) - t50 * (ARIANE6_C(2.0) * t51);
     const ariane6_real_t t53 = t29 * t52;
     const ariane6_real_t t54 = parameters[XX2] + (t28 + t53);
-    const ariane6_real_t t55 = ARIANE6_COS(q[1]);
     const ariane6_real_t t56 = parameters[M3] + t16;
     const ariane6_real_t t57 = ARIANE6_C(0.685) * t56;
     const ariane6_real_t t58 = parameters[MY3] + (t42 + t40);
@@ -197,15 +200,12 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t60 = t29 * t59 - t51 * t58;
     const ariane6_real_t t61 = ARIANE6_C(0.685) * (t57 + ARIANE6_C(2.0) * t60);
     const ariane6_real_t t62 = t29 * t58 + t51 * t59;
-    const ariane6_real_t t63 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t64 = (parameters[XY2] + (t50 + t51 * t52
         + ARIANE6_C(-0.685) * t62)) * (ARIANE6_C(2.0) * t63);
     const ariane6_real_t t65 = t55 * (parameters[YY2] + (t44 - t53 + t61) - t54) + t64;
     const ariane6_real_t t66 = t55 * (parameters[MX2] + (t60 + t57)) - t63 * (parameters[MY2] + t62);
     const ariane6_real_t t67 = t54 + t55 * t65 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2] + t56)
         + ARIANE6_C(2.0) * t66);
-    const ariane6_real_t t68 = ARIANE6_COS(q[0]);
-    const ariane6_real_t t69 = ARIANE6_SIN(q[0]);
     const ariane6_real_t t70 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t69 + ARIANE6_C(0.10828541));
     const ariane6_real_t t71 = ARIANE6_C(1.0) / t70;
     const ariane6_real_t t72 = t68 * (ARIANE6_C(4063.3400000000006) * t71);

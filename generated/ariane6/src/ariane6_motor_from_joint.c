@@ -28,7 +28,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int ariane6_motor_from_joint(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq, 6, ARIANE6_C(1.0e16))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)
@@ -60,25 +60,26 @@ int ariane6_motor_from_joint(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t12;
+    ARIANE6_SINCOS(q[0], &t0, &t12);
+    ariane6_real_t t3, t2;
+    ARIANE6_SINCOS(q[1], &t3, &t2);
+    ariane6_real_t t7, t6;
+    ARIANE6_SINCOS(q[2], &t7, &t6);
+    ariane6_real_t t10, t21;
+    ARIANE6_SINCOS(q[4], &t10, &t21);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     q_m[0] = ARIANE6_C(200000.00000000003) * t1 - ARIANE6_C(55820.000000000015);
-    const ariane6_real_t t2 = ARIANE6_COS(q[1]);
-    const ariane6_real_t t3 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t4 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t3;
     const ariane6_real_t t5 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t4 + ARIANE6_C(0.420682));
     q_m[1] = ARIANE6_C(200000.00000000003) * t5 - ARIANE6_C(119720.00000000001);
-    const ariane6_real_t t6 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t7 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t8 = ARIANE6_C(0.052335956242943966) * t6 + ARIANE6_C(0.9986295347545738) * t7;
     const ariane6_real_t t9 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t8 + ARIANE6_C(0.38408000000000003));
     q_m[2] = ARIANE6_C(200000.00000000003) * t9 - ARIANE6_C(113940.00000000001);
     q_m[3] = ARIANE6_C(1.0e2) * q[3];
-    const ariane6_real_t t10 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t11 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t10 + ARIANE6_C(0.097));
     q_m[4] = ARIANE6_C(200000.00000000003) * t11 - ARIANE6_C(52280.000000000015);
     q_m[5] = ARIANE6_C(1.0e2) * q[5];
-    const ariane6_real_t t12 = ARIANE6_COS(q[0]);
     const ariane6_real_t t13 = ARIANE6_C(-1.0) / t1;
     const ariane6_real_t t14 = t12 * (ARIANE6_C(-4063.3400000000006) * t13);
     dq_m[0] = t14 * dq[0];
@@ -91,7 +92,6 @@ int ariane6_motor_from_joint(
     const ariane6_real_t t20 = t18 * (ARIANE6_C(-8377.600000000002) * t19);
     dq_m[2] = t20 * dq[2];
     dq_m[3] = ARIANE6_C(1.0e2) * dq[3];
-    const ariane6_real_t t21 = ARIANE6_COS(q[4]);
     const ariane6_real_t t22 = ARIANE6_C(-1.0) / t11;
     const ariane6_real_t t23 = t21 * (ARIANE6_C(-3549.6000000000004) * t22);
     dq_m[4] = t23 * dq[4];

@@ -12,7 +12,7 @@
 
 #include "ariane6.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define ARIANE6_MATH_double(name) name
 #define ARIANE6_MATH(name) ARIANE6_JOIN(ARIANE6_MATH_, ARIANE6_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DARIANE6_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, ARIANE6_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DARIANE6_SINCOS=my_sincos, or with both of
+ * -DARIANE6_SIN=my_sin -DARIANE6_COS=my_cos; -include my_header.h declares it.
+ */
+#define ARIANE6_SINGLE_float 1
+#define ARIANE6_SINGLE_double 0
+#if !defined(ARIANE6_SINCOS) && !defined(ARIANE6_SIN) && !defined(ARIANE6_COS)
+#define ARIANE6_OWN_SINCOS ARIANE6_JOIN(ARIANE6_SINGLE_, ARIANE6_REAL)
+#else
+#define ARIANE6_OWN_SINCOS 0
+#endif
 #ifndef ARIANE6_SIN
 #define ARIANE6_SIN ARIANE6_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline ariane6_real_t ariane6_select(ariane6_real_t condition, ariane6_re
     return condition > ARIANE6_C(0.0) ? a : b;
 }
 
+#if ARIANE6_OWN_SINCOS
+typedef struct {
+    ariane6_real_t sine;
+    ariane6_real_t cosine;
+} ariane6_pair_t;
+
+/* Two numbers by value travel in registers. */
+ariane6_pair_t ariane6_sincos(ariane6_real_t x);
+#endif
+
+#ifndef ARIANE6_SINCOS
+#define ARIANE6_SINCOS ariane6_sine_cosine
+static inline void ariane6_sine_cosine(ariane6_real_t x, ariane6_real_t *sine, ariane6_real_t *cosine)
+{
+#if ARIANE6_OWN_SINCOS
+    const ariane6_pair_t pair = ariane6_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = ARIANE6_SIN(x);
+    *cosine = ARIANE6_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int ariane6_within(const ariane6_real_t x[], int n, ariane6_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int ariane6_within(const ariane6_real_t x[], int n, ariane6_real_t
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int ariane6_within_joints(const ariane6_real_t x[], ariane6_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
 
 static inline void ariane6_zero(ariane6_real_t x[], int n)

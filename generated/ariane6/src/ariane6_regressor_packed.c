@@ -31,7 +31,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -60,9 +60,9 @@ int ariane6_regressor_packed(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq, 6, ARIANE6_C(1.0e16))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)
@@ -76,15 +76,23 @@ int ariane6_regressor_packed(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[0], &t0, &t2);
+    ariane6_real_t t7, t4;
+    ARIANE6_SINCOS(q[1], &t7, &t4);
+    ariane6_real_t t34, t35;
+    ARIANE6_SINCOS(q[2], &t34, &t35);
+    ariane6_real_t t84, t83;
+    ARIANE6_SINCOS(q[3], &t84, &t83);
+    ariane6_real_t t135, t136;
+    ARIANE6_SINCOS(q[4], &t135, &t136);
+    ariane6_real_t t188, t189;
+    ARIANE6_SINCOS(q[5], &t188, &t189);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t2 = ARIANE6_COS(q[0]);
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
     out[0] = t3 * ddq[0];
-    const ariane6_real_t t4 = ARIANE6_COS(q[1]);
     const ariane6_real_t t5 = t4 * dq[0];
     const ariane6_real_t t6 = dq[1] * t5;
-    const ariane6_real_t t7 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t8 = t7 * ddq[0];
     const ariane6_real_t t9 = t6 + t8;
     const ariane6_real_t t10 = t7 * t3;
@@ -125,8 +133,6 @@ int ariane6_regressor_packed(
     const ariane6_real_t t32 = t4 * t30 + ARIANE6_C(-9.81) * t7;
     out[45] = t18 * t32;
     const ariane6_real_t t33 = dq[1] + dq[2];
-    const ariane6_real_t t34 = ARIANE6_SIN(q[2]);
-    const ariane6_real_t t35 = ARIANE6_COS(q[2]);
     const ariane6_real_t t36 = t4 * t35 - t7 * t34;
     const ariane6_real_t t37 = dq[0] * t36;
     const ariane6_real_t t38 = t33 * t37;
@@ -195,8 +201,6 @@ int ariane6_regressor_packed(
     const ariane6_real_t t82 = t18 * t81;
     out[52] = t67 * t74 + t80 * t75 + t82;
     out[83] = t55 * t82;
-    const ariane6_real_t t83 = ARIANE6_COS(q[3]);
-    const ariane6_real_t t84 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t85 = t83 * t33 + t84 * t43;
     const ariane6_real_t t86 = dq[3] + t37;
     const ariane6_real_t t87 = t85 * t86;
@@ -275,8 +279,6 @@ int ariane6_regressor_packed(
     out[59] = t100 * t126 - t128 * t134 - t133;
     out[90] = t55 * (t100 * t125 - t127 * t134 - t133);
     out[114] = ARIANE6_C(0.2) * t130;
-    const ariane6_real_t t135 = ARIANE6_SIN(q[4]);
-    const ariane6_real_t t136 = ARIANE6_COS(q[4]);
     const ariane6_real_t t137 = t135 * t91 + t136 * t86;
     const ariane6_real_t t138 = dq[4] + t85;
     const ariane6_real_t t139 = t137 * t138;
@@ -363,8 +365,6 @@ int ariane6_regressor_packed(
     out[97] = t55 * (t185 + (t125 * t187 - t127 * t186));
     out[121] = -(t120 * t152);
     out[138] = t156 * t181;
-    const ariane6_real_t t188 = ARIANE6_SIN(q[5]);
-    const ariane6_real_t t189 = ARIANE6_COS(q[5]);
     const ariane6_real_t t190 = t189 * t138 - t188 * t143;
     const ariane6_real_t t191 = dq[5] + t137;
     const ariane6_real_t t192 = t190 * t191;

@@ -34,7 +34,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int ariane6_regressor_standard(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq, 6, ARIANE6_C(1.0e16))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)
@@ -62,15 +62,23 @@ int ariane6_regressor_standard(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[0], &t0, &t2);
+    ariane6_real_t t5, t7;
+    ARIANE6_SINCOS(q[1], &t5, &t7);
+    ariane6_real_t t39, t38;
+    ARIANE6_SINCOS(q[2], &t39, &t38);
+    ariane6_real_t t95, t96;
+    ARIANE6_SINCOS(q[3], &t95, &t96);
+    ariane6_real_t t167, t168;
+    ARIANE6_SINCOS(q[4], &t167, &t168);
+    ariane6_real_t t233, t234;
+    ARIANE6_SINCOS(q[5], &t233, &t234);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t2 = ARIANE6_COS(q[0]);
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
     const ariane6_real_t t4 = t3 * ddq[0];
     out[5] = t4;
-    const ariane6_real_t t5 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t6 = t5 * ddq[0];
-    const ariane6_real_t t7 = ARIANE6_COS(q[1]);
     const ariane6_real_t t8 = t7 * dq[0];
     const ariane6_real_t t9 = dq[1] * t8;
     const ariane6_real_t t10 = t6 + t9;
@@ -118,8 +126,6 @@ int ariane6_regressor_standard(
     const ariane6_real_t t37 = t7 * t35 + ARIANE6_C(-9.81) * t5;
     out[95] = t20 * t37;
     out[19] = t33 * t32;
-    const ariane6_real_t t38 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t39 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t40 = t5 * t38 + t7 * t39;
     const ariane6_real_t t41 = ddq[0] * t40;
     const ariane6_real_t t42 = t7 * t38 - t5 * t39;
@@ -203,8 +209,6 @@ int ariane6_regressor_standard(
     out[106] = ARIANE6_C(-0.685) * t31;
     out[29] = t81 * t80;
     out[107] = t88 * t85 - t92 * t84;
-    const ariane6_real_t t95 = ARIANE6_SIN(q[3]);
-    const ariane6_real_t t96 = ARIANE6_COS(q[3]);
     const ariane6_real_t t97 = t95 * t76 - t96 * t63;
     const ariane6_real_t t98 = t95 * t48 + t96 * t44;
     const ariane6_real_t t99 = dq[3] + t43;
@@ -314,8 +318,6 @@ int ariane6_regressor_standard(
     out[117] = t165;
     const ariane6_real_t t166 = t61 * (t155 * t151 + t141 * t152 + t138 * t147);
     out[195] = t166;
-    const ariane6_real_t t167 = ARIANE6_SIN(q[4]);
-    const ariane6_real_t t168 = ARIANE6_COS(q[4]);
     const ariane6_real_t t169 = t167 * t128 - t168 * t114;
     const ariane6_real_t t170 = t167 * t103 - t168 * t99;
     const ariane6_real_t t171 = dq[4] + t98;
@@ -427,8 +429,6 @@ int ariane6_regressor_standard(
     out[49] = t164;
     out[127] = t165;
     out[205] = t166;
-    const ariane6_real_t t233 = ARIANE6_SIN(q[5]);
-    const ariane6_real_t t234 = ARIANE6_COS(q[5]);
     const ariane6_real_t t235 = t233 * t206 + t234 * t192;
     const ariane6_real_t t236 = t233 * t175 + t234 * t171;
     const ariane6_real_t t237 = dq[5] - t170;

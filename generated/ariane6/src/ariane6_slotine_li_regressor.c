@@ -34,7 +34,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x21DEB7ABUL
+#if ARIANE6_GENERATION != 0xFF706B1FUL
 #error "ariane6.h and ariane6_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -47,10 +47,10 @@ int ariane6_slotine_li_regressor(
 {
     int status = ARIANE6_STATUS_OK;
 
-    if (!ariane6_within(q, 6, ARIANE6_C(1.0e8))
-        || !ariane6_within(dq, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(dq_r, 6, ARIANE6_C(1.0e10))
-        || !ariane6_within(ddq_r, 6, ARIANE6_C(1.0e16))) {
+    if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
+        || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(dq_r, ARIANE6_C(1.0e10))
+        || !ariane6_within_joints(ddq_r, ARIANE6_C(1.0e16))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)
@@ -64,15 +64,23 @@ int ariane6_slotine_li_regressor(
         return status;
     }
 
-    const ariane6_real_t t0 = ARIANE6_SIN(q[0]);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[0], &t0, &t2);
+    ariane6_real_t t4, t7;
+    ARIANE6_SINCOS(q[1], &t4, &t7);
+    ariane6_real_t t36, t35;
+    ARIANE6_SINCOS(q[2], &t36, &t35);
+    ariane6_real_t t90, t88;
+    ARIANE6_SINCOS(q[3], &t90, &t88);
+    ariane6_real_t t145, t144;
+    ARIANE6_SINCOS(q[4], &t145, &t144);
+    ariane6_real_t t201, t200;
+    ARIANE6_SINCOS(q[5], &t201, &t200);
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t2 = ARIANE6_COS(q[0]);
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
     out[0] = t3 * ddq_r[0];
-    const ariane6_real_t t4 = ARIANE6_SIN(q[1]);
     const ariane6_real_t t5 = t4 * t3;
     const ariane6_real_t t6 = t4 * ddq_r[0];
-    const ariane6_real_t t7 = ARIANE6_COS(q[1]);
     const ariane6_real_t t8 = t7 * dq[0];
     const ariane6_real_t t9 = t7 * dq_r[0];
     const ariane6_real_t t10 = ARIANE6_C(0.5) * (t8 * dq_r[1] + dq[1] * t9);
@@ -114,8 +122,6 @@ int ariane6_slotine_li_regressor(
     out[7] = t5 * t30 - t29 * t22;
     const ariane6_real_t t34 = ARIANE6_C(-9.81) * t4 + t7 * t32;
     out[61] = t20 * t34;
-    const ariane6_real_t t35 = ARIANE6_COS(q[2]);
-    const ariane6_real_t t36 = ARIANE6_SIN(q[2]);
     const ariane6_real_t t37 = t4 * t35 + t7 * t36;
     const ariane6_real_t t38 = t3 * t37;
     const ariane6_real_t t39 = t37 * ddq_r[0];
@@ -188,9 +194,7 @@ int ariane6_slotine_li_regressor(
     const ariane6_real_t t87 = t20 * t86;
     out[68] = t78 * t72 + t80 * t85 + t87;
     out[122] = t60 * t87;
-    const ariane6_real_t t88 = ARIANE6_COS(q[3]);
     const ariane6_real_t t89 = t88 * t38;
-    const ariane6_real_t t90 = ARIANE6_SIN(q[3]);
     const ariane6_real_t t91 = t90 * t72 - t88 * t61;
     const ariane6_real_t t92 = t88 * t43 + t90 * t48;
     const ariane6_real_t t93 = t44 - dq_r[3];
@@ -272,8 +276,6 @@ int ariane6_slotine_li_regressor(
     out[75] = t135 * t109 + t137 * t143 - t142;
     out[129] = t60 * (t134 * t109 + t136 * t143 - t142);
     out[183] = ARIANE6_C(0.2) * t139;
-    const ariane6_real_t t144 = ARIANE6_COS(q[4]);
-    const ariane6_real_t t145 = ARIANE6_SIN(q[4]);
     const ariane6_real_t t146 = t144 * t89 - t145 * t47;
     const ariane6_real_t t147 = t145 * t122 + t144 * t109;
     const ariane6_real_t t148 = t145 * t99 - t144 * t94;
@@ -363,8 +365,6 @@ int ariane6_slotine_li_regressor(
     out[136] = t60 * (t197 + (t136 * t198 + t134 * t199));
     out[190] = t164 * t129;
     out[244] = t168 * t193;
-    const ariane6_real_t t200 = ARIANE6_COS(q[5]);
-    const ariane6_real_t t201 = ARIANE6_SIN(q[5]);
     const ariane6_real_t t202 = t200 * t146 - t201 * t98;
     const ariane6_real_t t203 = t201 * t182 + t200 * t169;
     const ariane6_real_t t204 = t201 * t155 + t200 * t150;

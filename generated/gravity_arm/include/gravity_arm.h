@@ -36,7 +36,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x96580241UL
+#define GRAVITY_ARM_GENERATION 0x6295FD76UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_ARM_REAL
@@ -66,7 +66,7 @@ typedef GRAVITY_ARM_REAL gravity_arm_real_t;
 
 #define GRAVITY_ARM_STATUS_OK     0
 #define GRAVITY_ARM_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_ARM_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define GRAVITY_ARM_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define GRAVITY_ARM_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -17,7 +17,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -27,7 +27,7 @@ int gravity_arm_drive_gain(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {

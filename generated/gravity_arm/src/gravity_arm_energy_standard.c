@@ -47,7 +47,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -62,8 +62,8 @@ int gravity_arm_energy_standard(
         M2, FV1, FC1, FV2, FC2 };
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
         || !gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
@@ -73,19 +73,19 @@ int gravity_arm_energy_standard(
         return status;
     }
 
+    gravity_arm_real_t t10, t8;
+    GRAVITY_ARM_SINCOS(q[0], &t10, &t8);
+    gravity_arm_real_t t1, t4;
+    GRAVITY_ARM_SINCOS(q[1], &t1, &t4);
     const gravity_arm_real_t t0 = dq[0] + dq[1];
-    const gravity_arm_real_t t1 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t2 = GRAVITY_ARM_C(0.538534) * dq[0];
     const gravity_arm_real_t t3 = t1 * t2;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t5 = t4 * t2;
     const gravity_arm_real_t t6 = t0 * (t0 * parameters[ZZ2]) + parameters[M2] * (t3 * t3 + t5 * t5);
     const gravity_arm_real_t t7 = GRAVITY_ARM_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
         + GRAVITY_ARM_C(0.5) * t6 + (parameters[MX2] * (t0 * t5) - parameters[MY2] * (t0 * t3));
     kinetic[0] = t7;
-    const gravity_arm_real_t t8 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
-    const gravity_arm_real_t t10 = GRAVITY_ARM_SIN(q[0]);
     const gravity_arm_real_t t11 = GRAVITY_ARM_C(9.81) * t10;
     const gravity_arm_real_t t12 = (t4 * t9 + t1 * t11) * parameters[MX2] + (t4 * t11
         - t1 * t9) * parameters[MY2];

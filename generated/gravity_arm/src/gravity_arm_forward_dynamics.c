@@ -34,7 +34,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -48,9 +48,9 @@ int gravity_arm_forward_dynamics(
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(input, 2, GRAVITY_ARM_C(1.0e18))
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(input, GRAVITY_ARM_C(1.0e18))
         || !gravity_arm_within(parameters, 10, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
@@ -59,14 +59,14 @@ int gravity_arm_forward_dynamics(
         return status;
     }
 
+    gravity_arm_real_t t1, t3;
+    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
+    gravity_arm_real_t t5, t7;
+    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
     const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_SIN(q[0]);
     const gravity_arm_real_t t2 = GRAVITY_ARM_C(-9.81) * t1;
-    const gravity_arm_real_t t3 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(-9.81) * t3;
-    const gravity_arm_real_t t5 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t6 = t4 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t7 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t8 = parameters[MX2] * (t5 * t6 + t7 * t2) + parameters[MY2] * (t7 * t6
         - t5 * t2);
     const gravity_arm_real_t t9 = dq[0] + dq[1];

@@ -19,7 +19,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int gravity_arm_forward_kinematics(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {
@@ -37,16 +37,16 @@ int gravity_arm_forward_kinematics(
         return status;
     }
 
-    const gravity_arm_real_t t0 = GRAVITY_ARM_COS(q[0]);
+    gravity_arm_real_t t1, t0;
+    GRAVITY_ARM_SINCOS(q[0], &t1, &t0);
+    gravity_arm_real_t t3, t2;
+    GRAVITY_ARM_SINCOS(q[1], &t3, &t2);
     out[0] = t0;
-    const gravity_arm_real_t t1 = GRAVITY_ARM_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = GRAVITY_ARM_C(1.0);
     out[15] = GRAVITY_ARM_C(1.0);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_COS(q[1]);
-    const gravity_arm_real_t t3 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t4 = t0 * t2 - t1 * t3;
     out[16] = t4;
     const gravity_arm_real_t t5 = t0 * t3 + t1 * t2;

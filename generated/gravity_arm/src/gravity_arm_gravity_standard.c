@@ -45,7 +45,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -58,7 +58,7 @@ int gravity_arm_gravity_standard(
         M2, FV1, FC1, FV2, FC2 };
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
@@ -67,12 +67,12 @@ int gravity_arm_gravity_standard(
         return status;
     }
 
-    const gravity_arm_real_t t0 = GRAVITY_ARM_SIN(q[0]);
+    gravity_arm_real_t t0, t2;
+    GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
+    gravity_arm_real_t t4, t5;
+    GRAVITY_ARM_SINCOS(q[1], &t4, &t5);
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t2 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_SIN(q[1]);
-    const gravity_arm_real_t t5 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t6 = t4 * t3 + t5 * t1;
     const gravity_arm_real_t t7 = t5 * t3 - t4 * t1;
     const gravity_arm_real_t t8 = t6 * parameters[MX2] + t7 * parameters[MY2];

@@ -33,7 +33,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -47,9 +47,9 @@ int gravity_arm_inverse_dynamics(
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(ddq, 2, GRAVITY_ARM_C(1.0e16))
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e16))
         || !gravity_arm_within(parameters, 10, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
@@ -58,15 +58,15 @@ int gravity_arm_inverse_dynamics(
         return status;
     }
 
+    gravity_arm_real_t t1, t3;
+    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
+    gravity_arm_real_t t6, t8;
+    GRAVITY_ARM_SINCOS(q[1], &t6, &t8);
     const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_SIN(q[0]);
     const gravity_arm_real_t t2 = GRAVITY_ARM_C(9.81) * t1;
-    const gravity_arm_real_t t3 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
     const gravity_arm_real_t t5 = ddq[0] + ddq[1];
-    const gravity_arm_real_t t6 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t7 = t4 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t9 = t2 + GRAVITY_ARM_C(0.538534) * ddq[0];
     const gravity_arm_real_t t10 = parameters[MX2] * (t6 * t7 + t8 * t9) + parameters[MY2] * (t8 * t7
         - t6 * t9);

@@ -17,7 +17,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -27,7 +27,7 @@ int gravity_arm_jacobian(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {
@@ -35,9 +35,9 @@ int gravity_arm_jacobian(
         return status;
     }
 
-    const gravity_arm_real_t t0 = GRAVITY_ARM_SIN(q[0]);
+    gravity_arm_real_t t0, t1;
+    GRAVITY_ARM_SINCOS(q[0], &t0, &t1);
     out[0] = GRAVITY_ARM_C(-0.538534) * t0;
-    const gravity_arm_real_t t1 = GRAVITY_ARM_COS(q[0]);
     out[2] = GRAVITY_ARM_C(0.538534) * t1;
     out[10] = GRAVITY_ARM_C(1.0);
     out[11] = GRAVITY_ARM_C(1.0);

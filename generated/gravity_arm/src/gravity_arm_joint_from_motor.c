@@ -21,7 +21,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -35,9 +35,9 @@ int gravity_arm_joint_from_motor(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q_m, 2, GRAVITY_ARM_C(1.0e18))
-        || !gravity_arm_within(dq_m, 2, GRAVITY_ARM_C(1.0e18))
-        || !gravity_arm_within(ddq_m, 2, GRAVITY_ARM_C(1.0e18))) {
+    if (!gravity_arm_within_joints(q_m, GRAVITY_ARM_C(1.0e18))
+        || !gravity_arm_within_joints(dq_m, GRAVITY_ARM_C(1.0e18))
+        || !gravity_arm_within_joints(ddq_m, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {

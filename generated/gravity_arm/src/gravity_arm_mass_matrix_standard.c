@@ -45,7 +45,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -58,7 +58,7 @@ int gravity_arm_mass_matrix_standard(
         M2, FV1, FC1, FV2, FC2 };
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
@@ -67,8 +67,8 @@ int gravity_arm_mass_matrix_standard(
         return status;
     }
 
-    const gravity_arm_real_t t0 = GRAVITY_ARM_SIN(q[1]);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_COS(q[1]);
+    gravity_arm_real_t t0, t1;
+    GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
     const gravity_arm_real_t t2 = t1 * parameters[MX2] - t0 * parameters[MY2];
     const gravity_arm_real_t t3 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(2.0) * t2));

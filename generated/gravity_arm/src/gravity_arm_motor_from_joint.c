@@ -21,7 +21,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -35,9 +35,9 @@ int gravity_arm_motor_from_joint(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(ddq, 2, GRAVITY_ARM_C(1.0e16))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e16))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define GRAVITY_ARM_MATH_double(name) name
 #define GRAVITY_ARM_MATH(name) GRAVITY_ARM_JOIN(GRAVITY_ARM_MATH_, GRAVITY_ARM_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DGRAVITY_ARM_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, GRAVITY_ARM_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DGRAVITY_ARM_SINCOS=my_sincos, or with both of
+ * -DGRAVITY_ARM_SIN=my_sin -DGRAVITY_ARM_COS=my_cos; -include my_header.h declares it.
+ */
+#define GRAVITY_ARM_SINGLE_float 1
+#define GRAVITY_ARM_SINGLE_double 0
+#if !defined(GRAVITY_ARM_SINCOS) && !defined(GRAVITY_ARM_SIN) && !defined(GRAVITY_ARM_COS)
+#define GRAVITY_ARM_OWN_SINCOS GRAVITY_ARM_JOIN(GRAVITY_ARM_SINGLE_, GRAVITY_ARM_REAL)
+#else
+#define GRAVITY_ARM_OWN_SINCOS 0
+#endif
 #ifndef GRAVITY_ARM_SIN
 #define GRAVITY_ARM_SIN GRAVITY_ARM_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline gravity_arm_real_t gravity_arm_select(gravity_arm_real_t condition
     return condition > GRAVITY_ARM_C(0.0) ? a : b;
 }
 
+#if GRAVITY_ARM_OWN_SINCOS
+typedef struct {
+    gravity_arm_real_t sine;
+    gravity_arm_real_t cosine;
+} gravity_arm_pair_t;
+
+/* Two numbers by value travel in registers. */
+gravity_arm_pair_t gravity_arm_sincos(gravity_arm_real_t x);
+#endif
+
+#ifndef GRAVITY_ARM_SINCOS
+#define GRAVITY_ARM_SINCOS gravity_arm_sine_cosine
+static inline void gravity_arm_sine_cosine(gravity_arm_real_t x, gravity_arm_real_t *sine, gravity_arm_real_t *cosine)
+{
+#if GRAVITY_ARM_OWN_SINCOS
+    const gravity_arm_pair_t pair = gravity_arm_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = GRAVITY_ARM_SIN(x);
+    *cosine = GRAVITY_ARM_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int gravity_arm_within(const gravity_arm_real_t x[], int n, gravity_arm_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int gravity_arm_within(const gravity_arm_real_t x[], int n, gravit
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int gravity_arm_within_joints(const gravity_arm_real_t x[], gravity_arm_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] <= limit;
 }
 
 static inline void gravity_arm_zero(gravity_arm_real_t x[], int n)

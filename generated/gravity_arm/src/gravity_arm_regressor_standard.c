@@ -25,7 +25,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int gravity_arm_regressor_standard(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(ddq, 2, GRAVITY_ARM_C(1.0e16))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e16))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {
@@ -47,19 +47,19 @@ int gravity_arm_regressor_standard(
         return status;
     }
 
+    gravity_arm_real_t t0, t2;
+    GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
+    gravity_arm_real_t t5, t7;
+    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
     out[5] = ddq[0];
-    const gravity_arm_real_t t0 = GRAVITY_ARM_SIN(q[0]);
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
     out[6] = t1;
-    const gravity_arm_real_t t2 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
     out[7] = t3;
     const gravity_arm_real_t t4 = ddq[0] + ddq[1];
     out[15] = t4;
     out[39] = t4;
-    const gravity_arm_real_t t5 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t6 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t7 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t8 = t1 + GRAVITY_ARM_C(0.538534) * ddq[0];
     const gravity_arm_real_t t9 = t5 * t6 + t7 * t8;
     const gravity_arm_real_t t10 = dq[0] + dq[1];

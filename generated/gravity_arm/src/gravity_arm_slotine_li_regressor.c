@@ -26,7 +26,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x96580241UL
+#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
 #error "gravity_arm.h and gravity_arm_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -39,10 +39,10 @@ int gravity_arm_slotine_li_regressor(
 {
     int status = GRAVITY_ARM_STATUS_OK;
 
-    if (!gravity_arm_within(q, 2, GRAVITY_ARM_C(1.0e8))
-        || !gravity_arm_within(dq, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(dq_r, 2, GRAVITY_ARM_C(1.0e10))
-        || !gravity_arm_within(ddq_r, 2, GRAVITY_ARM_C(1.0e16))) {
+    if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
+        || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(dq_r, GRAVITY_ARM_C(1.0e10))
+        || !gravity_arm_within_joints(ddq_r, GRAVITY_ARM_C(1.0e16))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {
@@ -50,19 +50,19 @@ int gravity_arm_slotine_li_regressor(
         return status;
     }
 
+    gravity_arm_real_t t0, t2;
+    GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
+    gravity_arm_real_t t5, t7;
+    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
     out[0] = ddq_r[0];
-    const gravity_arm_real_t t0 = GRAVITY_ARM_SIN(q[0]);
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
     out[1] = t1;
-    const gravity_arm_real_t t2 = GRAVITY_ARM_COS(q[0]);
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
     out[2] = t3;
     const gravity_arm_real_t t4 = ddq_r[0] + ddq_r[1];
     out[3] = t4;
     out[13] = t4;
-    const gravity_arm_real_t t5 = GRAVITY_ARM_SIN(q[1]);
     const gravity_arm_real_t t6 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq_r[0]);
-    const gravity_arm_real_t t7 = GRAVITY_ARM_COS(q[1]);
     const gravity_arm_real_t t8 = t1 + GRAVITY_ARM_C(0.538534) * ddq_r[0];
     const gravity_arm_real_t t9 = t5 * t6 + t7 * t8;
     const gravity_arm_real_t t10 = GRAVITY_ARM_C(-0.538534) * t5;

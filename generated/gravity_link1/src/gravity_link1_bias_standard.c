@@ -33,7 +33,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,8 +46,8 @@ int gravity_link1_bias_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))
-        || !gravity_link1_within(dq, 1, GRAVITY_LINK1_C(1.0e10))
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
+        || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
         || !gravity_link1_within(parameters, 12, GRAVITY_LINK1_C(1.0e18))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
@@ -56,9 +56,9 @@ int gravity_link1_bias_standard(
         return status;
     }
 
+    gravity_link1_real_t t1, t2;
+    GRAVITY_LINK1_SINCOS(q[0], &t1, &t2);
     const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]);
-    const gravity_link1_real_t t1 = GRAVITY_LINK1_SIN(q[0]);
-    const gravity_link1_real_t t2 = GRAVITY_LINK1_COS(q[0]);
     const gravity_link1_real_t t3 = dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + (GRAVITY_LINK1_C(9.81) * t1 * parameters[MX1] + GRAVITY_LINK1_C(9.81) * t2 * parameters[MY1]);
     out[0] = t3;

@@ -16,7 +16,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,7 @@ int gravity_link1_forward_kinematics(
 {
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))) {
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {
@@ -34,9 +34,9 @@ int gravity_link1_forward_kinematics(
         return status;
     }
 
-    const gravity_link1_real_t t0 = GRAVITY_LINK1_COS(q[0]);
+    gravity_link1_real_t t1, t0;
+    GRAVITY_LINK1_SINCOS(q[0], &t1, &t0);
     out[0] = t0;
-    const gravity_link1_real_t t1 = GRAVITY_LINK1_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;

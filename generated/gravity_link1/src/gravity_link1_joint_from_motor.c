@@ -20,7 +20,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link1_joint_from_motor(
 {
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q_m, 1, GRAVITY_LINK1_C(1.0e18))
-        || !gravity_link1_within(dq_m, 1, GRAVITY_LINK1_C(1.0e18))
-        || !gravity_link1_within(ddq_m, 1, GRAVITY_LINK1_C(1.0e18))) {
+    if (!gravity_link1_within_joints(q_m, GRAVITY_LINK1_C(1.0e18))
+        || !gravity_link1_within_joints(dq_m, GRAVITY_LINK1_C(1.0e18))
+        || !gravity_link1_within_joints(ddq_m, GRAVITY_LINK1_C(1.0e18))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {

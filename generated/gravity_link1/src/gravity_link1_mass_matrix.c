@@ -25,7 +25,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int gravity_link1_mass_matrix(
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
         || !gravity_link1_within(parameters, 5, GRAVITY_LINK1_C(1.0e18))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }

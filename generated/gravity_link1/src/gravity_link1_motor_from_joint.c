@@ -20,7 +20,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link1_motor_from_joint(
 {
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))
-        || !gravity_link1_within(dq, 1, GRAVITY_LINK1_C(1.0e10))
-        || !gravity_link1_within(ddq, 1, GRAVITY_LINK1_C(1.0e16))) {
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
+        || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
+        || !gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e16))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {

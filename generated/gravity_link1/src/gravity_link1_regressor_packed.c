@@ -22,7 +22,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int gravity_link1_regressor_packed(
 {
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))
-        || !gravity_link1_within(dq, 1, GRAVITY_LINK1_C(1.0e10))
-        || !gravity_link1_within(ddq, 1, GRAVITY_LINK1_C(1.0e16))) {
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
+        || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
+        || !gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e16))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {
@@ -52,10 +52,10 @@ int gravity_link1_regressor_packed(
         return status;
     }
 
+    gravity_link1_real_t t0, t1;
+    GRAVITY_LINK1_SINCOS(q[0], &t0, &t1);
     out[0] = ddq[0];
-    const gravity_link1_real_t t0 = GRAVITY_LINK1_SIN(q[0]);
     out[1] = GRAVITY_LINK1_C(9.81) * t0;
-    const gravity_link1_real_t t1 = GRAVITY_LINK1_COS(q[0]);
     out[2] = GRAVITY_LINK1_C(9.81) * t1;
     out[3] = dq[0];
     const gravity_link1_real_t t2 = gravity_link1_sign(dq[0]);

@@ -23,7 +23,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x9E1CCD3DUL
+#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
 #error "gravity_link1.h and gravity_link1_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -35,9 +35,9 @@ int gravity_link1_regressor_standard(
 {
     int status = GRAVITY_LINK1_STATUS_OK;
 
-    if (!gravity_link1_within(q, 1, GRAVITY_LINK1_C(1.0e8))
-        || !gravity_link1_within(dq, 1, GRAVITY_LINK1_C(1.0e10))
-        || !gravity_link1_within(ddq, 1, GRAVITY_LINK1_C(1.0e16))) {
+    if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
+        || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
+        || !gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e16))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {
@@ -45,10 +45,10 @@ int gravity_link1_regressor_standard(
         return status;
     }
 
+    gravity_link1_real_t t0, t1;
+    GRAVITY_LINK1_SINCOS(q[0], &t0, &t1);
     out[5] = ddq[0];
-    const gravity_link1_real_t t0 = GRAVITY_LINK1_SIN(q[0]);
     out[6] = GRAVITY_LINK1_C(9.81) * t0;
-    const gravity_link1_real_t t1 = GRAVITY_LINK1_COS(q[0]);
     out[7] = GRAVITY_LINK1_C(9.81) * t1;
     out[10] = dq[0];
     const gravity_link1_real_t t2 = gravity_link1_sign(dq[0]);

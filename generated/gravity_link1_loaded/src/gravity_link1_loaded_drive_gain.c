@@ -16,7 +16,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,7 @@ int gravity_link1_loaded_drive_gain(
 {
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))) {
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {

@@ -44,7 +44,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -59,8 +59,8 @@ int gravity_link1_loaded_energy_standard(
         M2, FV1, FC1 };
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))
-        || !gravity_link1_loaded_within(dq, 1, GRAVITY_LINK1_LOADED_C(1.0e10))
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
+        || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
         || !gravity_link1_loaded_within(parameters, 22, GRAVITY_LINK1_LOADED_C(1.0e18))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
@@ -70,15 +70,15 @@ int gravity_link1_loaded_energy_standard(
         return status;
     }
 
+    gravity_link1_loaded_real_t t5, t3;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t5, &t3);
     const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_C(0.538534) * dq[0];
     const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ2])
         + parameters[M2] * (t0 * t0));
     const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
         + t1 + parameters[MX2] * (dq[0] * t0);
     kinetic[0] = t2;
-    const gravity_link1_loaded_real_t t3 = GRAVITY_LINK1_LOADED_COS(q[0]);
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(-9.81) * t3;
-    const gravity_link1_loaded_real_t t5 = GRAVITY_LINK1_LOADED_SIN(q[0]);
     const gravity_link1_loaded_real_t t6 = GRAVITY_LINK1_LOADED_C(9.81) * t5;
     const gravity_link1_loaded_real_t t7 = t4 * parameters[MX2] + t6 * parameters[MY2]
         + parameters[M2] * (GRAVITY_LINK1_LOADED_C(-5.28301854) * t3);

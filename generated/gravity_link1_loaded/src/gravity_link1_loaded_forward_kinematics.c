@@ -18,7 +18,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -28,7 +28,7 @@ int gravity_link1_loaded_forward_kinematics(
 {
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))) {
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {
@@ -36,9 +36,9 @@ int gravity_link1_loaded_forward_kinematics(
         return status;
     }
 
-    const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_COS(q[0]);
+    gravity_link1_loaded_real_t t1, t0;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t0);
     out[0] = t0;
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;

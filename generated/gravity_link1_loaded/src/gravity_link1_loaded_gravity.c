@@ -25,7 +25,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int gravity_link1_loaded_gravity(
     enum { ZZ1R = 0, MX1R, MY1R, FV1, FC1 };
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within(parameters, 5, GRAVITY_LINK1_LOADED_C(1.0e18))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
@@ -46,8 +46,8 @@ int gravity_link1_loaded_gravity(
         return status;
     }
 
-    const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_SIN(q[0]);
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_COS(q[0]);
+    gravity_link1_loaded_real_t t0, t1;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t0, &t1);
     out[0] = parameters[MX1R] * (GRAVITY_LINK1_LOADED_C(9.81) * t0)
         + parameters[MY1R] * (GRAVITY_LINK1_LOADED_C(9.81) * t1);
     return GRAVITY_LINK1_LOADED_STATUS_OK;

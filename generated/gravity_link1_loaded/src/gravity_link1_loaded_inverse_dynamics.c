@@ -27,7 +27,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -41,9 +41,9 @@ int gravity_link1_loaded_inverse_dynamics(
     enum { ZZ1R = 0, MX1R, MY1R, FV1, FC1 };
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))
-        || !gravity_link1_loaded_within(dq, 1, GRAVITY_LINK1_LOADED_C(1.0e10))
-        || !gravity_link1_loaded_within(ddq, 1, GRAVITY_LINK1_LOADED_C(1.0e16))
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
+        || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
+        || !gravity_link1_loaded_within_joints(ddq, GRAVITY_LINK1_LOADED_C(1.0e16))
         || !gravity_link1_loaded_within(parameters, 5, GRAVITY_LINK1_LOADED_C(1.0e18))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
@@ -52,9 +52,9 @@ int gravity_link1_loaded_inverse_dynamics(
         return status;
     }
 
+    gravity_link1_loaded_real_t t1, t2;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t2);
     const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_SIN(q[0]);
-    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_COS(q[0]);
     const gravity_link1_loaded_real_t t3 = parameters[MX1R] * (GRAVITY_LINK1_LOADED_C(9.81) * t1)
         + parameters[MY1R] * (GRAVITY_LINK1_LOADED_C(9.81) * t2) + parameters[ZZ1R] * ddq[0];
     out[0] = parameters[FV1] * dq[0] + parameters[FC1] * t0 + t3;

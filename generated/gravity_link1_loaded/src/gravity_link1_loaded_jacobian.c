@@ -16,7 +16,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,7 @@ int gravity_link1_loaded_jacobian(
 {
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))) {
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {
@@ -34,9 +34,9 @@ int gravity_link1_loaded_jacobian(
         return status;
     }
 
-    const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_SIN(q[0]);
+    gravity_link1_loaded_real_t t0, t1;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t0, &t1);
     out[0] = GRAVITY_LINK1_LOADED_C(-0.538534) * t0;
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_COS(q[0]);
     out[1] = GRAVITY_LINK1_LOADED_C(0.538534) * t1;
     out[5] = GRAVITY_LINK1_LOADED_C(1.0);
     /* always zero */

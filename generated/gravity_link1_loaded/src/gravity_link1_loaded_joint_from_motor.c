@@ -20,7 +20,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link1_loaded_joint_from_motor(
 {
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q_m, 1, GRAVITY_LINK1_LOADED_C(1.0e18))
-        || !gravity_link1_loaded_within(dq_m, 1, GRAVITY_LINK1_LOADED_C(1.0e18))
-        || !gravity_link1_loaded_within(ddq_m, 1, GRAVITY_LINK1_LOADED_C(1.0e18))) {
+    if (!gravity_link1_loaded_within_joints(q_m, GRAVITY_LINK1_LOADED_C(1.0e18))
+        || !gravity_link1_loaded_within_joints(dq_m, GRAVITY_LINK1_LOADED_C(1.0e18))
+        || !gravity_link1_loaded_within_joints(ddq_m, GRAVITY_LINK1_LOADED_C(1.0e18))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {

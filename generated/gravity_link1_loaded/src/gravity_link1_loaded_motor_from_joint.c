@@ -20,7 +20,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x1421016CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link1_loaded_motor_from_joint(
 {
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
-    if (!gravity_link1_loaded_within(q, 1, GRAVITY_LINK1_LOADED_C(1.0e8))
-        || !gravity_link1_loaded_within(dq, 1, GRAVITY_LINK1_LOADED_C(1.0e10))
-        || !gravity_link1_loaded_within(ddq, 1, GRAVITY_LINK1_LOADED_C(1.0e16))) {
+    if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
+        || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
+        || !gravity_link1_loaded_within_joints(ddq, GRAVITY_LINK1_LOADED_C(1.0e16))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {

@@ -27,7 +27,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -41,8 +41,8 @@ int gravity_link2_energy(
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(dq, 1, GRAVITY_LINK2_C(1.0e10))
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
+        || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
         || !gravity_link2_within(parameters, 5, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
@@ -52,9 +52,9 @@ int gravity_link2_energy(
         return status;
     }
 
+    gravity_link2_real_t t1, t0;
+    GRAVITY_LINK2_SINCOS(q[0], &t1, &t0);
     kinetic[0] = GRAVITY_LINK2_C(0.5) * (dq[0] * (parameters[ZZ1] * dq[0]));
-    const gravity_link2_real_t t0 = GRAVITY_LINK2_COS(q[0]);
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_SIN(q[0]);
     potential[0] = parameters[MX1] * (GRAVITY_LINK2_C(-9.81) * t0)
         + parameters[MY1] * (GRAVITY_LINK2_C(9.81) * t1);
     return GRAVITY_LINK2_STATUS_OK;

@@ -34,7 +34,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -48,8 +48,8 @@ int gravity_link2_energy_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(dq, 1, GRAVITY_LINK2_C(1.0e10))
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
+        || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
         || !gravity_link2_within(parameters, 12, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
@@ -59,9 +59,9 @@ int gravity_link2_energy_standard(
         return status;
     }
 
+    gravity_link2_real_t t1, t0;
+    GRAVITY_LINK2_SINCOS(q[0], &t1, &t0);
     kinetic[0] = GRAVITY_LINK2_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]));
-    const gravity_link2_real_t t0 = GRAVITY_LINK2_COS(q[0]);
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_SIN(q[0]);
     potential[0] = GRAVITY_LINK2_C(-9.81) * t0 * parameters[MX1]
         + GRAVITY_LINK2_C(9.81) * t1 * parameters[MY1];
     return GRAVITY_LINK2_STATUS_OK;

@@ -16,7 +16,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,7 @@ int gravity_link2_forward_kinematics(
 {
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))) {
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK2_STATUS_OK) {
@@ -34,9 +34,9 @@ int gravity_link2_forward_kinematics(
         return status;
     }
 
-    const gravity_link2_real_t t0 = GRAVITY_LINK2_COS(q[0]);
+    gravity_link2_real_t t1, t0;
+    GRAVITY_LINK2_SINCOS(q[0], &t1, &t0);
     out[0] = t0;
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;

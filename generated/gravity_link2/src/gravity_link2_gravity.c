@@ -25,7 +25,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int gravity_link2_gravity(
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within(parameters, 5, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
@@ -46,8 +46,8 @@ int gravity_link2_gravity(
         return status;
     }
 
-    const gravity_link2_real_t t0 = GRAVITY_LINK2_SIN(q[0]);
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_COS(q[0]);
+    gravity_link2_real_t t0, t1;
+    GRAVITY_LINK2_SINCOS(q[0], &t0, &t1);
     out[0] = parameters[MX1] * (GRAVITY_LINK2_C(9.81) * t0) + parameters[MY1] * (GRAVITY_LINK2_C(9.81) * t1);
     return GRAVITY_LINK2_STATUS_OK;
 }

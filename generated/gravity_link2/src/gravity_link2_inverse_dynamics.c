@@ -27,7 +27,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -41,9 +41,9 @@ int gravity_link2_inverse_dynamics(
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(dq, 1, GRAVITY_LINK2_C(1.0e10))
-        || !gravity_link2_within(ddq, 1, GRAVITY_LINK2_C(1.0e16))
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
+        || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
+        || !gravity_link2_within_joints(ddq, GRAVITY_LINK2_C(1.0e16))
         || !gravity_link2_within(parameters, 5, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
@@ -52,9 +52,9 @@ int gravity_link2_inverse_dynamics(
         return status;
     }
 
+    gravity_link2_real_t t1, t2;
+    GRAVITY_LINK2_SINCOS(q[0], &t1, &t2);
     const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]);
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_SIN(q[0]);
-    const gravity_link2_real_t t2 = GRAVITY_LINK2_COS(q[0]);
     const gravity_link2_real_t t3 = parameters[MX1] * (GRAVITY_LINK2_C(9.81) * t1)
         + parameters[MY1] * (GRAVITY_LINK2_C(9.81) * t2) + parameters[ZZ1] * ddq[0];
     out[0] = parameters[FV1] * dq[0] + parameters[FC1] * t0 + t3;

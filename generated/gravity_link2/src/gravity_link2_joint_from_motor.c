@@ -20,7 +20,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link2_joint_from_motor(
 {
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q_m, 1, GRAVITY_LINK2_C(1.0e18))
-        || !gravity_link2_within(dq_m, 1, GRAVITY_LINK2_C(1.0e18))
-        || !gravity_link2_within(ddq_m, 1, GRAVITY_LINK2_C(1.0e18))) {
+    if (!gravity_link2_within_joints(q_m, GRAVITY_LINK2_C(1.0e18))
+        || !gravity_link2_within_joints(dq_m, GRAVITY_LINK2_C(1.0e18))
+        || !gravity_link2_within_joints(ddq_m, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK2_STATUS_OK) {

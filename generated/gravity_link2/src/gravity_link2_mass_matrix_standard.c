@@ -32,7 +32,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -44,7 +44,7 @@ int gravity_link2_mass_matrix_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within(parameters, 12, GRAVITY_LINK2_C(1.0e18))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }

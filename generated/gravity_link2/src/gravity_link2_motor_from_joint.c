@@ -20,7 +20,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int gravity_link2_motor_from_joint(
 {
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(dq, 1, GRAVITY_LINK2_C(1.0e10))
-        || !gravity_link2_within(ddq, 1, GRAVITY_LINK2_C(1.0e16))) {
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
+        || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
+        || !gravity_link2_within_joints(ddq, GRAVITY_LINK2_C(1.0e16))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK2_STATUS_OK) {

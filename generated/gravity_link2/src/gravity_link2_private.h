@@ -12,7 +12,7 @@
 
 #include "gravity_link2.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define GRAVITY_LINK2_MATH_double(name) name
 #define GRAVITY_LINK2_MATH(name) GRAVITY_LINK2_JOIN(GRAVITY_LINK2_MATH_, GRAVITY_LINK2_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DGRAVITY_LINK2_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, GRAVITY_LINK2_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DGRAVITY_LINK2_SINCOS=my_sincos, or with both of
+ * -DGRAVITY_LINK2_SIN=my_sin -DGRAVITY_LINK2_COS=my_cos; -include my_header.h declares it.
+ */
+#define GRAVITY_LINK2_SINGLE_float 1
+#define GRAVITY_LINK2_SINGLE_double 0
+#if !defined(GRAVITY_LINK2_SINCOS) && !defined(GRAVITY_LINK2_SIN) && !defined(GRAVITY_LINK2_COS)
+#define GRAVITY_LINK2_OWN_SINCOS GRAVITY_LINK2_JOIN(GRAVITY_LINK2_SINGLE_, GRAVITY_LINK2_REAL)
+#else
+#define GRAVITY_LINK2_OWN_SINCOS 0
+#endif
 #ifndef GRAVITY_LINK2_SIN
 #define GRAVITY_LINK2_SIN GRAVITY_LINK2_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline gravity_link2_real_t gravity_link2_select(gravity_link2_real_t con
     return condition > GRAVITY_LINK2_C(0.0) ? a : b;
 }
 
+#if GRAVITY_LINK2_OWN_SINCOS
+typedef struct {
+    gravity_link2_real_t sine;
+    gravity_link2_real_t cosine;
+} gravity_link2_pair_t;
+
+/* Two numbers by value travel in registers. */
+gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x);
+#endif
+
+#ifndef GRAVITY_LINK2_SINCOS
+#define GRAVITY_LINK2_SINCOS gravity_link2_sine_cosine
+static inline void gravity_link2_sine_cosine(gravity_link2_real_t x, gravity_link2_real_t *sine, gravity_link2_real_t *cosine)
+{
+#if GRAVITY_LINK2_OWN_SINCOS
+    const gravity_link2_pair_t pair = gravity_link2_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = GRAVITY_LINK2_SIN(x);
+    *cosine = GRAVITY_LINK2_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int gravity_link2_within(const gravity_link2_real_t x[], int n, gravity_link2_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int gravity_link2_within(const gravity_link2_real_t x[], int n, gr
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int gravity_link2_within_joints(const gravity_link2_real_t x[], gravity_link2_real_t limit)
+{
+    return x[0] * x[0] <= limit;
 }
 
 static inline void gravity_link2_zero(gravity_link2_real_t x[], int n)

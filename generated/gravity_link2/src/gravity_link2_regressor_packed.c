@@ -22,7 +22,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x8398B9C7UL
+#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
 #error "gravity_link2.h and gravity_link2_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int gravity_link2_regressor_packed(
 {
     int status = GRAVITY_LINK2_STATUS_OK;
 
-    if (!gravity_link2_within(q, 1, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(dq, 1, GRAVITY_LINK2_C(1.0e10))
-        || !gravity_link2_within(ddq, 1, GRAVITY_LINK2_C(1.0e16))) {
+    if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
+        || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
+        || !gravity_link2_within_joints(ddq, GRAVITY_LINK2_C(1.0e16))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK2_STATUS_OK) {
@@ -52,10 +52,10 @@ int gravity_link2_regressor_packed(
         return status;
     }
 
+    gravity_link2_real_t t0, t1;
+    GRAVITY_LINK2_SINCOS(q[0], &t0, &t1);
     out[0] = ddq[0];
-    const gravity_link2_real_t t0 = GRAVITY_LINK2_SIN(q[0]);
     out[1] = GRAVITY_LINK2_C(9.81) * t0;
-    const gravity_link2_real_t t1 = GRAVITY_LINK2_COS(q[0]);
     out[2] = GRAVITY_LINK2_C(9.81) * t1;
     out[3] = dq[0];
     const gravity_link2_real_t t2 = gravity_link2_sign(dq[0]);

@@ -93,7 +93,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0x273B0FC4UL
+#define IIWA14_GENERATION 0xAF7D4BC0UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef IIWA14_REAL
@@ -123,7 +123,7 @@ typedef IIWA14_REAL iiwa14_real_t;
 
 #define IIWA14_STATUS_OK     0
 #define IIWA14_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define IIWA14_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define IIWA14_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define IIWA14_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -89,7 +89,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -105,8 +105,8 @@ int iiwa14_bias(
         FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
         || !iiwa14_within(parameters, 62, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -115,9 +115,19 @@ int iiwa14_bias(
         return status;
     }
 
+    iiwa14_real_t t1, t2;
+    IIWA14_SINCOS(q[1], &t1, &t2);
+    iiwa14_real_t t12, t11;
+    IIWA14_SINCOS(q[2], &t12, &t11);
+    iiwa14_real_t t33, t32;
+    IIWA14_SINCOS(q[3], &t33, &t32);
+    iiwa14_real_t t56, t55;
+    IIWA14_SINCOS(q[4], &t56, &t55);
+    iiwa14_real_t t80, t79;
+    IIWA14_SINCOS(q[5], &t80, &t79);
+    iiwa14_real_t t103, t102;
+    IIWA14_SINCOS(q[6], &t103, &t102);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_SIN(q[1]);
-    const iiwa14_real_t t2 = IIWA14_COS(q[1]);
     const iiwa14_real_t t3 = t2 * dq[0];
     const iiwa14_real_t t4 = dq[1] * t3;
     const iiwa14_real_t t5 = t1 * dq[0];
@@ -127,8 +137,6 @@ int iiwa14_bias(
     const iiwa14_real_t t8 = t5 * t3;
     const iiwa14_real_t t9 = dq[1] * dq[1];
     const iiwa14_real_t t10 = t3 * t3;
-    const iiwa14_real_t t11 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t12 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t13 = IIWA14_C(2.0) * t4;
     const iiwa14_real_t t14 = t12 * t8 + t11 * t13;
     const iiwa14_real_t t15 = t12 * t5 + t11 * dq[1];
@@ -149,8 +157,6 @@ int iiwa14_bias(
     const iiwa14_real_t t30 = t28 + IIWA14_C(0.42) * (t9 + t29);
     const iiwa14_real_t t31 = t23 + parameters[XZ3] * t25 - parameters[YZ3] * (t26 - t27)
         + parameters[MY3R] * t30;
-    const iiwa14_real_t t32 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t33 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t34 = t6 - t24;
     const iiwa14_real_t t35 = t18 - t17;
     const iiwa14_real_t t36 = t33 * t34 + t32 * t35;
@@ -173,8 +179,6 @@ int iiwa14_bias(
     const iiwa14_real_t t52 = t51 + IIWA14_C(0.42) * t8;
     const iiwa14_real_t t53 = IIWA14_C(0.84) * t4;
     const iiwa14_real_t t54 = t12 * t52 + t11 * t53;
-    const iiwa14_real_t t55 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t56 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t57 = t22 + t46;
     const iiwa14_real_t t58 = t40 - t39;
     const iiwa14_real_t t59 = t56 * t57 + t55 * t58;
@@ -198,8 +202,6 @@ int iiwa14_bias(
     const iiwa14_real_t t76 = t41 * t41;
     const iiwa14_real_t t77 = t76 + t50;
     const iiwa14_real_t t78 = t75 + IIWA14_C(-0.4) * t77;
-    const iiwa14_real_t t79 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t80 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t81 = t44 - t69;
     const iiwa14_real_t t82 = t62 + t63;
     const iiwa14_real_t t83 = t80 * t81 + t79 * t82;
@@ -222,8 +224,6 @@ int iiwa14_bias(
     const iiwa14_real_t t99 = t98 + IIWA14_C(0.4) * t57;
     const iiwa14_real_t t100 = t54 - IIWA14_C(-0.4) * t58;
     const iiwa14_real_t t101 = t56 * t99 + t55 * t100;
-    const iiwa14_real_t t102 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t103 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t104 = t93 - t67;
     const iiwa14_real_t t105 = t87 - t86;
     const iiwa14_real_t t106 = t103 * t104 + t102 * t105;

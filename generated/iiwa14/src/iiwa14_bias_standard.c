@@ -118,7 +118,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,8 +135,8 @@ int iiwa14_bias_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
         || !iiwa14_within(parameters, 91, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -145,9 +145,19 @@ int iiwa14_bias_standard(
         return status;
     }
 
+    iiwa14_real_t t1, t2;
+    IIWA14_SINCOS(q[1], &t1, &t2);
+    iiwa14_real_t t14, t13;
+    IIWA14_SINCOS(q[2], &t14, &t13);
+    iiwa14_real_t t38, t37;
+    IIWA14_SINCOS(q[3], &t38, &t37);
+    iiwa14_real_t t60, t59;
+    IIWA14_SINCOS(q[4], &t60, &t59);
+    iiwa14_real_t t87, t86;
+    IIWA14_SINCOS(q[5], &t87, &t86);
+    iiwa14_real_t t109, t108;
+    IIWA14_SINCOS(q[6], &t109, &t108);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_SIN(q[1]);
-    const iiwa14_real_t t2 = IIWA14_COS(q[1]);
     const iiwa14_real_t t3 = t2 * dq[0];
     const iiwa14_real_t t4 = dq[1] * t3;
     const iiwa14_real_t t5 = t1 * dq[0];
@@ -160,8 +170,6 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t11 = IIWA14_C(-9.81) * t2;
     const iiwa14_real_t t12 = t7 - t8 * parameters[XZ2] + (t10 - t9) * parameters[YZ2]
         + t11 * parameters[MZ2];
-    const iiwa14_real_t t13 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t14 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t15 = t14 * t5 + t13 * dq[1];
     const iiwa14_real_t t16 = dq[2] + t3;
     const iiwa14_real_t t17 = t15 * t16;
@@ -186,8 +194,6 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t35 = t14 * t33 - t13 * t34;
     const iiwa14_real_t t36 = t25 - parameters[XZ3] * t27 + (t28 - t29) * parameters[YZ3]
         + (parameters[MZ3] * t35 - t31 * parameters[MY3]);
-    const iiwa14_real_t t37 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t38 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t39 = t38 * t21 + t37 * t16;
     const iiwa14_real_t t40 = dq[3] - t15;
     const iiwa14_real_t t41 = t39 * t40;
@@ -210,8 +216,6 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t57 = t37 * t31 + t38 * t56;
     const iiwa14_real_t t58 = t51 - parameters[XZ4] * t53 + (t54 - t55) * parameters[YZ4]
         + (parameters[MY4] * t35 + parameters[MZ4] * t57);
-    const iiwa14_real_t t59 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t60 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t61 = t60 * t46 + t59 * t40;
     const iiwa14_real_t t62 = dq[4] + t39;
     const iiwa14_real_t t63 = t61 * t62;
@@ -239,8 +243,6 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t84 = t60 * t82 + t59 * t83;
     const iiwa14_real_t t85 = t73 + parameters[XZ5] * t75 + (t76 - t77) * parameters[YZ5]
         + (parameters[MZ5] * t84 - parameters[MY5] * t80);
-    const iiwa14_real_t t86 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t87 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t88 = t86 * t62 - t87 * t68;
     const iiwa14_real_t t89 = t61 - dq[5];
     const iiwa14_real_t t90 = t88 * t89;
@@ -263,8 +265,6 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t106 = t87 * t105 + t86 * t80;
     const iiwa14_real_t t107 = parameters[XZ6] * t102 - t100 + (t103 - t104) * parameters[YZ6]
         - (parameters[MY6] * t84 + parameters[MZ6] * t106);
-    const iiwa14_real_t t108 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t109 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t110 = t109 * t95 - t108 * t89;
     const iiwa14_real_t t111 = dq[6] + t88;
     const iiwa14_real_t t112 = t110 * t111;

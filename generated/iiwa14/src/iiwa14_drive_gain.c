@@ -22,7 +22,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int iiwa14_drive_gain(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))) {
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {

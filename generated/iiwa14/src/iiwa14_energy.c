@@ -90,7 +90,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -107,8 +107,8 @@ int iiwa14_energy(
         FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
         || !iiwa14_within(parameters, 62, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -118,16 +118,24 @@ int iiwa14_energy(
         return status;
     }
 
-    const iiwa14_real_t t0 = IIWA14_SIN(q[1]);
+    iiwa14_real_t t0, t2;
+    IIWA14_SINCOS(q[1], &t0, &t2);
+    iiwa14_real_t t8, t7;
+    IIWA14_SINCOS(q[2], &t8, &t7);
+    iiwa14_real_t t22, t21;
+    IIWA14_SINCOS(q[3], &t22, &t21);
+    iiwa14_real_t t33, t32;
+    IIWA14_SINCOS(q[4], &t33, &t32);
+    iiwa14_real_t t47, t46;
+    IIWA14_SINCOS(q[5], &t47, &t46);
+    iiwa14_real_t t58, t57;
+    IIWA14_SINCOS(q[6], &t58, &t57);
     const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t2 = IIWA14_COS(q[1]);
     const iiwa14_real_t t3 = t2 * dq[0];
     const iiwa14_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2] * dq[1]);
     const iiwa14_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
         + parameters[YZ2] * t3));
     const iiwa14_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const iiwa14_real_t t7 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t8 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t9 = t8 * dq[1] - t7 * t1;
     const iiwa14_real_t t10 = t8 * t1 + t7 * dq[1];
     const iiwa14_real_t t11 = dq[2] + t3;
@@ -141,8 +149,6 @@ int iiwa14_energy(
     const iiwa14_real_t t18 = t8 * t16 + t7 * t17;
     const iiwa14_real_t t19 = t7 * t16 - t8 * t17;
     const iiwa14_real_t t20 = t15 + (parameters[MX3] * (t11 * t18) + parameters[MY3R] * (t11 * t19));
-    const iiwa14_real_t t21 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t22 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t23 = t21 * t9 + t22 * t11;
     const iiwa14_real_t t24 = t22 * t9 - t21 * t11;
     const iiwa14_real_t t25 = dq[3] - t10;
@@ -153,8 +159,6 @@ int iiwa14_energy(
     const iiwa14_real_t t30 = t21 * t19;
     const iiwa14_real_t t31 = parameters[MX4] * (t25 * t29 - t24 * t18) + parameters[MY4R] * (t25 * t30
         - t23 * t18);
-    const iiwa14_real_t t32 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t33 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t34 = t33 * t25 - t32 * t23;
     const iiwa14_real_t t35 = t33 * t23 + t32 * t25;
     const iiwa14_real_t t36 = t24 - dq[4];
@@ -168,8 +172,6 @@ int iiwa14_energy(
     const iiwa14_real_t t44 = parameters[MX5] * (t36 * t42 + t35 * t29) - parameters[MY5R] * (t34 * t29
         + t36 * t43);
     const iiwa14_real_t t45 = t20 + IIWA14_C(0.5) * t28 + t31 + IIWA14_C(0.5) * t39 + t44;
-    const iiwa14_real_t t46 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t47 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t48 = t47 * t36 - t46 * t34;
     const iiwa14_real_t t49 = t47 * t34 + t46 * t36;
     const iiwa14_real_t t50 = t35 - dq[5];
@@ -181,8 +183,6 @@ int iiwa14_energy(
     const iiwa14_real_t t55 = t46 * t43 + t47 * t29;
     const iiwa14_real_t t56 = parameters[MX6] * (t49 * t42 - t50 * t54) - parameters[MY6R] * (t48 * t42
         + t50 * t55);
-    const iiwa14_real_t t57 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t58 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t59 = t57 * t48 - t58 * t50;
     const iiwa14_real_t t60 = t58 * t48 + t57 * t50;
     const iiwa14_real_t t61 = t49 - dq[6];

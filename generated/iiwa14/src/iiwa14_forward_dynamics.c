@@ -91,7 +91,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -108,9 +108,9 @@ int iiwa14_forward_dynamics(
         FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(input, 7, IIWA14_C(1.0e18))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(input, IIWA14_C(1.0e18))
         || !iiwa14_within(parameters, 62, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -119,11 +119,21 @@ int iiwa14_forward_dynamics(
         return status;
     }
 
+    iiwa14_real_t t2, t3;
+    IIWA14_SINCOS(q[1], &t2, &t3);
+    iiwa14_real_t t13, t12;
+    IIWA14_SINCOS(q[2], &t13, &t12);
+    iiwa14_real_t t34, t33;
+    IIWA14_SINCOS(q[3], &t34, &t33);
+    iiwa14_real_t t57, t56;
+    IIWA14_SINCOS(q[4], &t57, &t56);
+    iiwa14_real_t t81, t80;
+    IIWA14_SINCOS(q[5], &t81, &t80);
+    iiwa14_real_t t104, t103;
+    IIWA14_SINCOS(q[6], &t104, &t103);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
     const iiwa14_real_t t1 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0]))
         + IIWA14_C(-160.0) * (parameters[FC1] * t0);
-    const iiwa14_real_t t2 = IIWA14_SIN(q[1]);
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = t3 * dq[0];
     const iiwa14_real_t t5 = dq[1] * t4;
     const iiwa14_real_t t6 = t2 * dq[0];
@@ -133,8 +143,6 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t9 = t6 * t4;
     const iiwa14_real_t t10 = dq[1] * dq[1];
     const iiwa14_real_t t11 = t4 * t4;
-    const iiwa14_real_t t12 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t13 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t14 = IIWA14_C(-2.0) * t5;
     const iiwa14_real_t t15 = t12 * t14 - t13 * t9;
     const iiwa14_real_t t16 = t13 * t6 + t12 * dq[1];
@@ -156,8 +164,6 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t31 = t29 + IIWA14_C(-0.42) * (t10 + t30);
     const iiwa14_real_t t32 = t24 + parameters[XZ3] * t26 - parameters[YZ3] * (t27 - t28)
         - parameters[MY3R] * t31;
-    const iiwa14_real_t t33 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t34 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t35 = t7 + t25;
     const iiwa14_real_t t36 = t18 + t19;
     const iiwa14_real_t t37 = t33 * t36 - t34 * t35;
@@ -180,8 +186,6 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t53 = t52 + IIWA14_C(-0.42) * t9;
     const iiwa14_real_t t54 = IIWA14_C(0.84) * t5;
     const iiwa14_real_t t55 = t13 * t53 - t12 * t54;
-    const iiwa14_real_t t56 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t57 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t58 = t23 + t47;
     const iiwa14_real_t t59 = t41 - t40;
     const iiwa14_real_t t60 = t56 * t59 - t57 * t58;
@@ -205,8 +209,6 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t77 = t42 * t42;
     const iiwa14_real_t t78 = t77 + t51;
     const iiwa14_real_t t79 = t76 + IIWA14_C(0.4) * t78;
-    const iiwa14_real_t t80 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t81 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t82 = t45 - t70;
     const iiwa14_real_t t83 = t63 + t64;
     const iiwa14_real_t t84 = t81 * t82 + t80 * t83;
@@ -229,8 +231,6 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t100 = t99 + IIWA14_C(-0.4) * t58;
     const iiwa14_real_t t101 = t55 + IIWA14_C(0.4) * t59;
     const iiwa14_real_t t102 = t57 * t100 + t56 * t101;
-    const iiwa14_real_t t103 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t104 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t105 = t68 + t94;
     const iiwa14_real_t t106 = t87 + t88;
     const iiwa14_real_t t107 = t103 * t106 - t104 * t105;

@@ -120,7 +120,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -138,9 +138,9 @@ int iiwa14_forward_dynamics_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(input, 7, IIWA14_C(1.0e18))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(input, IIWA14_C(1.0e18))
         || !iiwa14_within(parameters, 91, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -149,11 +149,21 @@ int iiwa14_forward_dynamics_standard(
         return status;
     }
 
+    iiwa14_real_t t2, t3;
+    IIWA14_SINCOS(q[1], &t2, &t3);
+    iiwa14_real_t t15, t14;
+    IIWA14_SINCOS(q[2], &t15, &t14);
+    iiwa14_real_t t39, t38;
+    IIWA14_SINCOS(q[3], &t39, &t38);
+    iiwa14_real_t t61, t60;
+    IIWA14_SINCOS(q[4], &t61, &t60);
+    iiwa14_real_t t88, t87;
+    IIWA14_SINCOS(q[5], &t88, &t87);
+    iiwa14_real_t t110, t109;
+    IIWA14_SINCOS(q[6], &t110, &t109);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
     const iiwa14_real_t t1 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1])
         + IIWA14_C(-160.0) * (t0 * parameters[FC1]);
-    const iiwa14_real_t t2 = IIWA14_SIN(q[1]);
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = t3 * dq[0];
     const iiwa14_real_t t5 = dq[1] * t4;
     const iiwa14_real_t t6 = t2 * dq[0];
@@ -166,8 +176,6 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t12 = IIWA14_C(9.81) * t3;
     const iiwa14_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2]
         + t12 * parameters[MZ2];
-    const iiwa14_real_t t14 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t15 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t16 = t15 * t6 + t14 * dq[1];
     const iiwa14_real_t t17 = dq[2] + t4;
     const iiwa14_real_t t18 = t16 * t17;
@@ -192,8 +200,6 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t36 = t15 * t34 + t14 * t35;
     const iiwa14_real_t t37 = (t29 - t30) * parameters[YZ3] - (t26 + parameters[XZ3] * t28)
         + (t32 * parameters[MY3] - parameters[MZ3] * t36);
-    const iiwa14_real_t t38 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t39 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t40 = t39 * t22 - t38 * t17;
     const iiwa14_real_t t41 = t16 - dq[3];
     const iiwa14_real_t t42 = t40 * t41;
@@ -216,8 +222,6 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t58 = t38 * t32 + t39 * t57;
     const iiwa14_real_t t59 = t52 + parameters[XZ4] * t54 + (t56 - t55) * parameters[YZ4]
         + (parameters[MY4] * t36 + parameters[MZ4] * t58);
-    const iiwa14_real_t t60 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t61 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t62 = t60 * t41 - t61 * t47;
     const iiwa14_real_t t63 = t40 - dq[4];
     const iiwa14_real_t t64 = t62 * t63;
@@ -245,8 +249,6 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t85 = t61 * t83 + t60 * t84;
     const iiwa14_real_t t86 = t74 + parameters[XZ5] * t76 + (t78 - t77) * parameters[YZ5]
         + (parameters[MY5] * t81 + parameters[MZ5] * t85);
-    const iiwa14_real_t t87 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t88 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t89 = t87 * t63 - t88 * t69;
     const iiwa14_real_t t90 = dq[5] + t62;
     const iiwa14_real_t t91 = t89 * t90;
@@ -269,8 +271,6 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t107 = t88 * t106 - t87 * t81;
     const iiwa14_real_t t108 = t101 - parameters[XZ6] * t103 + (t104 - t105) * parameters[YZ6]
         + (parameters[MY6] * t85 + parameters[MZ6] * t107);
-    const iiwa14_real_t t109 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t110 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t111 = t109 * t90 - t110 * t96;
     const iiwa14_real_t t112 = t89 - dq[6];
     const iiwa14_real_t t113 = t111 * t112;

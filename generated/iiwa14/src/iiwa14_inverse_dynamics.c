@@ -90,7 +90,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -107,9 +107,9 @@ int iiwa14_inverse_dynamics(
         FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(ddq, 7, IIWA14_C(1.0e16))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(ddq, IIWA14_C(1.0e16))
         || !iiwa14_within(parameters, 62, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -118,10 +118,20 @@ int iiwa14_inverse_dynamics(
         return status;
     }
 
+    iiwa14_real_t t1, t3;
+    IIWA14_SINCOS(q[1], &t1, &t3);
+    iiwa14_real_t t20, t16;
+    IIWA14_SINCOS(q[2], &t20, &t16);
+    iiwa14_real_t t40, t39;
+    IIWA14_SINCOS(q[3], &t40, &t39);
+    iiwa14_real_t t64, t63;
+    IIWA14_SINCOS(q[4], &t64, &t63);
+    iiwa14_real_t t89, t88;
+    IIWA14_SINCOS(q[5], &t89, &t88);
+    iiwa14_real_t t113, t112;
+    IIWA14_SINCOS(q[6], &t113, &t112);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_SIN(q[1]);
     const iiwa14_real_t t2 = dq[1] * dq[1];
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = t3 * dq[0];
     const iiwa14_real_t t5 = t4 * t4;
     const iiwa14_real_t t6 = dq[1] * t4;
@@ -134,11 +144,9 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t13 = parameters[ZZ2R] * t6 + parameters[XX2R] * t8 + parameters[XY2] * (t12 - t10);
     const iiwa14_real_t t14 = t9 * t4;
     const iiwa14_real_t t15 = parameters[YZ2] * (t2 - t5) + (t13 - parameters[XZ2] * (ddq[1] + t14));
-    const iiwa14_real_t t16 = IIWA14_COS(q[2]);
     const iiwa14_real_t t17 = IIWA14_C(-9.81) * t3;
     const iiwa14_real_t t18 = t9 * t9;
     const iiwa14_real_t t19 = t17 + IIWA14_C(0.42) * (t2 + t18);
-    const iiwa14_real_t t20 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t21 = t20 * t9 + t16 * dq[1];
     const iiwa14_real_t t22 = t21 * t21;
     const iiwa14_real_t t23 = dq[2] + t4;
@@ -158,8 +166,6 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t37 = t35 - t36;
     const iiwa14_real_t t38 = parameters[YZ3] * (t22 - t24) + (t34 - parameters[XZ3] * t37)
         - parameters[MY3R] * t19;
-    const iiwa14_real_t t39 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t40 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t41 = t40 * t30 + t39 * t23;
     const iiwa14_real_t t42 = t41 * t41;
     const iiwa14_real_t t43 = dq[3] - t21;
@@ -183,8 +189,6 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t60 = t59 + IIWA14_C(0.42) * t26;
     const iiwa14_real_t t61 = IIWA14_C(0.42) * t27;
     const iiwa14_real_t t62 = t20 * t60 + t16 * t61;
-    const iiwa14_real_t t63 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t64 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t65 = t63 * t43 - t64 * t50;
     const iiwa14_real_t t66 = t65 * t65;
     const iiwa14_real_t t67 = dq[4] + t41;
@@ -209,8 +213,6 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t85 = t16 * t60 - t20 * t61;
     const iiwa14_real_t t86 = t40 * t85 - t39 * t19;
     const iiwa14_real_t t87 = IIWA14_C(-0.4) * t84 + t86;
-    const iiwa14_real_t t88 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t89 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t90 = t88 * t67 - t89 * t74;
     const iiwa14_real_t t91 = t90 * t90;
     const iiwa14_real_t t92 = t65 - dq[5];
@@ -234,8 +236,6 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t109 = t108 + IIWA14_C(0.4) * t70;
     const iiwa14_real_t t110 = t62 - IIWA14_C(-0.4) * t71;
     const iiwa14_real_t t111 = t64 * t109 + t63 * t110;
-    const iiwa14_real_t t112 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t113 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t114 = t113 * t99 - t112 * t92;
     const iiwa14_real_t t115 = t114 * t114;
     const iiwa14_real_t t116 = dq[6] + t90;

@@ -119,7 +119,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -137,9 +137,9 @@ int iiwa14_inverse_dynamics_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(ddq, 7, IIWA14_C(1.0e16))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(ddq, IIWA14_C(1.0e16))
         || !iiwa14_within(parameters, 91, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -148,11 +148,21 @@ int iiwa14_inverse_dynamics_standard(
         return status;
     }
 
+    iiwa14_real_t t2, t3;
+    IIWA14_SINCOS(q[1], &t2, &t3);
+    iiwa14_real_t t19, t18;
+    IIWA14_SINCOS(q[2], &t19, &t18);
+    iiwa14_real_t t45, t44;
+    IIWA14_SINCOS(q[3], &t45, &t44);
+    iiwa14_real_t t68, t67;
+    IIWA14_SINCOS(q[4], &t68, &t67);
+    iiwa14_real_t t96, t95;
+    IIWA14_SINCOS(q[5], &t96, &t95);
+    iiwa14_real_t t119, t118;
+    IIWA14_SINCOS(q[6], &t119, &t118);
     const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
     const iiwa14_real_t t1 = IIWA14_C(160.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + IIWA14_C(160.0) * ddq[0] * parameters[IA1];
-    const iiwa14_real_t t2 = IIWA14_SIN(q[1]);
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = IIWA14_C(-9.81) * t3;
     const iiwa14_real_t t5 = t3 * dq[0];
     const iiwa14_real_t t6 = t5 * t5;
@@ -168,8 +178,6 @@ int iiwa14_inverse_dynamics_standard(
         - t12) * parameters[XY2];
     const iiwa14_real_t t16 = t11 * t5;
     const iiwa14_real_t t17 = (t7 - t6) * parameters[YZ2] + (t15 - (ddq[1] + t16) * parameters[XZ2]);
-    const iiwa14_real_t t18 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t19 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t20 = t19 * t11 + t18 * dq[1];
     const iiwa14_real_t t21 = t20 * t20;
     const iiwa14_real_t t22 = dq[2] + t5;
@@ -196,8 +204,6 @@ int iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t t42 = t19 * t40 - t18 * t41;
     const iiwa14_real_t t43 = (t21 - t23) * parameters[YZ3] - (t33 - t36 * parameters[XZ3])
         + (t42 * parameters[MZ3] - t38 * parameters[MY3]);
-    const iiwa14_real_t t44 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t45 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t46 = t45 * t29 + t44 * t22;
     const iiwa14_real_t t47 = t46 * t46;
     const iiwa14_real_t t48 = dq[3] - t20;
@@ -221,8 +227,6 @@ int iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t t65 = t45 * t64 + t44 * t38;
     const iiwa14_real_t t66 = (t47 - t49) * parameters[YZ4] + (t60 + t63 * parameters[XZ4])
         + (t42 * parameters[MY4] + t65 * parameters[MZ4]);
-    const iiwa14_real_t t67 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t68 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t69 = t68 * t55 + t67 * t48;
     const iiwa14_real_t t70 = t69 * t69;
     const iiwa14_real_t t71 = dq[4] + t46;
@@ -251,8 +255,6 @@ int iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t t93 = t67 * t92 - t68 * t91;
     const iiwa14_real_t t94 = (t70 - t72) * parameters[YZ5] + (t83 + t86 * parameters[XZ5])
         + (t93 * parameters[MZ5] - t89 * parameters[MY5]);
-    const iiwa14_real_t t95 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t96 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t97 = t95 * t71 - t96 * t78;
     const iiwa14_real_t t98 = t97 * t97;
     const iiwa14_real_t t99 = t69 - dq[5];
@@ -276,8 +278,6 @@ int iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t t116 = t96 * t115 + t95 * t89;
     const iiwa14_real_t t117 = (t98 - t100) * parameters[YZ6] - (t111 - t114 * parameters[XZ6])
         - (t93 * parameters[MY6] + t116 * parameters[MZ6]);
-    const iiwa14_real_t t118 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t119 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t120 = t119 * t106 - t118 * t99;
     const iiwa14_real_t t121 = t120 * t120;
     const iiwa14_real_t t122 = dq[6] + t97;

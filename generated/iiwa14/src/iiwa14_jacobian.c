@@ -22,7 +22,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int iiwa14_jacobian(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))) {
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {
@@ -40,25 +40,25 @@ int iiwa14_jacobian(
         return status;
     }
 
-    const iiwa14_real_t t0 = IIWA14_SIN(q[0]);
-    const iiwa14_real_t t1 = IIWA14_SIN(q[1]);
+    iiwa14_real_t t0, t8;
+    IIWA14_SINCOS(q[0], &t0, &t8);
+    iiwa14_real_t t1, t6;
+    IIWA14_SINCOS(q[1], &t1, &t6);
+    iiwa14_real_t t9, t5;
+    IIWA14_SINCOS(q[2], &t9, &t5);
+    iiwa14_real_t t4, t11;
+    IIWA14_SINCOS(q[3], &t4, &t11);
+    iiwa14_real_t t16, t14;
+    IIWA14_SINCOS(q[4], &t16, &t14);
+    iiwa14_real_t t13, t18;
+    IIWA14_SINCOS(q[5], &t13, &t18);
     const iiwa14_real_t t2 = t0 * t1;
     const iiwa14_real_t t3 = IIWA14_C(-0.42) * t2;
-    const iiwa14_real_t t4 = IIWA14_SIN(q[3]);
-    const iiwa14_real_t t5 = IIWA14_COS(q[2]);
-    const iiwa14_real_t t6 = IIWA14_COS(q[1]);
     const iiwa14_real_t t7 = t0 * t6;
-    const iiwa14_real_t t8 = IIWA14_COS(q[0]);
-    const iiwa14_real_t t9 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t10 = t5 * t7 + t8 * t9;
-    const iiwa14_real_t t11 = IIWA14_COS(q[3]);
     const iiwa14_real_t t12 = t11 * t2 - t4 * t10;
-    const iiwa14_real_t t13 = IIWA14_SIN(q[5]);
-    const iiwa14_real_t t14 = IIWA14_COS(q[4]);
     const iiwa14_real_t t15 = t11 * t10 + t4 * t2;
-    const iiwa14_real_t t16 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t17 = t9 * t7 - t8 * t5;
-    const iiwa14_real_t t18 = IIWA14_COS(q[5]);
     const iiwa14_real_t t19 = t13 * (t14 * t15 - t16 * t17) + t18 * t12;
     const iiwa14_real_t t20 = IIWA14_C(-0.126) * t19;
     const iiwa14_real_t t21 = t3 + IIWA14_C(-0.4) * t12 + t20;

@@ -26,7 +26,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int iiwa14_joint_from_motor(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q_m, 7, IIWA14_C(1.0e18))
-        || !iiwa14_within(dq_m, 7, IIWA14_C(1.0e18))
-        || !iiwa14_within(ddq_m, 7, IIWA14_C(1.0e18))) {
+    if (!iiwa14_within_joints(q_m, IIWA14_C(1.0e18))
+        || !iiwa14_within_joints(dq_m, IIWA14_C(1.0e18))
+        || !iiwa14_within_joints(ddq_m, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {

@@ -117,7 +117,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,7 +133,7 @@ int iiwa14_mass_matrix_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within(parameters, 91, IIWA14_C(1.0e18))) {
         status |= IIWA14_STATUS_INPUT;
     }
@@ -142,10 +142,19 @@ int iiwa14_mass_matrix_standard(
         return status;
     }
 
+    iiwa14_real_t t78, t70;
+    IIWA14_SINCOS(q[1], &t78, &t70);
+    iiwa14_real_t t61, t37;
+    IIWA14_SINCOS(q[2], &t61, &t37);
+    iiwa14_real_t t51, t40;
+    IIWA14_SINCOS(q[3], &t51, &t40);
+    iiwa14_real_t t25, t16;
+    IIWA14_SINCOS(q[4], &t25, &t16);
+    iiwa14_real_t t12, t1;
+    IIWA14_SINCOS(q[5], &t12, &t1);
+    iiwa14_real_t t3, t2;
+    IIWA14_SINCOS(q[6], &t3, &t2);
     const iiwa14_real_t t0 = parameters[YY6] + parameters[ZZ7];
-    const iiwa14_real_t t1 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t2 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t3 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t4 = t2 * (parameters[YY7] - parameters[XX7])
         + parameters[XY7] * (IIWA14_C(2.0) * t3);
     const iiwa14_real_t t5 = t2 * t4;
@@ -155,11 +164,9 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t9 = t3 * parameters[MY7] - t2 * parameters[MX7];
     const iiwa14_real_t t10 = t3 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(-0.126) * t9;
     const iiwa14_real_t t11 = parameters[XY6] + t10;
-    const iiwa14_real_t t12 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t13 = t1 * (t0 - t8) + t11 * (IIWA14_C(2.0) * t12);
     const iiwa14_real_t t14 = t1 * t13;
     const iiwa14_real_t t15 = parameters[XX5] + (t0 - t14);
-    const iiwa14_real_t t16 = IIWA14_COS(q[4]);
     const iiwa14_real_t t17 = parameters[ZZ6] + (parameters[XX7] + t5 + t7);
     const iiwa14_real_t t18 = parameters[YY5] + t17;
     const iiwa14_real_t t19 = t3 * t4 - parameters[XY7] - parameters[XZ6];
@@ -168,7 +175,6 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t22 = parameters[YZ6] - t21;
     const iiwa14_real_t t23 = t1 * t19 + t12 * t22;
     const iiwa14_real_t t24 = t23 - parameters[XY5];
-    const iiwa14_real_t t25 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t26 = t16 * (t18 - t15) - t24 * (IIWA14_C(2.0) * t25);
     const iiwa14_real_t t27 = t16 * t26;
     const iiwa14_real_t t28 = parameters[M5] + (parameters[M6] + parameters[M7]);
@@ -180,10 +186,8 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t34 = IIWA14_C(0.4) * (t29 + IIWA14_C(2.0) * t33);
     const iiwa14_real_t t35 = parameters[ZZ4] + (t15 + t27 + t34);
     const iiwa14_real_t t36 = parameters[YY3] + t35;
-    const iiwa14_real_t t37 = IIWA14_COS(q[2]);
     const iiwa14_real_t t38 = parameters[ZZ5] + (t8 + t14);
     const iiwa14_real_t t39 = parameters[YY4] + t38;
-    const iiwa14_real_t t40 = IIWA14_COS(q[3]);
     const iiwa14_real_t t41 = parameters[XX4] + (t18 - t27 + t34);
     const iiwa14_real_t t42 = parameters[XZ5] - (t11 - t12 * t13);
     const iiwa14_real_t t43 = t12 * t19 - t1 * t22;
@@ -194,7 +198,6 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t48 = t25 * t45 + t16 * t47;
     const iiwa14_real_t t49 = t16 * t42 - t25 * t44 + IIWA14_C(0.4) * t48;
     const iiwa14_real_t t50 = parameters[XY4] + t49;
-    const iiwa14_real_t t51 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t52 = t40 * (t39 - t41) + t50 * (IIWA14_C(2.0) * t51);
     const iiwa14_real_t t53 = t40 * t52;
     const iiwa14_real_t t54 = parameters[XX3] + (t39 - t53);
@@ -204,7 +207,6 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t58 = parameters[YZ4] + t57;
     const iiwa14_real_t t59 = t40 * t55 - t51 * t58;
     const iiwa14_real_t t60 = t59 - parameters[XY3];
-    const iiwa14_real_t t61 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t62 = t37 * (t36 - t54) - t60 * (IIWA14_C(2.0) * t61);
     const iiwa14_real_t t63 = t37 * t62;
     const iiwa14_real_t t64 = parameters[MY4] + (t33 + t29);
@@ -214,7 +216,6 @@ int iiwa14_mass_matrix_standard(
         + IIWA14_C(2.0) * (parameters[MZ3] + t66);
     const iiwa14_real_t t68 = IIWA14_C(0.42) * t67;
     const iiwa14_real_t t69 = parameters[XX2] + (t36 - t63 + t68);
-    const iiwa14_real_t t70 = IIWA14_COS(q[1]);
     const iiwa14_real_t t71 = parameters[ZZ3] + (t41 + t53);
     const iiwa14_real_t t72 = parameters[XZ3] + (t50 - t51 * t52);
     const iiwa14_real_t t73 = t51 * t55 + t40 * t58;
@@ -222,7 +223,6 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t75 = parameters[MZ4] + t56 - parameters[MY3];
     const iiwa14_real_t t76 = parameters[MX3] - (t51 * t64 - t40 * t65);
     const iiwa14_real_t t77 = t61 * t74 - t37 * t72 + IIWA14_C(0.42) * (t61 * t75 + t37 * t76);
-    const iiwa14_real_t t78 = IIWA14_SIN(q[1]);
     const iiwa14_real_t t79 = t70 * (parameters[YY2] + t71 - t69) + (parameters[XY2]
         + t77) * (IIWA14_C(2.0) * t78);
     out[0] = parameters[ZZ1] + (t69 + t70 * t79) + IIWA14_C(2.56e4) * parameters[IA1];

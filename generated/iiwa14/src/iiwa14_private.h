@@ -12,7 +12,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define IIWA14_MATH_double(name) name
 #define IIWA14_MATH(name) IIWA14_JOIN(IIWA14_MATH_, IIWA14_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DIIWA14_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, IIWA14_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DIIWA14_SINCOS=my_sincos, or with both of
+ * -DIIWA14_SIN=my_sin -DIIWA14_COS=my_cos; -include my_header.h declares it.
+ */
+#define IIWA14_SINGLE_float 1
+#define IIWA14_SINGLE_double 0
+#if !defined(IIWA14_SINCOS) && !defined(IIWA14_SIN) && !defined(IIWA14_COS)
+#define IIWA14_OWN_SINCOS IIWA14_JOIN(IIWA14_SINGLE_, IIWA14_REAL)
+#else
+#define IIWA14_OWN_SINCOS 0
+#endif
 #ifndef IIWA14_SIN
 #define IIWA14_SIN IIWA14_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline iiwa14_real_t iiwa14_select(iiwa14_real_t condition, iiwa14_real_t
     return condition > IIWA14_C(0.0) ? a : b;
 }
 
+#if IIWA14_OWN_SINCOS
+typedef struct {
+    iiwa14_real_t sine;
+    iiwa14_real_t cosine;
+} iiwa14_pair_t;
+
+/* Two numbers by value travel in registers. */
+iiwa14_pair_t iiwa14_sincos(iiwa14_real_t x);
+#endif
+
+#ifndef IIWA14_SINCOS
+#define IIWA14_SINCOS iiwa14_sine_cosine
+static inline void iiwa14_sine_cosine(iiwa14_real_t x, iiwa14_real_t *sine, iiwa14_real_t *cosine)
+{
+#if IIWA14_OWN_SINCOS
+    const iiwa14_pair_t pair = iiwa14_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = IIWA14_SIN(x);
+    *cosine = IIWA14_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int iiwa14_within(const iiwa14_real_t x[], int n, iiwa14_real_t limit)
 {
@@ -76,6 +112,13 @@ static inline int iiwa14_within(const iiwa14_real_t x[], int n, iiwa14_real_t li
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int iiwa14_within_joints(const iiwa14_real_t x[], iiwa14_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
+        limit;
 }
 
 static inline void iiwa14_zero(iiwa14_real_t x[], int n)

@@ -34,7 +34,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int iiwa14_regressor(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(ddq, 7, IIWA14_C(1.0e16))) {
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(ddq, IIWA14_C(1.0e16))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {
@@ -56,11 +56,21 @@ int iiwa14_regressor(
         return status;
     }
 
+    iiwa14_real_t t3, t0;
+    IIWA14_SINCOS(q[1], &t3, &t0);
+    iiwa14_real_t t19, t20;
+    IIWA14_SINCOS(q[2], &t19, &t20);
+    iiwa14_real_t t56, t57;
+    IIWA14_SINCOS(q[3], &t56, &t57);
+    iiwa14_real_t t107, t108;
+    IIWA14_SINCOS(q[4], &t107, &t108);
+    iiwa14_real_t t164, t165;
+    IIWA14_SINCOS(q[5], &t164, &t165);
+    iiwa14_real_t t218, t219;
+    IIWA14_SINCOS(q[6], &t218, &t219);
     out[0] = IIWA14_C(0.0625) * ddq[0];
-    const iiwa14_real_t t0 = IIWA14_COS(q[1]);
     const iiwa14_real_t t1 = t0 * dq[0];
     const iiwa14_real_t t2 = dq[1] * t1;
-    const iiwa14_real_t t3 = IIWA14_SIN(q[1]);
     const iiwa14_real_t t4 = t3 * ddq[0];
     const iiwa14_real_t t5 = t2 + t4;
     const iiwa14_real_t t6 = IIWA14_C(-0.0625) * t3;
@@ -88,8 +98,6 @@ int iiwa14_regressor(
     out[67] = IIWA14_C(0.0625) * ddq[1];
     out[68] = IIWA14_C(-0.613125) * t0;
     out[69] = IIWA14_C(0.613125) * t3;
-    const iiwa14_real_t t19 = IIWA14_SIN(q[2]);
-    const iiwa14_real_t t20 = IIWA14_COS(q[2]);
     const iiwa14_real_t t21 = t19 * t7 + t20 * dq[1];
     const iiwa14_real_t t22 = dq[2] + t1;
     const iiwa14_real_t t23 = t21 * t22;
@@ -146,8 +154,6 @@ int iiwa14_regressor(
     out[14] = t55 * t9 - t52 * t26 + IIWA14_C(-0.42) * t50;
     out[76] = IIWA14_C(-0.42) * t51 - t52 * t32;
     out[138] = IIWA14_C(0.0625) * t55 + IIWA14_C(-0.02625) * t36;
-    const iiwa14_real_t t56 = IIWA14_SIN(q[3]);
-    const iiwa14_real_t t57 = IIWA14_COS(q[3]);
     const iiwa14_real_t t58 = t56 * t27 + t57 * t22;
     const iiwa14_real_t t59 = dq[3] - t21;
     const iiwa14_real_t t60 = t58 * t59;
@@ -225,8 +231,6 @@ int iiwa14_regressor(
     out[83] = t106;
     out[145] = -(t90 * t72);
     out[207] = IIWA14_C(0.0625) * t102;
-    const iiwa14_real_t t107 = IIWA14_SIN(q[4]);
-    const iiwa14_real_t t108 = IIWA14_COS(q[4]);
     const iiwa14_real_t t109 = t107 * t64 + t108 * t59;
     const iiwa14_real_t t110 = dq[4] + t58;
     const iiwa14_real_t t111 = t109 * t110;
@@ -317,8 +321,6 @@ int iiwa14_regressor(
     out[152] = t142 * t123 + t158 * t73 + t157 * t161;
     out[214] = t142 * t126 + IIWA14_C(-0.025) * t160;
     out[276] = IIWA14_C(0.125) * t158;
-    const iiwa14_real_t t164 = IIWA14_SIN(q[5]);
-    const iiwa14_real_t t165 = IIWA14_COS(q[5]);
     const iiwa14_real_t t166 = t165 * t110 - t164 * t115;
     const iiwa14_real_t t167 = t109 - dq[5];
     const iiwa14_real_t t168 = t166 * t167;
@@ -413,8 +415,6 @@ int iiwa14_regressor(
     out[221] = t145 * t183 + t210 * t127 + IIWA14_C(-0.025) * t213;
     out[283] = -(t145 * t186);
     out[345] = IIWA14_C(0.125) * t210;
-    const iiwa14_real_t t218 = IIWA14_SIN(q[6]);
-    const iiwa14_real_t t219 = IIWA14_COS(q[6]);
     const iiwa14_real_t t220 = t218 * t172 - t219 * t167;
     const iiwa14_real_t t221 = dq[6] + t166;
     const iiwa14_real_t t222 = t220 * t221;

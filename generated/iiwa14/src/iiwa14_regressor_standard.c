@@ -36,7 +36,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -48,9 +48,9 @@ int iiwa14_regressor_standard(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(ddq, 7, IIWA14_C(1.0e16))) {
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(ddq, IIWA14_C(1.0e16))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {
@@ -58,11 +58,21 @@ int iiwa14_regressor_standard(
         return status;
     }
 
+    iiwa14_real_t t1, t3;
+    IIWA14_SINCOS(q[1], &t1, &t3);
+    iiwa14_real_t t22, t23;
+    IIWA14_SINCOS(q[2], &t22, &t23);
+    iiwa14_real_t t79, t80;
+    IIWA14_SINCOS(q[3], &t79, &t80);
+    iiwa14_real_t t140, t141;
+    IIWA14_SINCOS(q[4], &t140, &t141);
+    iiwa14_real_t t219, t220;
+    IIWA14_SINCOS(q[5], &t219, &t220);
+    iiwa14_real_t t291, t292;
+    IIWA14_SINCOS(q[6], &t291, &t292);
     const iiwa14_real_t t0 = IIWA14_C(0.0625) * ddq[0];
     out[5] = t0;
-    const iiwa14_real_t t1 = IIWA14_SIN(q[1]);
     const iiwa14_real_t t2 = t1 * ddq[0];
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = t3 * dq[0];
     const iiwa14_real_t t5 = dq[1] * t4;
     const iiwa14_real_t t6 = t2 + t5;
@@ -95,8 +105,6 @@ int iiwa14_regressor_standard(
     out[106] = IIWA14_C(0.0625) * ddq[1];
     out[107] = IIWA14_C(-0.613125) * t3;
     out[108] = IIWA14_C(0.613125) * t1;
-    const iiwa14_real_t t22 = IIWA14_SIN(q[2]);
-    const iiwa14_real_t t23 = IIWA14_COS(q[2]);
     const iiwa14_real_t t24 = t22 * t21 + t23 * t15;
     const iiwa14_real_t t25 = t22 * t8 + t23 * dq[1];
     const iiwa14_real_t t26 = dq[2] + t4;
@@ -180,8 +188,6 @@ int iiwa14_regressor_standard(
     out[29] = t77;
     const iiwa14_real_t t78 = IIWA14_C(0.42) * t75 + IIWA14_C(0.17639999999999997) * t76;
     out[120] = t78;
-    const iiwa14_real_t t79 = IIWA14_SIN(q[3]);
-    const iiwa14_real_t t80 = IIWA14_COS(q[3]);
     const iiwa14_real_t t81 = t79 * t59 + t80 * t42;
     const iiwa14_real_t t82 = t79 * t30 + t80 * t26;
     const iiwa14_real_t t83 = dq[3] - t25;
@@ -278,8 +284,6 @@ int iiwa14_regressor_standard(
     out[220] = -t72;
     out[39] = t77;
     out[130] = t78;
-    const iiwa14_real_t t140 = IIWA14_SIN(q[4]);
-    const iiwa14_real_t t141 = IIWA14_COS(q[4]);
     const iiwa14_real_t t142 = t140 * t113 + t141 * t102;
     const iiwa14_real_t t143 = t140 * t87 + t141 * t83;
     const iiwa14_real_t t144 = dq[4] + t82;
@@ -405,8 +409,6 @@ int iiwa14_regressor_standard(
     out[231] = t217;
     const iiwa14_real_t t218 = t209 * t206 - t194 * t207;
     out[322] = t218;
-    const iiwa14_real_t t219 = IIWA14_SIN(q[5]);
-    const iiwa14_real_t t220 = IIWA14_COS(q[5]);
     const iiwa14_real_t t221 = t219 * t178 + t220 * t167;
     const iiwa14_real_t t222 = t219 * t148 - t220 * t144;
     const iiwa14_real_t t223 = dq[5] - t143;
@@ -534,8 +536,6 @@ int iiwa14_regressor_standard(
     out[150] = t216;
     out[241] = t217;
     out[332] = t218;
-    const iiwa14_real_t t291 = IIWA14_SIN(q[6]);
-    const iiwa14_real_t t292 = IIWA14_COS(q[6]);
     const iiwa14_real_t t293 = t291 * t261 - t292 * t250;
     const iiwa14_real_t t294 = t291 * t227 + t292 * t223;
     const iiwa14_real_t t295 = dq[6] - t222;

@@ -36,7 +36,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x273B0FC4UL
+#if IIWA14_GENERATION != 0xAF7D4BC0UL
 #error "iiwa14.h and iiwa14_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -49,10 +49,10 @@ int iiwa14_slotine_li_regressor(
 {
     int status = IIWA14_STATUS_OK;
 
-    if (!iiwa14_within(q, 7, IIWA14_C(1.0e8))
-        || !iiwa14_within(dq, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(dq_r, 7, IIWA14_C(1.0e10))
-        || !iiwa14_within(ddq_r, 7, IIWA14_C(1.0e16))) {
+    if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
+        || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(dq_r, IIWA14_C(1.0e10))
+        || !iiwa14_within_joints(ddq_r, IIWA14_C(1.0e16))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {
@@ -60,11 +60,21 @@ int iiwa14_slotine_li_regressor(
         return status;
     }
 
+    iiwa14_real_t t0, t3;
+    IIWA14_SINCOS(q[1], &t0, &t3);
+    iiwa14_real_t t24, t22;
+    IIWA14_SINCOS(q[2], &t24, &t22);
+    iiwa14_real_t t64, t63;
+    IIWA14_SINCOS(q[3], &t64, &t63);
+    iiwa14_real_t t119, t118;
+    IIWA14_SINCOS(q[4], &t119, &t118);
+    iiwa14_real_t t180, t179;
+    IIWA14_SINCOS(q[5], &t180, &t179);
+    iiwa14_real_t t238, t237;
+    IIWA14_SINCOS(q[6], &t238, &t237);
     out[0] = IIWA14_C(0.0625) * ddq_r[0];
-    const iiwa14_real_t t0 = IIWA14_SIN(q[1]);
     const iiwa14_real_t t1 = IIWA14_C(0.0625) * t0;
     const iiwa14_real_t t2 = t0 * ddq_r[0];
-    const iiwa14_real_t t3 = IIWA14_COS(q[1]);
     const iiwa14_real_t t4 = t3 * dq[0];
     const iiwa14_real_t t5 = t3 * dq_r[0];
     const iiwa14_real_t t6 = IIWA14_C(0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -95,9 +105,7 @@ int iiwa14_slotine_li_regressor(
     out[67] = IIWA14_C(0.0625) * ddq_r[1];
     out[68] = IIWA14_C(-0.613125) * t3;
     out[69] = IIWA14_C(0.613125) * t0;
-    const iiwa14_real_t t22 = IIWA14_COS(q[2]);
     const iiwa14_real_t t23 = t22 * t1;
-    const iiwa14_real_t t24 = IIWA14_SIN(q[2]);
     const iiwa14_real_t t25 = t24 * t21 - t22 * t14;
     const iiwa14_real_t t26 = t24 * t9 + t22 * dq[1];
     const iiwa14_real_t t27 = dq_r[2] + t5;
@@ -157,8 +165,6 @@ int iiwa14_slotine_li_regressor(
     out[14] = t59 * t23 + t62 * t8 + IIWA14_C(-0.42) * t57;
     out[76] = IIWA14_C(-0.42) * t58 - t59 * t39;
     out[138] = IIWA14_C(0.0625) * t62 + IIWA14_C(-0.02625) * t43;
-    const iiwa14_real_t t63 = IIWA14_COS(q[3]);
-    const iiwa14_real_t t64 = IIWA14_SIN(q[3]);
     const iiwa14_real_t t65 = t64 * t8 - t63 * t23;
     const iiwa14_real_t t66 = t64 * t55 + t63 * t42;
     const iiwa14_real_t t67 = t64 * t33 + t63 * t28;
@@ -240,8 +246,6 @@ int iiwa14_slotine_li_regressor(
     out[83] = t117;
     out[145] = -(t83 * t101);
     out[207] = IIWA14_C(0.0625) * t113;
-    const iiwa14_real_t t118 = IIWA14_COS(q[4]);
-    const iiwa14_real_t t119 = IIWA14_SIN(q[4]);
     const iiwa14_real_t t120 = t118 * t65 + t119 * t32;
     const iiwa14_real_t t121 = t119 * t97 + t118 * t86;
     const iiwa14_real_t t122 = t118 * t69 - t119 * t74;
@@ -336,8 +340,6 @@ int iiwa14_slotine_li_regressor(
     out[152] = t138 * t157 + t84 * t173 + t172 * t176;
     out[214] = t141 * t157 + IIWA14_C(-0.025) * t175;
     out[276] = IIWA14_C(0.125) * t173;
-    const iiwa14_real_t t179 = IIWA14_COS(q[5]);
-    const iiwa14_real_t t180 = IIWA14_SIN(q[5]);
     const iiwa14_real_t t181 = t179 * t120 - t180 * t73;
     const iiwa14_real_t t182 = t180 * t155 + t179 * t144;
     const iiwa14_real_t t183 = t179 * t124 - t180 * t129;
@@ -436,8 +438,6 @@ int iiwa14_slotine_li_regressor(
     out[221] = t202 * t160 + t142 * t229 + IIWA14_C(-0.025) * t232;
     out[283] = t205 * t160;
     out[345] = IIWA14_C(0.125) * t229;
-    const iiwa14_real_t t237 = IIWA14_COS(q[6]);
-    const iiwa14_real_t t238 = IIWA14_SIN(q[6]);
     const iiwa14_real_t t239 = t237 * t181 + t238 * t128;
     const iiwa14_real_t t240 = t238 * t219 - t237 * t208;
     const iiwa14_real_t t241 = t238 * t190 - t237 * t185;

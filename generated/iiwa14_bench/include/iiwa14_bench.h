@@ -73,7 +73,7 @@
 #define IIWA14_BENCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_BENCH_GENERATION 0xBE96C15CUL
+#define IIWA14_BENCH_GENERATION 0x876A9EC7UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef IIWA14_BENCH_REAL
@@ -104,7 +104,7 @@ typedef IIWA14_BENCH_REAL iiwa14_bench_real_t;
 
 #define IIWA14_BENCH_STATUS_OK     0
 #define IIWA14_BENCH_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define IIWA14_BENCH_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define IIWA14_BENCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define IIWA14_BENCH_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

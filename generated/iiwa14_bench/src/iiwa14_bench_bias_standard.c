@@ -97,7 +97,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -113,8 +113,8 @@ int iiwa14_bench_bias_standard(
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
         || !iiwa14_bench_within(parameters, 70, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -123,8 +123,18 @@ int iiwa14_bench_bias_standard(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t13, t12;
+    IIWA14_BENCH_SINCOS(q[2], &t13, &t12);
+    iiwa14_bench_real_t t37, t36;
+    IIWA14_BENCH_SINCOS(q[3], &t37, &t36);
+    iiwa14_bench_real_t t59, t58;
+    IIWA14_BENCH_SINCOS(q[4], &t59, &t58);
+    iiwa14_bench_real_t t86, t85;
+    IIWA14_BENCH_SINCOS(q[5], &t86, &t85);
+    iiwa14_bench_real_t t108, t107;
+    IIWA14_BENCH_SINCOS(q[6], &t108, &t107);
     const iiwa14_bench_real_t t2 = t1 * dq[0];
     const iiwa14_bench_real_t t3 = dq[1] * t2;
     const iiwa14_bench_real_t t4 = t0 * dq[0];
@@ -137,8 +147,6 @@ int iiwa14_bench_bias_standard(
     const iiwa14_bench_real_t t10 = IIWA14_BENCH_C(-9.81) * t1;
     const iiwa14_bench_real_t t11 = t6 - t7 * parameters[XZ2] + (t9 - t8) * parameters[YZ2]
         + t10 * parameters[MZ2];
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t13 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t14 = t13 * t4 + t12 * dq[1];
     const iiwa14_bench_real_t t15 = dq[2] + t2;
     const iiwa14_bench_real_t t16 = t14 * t15;
@@ -163,8 +171,6 @@ int iiwa14_bench_bias_standard(
     const iiwa14_bench_real_t t34 = t13 * t32 - t12 * t33;
     const iiwa14_bench_real_t t35 = t24 - parameters[XZ3] * t26 + (t27 - t28) * parameters[YZ3]
         + (parameters[MZ3] * t34 - t30 * parameters[MY3]);
-    const iiwa14_bench_real_t t36 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t37 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t38 = t37 * t20 + t36 * t15;
     const iiwa14_bench_real_t t39 = dq[3] - t14;
     const iiwa14_bench_real_t t40 = t38 * t39;
@@ -187,8 +193,6 @@ int iiwa14_bench_bias_standard(
     const iiwa14_bench_real_t t56 = t36 * t30 + t37 * t55;
     const iiwa14_bench_real_t t57 = t50 - parameters[XZ4] * t52 + (t53 - t54) * parameters[YZ4]
         + (parameters[MY4] * t34 + parameters[MZ4] * t56);
-    const iiwa14_bench_real_t t58 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t59 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t60 = t58 * t39 - t59 * t45;
     const iiwa14_bench_real_t t61 = dq[4] + t38;
     const iiwa14_bench_real_t t62 = t60 * t61;
@@ -216,8 +220,6 @@ int iiwa14_bench_bias_standard(
     const iiwa14_bench_real_t t83 = t59 * t81 + t58 * t82;
     const iiwa14_bench_real_t t84 = t72 + parameters[XZ5] * t74 + (t75 - t76) * parameters[YZ5]
         - (parameters[MY5] * t79 - parameters[MZ5] * t83);
-    const iiwa14_bench_real_t t85 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t86 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t87 = t85 * t61 - t86 * t67;
     const iiwa14_bench_real_t t88 = t60 - dq[5];
     const iiwa14_bench_real_t t89 = t87 * t88;
@@ -240,8 +242,6 @@ int iiwa14_bench_bias_standard(
     const iiwa14_bench_real_t t105 = t86 * t104 + t85 * t79;
     const iiwa14_bench_real_t t106 = t99 - parameters[XZ6] * t101 + (t103 - t102) * parameters[YZ6]
         + (parameters[MY6] * t83 + parameters[MZ6] * t105);
-    const iiwa14_bench_real_t t107 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t108 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t109 = t108 * t94 - t107 * t88;
     const iiwa14_bench_real_t t110 = dq[6] + t87;
     const iiwa14_bench_real_t t111 = t109 * t110;

@@ -22,7 +22,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int iiwa14_bench_drive_gain(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {

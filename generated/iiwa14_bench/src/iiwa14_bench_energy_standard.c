@@ -98,7 +98,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -115,8 +115,8 @@ int iiwa14_bench_energy_standard(
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
         || !iiwa14_bench_within(parameters, 70, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -126,9 +126,19 @@ int iiwa14_bench_energy_standard(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
+    iiwa14_bench_real_t t0, t2;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
+    iiwa14_bench_real_t t9, t8;
+    IIWA14_BENCH_SINCOS(q[2], &t9, &t8);
+    iiwa14_bench_real_t t24, t23;
+    IIWA14_BENCH_SINCOS(q[3], &t24, &t23);
+    iiwa14_bench_real_t t38, t37;
+    IIWA14_BENCH_SINCOS(q[4], &t38, &t37);
+    iiwa14_bench_real_t t54, t53;
+    IIWA14_BENCH_SINCOS(q[5], &t54, &t53);
+    iiwa14_bench_real_t t68, t67;
+    IIWA14_BENCH_SINCOS(q[6], &t68, &t67);
     const iiwa14_bench_real_t t1 = t0 * dq[0];
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t3 = t2 * dq[0];
     const iiwa14_bench_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2]
         - dq[1] * parameters[XZ2]);
@@ -138,8 +148,6 @@ int iiwa14_bench_energy_standard(
         + t3 * parameters[YZ2]));
     const iiwa14_bench_real_t t7 = IIWA14_BENCH_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
         + IIWA14_BENCH_C(0.5) * (t4 + t5 + t6);
-    const iiwa14_bench_real_t t8 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t9 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t10 = t9 * dq[1] - t8 * t1;
     const iiwa14_bench_real_t t11 = t9 * t1 + t8 * dq[1];
     const iiwa14_bench_real_t t12 = dq[2] + t3;
@@ -157,8 +165,6 @@ int iiwa14_bench_energy_standard(
     const iiwa14_bench_real_t t21 = t13 + t14 + t15 + parameters[M3] * (t18 * t18 + t20);
     const iiwa14_bench_real_t t22 = parameters[MX3] * (t12 * t19) - parameters[MY3] * (t12 * t18)
         + parameters[MZ3] * (t11 * t18 - t10 * t19);
-    const iiwa14_bench_real_t t23 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t24 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t25 = t23 * t10 + t24 * t12;
     const iiwa14_bench_real_t t26 = t24 * t10 - t23 * t12;
     const iiwa14_bench_real_t t27 = t11 - dq[3];
@@ -176,8 +182,6 @@ int iiwa14_bench_energy_standard(
         - t25 * t19);
     const iiwa14_bench_real_t t36 = t7 + IIWA14_BENCH_C(0.5) * t21 + t22 + IIWA14_BENCH_C(0.5) * t34 + (t35
         + parameters[MZ4] * (t25 * t32 - t26 * t31));
-    const iiwa14_bench_real_t t37 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t38 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t39 = t37 * t25 + t38 * t27;
     const iiwa14_bench_real_t t40 = t37 * t27 - t38 * t25;
     const iiwa14_bench_real_t t41 = t26 - dq[4];
@@ -197,8 +201,6 @@ int iiwa14_bench_energy_standard(
         - t39 * t32);
     const iiwa14_bench_real_t t52 = t36 + IIWA14_BENCH_C(0.5) * t50 + (t51 + parameters[MZ5] * (t40 * t47
         + t39 * t48));
-    const iiwa14_bench_real_t t53 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t54 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t55 = t53 * t39 + t54 * t41;
     const iiwa14_bench_real_t t56 = t53 * t41 - t54 * t39;
     const iiwa14_bench_real_t t57 = dq[5] + t40;
@@ -216,8 +218,6 @@ int iiwa14_bench_energy_standard(
         + t57 * t61);
     const iiwa14_bench_real_t t66 = t52 + IIWA14_BENCH_C(0.5) * t64 + (t65 + parameters[MZ6] * (t56 * t61
         - t55 * t62));
-    const iiwa14_bench_real_t t67 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t68 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t69 = t67 * t55 + t68 * t57;
     const iiwa14_bench_real_t t70 = t67 * t57 - t68 * t55;
     const iiwa14_bench_real_t t71 = t56 - dq[6];

@@ -72,7 +72,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -88,9 +88,9 @@ int iiwa14_bench_forward_dynamics(
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(input, 7, IIWA14_BENCH_C(1.0e18))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(input, IIWA14_BENCH_C(1.0e18))
         || !iiwa14_bench_within(parameters, 43, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -99,8 +99,18 @@ int iiwa14_bench_forward_dynamics(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t11, t10;
+    IIWA14_BENCH_SINCOS(q[2], &t11, &t10);
+    iiwa14_bench_real_t t32, t31;
+    IIWA14_BENCH_SINCOS(q[3], &t32, &t31);
+    iiwa14_bench_real_t t55, t54;
+    IIWA14_BENCH_SINCOS(q[4], &t55, &t54);
+    iiwa14_bench_real_t t79, t78;
+    IIWA14_BENCH_SINCOS(q[5], &t79, &t78);
+    iiwa14_bench_real_t t102, t101;
+    IIWA14_BENCH_SINCOS(q[6], &t102, &t101);
     const iiwa14_bench_real_t t2 = t1 * dq[0];
     const iiwa14_bench_real_t t3 = dq[1] * t2;
     const iiwa14_bench_real_t t4 = t0 * dq[0];
@@ -110,8 +120,6 @@ int iiwa14_bench_forward_dynamics(
     const iiwa14_bench_real_t t7 = t4 * t2;
     const iiwa14_bench_real_t t8 = t2 * t2;
     const iiwa14_bench_real_t t9 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t10 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t11 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t12 = IIWA14_BENCH_C(-2.0) * t3;
     const iiwa14_bench_real_t t13 = t10 * t12 - t11 * t7;
     const iiwa14_bench_real_t t14 = t11 * t4 + t10 * dq[1];
@@ -133,8 +141,6 @@ int iiwa14_bench_forward_dynamics(
     const iiwa14_bench_real_t t29 = t27 + IIWA14_BENCH_C(-0.4) * (t28 + t9);
     const iiwa14_bench_real_t t30 = t22 + parameters[XZ3] * t24 - parameters[YZ3] * (t25 - t26)
         - parameters[MY3R] * t29;
-    const iiwa14_bench_real_t t31 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t32 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t33 = t5 + t23;
     const iiwa14_bench_real_t t34 = t16 + t17;
     const iiwa14_bench_real_t t35 = t31 * t34 - t32 * t33;
@@ -157,8 +163,6 @@ int iiwa14_bench_forward_dynamics(
     const iiwa14_bench_real_t t51 = t50 + IIWA14_BENCH_C(-0.4) * t7;
     const iiwa14_bench_real_t t52 = IIWA14_BENCH_C(0.8) * t3;
     const iiwa14_bench_real_t t53 = t11 * t51 - t10 * t52;
-    const iiwa14_bench_real_t t54 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t55 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t56 = t21 + t45;
     const iiwa14_bench_real_t t57 = t39 - t38;
     const iiwa14_bench_real_t t58 = t54 * t57 - t55 * t56;
@@ -182,8 +186,6 @@ int iiwa14_bench_forward_dynamics(
     const iiwa14_bench_real_t t75 = t40 * t40;
     const iiwa14_bench_real_t t76 = t75 + t49;
     const iiwa14_bench_real_t t77 = t74 + IIWA14_BENCH_C(0.4) * t76;
-    const iiwa14_bench_real_t t78 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t79 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t80 = t43 - t68;
     const iiwa14_bench_real_t t81 = t61 + t62;
     const iiwa14_bench_real_t t82 = t79 * t80 + t78 * t81;
@@ -206,8 +208,6 @@ int iiwa14_bench_forward_dynamics(
     const iiwa14_bench_real_t t98 = t97 + IIWA14_BENCH_C(-0.4) * t56;
     const iiwa14_bench_real_t t99 = t53 + IIWA14_BENCH_C(0.4) * t57;
     const iiwa14_bench_real_t t100 = t55 * t98 + t54 * t99;
-    const iiwa14_bench_real_t t101 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t102 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t103 = t66 + t92;
     const iiwa14_bench_real_t t104 = t85 + t86;
     const iiwa14_bench_real_t t105 = t101 * t104 - t102 * t103;

@@ -29,7 +29,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -39,7 +39,7 @@ int iiwa14_bench_forward_kinematics(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {
@@ -47,19 +47,29 @@ int iiwa14_bench_forward_kinematics(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_COS(q[0]);
+    iiwa14_bench_real_t t1, t0;
+    IIWA14_BENCH_SINCOS(q[0], &t1, &t0);
+    iiwa14_bench_real_t t4, t2;
+    IIWA14_BENCH_SINCOS(q[1], &t4, &t2);
+    iiwa14_bench_real_t t9, t8;
+    IIWA14_BENCH_SINCOS(q[2], &t9, &t8);
+    iiwa14_bench_real_t t20, t19;
+    IIWA14_BENCH_SINCOS(q[3], &t20, &t19);
+    iiwa14_bench_real_t t28, t27;
+    IIWA14_BENCH_SINCOS(q[4], &t28, &t27);
+    iiwa14_bench_real_t t39, t38;
+    IIWA14_BENCH_SINCOS(q[5], &t39, &t38);
+    iiwa14_bench_real_t t47, t46;
+    IIWA14_BENCH_SINCOS(q[6], &t47, &t46);
     out[0] = t0;
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = IIWA14_BENCH_C(1.0);
     out[11] = IIWA14_BENCH_C(0.34);
     out[15] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t3 = t0 * t2;
     out[16] = t3;
-    const iiwa14_bench_real_t t4 = IIWA14_BENCH_SIN(q[1]);
     const iiwa14_bench_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = -t1;
@@ -72,8 +82,6 @@ int iiwa14_bench_forward_kinematics(
     out[25] = -t2;
     out[27] = IIWA14_BENCH_C(0.34);
     out[31] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t8 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t9 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t10 = t8 * t3 - t1 * t9;
     out[32] = t10;
     const iiwa14_bench_real_t t11 = t9 * t3 + t1 * t8;
@@ -96,8 +104,6 @@ int iiwa14_bench_forward_kinematics(
     const iiwa14_bench_real_t t18 = IIWA14_BENCH_C(0.4) * t2 + IIWA14_BENCH_C(0.34);
     out[43] = t18;
     out[47] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t19 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t20 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t21 = t19 * t10 + t20 * t5;
     out[48] = t21;
     const iiwa14_bench_real_t t22 = t19 * t5 - t20 * t10;
@@ -117,8 +123,6 @@ int iiwa14_bench_forward_kinematics(
     out[58] = -t17;
     out[59] = t18;
     out[63] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t27 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t28 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t29 = t27 * t21 - t28 * t11;
     out[64] = t29;
     const iiwa14_bench_real_t t30 = t28 * t21 + t27 * t11;
@@ -141,8 +145,6 @@ int iiwa14_bench_forward_kinematics(
     const iiwa14_bench_real_t t37 = t18 + IIWA14_BENCH_C(0.4) * t26;
     out[75] = t37;
     out[79] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t38 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t39 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t40 = t38 * t29 - t39 * t22;
     out[80] = t40;
     const iiwa14_bench_real_t t41 = t39 * t29 + t38 * t22;
@@ -162,8 +164,6 @@ int iiwa14_bench_forward_kinematics(
     out[90] = t36;
     out[91] = t37;
     out[95] = IIWA14_BENCH_C(1.0);
-    const iiwa14_bench_real_t t46 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t47 = IIWA14_BENCH_SIN(q[6]);
     out[96] = t46 * t40 - t47 * t30;
     out[97] = -(t47 * t40 + t46 * t30);
     out[98] = t41;

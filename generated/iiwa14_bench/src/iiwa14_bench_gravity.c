@@ -69,7 +69,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -83,7 +83,7 @@ int iiwa14_bench_gravity(
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
         || !iiwa14_bench_within(parameters, 43, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -92,28 +92,28 @@ int iiwa14_bench_gravity(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t2;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
+    iiwa14_bench_real_t t5, t1;
+    IIWA14_BENCH_SINCOS(q[2], &t5, &t1);
+    iiwa14_bench_real_t t9, t4;
+    IIWA14_BENCH_SINCOS(q[3], &t9, &t4);
+    iiwa14_bench_real_t t13, t8;
+    IIWA14_BENCH_SINCOS(q[4], &t13, &t8);
+    iiwa14_bench_real_t t17, t12;
+    IIWA14_BENCH_SINCOS(q[5], &t17, &t12);
+    iiwa14_bench_real_t t21, t16;
+    IIWA14_BENCH_SINCOS(q[6], &t21, &t16);
     const iiwa14_bench_real_t t3 = IIWA14_BENCH_C(-9.81) * t2;
-    const iiwa14_bench_real_t t4 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t5 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t6 = IIWA14_BENCH_C(9.81) * t0;
     const iiwa14_bench_real_t t7 = t5 * t6;
-    const iiwa14_bench_real_t t8 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t9 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t10 = t1 * t6;
     const iiwa14_bench_real_t t11 = t9 * t10 - t4 * t3;
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t13 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t14 = t4 * t10 + t9 * t3;
     const iiwa14_bench_real_t t15 = t13 * t14 + t8 * t7;
-    const iiwa14_bench_real_t t16 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t17 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t18 = t8 * t14 - t13 * t7;
     const iiwa14_bench_real_t t19 = t17 * t18 - t12 * t11;
     const iiwa14_bench_real_t t20 = parameters[MY7] * t19;
-    const iiwa14_bench_real_t t21 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t22 = parameters[MX7] * t19;
     const iiwa14_bench_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY6R] * t15;
     const iiwa14_bench_real_t t24 = t12 * t18 + t17 * t11;

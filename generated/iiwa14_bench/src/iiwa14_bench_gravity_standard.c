@@ -96,7 +96,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,7 +111,7 @@ int iiwa14_bench_gravity_standard(
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
         || !iiwa14_bench_within(parameters, 70, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -120,27 +120,27 @@ int iiwa14_bench_gravity_standard(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t4, t3;
+    IIWA14_BENCH_SINCOS(q[2], &t4, &t3);
+    iiwa14_bench_real_t t8, t7;
+    IIWA14_BENCH_SINCOS(q[3], &t8, &t7);
+    iiwa14_bench_real_t t12, t11;
+    IIWA14_BENCH_SINCOS(q[4], &t12, &t11);
+    iiwa14_bench_real_t t16, t15;
+    IIWA14_BENCH_SINCOS(q[5], &t16, &t15);
+    iiwa14_bench_real_t t20, t19;
+    IIWA14_BENCH_SINCOS(q[6], &t20, &t19);
     const iiwa14_bench_real_t t2 = IIWA14_BENCH_C(-9.81) * t1;
-    const iiwa14_bench_real_t t3 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t4 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t5 = IIWA14_BENCH_C(9.81) * t0;
     const iiwa14_bench_real_t t6 = t4 * t5;
-    const iiwa14_bench_real_t t7 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t8 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t9 = t3 * t5;
     const iiwa14_bench_real_t t10 = t7 * t2 - t8 * t9;
-    const iiwa14_bench_real_t t11 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t13 = t7 * t9 + t8 * t2;
     const iiwa14_bench_real_t t14 = t12 * t13 + t11 * t6;
-    const iiwa14_bench_real_t t15 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t16 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t17 = t11 * t13 - t12 * t6;
     const iiwa14_bench_real_t t18 = t16 * t17 + t15 * t10;
-    const iiwa14_bench_real_t t19 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t20 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t21 = t15 * t17 - t16 * t10;
     const iiwa14_bench_real_t t22 = t20 * t21 + t19 * t14;
     const iiwa14_bench_real_t t23 = t18 * parameters[MY7] + t22 * parameters[MZ7];

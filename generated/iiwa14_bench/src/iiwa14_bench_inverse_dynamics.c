@@ -71,7 +71,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -87,9 +87,9 @@ int iiwa14_bench_inverse_dynamics(
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq, 7, IIWA14_BENCH_C(1.0e16))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq, IIWA14_BENCH_C(1.0e16))
         || !iiwa14_bench_within(parameters, 43, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -98,8 +98,18 @@ int iiwa14_bench_inverse_dynamics(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t19, t15;
+    IIWA14_BENCH_SINCOS(q[2], &t19, &t15);
+    iiwa14_bench_real_t t39, t38;
+    IIWA14_BENCH_SINCOS(q[3], &t39, &t38);
+    iiwa14_bench_real_t t63, t62;
+    IIWA14_BENCH_SINCOS(q[4], &t63, &t62);
+    iiwa14_bench_real_t t88, t87;
+    IIWA14_BENCH_SINCOS(q[5], &t88, &t87);
+    iiwa14_bench_real_t t112, t111;
+    IIWA14_BENCH_SINCOS(q[6], &t112, &t111);
     const iiwa14_bench_real_t t2 = t1 * dq[0];
     const iiwa14_bench_real_t t3 = t2 * t2;
     const iiwa14_bench_real_t t4 = dq[1] * dq[1];
@@ -114,11 +124,9 @@ int iiwa14_bench_inverse_dynamics(
         - t9);
     const iiwa14_bench_real_t t13 = t8 * t2;
     const iiwa14_bench_real_t t14 = parameters[YZ2] * (t4 - t3) + (t12 - parameters[XZ2] * (ddq[1] + t13));
-    const iiwa14_bench_real_t t15 = IIWA14_BENCH_COS(q[2]);
     const iiwa14_bench_real_t t16 = IIWA14_BENCH_C(-9.81) * t1;
     const iiwa14_bench_real_t t17 = t8 * t8;
     const iiwa14_bench_real_t t18 = t16 + IIWA14_BENCH_C(0.4) * (t17 + t4);
-    const iiwa14_bench_real_t t19 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t20 = t19 * t8 + t15 * dq[1];
     const iiwa14_bench_real_t t21 = t20 * t20;
     const iiwa14_bench_real_t t22 = dq[2] + t2;
@@ -139,8 +147,6 @@ int iiwa14_bench_inverse_dynamics(
     const iiwa14_bench_real_t t36 = t34 - t35;
     const iiwa14_bench_real_t t37 = parameters[YZ3] * (t21 - t23) + (t33 - parameters[XZ3] * t36)
         - parameters[MY3R] * t18;
-    const iiwa14_bench_real_t t38 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t39 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t40 = t39 * t29 + t38 * t22;
     const iiwa14_bench_real_t t41 = t40 * t40;
     const iiwa14_bench_real_t t42 = dq[3] - t20;
@@ -164,8 +170,6 @@ int iiwa14_bench_inverse_dynamics(
     const iiwa14_bench_real_t t59 = t58 + IIWA14_BENCH_C(0.4) * t25;
     const iiwa14_bench_real_t t60 = IIWA14_BENCH_C(0.4) * t26;
     const iiwa14_bench_real_t t61 = t19 * t59 + t15 * t60;
-    const iiwa14_bench_real_t t62 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t63 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t64 = t62 * t42 - t63 * t49;
     const iiwa14_bench_real_t t65 = t64 * t64;
     const iiwa14_bench_real_t t66 = dq[4] + t40;
@@ -190,8 +194,6 @@ int iiwa14_bench_inverse_dynamics(
     const iiwa14_bench_real_t t84 = t15 * t59 - t19 * t60;
     const iiwa14_bench_real_t t85 = t39 * t84 - t38 * t18;
     const iiwa14_bench_real_t t86 = IIWA14_BENCH_C(-0.4) * t83 + t85;
-    const iiwa14_bench_real_t t87 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t88 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t89 = t87 * t66 - t88 * t73;
     const iiwa14_bench_real_t t90 = t89 * t89;
     const iiwa14_bench_real_t t91 = t64 - dq[5];
@@ -215,8 +217,6 @@ int iiwa14_bench_inverse_dynamics(
     const iiwa14_bench_real_t t108 = t107 + IIWA14_BENCH_C(0.4) * t69;
     const iiwa14_bench_real_t t109 = t61 - IIWA14_BENCH_C(-0.4) * t70;
     const iiwa14_bench_real_t t110 = t63 * t108 + t62 * t109;
-    const iiwa14_bench_real_t t111 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t112 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t113 = t111 * t91 - t112 * t98;
     const iiwa14_bench_real_t t114 = t113 * t113;
     const iiwa14_bench_real_t t115 = dq[6] + t89;

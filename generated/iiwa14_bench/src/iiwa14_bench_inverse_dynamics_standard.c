@@ -98,7 +98,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -115,9 +115,9 @@ int iiwa14_bench_inverse_dynamics_standard(
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq, 7, IIWA14_BENCH_C(1.0e16))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq, IIWA14_BENCH_C(1.0e16))
         || !iiwa14_bench_within(parameters, 70, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -126,8 +126,18 @@ int iiwa14_bench_inverse_dynamics_standard(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t17, t16;
+    IIWA14_BENCH_SINCOS(q[2], &t17, &t16);
+    iiwa14_bench_real_t t43, t42;
+    IIWA14_BENCH_SINCOS(q[3], &t43, &t42);
+    iiwa14_bench_real_t t66, t65;
+    IIWA14_BENCH_SINCOS(q[4], &t66, &t65);
+    iiwa14_bench_real_t t94, t93;
+    IIWA14_BENCH_SINCOS(q[5], &t94, &t93);
+    iiwa14_bench_real_t t117, t116;
+    IIWA14_BENCH_SINCOS(q[6], &t117, &t116);
     const iiwa14_bench_real_t t2 = IIWA14_BENCH_C(-9.81) * t1;
     const iiwa14_bench_real_t t3 = t1 * dq[0];
     const iiwa14_bench_real_t t4 = t3 * t3;
@@ -143,8 +153,6 @@ int iiwa14_bench_inverse_dynamics_standard(
         - t10) * parameters[XY2];
     const iiwa14_bench_real_t t14 = t9 * t3;
     const iiwa14_bench_real_t t15 = (t5 - t4) * parameters[YZ2] + (t13 - (ddq[1] + t14) * parameters[XZ2]);
-    const iiwa14_bench_real_t t16 = IIWA14_BENCH_COS(q[2]);
-    const iiwa14_bench_real_t t17 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t18 = t17 * t9 + t16 * dq[1];
     const iiwa14_bench_real_t t19 = t18 * t18;
     const iiwa14_bench_real_t t20 = dq[2] + t3;
@@ -171,8 +179,6 @@ int iiwa14_bench_inverse_dynamics_standard(
     const iiwa14_bench_real_t t40 = t17 * t38 - t16 * t39;
     const iiwa14_bench_real_t t41 = (t19 - t21) * parameters[YZ3] - (t31 - t34 * parameters[XZ3])
         + (t40 * parameters[MZ3] - t36 * parameters[MY3]);
-    const iiwa14_bench_real_t t42 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t43 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t44 = t43 * t27 + t42 * t20;
     const iiwa14_bench_real_t t45 = t44 * t44;
     const iiwa14_bench_real_t t46 = dq[3] - t18;
@@ -196,8 +202,6 @@ int iiwa14_bench_inverse_dynamics_standard(
     const iiwa14_bench_real_t t63 = t43 * t62 + t42 * t36;
     const iiwa14_bench_real_t t64 = (t45 - t47) * parameters[YZ4] + (t58 - t61 * parameters[XZ4])
         + (t40 * parameters[MY4] + t63 * parameters[MZ4]);
-    const iiwa14_bench_real_t t65 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t66 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t67 = t65 * t46 - t66 * t53;
     const iiwa14_bench_real_t t68 = t67 * t67;
     const iiwa14_bench_real_t t69 = dq[4] + t44;
@@ -226,8 +230,6 @@ int iiwa14_bench_inverse_dynamics_standard(
     const iiwa14_bench_real_t t91 = t65 * t90 - t66 * t89;
     const iiwa14_bench_real_t t92 = (t68 - t70) * parameters[YZ5] - (t81 - t84 * parameters[XZ5])
         + (t91 * parameters[MZ5] - t87 * parameters[MY5]);
-    const iiwa14_bench_real_t t93 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t94 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t95 = t93 * t69 - t94 * t76;
     const iiwa14_bench_real_t t96 = t95 * t95;
     const iiwa14_bench_real_t t97 = t67 - dq[5];
@@ -251,8 +253,6 @@ int iiwa14_bench_inverse_dynamics_standard(
     const iiwa14_bench_real_t t114 = t94 * t113 + t93 * t87;
     const iiwa14_bench_real_t t115 = (t98 - t96) * parameters[YZ6] + (t109 - t112 * parameters[XZ6])
         + (t91 * parameters[MY6] + t114 * parameters[MZ6]);
-    const iiwa14_bench_real_t t116 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t117 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t118 = t117 * t104 - t116 * t97;
     const iiwa14_bench_real_t t119 = t118 * t118;
     const iiwa14_bench_real_t t120 = dq[6] + t95;

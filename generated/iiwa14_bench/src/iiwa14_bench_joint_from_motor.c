@@ -26,7 +26,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int iiwa14_bench_joint_from_motor(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q_m, 7, IIWA14_BENCH_C(1.0e18))
-        || !iiwa14_bench_within(dq_m, 7, IIWA14_BENCH_C(1.0e18))
-        || !iiwa14_bench_within(ddq_m, 7, IIWA14_BENCH_C(1.0e18))) {
+    if (!iiwa14_bench_within_joints(q_m, IIWA14_BENCH_C(1.0e18))
+        || !iiwa14_bench_within_joints(dq_m, IIWA14_BENCH_C(1.0e18))
+        || !iiwa14_bench_within_joints(ddq_m, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {

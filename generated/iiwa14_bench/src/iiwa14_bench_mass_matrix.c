@@ -69,7 +69,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -83,7 +83,7 @@ int iiwa14_bench_mass_matrix(
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7 };
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
         || !iiwa14_bench_within(parameters, 43, IIWA14_BENCH_C(1.0e18))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
@@ -92,26 +92,32 @@ int iiwa14_bench_mass_matrix(
         return status;
     }
 
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_SIN(q[6]);
+    iiwa14_bench_real_t t67, t59;
+    IIWA14_BENCH_SINCOS(q[1], &t67, &t59);
+    iiwa14_bench_real_t t51, t27;
+    IIWA14_BENCH_SINCOS(q[2], &t51, &t27);
+    iiwa14_bench_real_t t41, t29;
+    IIWA14_BENCH_SINCOS(q[3], &t41, &t29);
+    iiwa14_bench_real_t t19, t12;
+    IIWA14_BENCH_SINCOS(q[4], &t19, &t12);
+    iiwa14_bench_real_t t8, t0;
+    IIWA14_BENCH_SINCOS(q[5], &t8, &t0);
+    iiwa14_bench_real_t t2, t1;
+    IIWA14_BENCH_SINCOS(q[6], &t2, &t1);
     const iiwa14_bench_real_t t3 = parameters[XY7] * (IIWA14_BENCH_C(2.0) * t2) - t1 * parameters[XX7R];
     const iiwa14_bench_real_t t4 = t1 * t3;
     const iiwa14_bench_real_t t5 = parameters[XX6R] - t4;
     const iiwa14_bench_real_t t6 = t2 * parameters[YZ7R] - t1 * parameters[XZ7R];
     const iiwa14_bench_real_t t7 = parameters[XY6] + t6;
-    const iiwa14_bench_real_t t8 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t9 = t0 * (parameters[ZZ7] - t5) + t7 * (IIWA14_BENCH_C(2.0) * t8);
     const iiwa14_bench_real_t t10 = t0 * t9;
     const iiwa14_bench_real_t t11 = parameters[XX5R] + (parameters[ZZ7] - t10);
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_COS(q[4]);
     const iiwa14_bench_real_t t13 = parameters[ZZ6R] + (parameters[XX7R] + t4);
     const iiwa14_bench_real_t t14 = t2 * t3 - parameters[XY7] - parameters[XZ6];
     const iiwa14_bench_real_t t15 = t2 * parameters[XZ7R] + t1 * parameters[YZ7R];
     const iiwa14_bench_real_t t16 = parameters[YZ6] - t15;
     const iiwa14_bench_real_t t17 = t0 * t14 + t8 * t16;
     const iiwa14_bench_real_t t18 = t17 - parameters[XY5];
-    const iiwa14_bench_real_t t19 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t20 = t12 * (t13 - t11) - t18 * (IIWA14_BENCH_C(2.0) * t19);
     const iiwa14_bench_real_t t21 = t12 * t20;
     const iiwa14_bench_real_t t22 = t2 * parameters[MY7] - t1 * parameters[MX7];
@@ -119,9 +125,7 @@ int iiwa14_bench_mass_matrix(
     const iiwa14_bench_real_t t24 = t0 * parameters[MY6R] + t8 * t23;
     const iiwa14_bench_real_t t25 = IIWA14_BENCH_C(-0.8) * t24;
     const iiwa14_bench_real_t t26 = parameters[ZZ4R] + (t11 + t21 + t25);
-    const iiwa14_bench_real_t t27 = IIWA14_BENCH_COS(q[2]);
     const iiwa14_bench_real_t t28 = parameters[ZZ5R] + (t5 + t10);
-    const iiwa14_bench_real_t t29 = IIWA14_BENCH_COS(q[3]);
     const iiwa14_bench_real_t t30 = parameters[XX4R] + (t13 - t21 + t25);
     const iiwa14_bench_real_t t31 = parameters[XZ5] - (t7 - t8 * t9);
     const iiwa14_bench_real_t t32 = t8 * t14 - t0 * t16;
@@ -133,7 +137,6 @@ int iiwa14_bench_mass_matrix(
     const iiwa14_bench_real_t t38 = t19 * t35 + t12 * t37;
     const iiwa14_bench_real_t t39 = t12 * t31 - t19 * t33 + IIWA14_BENCH_C(0.4) * t38;
     const iiwa14_bench_real_t t40 = parameters[XY4] + t39;
-    const iiwa14_bench_real_t t41 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t42 = t29 * (t28 - t30) + t40 * (IIWA14_BENCH_C(2.0) * t41);
     const iiwa14_bench_real_t t43 = t29 * t42;
     const iiwa14_bench_real_t t44 = parameters[XX3R] + (t28 - t43);
@@ -143,7 +146,6 @@ int iiwa14_bench_mass_matrix(
     const iiwa14_bench_real_t t48 = parameters[YZ4] + t47;
     const iiwa14_bench_real_t t49 = t29 * t45 - t41 * t48;
     const iiwa14_bench_real_t t50 = t49 - parameters[XY3];
-    const iiwa14_bench_real_t t51 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t52 = t27 * (t26 - t44) - t50 * (IIWA14_BENCH_C(2.0) * t51);
     const iiwa14_bench_real_t t53 = t27 * t52;
     const iiwa14_bench_real_t t54 = t24 - parameters[MY4R];
@@ -151,7 +153,6 @@ int iiwa14_bench_mass_matrix(
     const iiwa14_bench_real_t t56 = t29 * t54 + t41 * t55;
     const iiwa14_bench_real_t t57 = IIWA14_BENCH_C(-0.8) * t56;
     const iiwa14_bench_real_t t58 = parameters[XX2R] + (t26 - t53 + t57);
-    const iiwa14_bench_real_t t59 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t60 = parameters[ZZ3R] + (t30 + t43);
     const iiwa14_bench_real_t t61 = parameters[XZ3] + (t40 - t41 * t42);
     const iiwa14_bench_real_t t62 = t41 * t45 + t29 * t48;
@@ -159,7 +160,6 @@ int iiwa14_bench_mass_matrix(
     const iiwa14_bench_real_t t64 = t46 - parameters[MY3R];
     const iiwa14_bench_real_t t65 = parameters[MX3] - (t29 * t55 - t41 * t54);
     const iiwa14_bench_real_t t66 = t51 * t63 - t27 * t61 + IIWA14_BENCH_C(0.4) * (t51 * t64 + t27 * t65);
-    const iiwa14_bench_real_t t67 = IIWA14_BENCH_SIN(q[1]);
     const iiwa14_bench_real_t t68 = t59 * (t60 - t58) + (parameters[XY2] + t66) * (IIWA14_BENCH_C(2.0) * t67);
     out[0] = parameters[ZZ1R] + (t58 + t59 * t68);
     const iiwa14_bench_real_t t69 = t51 * t61 + t27 * t63 + IIWA14_BENCH_C(0.4) * (t27 * t64 - t51 * t65);

@@ -26,7 +26,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int iiwa14_bench_motor_from_joint(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq, 7, IIWA14_BENCH_C(1.0e16))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq, IIWA14_BENCH_C(1.0e16))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {

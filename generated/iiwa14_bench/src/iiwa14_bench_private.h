@@ -12,7 +12,7 @@
 
 #include "iiwa14_bench.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define IIWA14_BENCH_MATH_double(name) name
 #define IIWA14_BENCH_MATH(name) IIWA14_BENCH_JOIN(IIWA14_BENCH_MATH_, IIWA14_BENCH_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DIIWA14_BENCH_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, IIWA14_BENCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DIIWA14_BENCH_SINCOS=my_sincos, or with both of
+ * -DIIWA14_BENCH_SIN=my_sin -DIIWA14_BENCH_COS=my_cos; -include my_header.h declares it.
+ */
+#define IIWA14_BENCH_SINGLE_float 1
+#define IIWA14_BENCH_SINGLE_double 0
+#if !defined(IIWA14_BENCH_SINCOS) && !defined(IIWA14_BENCH_SIN) && !defined(IIWA14_BENCH_COS)
+#define IIWA14_BENCH_OWN_SINCOS IIWA14_BENCH_JOIN(IIWA14_BENCH_SINGLE_, IIWA14_BENCH_REAL)
+#else
+#define IIWA14_BENCH_OWN_SINCOS 0
+#endif
 #ifndef IIWA14_BENCH_SIN
 #define IIWA14_BENCH_SIN IIWA14_BENCH_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline iiwa14_bench_real_t iiwa14_bench_select(iiwa14_bench_real_t condit
     return condition > IIWA14_BENCH_C(0.0) ? a : b;
 }
 
+#if IIWA14_BENCH_OWN_SINCOS
+typedef struct {
+    iiwa14_bench_real_t sine;
+    iiwa14_bench_real_t cosine;
+} iiwa14_bench_pair_t;
+
+/* Two numbers by value travel in registers. */
+iiwa14_bench_pair_t iiwa14_bench_sincos(iiwa14_bench_real_t x);
+#endif
+
+#ifndef IIWA14_BENCH_SINCOS
+#define IIWA14_BENCH_SINCOS iiwa14_bench_sine_cosine
+static inline void iiwa14_bench_sine_cosine(iiwa14_bench_real_t x, iiwa14_bench_real_t *sine, iiwa14_bench_real_t *cosine)
+{
+#if IIWA14_BENCH_OWN_SINCOS
+    const iiwa14_bench_pair_t pair = iiwa14_bench_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = IIWA14_BENCH_SIN(x);
+    *cosine = IIWA14_BENCH_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int iiwa14_bench_within(const iiwa14_bench_real_t x[], int n, iiwa14_bench_real_t limit)
 {
@@ -76,6 +112,13 @@ static inline int iiwa14_bench_within(const iiwa14_bench_real_t x[], int n, iiwa
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int iiwa14_bench_within_joints(const iiwa14_bench_real_t x[], iiwa14_bench_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
+        limit;
 }
 
 static inline void iiwa14_bench_zero(iiwa14_bench_real_t x[], int n)

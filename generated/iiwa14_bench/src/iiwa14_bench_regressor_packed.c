@@ -31,7 +31,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -62,9 +62,9 @@ int iiwa14_bench_regressor_packed(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq, 7, IIWA14_BENCH_C(1.0e16))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq, IIWA14_BENCH_C(1.0e16))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {
@@ -72,9 +72,19 @@ int iiwa14_bench_regressor_packed(
         return status;
     }
 
+    iiwa14_bench_real_t t0, t1;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
+    iiwa14_bench_real_t t19, t20;
+    IIWA14_BENCH_SINCOS(q[2], &t19, &t20);
+    iiwa14_bench_real_t t52, t53;
+    IIWA14_BENCH_SINCOS(q[3], &t52, &t53);
+    iiwa14_bench_real_t t103, t104;
+    IIWA14_BENCH_SINCOS(q[4], &t103, &t104);
+    iiwa14_bench_real_t t160, t161;
+    IIWA14_BENCH_SINCOS(q[5], &t160, &t161);
+    iiwa14_bench_real_t t214, t215;
+    IIWA14_BENCH_SINCOS(q[6], &t214, &t215);
     out[0] = ddq[0];
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
-    const iiwa14_bench_real_t t1 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t2 = t1 * dq[0];
     const iiwa14_bench_real_t t3 = dq[1] * t2;
     const iiwa14_bench_real_t t4 = t0 * ddq[0];
@@ -104,8 +114,6 @@ int iiwa14_bench_regressor_packed(
     out[46] = t17;
     const iiwa14_bench_real_t t18 = IIWA14_BENCH_C(9.81) * t0;
     out[47] = t18;
-    const iiwa14_bench_real_t t19 = IIWA14_BENCH_SIN(q[2]);
-    const iiwa14_bench_real_t t20 = IIWA14_BENCH_COS(q[2]);
     const iiwa14_bench_real_t t21 = t19 * t6 + t20 * dq[1];
     const iiwa14_bench_real_t t22 = dq[2] + t2;
     const iiwa14_bench_real_t t23 = t21 * t22;
@@ -158,8 +166,6 @@ int iiwa14_bench_regressor_packed(
     out[12] = t17 * t26 + t1 * t51 + IIWA14_BENCH_C(-0.4) * t48;
     out[54] = IIWA14_BENCH_C(-0.4) * t49 - t19 * t17;
     out[89] = t51 + IIWA14_BENCH_C(-0.4) * t34;
-    const iiwa14_bench_real_t t52 = IIWA14_BENCH_SIN(q[3]);
-    const iiwa14_bench_real_t t53 = IIWA14_BENCH_COS(q[3]);
     const iiwa14_bench_real_t t54 = t52 * t27 + t53 * t22;
     const iiwa14_bench_real_t t55 = dq[3] - t21;
     const iiwa14_bench_real_t t56 = t54 * t55;
@@ -237,8 +243,6 @@ int iiwa14_bench_regressor_packed(
     out[61] = t102;
     out[96] = -(t52 * t86);
     out[124] = t98;
-    const iiwa14_bench_real_t t103 = IIWA14_BENCH_SIN(q[4]);
-    const iiwa14_bench_real_t t104 = IIWA14_BENCH_COS(q[4]);
     const iiwa14_bench_real_t t105 = t104 * t55 - t103 * t60;
     const iiwa14_bench_real_t t106 = dq[4] + t54;
     const iiwa14_bench_real_t t107 = t105 * t106;
@@ -329,8 +333,6 @@ int iiwa14_bench_regressor_packed(
     out[103] = t138 * t119 + t53 * t154 + t153 * t157;
     out[131] = IIWA14_BENCH_C(-0.4) * t156 - t103 * t138;
     out[152] = t154;
-    const iiwa14_bench_real_t t160 = IIWA14_BENCH_SIN(q[5]);
-    const iiwa14_bench_real_t t161 = IIWA14_BENCH_COS(q[5]);
     const iiwa14_bench_real_t t162 = t161 * t106 - t160 * t111;
     const iiwa14_bench_real_t t163 = dq[5] - t105;
     const iiwa14_bench_real_t t164 = t162 * t163;
@@ -425,8 +427,6 @@ int iiwa14_bench_regressor_packed(
     out[138] = IIWA14_BENCH_C(0.4) * t209 - (t141 * t179 + t104 * t206);
     out[159] = -(t160 * t141);
     out[173] = t206;
-    const iiwa14_bench_real_t t214 = IIWA14_BENCH_SIN(q[6]);
-    const iiwa14_bench_real_t t215 = IIWA14_BENCH_COS(q[6]);
     const iiwa14_bench_real_t t216 = t214 * t168 + t215 * t163;
     const iiwa14_bench_real_t t217 = dq[6] + t162;
     const iiwa14_bench_real_t t218 = t216 * t217;

@@ -34,7 +34,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int iiwa14_bench_regressor_standard(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq, 7, IIWA14_BENCH_C(1.0e16))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq, IIWA14_BENCH_C(1.0e16))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {
@@ -56,10 +56,20 @@ int iiwa14_bench_regressor_standard(
         return status;
     }
 
+    iiwa14_bench_real_t t0, t2;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
+    iiwa14_bench_real_t t20, t21;
+    IIWA14_BENCH_SINCOS(q[2], &t20, &t21);
+    iiwa14_bench_real_t t71, t72;
+    IIWA14_BENCH_SINCOS(q[3], &t71, &t72);
+    iiwa14_bench_real_t t129, t130;
+    IIWA14_BENCH_SINCOS(q[4], &t129, &t130);
+    iiwa14_bench_real_t t203, t204;
+    IIWA14_BENCH_SINCOS(q[5], &t203, &t204);
+    iiwa14_bench_real_t t270, t271;
+    IIWA14_BENCH_SINCOS(q[6], &t270, &t271);
     out[5] = ddq[0];
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
     const iiwa14_bench_real_t t1 = t0 * ddq[0];
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t3 = t2 * dq[0];
     const iiwa14_bench_real_t t4 = dq[1] * t3;
     const iiwa14_bench_real_t t5 = t1 + t4;
@@ -91,8 +101,6 @@ int iiwa14_bench_regressor_standard(
     out[86] = t18;
     const iiwa14_bench_real_t t19 = IIWA14_BENCH_C(9.81) * t0;
     out[87] = t19;
-    const iiwa14_bench_real_t t20 = IIWA14_BENCH_SIN(q[2]);
-    const iiwa14_bench_real_t t21 = IIWA14_BENCH_COS(q[2]);
     const iiwa14_bench_real_t t22 = t20 * t17 - t21 * t11;
     const iiwa14_bench_real_t t23 = t20 * t6 + t21 * dq[1];
     const iiwa14_bench_real_t t24 = dq[2] + t3;
@@ -170,8 +178,6 @@ int iiwa14_bench_regressor_standard(
     out[29] = t69;
     const iiwa14_bench_real_t t70 = IIWA14_BENCH_C(-0.4) * t67 + IIWA14_BENCH_C(0.16000000000000003) * t68;
     out[99] = t70;
-    const iiwa14_bench_real_t t71 = IIWA14_BENCH_SIN(q[3]);
-    const iiwa14_bench_real_t t72 = IIWA14_BENCH_COS(q[3]);
     const iiwa14_bench_real_t t73 = t71 * t54 + t72 * t37;
     const iiwa14_bench_real_t t74 = t71 * t28 + t72 * t24;
     const iiwa14_bench_real_t t75 = dq[3] - t23;
@@ -265,8 +271,6 @@ int iiwa14_bench_regressor_standard(
     out[178] = -t64;
     out[39] = t69;
     out[109] = t70;
-    const iiwa14_bench_real_t t129 = IIWA14_BENCH_SIN(q[4]);
-    const iiwa14_bench_real_t t130 = IIWA14_BENCH_COS(q[4]);
     const iiwa14_bench_real_t t131 = t130 * t91 - t129 * t103;
     const iiwa14_bench_real_t t132 = t129 * t79 + t130 * t75;
     const iiwa14_bench_real_t t133 = dq[4] + t74;
@@ -387,8 +391,6 @@ int iiwa14_bench_regressor_standard(
     out[189] = t201;
     const iiwa14_bench_real_t t202 = t194 * t191 - t179 * t192;
     out[259] = t202;
-    const iiwa14_bench_real_t t203 = IIWA14_BENCH_SIN(q[5]);
-    const iiwa14_bench_real_t t204 = IIWA14_BENCH_COS(q[5]);
     const iiwa14_bench_real_t t205 = t204 * t153 - t203 * t164;
     const iiwa14_bench_real_t t206 = t204 * t133 - t203 * t137;
     const iiwa14_bench_real_t t207 = dq[5] - t132;
@@ -511,8 +513,6 @@ int iiwa14_bench_regressor_standard(
     out[129] = t200;
     out[199] = t201;
     out[269] = t202;
-    const iiwa14_bench_real_t t270 = IIWA14_BENCH_SIN(q[6]);
-    const iiwa14_bench_real_t t271 = IIWA14_BENCH_COS(q[6]);
     const iiwa14_bench_real_t t272 = t270 * t242 - t271 * t231;
     const iiwa14_bench_real_t t273 = t270 * t211 + t271 * t207;
     const iiwa14_bench_real_t t274 = dq[6] + t206;

@@ -34,7 +34,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0xBE96C15CUL
+#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
 #error "iiwa14_bench.h and iiwa14_bench_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -47,10 +47,10 @@ int iiwa14_bench_slotine_li_regressor(
 {
     int status = IIWA14_BENCH_STATUS_OK;
 
-    if (!iiwa14_bench_within(q, 7, IIWA14_BENCH_C(1.0e8))
-        || !iiwa14_bench_within(dq, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(dq_r, 7, IIWA14_BENCH_C(1.0e10))
-        || !iiwa14_bench_within(ddq_r, 7, IIWA14_BENCH_C(1.0e16))) {
+    if (!iiwa14_bench_within_joints(q, IIWA14_BENCH_C(1.0e8))
+        || !iiwa14_bench_within_joints(dq, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(dq_r, IIWA14_BENCH_C(1.0e10))
+        || !iiwa14_bench_within_joints(ddq_r, IIWA14_BENCH_C(1.0e16))) {
         status |= IIWA14_BENCH_STATUS_INPUT;
     }
     if (status != IIWA14_BENCH_STATUS_OK) {
@@ -58,10 +58,20 @@ int iiwa14_bench_slotine_li_regressor(
         return status;
     }
 
+    iiwa14_bench_real_t t0, t2;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
+    iiwa14_bench_real_t t23, t21;
+    IIWA14_BENCH_SINCOS(q[2], &t23, &t21);
+    iiwa14_bench_real_t t58, t57;
+    IIWA14_BENCH_SINCOS(q[3], &t58, &t57);
+    iiwa14_bench_real_t t112, t111;
+    IIWA14_BENCH_SINCOS(q[4], &t112, &t111);
+    iiwa14_bench_real_t t172, t171;
+    IIWA14_BENCH_SINCOS(q[5], &t172, &t171);
+    iiwa14_bench_real_t t229, t228;
+    IIWA14_BENCH_SINCOS(q[6], &t229, &t228);
     out[0] = ddq_r[0];
-    const iiwa14_bench_real_t t0 = IIWA14_BENCH_SIN(q[1]);
     const iiwa14_bench_real_t t1 = t0 * ddq_r[0];
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_COS(q[1]);
     const iiwa14_bench_real_t t3 = t2 * dq[0];
     const iiwa14_bench_real_t t4 = t2 * dq_r[0];
     const iiwa14_bench_real_t t5 = IIWA14_BENCH_C(0.5) * (t3 * dq_r[1] + dq[1] * t4);
@@ -92,9 +102,7 @@ int iiwa14_bench_slotine_li_regressor(
     out[49] = t19;
     const iiwa14_bench_real_t t20 = IIWA14_BENCH_C(9.81) * t0;
     out[50] = t20;
-    const iiwa14_bench_real_t t21 = IIWA14_BENCH_COS(q[2]);
     const iiwa14_bench_real_t t22 = t0 * t21;
-    const iiwa14_bench_real_t t23 = IIWA14_BENCH_SIN(q[2]);
     const iiwa14_bench_real_t t24 = t23 * t18 - t21 * t12;
     const iiwa14_bench_real_t t25 = t23 * t7 + t21 * dq[1];
     const iiwa14_bench_real_t t26 = dq_r[2] + t4;
@@ -149,8 +157,6 @@ int iiwa14_bench_slotine_li_regressor(
     out[14] = t19 * t22 + t2 * t56 + IIWA14_BENCH_C(-0.4) * t53;
     out[57] = IIWA14_BENCH_C(-0.4) * t54 - t23 * t19;
     out[100] = t56 + IIWA14_BENCH_C(-0.4) * t39;
-    const iiwa14_bench_real_t t57 = IIWA14_BENCH_COS(q[3]);
-    const iiwa14_bench_real_t t58 = IIWA14_BENCH_SIN(q[3]);
     const iiwa14_bench_real_t t59 = t2 * t58 - t57 * t22;
     const iiwa14_bench_real_t t60 = t58 * t51 + t57 * t38;
     const iiwa14_bench_real_t t61 = t58 * t32 + t57 * t27;
@@ -231,8 +237,6 @@ int iiwa14_bench_slotine_li_regressor(
     out[64] = t110;
     out[107] = -(t58 * t94);
     out[150] = t106;
-    const iiwa14_bench_real_t t111 = IIWA14_BENCH_COS(q[4]);
-    const iiwa14_bench_real_t t112 = IIWA14_BENCH_SIN(q[4]);
     const iiwa14_bench_real_t t113 = t111 * t59 + t112 * t31;
     const iiwa14_bench_real_t t114 = t111 * t77 - t112 * t89;
     const iiwa14_bench_real_t t115 = t111 * t63 - t112 * t68;
@@ -326,8 +330,6 @@ int iiwa14_bench_slotine_li_regressor(
     out[114] = t130 * t149 + t57 * t165 + t164 * t168;
     out[157] = IIWA14_BENCH_C(-0.4) * t167 - t112 * t149;
     out[200] = t165;
-    const iiwa14_bench_real_t t171 = IIWA14_BENCH_COS(q[5]);
-    const iiwa14_bench_real_t t172 = IIWA14_BENCH_SIN(q[5]);
     const iiwa14_bench_real_t t173 = t171 * t113 - t172 * t67;
     const iiwa14_bench_real_t t174 = t172 * t146 + t171 * t134;
     const iiwa14_bench_real_t t175 = t171 * t117 - t172 * t122;
@@ -425,8 +427,6 @@ int iiwa14_bench_slotine_li_regressor(
     out[164] = IIWA14_BENCH_C(-0.4) * t223 - (t193 * t152 + t111 * t220);
     out[207] = -(t172 * t152);
     out[250] = t220;
-    const iiwa14_bench_real_t t228 = IIWA14_BENCH_COS(q[6]);
-    const iiwa14_bench_real_t t229 = IIWA14_BENCH_SIN(q[6]);
     const iiwa14_bench_real_t t230 = t228 * t173 + t229 * t121;
     const iiwa14_bench_real_t t231 = t229 * t209 - t228 * t197;
     const iiwa14_bench_real_t t232 = t229 * t182 - t228 * t177;

@@ -84,7 +84,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0xBA676F8CUL
+#define PUMA560_GENERATION 0x5A5F931EUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef PUMA560_REAL
@@ -114,7 +114,7 @@ typedef PUMA560_REAL puma560_real_t;
 
 #define PUMA560_STATUS_OK     0
 #define PUMA560_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define PUMA560_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define PUMA560_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define PUMA560_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -79,7 +79,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -94,8 +94,8 @@ int puma560_bias(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -104,9 +104,17 @@ int puma560_bias(
         return status;
     }
 
+    puma560_real_t t1, t2;
+    PUMA560_SINCOS(q[1], &t1, &t2);
+    puma560_real_t t12, t11;
+    PUMA560_SINCOS(q[2], &t12, &t11);
+    puma560_real_t t26, t25;
+    PUMA560_SINCOS(q[3], &t26, &t25);
+    puma560_real_t t52, t51;
+    PUMA560_SINCOS(q[4], &t52, &t51);
+    puma560_real_t t76, t75;
+    PUMA560_SINCOS(q[5], &t76, &t75);
     const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t1 = PUMA560_SIN(q[1]);
-    const puma560_real_t t2 = PUMA560_COS(q[1]);
     const puma560_real_t t3 = t2 * dq[0];
     const puma560_real_t t4 = dq[1] * t3;
     const puma560_real_t t5 = t1 * dq[0];
@@ -116,8 +124,6 @@ int puma560_bias(
     const puma560_real_t t8 = t5 * t3;
     const puma560_real_t t9 = dq[1] * dq[1];
     const puma560_real_t t10 = t3 * t3;
-    const puma560_real_t t11 = PUMA560_COS(q[2]);
-    const puma560_real_t t12 = PUMA560_SIN(q[2]);
     const puma560_real_t t13 = t12 * t5 - t11 * t3;
     const puma560_real_t t14 = dq[1] + dq[2];
     const puma560_real_t t15 = t13 * t14;
@@ -131,8 +137,6 @@ int puma560_bias(
     const puma560_real_t t22 = t14 * t14;
     const puma560_real_t t23 = t5 * t5;
     const puma560_real_t t24 = PUMA560_C(-0.8636) * t6 + PUMA560_C(-0.1254) * (t23 + t10);
-    const puma560_real_t t25 = PUMA560_COS(q[3]);
-    const puma560_real_t t26 = PUMA560_SIN(q[3]);
     const puma560_real_t t27 = PUMA560_C(-2.0) * t15;
     const puma560_real_t t28 = t26 * t19 + t25 * t27;
     const puma560_real_t t29 = t25 * t14 - t26 * t16;
@@ -158,8 +162,6 @@ int puma560_bias(
     const puma560_real_t t48 = t16 * t16;
     const puma560_real_t t49 = t48 + t22;
     const puma560_real_t t50 = t47 + (PUMA560_C(-0.0203) * t19 + PUMA560_C(-0.4318) * t49);
-    const puma560_real_t t51 = PUMA560_COS(q[4]);
-    const puma560_real_t t52 = PUMA560_SIN(q[4]);
     const puma560_real_t t53 = t38 - t17;
     const puma560_real_t t54 = t31 + t32;
     const puma560_real_t t55 = t52 * t53 + t51 * t54;
@@ -183,8 +185,6 @@ int puma560_bias(
     const puma560_real_t t72 = t70 + (PUMA560_C(0.0203) * t71 + PUMA560_C(0.4318) * t19);
     const puma560_real_t t73 = PUMA560_C(0.0406) * t17 - PUMA560_C(0.8636) * t15 - t24;
     const puma560_real_t t74 = t26 * t72 + t25 * t73;
-    const puma560_real_t t75 = PUMA560_COS(q[5]);
-    const puma560_real_t t76 = PUMA560_SIN(q[5]);
     const puma560_real_t t77 = t36 + t65;
     const puma560_real_t t78 = t59 - t58;
     const puma560_real_t t79 = t76 * t77 + t75 * t78;

@@ -104,7 +104,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -120,8 +120,8 @@ int puma560_bias_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -130,9 +130,17 @@ int puma560_bias_standard(
         return status;
     }
 
+    puma560_real_t t1, t2;
+    PUMA560_SINCOS(q[1], &t1, &t2);
+    puma560_real_t t15, t13;
+    PUMA560_SINCOS(q[2], &t15, &t13);
+    puma560_real_t t33, t32;
+    PUMA560_SINCOS(q[3], &t33, &t32);
+    puma560_real_t t60, t59;
+    PUMA560_SINCOS(q[4], &t60, &t59);
+    puma560_real_t t82, t81;
+    PUMA560_SINCOS(q[5], &t82, &t81);
     const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t1 = PUMA560_SIN(q[1]);
-    const puma560_real_t t2 = PUMA560_COS(q[1]);
     const puma560_real_t t3 = t2 * dq[0];
     const puma560_real_t t4 = dq[1] * t3;
     const puma560_real_t t5 = t1 * dq[0];
@@ -145,9 +153,7 @@ int puma560_bias_standard(
     const puma560_real_t t11 = PUMA560_C(9.81) * t2;
     const puma560_real_t t12 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2]
         + t11 * parameters[MZ2];
-    const puma560_real_t t13 = PUMA560_COS(q[2]);
     const puma560_real_t t14 = dq[1] + dq[2];
-    const puma560_real_t t15 = PUMA560_SIN(q[2]);
     const puma560_real_t t16 = t15 * t5 - t13 * t3;
     const puma560_real_t t17 = t14 * t16;
     const puma560_real_t t18 = t13 * t5 + t15 * t3;
@@ -166,8 +172,6 @@ int puma560_bias_standard(
     const puma560_real_t t30 = t13 * t29 - t15 * t28;
     const puma560_real_t t31 = t21 - parameters[XZ3] * t22 + parameters[YZ3] * (t24 - t23)
         + (parameters[MZ3] * t30 - parameters[MY3] * t26);
-    const puma560_real_t t32 = PUMA560_COS(q[3]);
-    const puma560_real_t t33 = PUMA560_SIN(q[3]);
     const puma560_real_t t34 = PUMA560_C(-2.0) * t17;
     const puma560_real_t t35 = t33 * t22 + t32 * t34;
     const puma560_real_t t36 = t32 * t14 - t33 * t18;
@@ -195,8 +199,6 @@ int puma560_bias_standard(
     const puma560_real_t t57 = t33 * t55 + t32 * t56;
     const puma560_real_t t58 = t45 - parameters[XZ4] * t47 - parameters[YZ4] * (t48 - t49)
         + (parameters[MY4] * t52 + parameters[MZ4] * t57);
-    const puma560_real_t t59 = PUMA560_COS(q[4]);
-    const puma560_real_t t60 = PUMA560_SIN(q[4]);
     const puma560_real_t t61 = t46 - t19;
     const puma560_real_t t62 = t38 + t39;
     const puma560_real_t t63 = t60 * t61 + t59 * t62;
@@ -219,8 +221,6 @@ int puma560_bias_standard(
     const puma560_real_t t79 = t59 * t52 - t60 * t78;
     const puma560_real_t t80 = t73 + parameters[XZ5] * t75 + parameters[YZ5] * (t76 - t77)
         + (parameters[MZ5] * t79 - parameters[MY5] * t57);
-    const puma560_real_t t81 = PUMA560_COS(q[5]);
-    const puma560_real_t t82 = PUMA560_SIN(q[5]);
     const puma560_real_t t83 = t43 + t74;
     const puma560_real_t t84 = t67 - t66;
     const puma560_real_t t85 = t82 * t83 + t81 * t84;

@@ -21,7 +21,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int puma560_drive_gain(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {

@@ -80,7 +80,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -96,8 +96,8 @@ int puma560_energy(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -107,16 +107,22 @@ int puma560_energy(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_SIN(q[1]);
+    puma560_real_t t0, t2;
+    PUMA560_SINCOS(q[1], &t0, &t2);
+    puma560_real_t t8, t7;
+    PUMA560_SINCOS(q[2], &t8, &t7);
+    puma560_real_t t23, t22;
+    PUMA560_SINCOS(q[3], &t23, &t22);
+    puma560_real_t t37, t36;
+    PUMA560_SINCOS(q[4], &t37, &t36);
+    puma560_real_t t49, t48;
+    PUMA560_SINCOS(q[5], &t49, &t48);
     const puma560_real_t t1 = t0 * dq[0];
-    const puma560_real_t t2 = PUMA560_COS(q[1]);
     const puma560_real_t t3 = t2 * dq[0];
     const puma560_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2R] * dq[1]);
     const puma560_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2R] * t1
         + parameters[YZ2] * t3));
     const puma560_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const puma560_real_t t7 = PUMA560_COS(q[2]);
-    const puma560_real_t t8 = PUMA560_SIN(q[2]);
     const puma560_real_t t9 = t7 * t1 + t8 * t3;
     const puma560_real_t t10 = t8 * t1 - t7 * t3;
     const puma560_real_t t11 = dq[1] + dq[2];
@@ -132,8 +138,6 @@ int puma560_energy(
     const puma560_real_t t20 = t7 * t16 + t8 * t17;
     const puma560_real_t t21 = parameters[MX3R] * (t10 * t19 - t11 * t18) + parameters[MY3R] * (t9 * t19
         + t11 * t20);
-    const puma560_real_t t22 = PUMA560_COS(q[3]);
-    const puma560_real_t t23 = PUMA560_SIN(q[3]);
     const puma560_real_t t24 = t22 * t9 + t23 * t11;
     const puma560_real_t t25 = t22 * t11 - t23 * t9;
     const puma560_real_t t26 = dq[3] + t10;
@@ -148,8 +152,6 @@ int puma560_energy(
     const puma560_real_t t34 = t22 * t30 - t23 * t31;
     const puma560_real_t t35 = parameters[MX4] * (t26 * t32 - t25 * t33) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
-    const puma560_real_t t36 = PUMA560_COS(q[4]);
-    const puma560_real_t t37 = PUMA560_SIN(q[4]);
     const puma560_real_t t38 = t37 * t26 - t36 * t24;
     const puma560_real_t t39 = t37 * t24 + t36 * t26;
     const puma560_real_t t40 = dq[4] + t25;
@@ -161,8 +163,6 @@ int puma560_energy(
     const puma560_real_t t46 = t36 * t34 + t37 * t33;
     const puma560_real_t t47 = parameters[MX5] * (t39 * t32 - t40 * t45) + parameters[MY5R] * (t40 * t46
         - t38 * t32);
-    const puma560_real_t t48 = PUMA560_COS(q[5]);
-    const puma560_real_t t49 = PUMA560_SIN(q[5]);
     const puma560_real_t t50 = t48 * t38 - t49 * t40;
     const puma560_real_t t51 = t49 * t38 + t48 * t40;
     const puma560_real_t t52 = dq[5] + t39;

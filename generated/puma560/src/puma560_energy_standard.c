@@ -105,7 +105,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,8 +122,8 @@ int puma560_energy_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -133,9 +133,17 @@ int puma560_energy_standard(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_SIN(q[1]);
+    puma560_real_t t0, t2;
+    PUMA560_SINCOS(q[1], &t0, &t2);
+    puma560_real_t t9, t8;
+    PUMA560_SINCOS(q[2], &t9, &t8);
+    puma560_real_t t24, t25;
+    PUMA560_SINCOS(q[3], &t24, &t25);
+    puma560_real_t t42, t41;
+    PUMA560_SINCOS(q[4], &t42, &t41);
+    puma560_real_t t56, t55;
+    PUMA560_SINCOS(q[5], &t56, &t55);
     const puma560_real_t t1 = t0 * dq[0];
-    const puma560_real_t t2 = PUMA560_COS(q[1]);
     const puma560_real_t t3 = t2 * dq[0];
     const puma560_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] - dq[1] * parameters[XZ2]);
     const puma560_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] - dq[1] * parameters[YZ2]);
@@ -143,8 +151,6 @@ int puma560_energy_standard(
         + t3 * parameters[YZ2]));
     const puma560_real_t t7 = PUMA560_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + PUMA560_C(0.5) * (t4 + t5
         + t6);
-    const puma560_real_t t8 = PUMA560_COS(q[2]);
-    const puma560_real_t t9 = PUMA560_SIN(q[2]);
     const puma560_real_t t10 = t8 * t1 + t9 * t3;
     const puma560_real_t t11 = t8 * t3 - t9 * t1;
     const puma560_real_t t12 = dq[1] + dq[2];
@@ -163,8 +169,6 @@ int puma560_energy_standard(
         - t10 * t20);
     const puma560_real_t t23 = t7 + PUMA560_C(0.5) * (t13 - t14 + t15 + t21) + (t22
         + parameters[MZ3] * (t11 * t18 + t10 * t19));
-    const puma560_real_t t24 = PUMA560_SIN(q[3]);
-    const puma560_real_t t25 = PUMA560_COS(q[3]);
     const puma560_real_t t26 = t24 * t12 + t25 * t10;
     const puma560_real_t t27 = t25 * t12 - t24 * t10;
     const puma560_real_t t28 = dq[3] - t11;
@@ -182,8 +186,6 @@ int puma560_energy_standard(
     const puma560_real_t t39 = parameters[MX4] * (t28 * t35 + t27 * t37) + parameters[MY4] * (t28 * t34
         - t26 * t37);
     const puma560_real_t t40 = t23 + PUMA560_C(0.5) * t38 + (t39 + parameters[MZ4] * (t27 * t34 + t26 * t35));
-    const puma560_real_t t41 = PUMA560_COS(q[4]);
-    const puma560_real_t t42 = PUMA560_SIN(q[4]);
     const puma560_real_t t43 = t41 * t26 - t42 * t28;
     const puma560_real_t t44 = t42 * t26 + t41 * t28;
     const puma560_real_t t45 = dq[4] + t27;
@@ -197,8 +199,6 @@ int puma560_energy_standard(
     const puma560_real_t t53 = parameters[MX5] * (t45 * t50 + t44 * t35) + parameters[MY5] * (t43 * t35
         + t45 * t49);
     const puma560_real_t t54 = t40 + PUMA560_C(0.5) * t52 + (t53 + parameters[MZ5] * (t43 * t50 - t44 * t49));
-    const puma560_real_t t55 = PUMA560_COS(q[5]);
-    const puma560_real_t t56 = PUMA560_SIN(q[5]);
     const puma560_real_t t57 = t55 * t43 + t56 * t45;
     const puma560_real_t t58 = t55 * t45 - t56 * t43;
     const puma560_real_t t59 = dq[5] + t44;

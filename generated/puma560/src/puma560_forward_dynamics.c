@@ -81,7 +81,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -97,9 +97,9 @@ int puma560_forward_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(input, 6, PUMA560_C(1.0e18))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(input, PUMA560_C(1.0e18))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -108,11 +108,19 @@ int puma560_forward_dynamics(
         return status;
     }
 
+    puma560_real_t t2, t3;
+    PUMA560_SINCOS(q[1], &t2, &t3);
+    puma560_real_t t13, t12;
+    PUMA560_SINCOS(q[2], &t13, &t12);
+    puma560_real_t t27, t26;
+    PUMA560_SINCOS(q[3], &t27, &t26);
+    puma560_real_t t53, t52;
+    PUMA560_SINCOS(q[4], &t53, &t52);
+    puma560_real_t t77, t76;
+    PUMA560_SINCOS(q[5], &t77, &t76);
     const puma560_real_t t0 = puma560_sign(dq[0]);
     const puma560_real_t t1 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0]))
         + PUMA560_C(-62.6111) * (parameters[FC1] * t0);
-    const puma560_real_t t2 = PUMA560_SIN(q[1]);
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = dq[1] * t4;
     const puma560_real_t t6 = t2 * dq[0];
@@ -122,8 +130,6 @@ int puma560_forward_dynamics(
     const puma560_real_t t9 = t6 * t4;
     const puma560_real_t t10 = dq[1] * dq[1];
     const puma560_real_t t11 = t4 * t4;
-    const puma560_real_t t12 = PUMA560_COS(q[2]);
-    const puma560_real_t t13 = PUMA560_SIN(q[2]);
     const puma560_real_t t14 = t13 * t6 - t12 * t4;
     const puma560_real_t t15 = dq[1] + dq[2];
     const puma560_real_t t16 = t14 * t15;
@@ -137,8 +143,6 @@ int puma560_forward_dynamics(
     const puma560_real_t t23 = t15 * t15;
     const puma560_real_t t24 = t6 * t6;
     const puma560_real_t t25 = PUMA560_C(-0.8636) * t7 + PUMA560_C(-0.1254) * (t24 + t11);
-    const puma560_real_t t26 = PUMA560_COS(q[3]);
-    const puma560_real_t t27 = PUMA560_SIN(q[3]);
     const puma560_real_t t28 = PUMA560_C(-2.0) * t16;
     const puma560_real_t t29 = t27 * t20 + t26 * t28;
     const puma560_real_t t30 = t27 * t17 - t26 * t15;
@@ -164,8 +168,6 @@ int puma560_forward_dynamics(
     const puma560_real_t t49 = t17 * t17;
     const puma560_real_t t50 = t49 + t23;
     const puma560_real_t t51 = t48 + (PUMA560_C(-0.0203) * t20 + PUMA560_C(-0.4318) * t50);
-    const puma560_real_t t52 = PUMA560_COS(q[4]);
-    const puma560_real_t t53 = PUMA560_SIN(q[4]);
     const puma560_real_t t54 = t18 + t39;
     const puma560_real_t t55 = t33 - t32;
     const puma560_real_t t56 = t52 * t55 - t53 * t54;
@@ -189,8 +191,6 @@ int puma560_forward_dynamics(
     const puma560_real_t t73 = t71 + (PUMA560_C(-0.0203) * t72 + PUMA560_C(-0.4318) * t20);
     const puma560_real_t t74 = PUMA560_C(0.0406) * t18 - PUMA560_C(0.8636) * t16 - t25;
     const puma560_real_t t75 = t27 * t73 - t26 * t74;
-    const puma560_real_t t76 = PUMA560_COS(q[5]);
-    const puma560_real_t t77 = PUMA560_SIN(q[5]);
     const puma560_real_t t78 = t37 - t66;
     const puma560_real_t t79 = t59 + t60;
     const puma560_real_t t80 = t77 * t78 - t76 * t79;

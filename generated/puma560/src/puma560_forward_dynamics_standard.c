@@ -106,7 +106,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,9 +123,9 @@ int puma560_forward_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(input, 6, PUMA560_C(1.0e18))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(input, PUMA560_C(1.0e18))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -134,11 +134,19 @@ int puma560_forward_dynamics_standard(
         return status;
     }
 
+    puma560_real_t t2, t3;
+    PUMA560_SINCOS(q[1], &t2, &t3);
+    puma560_real_t t16, t14;
+    PUMA560_SINCOS(q[2], &t16, &t14);
+    puma560_real_t t34, t33;
+    PUMA560_SINCOS(q[3], &t34, &t33);
+    puma560_real_t t61, t60;
+    PUMA560_SINCOS(q[4], &t61, &t60);
+    puma560_real_t t83, t82;
+    PUMA560_SINCOS(q[5], &t83, &t82);
     const puma560_real_t t0 = puma560_sign(dq[0]);
     const puma560_real_t t1 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1])
         + PUMA560_C(-62.6111) * (t0 * parameters[FC1]);
-    const puma560_real_t t2 = PUMA560_SIN(q[1]);
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = dq[1] * t4;
     const puma560_real_t t6 = t2 * dq[0];
@@ -151,9 +159,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t12 = PUMA560_C(9.81) * t3;
     const puma560_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2]
         + t12 * parameters[MZ2];
-    const puma560_real_t t14 = PUMA560_COS(q[2]);
     const puma560_real_t t15 = dq[1] + dq[2];
-    const puma560_real_t t16 = PUMA560_SIN(q[2]);
     const puma560_real_t t17 = t16 * t6 - t14 * t4;
     const puma560_real_t t18 = t15 * t17;
     const puma560_real_t t19 = t14 * t6 + t16 * t4;
@@ -172,8 +178,6 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t31 = t16 * t29 + t14 * t30;
     const puma560_real_t t32 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t25 - t24)
         + (parameters[MZ3] * t31 - parameters[MY3] * t27);
-    const puma560_real_t t33 = PUMA560_COS(q[3]);
-    const puma560_real_t t34 = PUMA560_SIN(q[3]);
     const puma560_real_t t35 = PUMA560_C(-2.0) * t18;
     const puma560_real_t t36 = t34 * t23 + t33 * t35;
     const puma560_real_t t37 = t33 * t15 - t34 * t19;
@@ -201,8 +205,6 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t58 = t34 * t56 - t33 * t57;
     const puma560_real_t t59 = t46 + parameters[XZ4] * t48 + parameters[YZ4] * (t49 - t50)
         + (parameters[MZ4] * t58 - parameters[MY4] * t53);
-    const puma560_real_t t60 = PUMA560_COS(q[4]);
-    const puma560_real_t t61 = PUMA560_SIN(q[4]);
     const puma560_real_t t62 = t47 - t20;
     const puma560_real_t t63 = t39 + t40;
     const puma560_real_t t64 = t61 * t62 + t60 * t63;
@@ -225,8 +227,6 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t80 = t61 * t79 + t60 * t53;
     const puma560_real_t t81 = t74 - parameters[XZ5] * t76 + parameters[YZ5] * (t77 - t78)
         + (parameters[MY5] * t58 + parameters[MZ5] * t80);
-    const puma560_real_t t82 = PUMA560_COS(q[5]);
-    const puma560_real_t t83 = PUMA560_SIN(q[5]);
     const puma560_real_t t84 = t44 - t75;
     const puma560_real_t t85 = t68 - t67;
     const puma560_real_t t86 = t83 * t84 - t82 * t85;

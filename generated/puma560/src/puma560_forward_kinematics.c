@@ -27,7 +27,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int puma560_forward_kinematics(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {
@@ -45,18 +45,26 @@ int puma560_forward_kinematics(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_COS(q[0]);
+    puma560_real_t t1, t0;
+    PUMA560_SINCOS(q[0], &t1, &t0);
+    puma560_real_t t4, t2;
+    PUMA560_SINCOS(q[1], &t4, &t2);
+    puma560_real_t t9, t8;
+    PUMA560_SINCOS(q[2], &t9, &t8);
+    puma560_real_t t20, t19;
+    PUMA560_SINCOS(q[3], &t20, &t19);
+    puma560_real_t t31, t30;
+    PUMA560_SINCOS(q[4], &t31, &t30);
+    puma560_real_t t39, t38;
+    PUMA560_SINCOS(q[5], &t39, &t38);
     out[0] = t0;
-    const puma560_real_t t1 = PUMA560_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = PUMA560_C(1.0);
     out[15] = PUMA560_C(1.0);
-    const puma560_real_t t2 = PUMA560_COS(q[1]);
     const puma560_real_t t3 = t0 * t2;
     out[16] = t3;
-    const puma560_real_t t4 = PUMA560_SIN(q[1]);
     const puma560_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = -t1;
@@ -68,8 +76,6 @@ int puma560_forward_kinematics(
     out[24] = -t4;
     out[25] = -t2;
     out[31] = PUMA560_C(1.0);
-    const puma560_real_t t8 = PUMA560_COS(q[2]);
-    const puma560_real_t t9 = PUMA560_SIN(q[2]);
     const puma560_real_t t10 = t8 * t3 - t9 * t5;
     out[32] = t10;
     const puma560_real_t t11 = t9 * t3 + t8 * t5;
@@ -91,8 +97,6 @@ int puma560_forward_kinematics(
     const puma560_real_t t18 = PUMA560_C(-0.4318) * t4;
     out[43] = t18;
     out[47] = PUMA560_C(1.0);
-    const puma560_real_t t19 = PUMA560_COS(q[3]);
-    const puma560_real_t t20 = PUMA560_SIN(q[3]);
     const puma560_real_t t21 = t19 * t10 + t1 * t20;
     out[48] = t21;
     const puma560_real_t t22 = t1 * t19 - t20 * t10;
@@ -115,8 +119,6 @@ int puma560_forward_kinematics(
     const puma560_real_t t29 = t18 + (PUMA560_C(-0.0203) * t16 + PUMA560_C(0.4318) * t17);
     out[59] = t29;
     out[63] = PUMA560_C(1.0);
-    const puma560_real_t t30 = PUMA560_COS(q[4]);
-    const puma560_real_t t31 = PUMA560_SIN(q[4]);
     const puma560_real_t t32 = t30 * t21 - t31 * t11;
     out[64] = t32;
     const puma560_real_t t33 = t31 * t21 + t30 * t11;
@@ -136,8 +138,6 @@ int puma560_forward_kinematics(
     out[74] = -t28;
     out[75] = t29;
     out[79] = PUMA560_C(1.0);
-    const puma560_real_t t38 = PUMA560_COS(q[5]);
-    const puma560_real_t t39 = PUMA560_SIN(q[5]);
     out[80] = t38 * t32 + t39 * t22;
     out[81] = t38 * t22 - t39 * t32;
     out[82] = -t33;

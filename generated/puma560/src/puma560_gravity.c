@@ -78,7 +78,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -92,7 +92,7 @@ int puma560_gravity(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -101,24 +101,24 @@ int puma560_gravity(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_SIN(q[1]);
-    const puma560_real_t t1 = PUMA560_COS(q[2]);
-    const puma560_real_t t2 = PUMA560_COS(q[3]);
-    const puma560_real_t t3 = PUMA560_SIN(q[2]);
+    puma560_real_t t0, t5;
+    PUMA560_SINCOS(q[1], &t0, &t5);
+    puma560_real_t t3, t1;
+    PUMA560_SINCOS(q[2], &t3, &t1);
+    puma560_real_t t9, t2;
+    PUMA560_SINCOS(q[3], &t9, &t2);
+    puma560_real_t t13, t8;
+    PUMA560_SINCOS(q[4], &t13, &t8);
+    puma560_real_t t17, t12;
+    PUMA560_SINCOS(q[5], &t17, &t12);
     const puma560_real_t t4 = PUMA560_C(9.81) * t0;
-    const puma560_real_t t5 = PUMA560_COS(q[1]);
     const puma560_real_t t6 = PUMA560_C(-9.81) * t5;
     const puma560_real_t t7 = t3 * t4 + t1 * t6;
-    const puma560_real_t t8 = PUMA560_COS(q[4]);
-    const puma560_real_t t9 = PUMA560_SIN(q[3]);
     const puma560_real_t t10 = t1 * t4 - t3 * t6;
     const puma560_real_t t11 = t9 * t10;
-    const puma560_real_t t12 = PUMA560_COS(q[5]);
-    const puma560_real_t t13 = PUMA560_SIN(q[4]);
     const puma560_real_t t14 = t2 * t10;
     const puma560_real_t t15 = t13 * t14 + t8 * t7;
     const puma560_real_t t16 = parameters[MY6] * t15;
-    const puma560_real_t t17 = PUMA560_SIN(q[5]);
     const puma560_real_t t18 = parameters[MX6] * t15;
     const puma560_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
     const puma560_real_t t20 = t8 * t14 - t13 * t7;

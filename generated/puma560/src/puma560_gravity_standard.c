@@ -103,7 +103,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int puma560_gravity_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -127,23 +127,23 @@ int puma560_gravity_standard(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_SIN(q[1]);
-    const puma560_real_t t1 = PUMA560_COS(q[1]);
+    puma560_real_t t0, t1;
+    PUMA560_SINCOS(q[1], &t0, &t1);
+    puma560_real_t t4, t3;
+    PUMA560_SINCOS(q[2], &t4, &t3);
+    puma560_real_t t8, t7;
+    PUMA560_SINCOS(q[3], &t8, &t7);
+    puma560_real_t t12, t11;
+    PUMA560_SINCOS(q[4], &t12, &t11);
+    puma560_real_t t16, t15;
+    PUMA560_SINCOS(q[5], &t16, &t15);
     const puma560_real_t t2 = PUMA560_C(9.81) * t1;
-    const puma560_real_t t3 = PUMA560_COS(q[2]);
-    const puma560_real_t t4 = PUMA560_SIN(q[2]);
     const puma560_real_t t5 = PUMA560_C(-9.81) * t0;
     const puma560_real_t t6 = t4 * t5 + t3 * t2;
-    const puma560_real_t t7 = PUMA560_COS(q[3]);
-    const puma560_real_t t8 = PUMA560_SIN(q[3]);
     const puma560_real_t t9 = t4 * t2 - t3 * t5;
     const puma560_real_t t10 = t8 * t9;
-    const puma560_real_t t11 = PUMA560_COS(q[4]);
-    const puma560_real_t t12 = PUMA560_SIN(q[4]);
     const puma560_real_t t13 = t7 * t9;
     const puma560_real_t t14 = t11 * t6 - t12 * t13;
-    const puma560_real_t t15 = PUMA560_COS(q[5]);
-    const puma560_real_t t16 = PUMA560_SIN(q[5]);
     const puma560_real_t t17 = t11 * t13 + t12 * t6;
     const puma560_real_t t18 = t16 * t17 + t15 * t10;
     const puma560_real_t t19 = t14 * parameters[MY6] + t18 * parameters[MZ6];

@@ -80,7 +80,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -96,9 +96,9 @@ int puma560_inverse_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq, 6, PUMA560_C(1.0e16))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq, PUMA560_C(1.0e16))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -107,10 +107,18 @@ int puma560_inverse_dynamics(
         return status;
     }
 
+    puma560_real_t t1, t3;
+    PUMA560_SINCOS(q[1], &t1, &t3);
+    puma560_real_t t21, t16;
+    PUMA560_SINCOS(q[2], &t21, &t16);
+    puma560_real_t t39, t38;
+    PUMA560_SINCOS(q[3], &t39, &t38);
+    puma560_real_t t67, t66;
+    PUMA560_SINCOS(q[4], &t67, &t66);
+    puma560_real_t t92, t91;
+    PUMA560_SINCOS(q[5], &t92, &t91);
     const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t1 = PUMA560_SIN(q[1]);
     const puma560_real_t t2 = dq[1] * dq[1];
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = t4 * t4;
     const puma560_real_t t6 = dq[1] * t4;
@@ -124,12 +132,10 @@ int puma560_inverse_dynamics(
     const puma560_real_t t14 = ddq[1] + t13;
     const puma560_real_t t15 = parameters[XY2] * t12 - (parameters[ZZ2R] * t6 + parameters[XX2R] * t8)
         + parameters[XZ2R] * t14;
-    const puma560_real_t t16 = PUMA560_COS(q[2]);
     const puma560_real_t t17 = t9 * t9;
     const puma560_real_t t18 = PUMA560_C(-0.1254) * (t17 + t5) + PUMA560_C(-0.4318) * t12;
     const puma560_real_t t19 = dq[1] + dq[2];
     const puma560_real_t t20 = t19 * t19;
-    const puma560_real_t t21 = PUMA560_SIN(q[2]);
     const puma560_real_t t22 = t1 * t21 - t3 * t16;
     const puma560_real_t t23 = dq[0] * t22;
     const puma560_real_t t24 = t23 * t23;
@@ -147,8 +153,6 @@ int puma560_inverse_dynamics(
     const puma560_real_t t36 = t35 - t34;
     const puma560_real_t t37 = parameters[ZZ3R] * t25 - parameters[XX3R] * t28 + parameters[XY3R] * t33
         + parameters[XZ3] * t36;
-    const puma560_real_t t38 = PUMA560_COS(q[3]);
-    const puma560_real_t t39 = PUMA560_SIN(q[3]);
     const puma560_real_t t40 = t38 * t19 - t39 * t29;
     const puma560_real_t t41 = t40 * t40;
     const puma560_real_t t42 = dq[3] + t23;
@@ -176,8 +180,6 @@ int puma560_inverse_dynamics(
     const puma560_real_t t63 = t29 * t29;
     const puma560_real_t t64 = t20 + t63;
     const puma560_real_t t65 = t62 + (PUMA560_C(-0.4318) * t64 + PUMA560_C(0.0203) * t36);
-    const puma560_real_t t66 = PUMA560_COS(q[4]);
-    const puma560_real_t t67 = PUMA560_SIN(q[4]);
     const puma560_real_t t68 = t67 * t49 + t66 * t42;
     const puma560_real_t t69 = t68 * t68;
     const puma560_real_t t70 = dq[4] + t40;
@@ -202,8 +204,6 @@ int puma560_inverse_dynamics(
     const puma560_real_t t88 = t86 + (PUMA560_C(0.0203) * t87 + PUMA560_C(0.4318) * t45);
     const puma560_real_t t89 = PUMA560_C(0.0203) * t33 - PUMA560_C(-0.4318) * t46 - t18;
     const puma560_real_t t90 = t39 * t88 + t38 * t89;
-    const puma560_real_t t91 = PUMA560_COS(q[5]);
-    const puma560_real_t t92 = PUMA560_SIN(q[5]);
     const puma560_real_t t93 = t91 * t70 - t92 * t77;
     const puma560_real_t t94 = t93 * t93;
     const puma560_real_t t95 = dq[5] + t68;

@@ -105,7 +105,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,9 +122,9 @@ int puma560_inverse_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq, 6, PUMA560_C(1.0e16))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq, PUMA560_C(1.0e16))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -133,11 +133,19 @@ int puma560_inverse_dynamics_standard(
         return status;
     }
 
+    puma560_real_t t2, t3;
+    PUMA560_SINCOS(q[1], &t2, &t3);
+    puma560_real_t t23, t20;
+    PUMA560_SINCOS(q[2], &t23, &t20);
+    puma560_real_t t48, t47;
+    PUMA560_SINCOS(q[3], &t48, &t47);
+    puma560_real_t t77, t76;
+    PUMA560_SINCOS(q[4], &t77, &t76);
+    puma560_real_t t100, t99;
+    PUMA560_SINCOS(q[5], &t100, &t99);
     const puma560_real_t t0 = puma560_sign(dq[0]);
     const puma560_real_t t1 = PUMA560_C(-62.6111) * dq[0] * parameters[FV1] - t0 * parameters[FC1]
         + PUMA560_C(-62.6111) * ddq[0] * parameters[IA1];
-    const puma560_real_t t2 = PUMA560_SIN(q[1]);
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = PUMA560_C(9.81) * t3;
     const puma560_real_t t5 = t3 * dq[0];
     const puma560_real_t t6 = t5 * t5;
@@ -156,10 +164,8 @@ int puma560_inverse_dynamics_standard(
     const puma560_real_t t18 = ddq[1] + t17;
     const puma560_real_t t19 = t4 * parameters[MZ2] + ((t6 - t7) * parameters[YZ2] + (t16
         + t18 * parameters[XZ2]));
-    const puma560_real_t t20 = PUMA560_COS(q[2]);
     const puma560_real_t t21 = t11 * t11;
     const puma560_real_t t22 = PUMA560_C(0.4318) * t15 + PUMA560_C(0.1254) * (t21 + t6);
-    const puma560_real_t t23 = PUMA560_SIN(q[2]);
     const puma560_real_t t24 = PUMA560_C(9.81) * t2;
     const puma560_real_t t25 = t24 + (PUMA560_C(0.4318) * (t6 + t7) + PUMA560_C(0.1254) * t13);
     const puma560_real_t t26 = t4 + (PUMA560_C(-0.4318) * t18 + PUMA560_C(-0.1254) * t9);
@@ -185,8 +191,6 @@ int puma560_inverse_dynamics_standard(
     const puma560_real_t t45 = t44 - t43;
     const puma560_real_t t46 = t27 * parameters[MZ3] - t22 * parameters[MY3] + ((t30 - t32) * parameters[YZ3]
         + (t42 - t45 * parameters[XZ3]));
-    const puma560_real_t t47 = PUMA560_COS(q[3]);
-    const puma560_real_t t48 = PUMA560_SIN(q[3]);
     const puma560_real_t t49 = t47 * t31 - t48 * t37;
     const puma560_real_t t50 = t49 * t49;
     const puma560_real_t t51 = dq[3] + t29;
@@ -216,8 +220,6 @@ int puma560_inverse_dynamics_standard(
     const puma560_real_t t74 = t48 * t72 + t47 * t73;
     const puma560_real_t t75 = (t50 - t52) * parameters[YZ4] - (t63 - t66 * parameters[XZ4])
         - (t69 * parameters[MY4] + t74 * parameters[MZ4]);
-    const puma560_real_t t76 = PUMA560_COS(q[4]);
-    const puma560_real_t t77 = PUMA560_SIN(q[4]);
     const puma560_real_t t78 = t77 * t58 + t76 * t51;
     const puma560_real_t t79 = t78 * t78;
     const puma560_real_t t80 = dq[4] + t49;
@@ -241,8 +243,6 @@ int puma560_inverse_dynamics_standard(
     const puma560_real_t t97 = t76 * t69 - t77 * t96;
     const puma560_real_t t98 = (t79 - t81) * parameters[YZ5] + (t92 + t95 * parameters[XZ5])
         + (t97 * parameters[MZ5] - t74 * parameters[MY5]);
-    const puma560_real_t t99 = PUMA560_COS(q[5]);
-    const puma560_real_t t100 = PUMA560_SIN(q[5]);
     const puma560_real_t t101 = t99 * t80 - t100 * t87;
     const puma560_real_t t102 = t101 * t101;
     const puma560_real_t t103 = dq[5] + t78;

@@ -21,7 +21,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int puma560_jacobian(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {
@@ -39,13 +39,17 @@ int puma560_jacobian(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_SIN(q[0]);
-    const puma560_real_t t1 = PUMA560_COS(q[1]);
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[0], &t0, &t3);
+    puma560_real_t t6, t1;
+    PUMA560_SINCOS(q[1], &t6, &t1);
+    puma560_real_t t5, t4;
+    PUMA560_SINCOS(q[2], &t5, &t4);
+    puma560_real_t t22, t23;
+    PUMA560_SINCOS(q[3], &t22, &t23);
+    puma560_real_t t24, t25;
+    PUMA560_SINCOS(q[4], &t24, &t25);
     const puma560_real_t t2 = t0 * t1;
-    const puma560_real_t t3 = PUMA560_COS(q[0]);
-    const puma560_real_t t4 = PUMA560_COS(q[2]);
-    const puma560_real_t t5 = PUMA560_SIN(q[2]);
-    const puma560_real_t t6 = PUMA560_SIN(q[1]);
     const puma560_real_t t7 = t0 * t6;
     const puma560_real_t t8 = t5 * t7 - t4 * t2;
     const puma560_real_t t9 = t5 * t2 + t4 * t7;
@@ -72,11 +76,7 @@ int puma560_jacobian(
     out[19] = -t0;
     out[20] = -t0;
     out[21] = -t19;
-    const puma560_real_t t22 = PUMA560_SIN(q[3]);
-    const puma560_real_t t23 = PUMA560_COS(q[3]);
     out[22] = t22 * t18 - t0 * t23;
-    const puma560_real_t t24 = PUMA560_SIN(q[4]);
-    const puma560_real_t t25 = PUMA560_COS(q[4]);
     const puma560_real_t t26 = t24 * (t23 * t18 + t0 * t22) + t25 * t19;
     out[23] = -t26;
     out[25] = t3;

@@ -25,7 +25,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int puma560_joint_from_motor(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q_m, 6, PUMA560_C(1.0e18))
-        || !puma560_within(dq_m, 6, PUMA560_C(1.0e18))
-        || !puma560_within(ddq_m, 6, PUMA560_C(1.0e18))) {
+    if (!puma560_within_joints(q_m, PUMA560_C(1.0e18))
+        || !puma560_within_joints(dq_m, PUMA560_C(1.0e18))
+        || !puma560_within_joints(ddq_m, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {

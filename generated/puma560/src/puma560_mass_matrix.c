@@ -78,7 +78,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -92,7 +92,7 @@ int puma560_mass_matrix(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -101,22 +101,26 @@ int puma560_mass_matrix(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_COS(q[5]);
-    const puma560_real_t t1 = PUMA560_SIN(q[5]);
+    puma560_real_t t54, t48;
+    PUMA560_SINCOS(q[1], &t54, &t48);
+    puma560_real_t t42, t23;
+    PUMA560_SINCOS(q[2], &t42, &t23);
+    puma560_real_t t12, t15;
+    PUMA560_SINCOS(q[3], &t12, &t15);
+    puma560_real_t t8, t5;
+    PUMA560_SINCOS(q[4], &t8, &t5);
+    puma560_real_t t1, t0;
+    PUMA560_SINCOS(q[5], &t1, &t0);
     const puma560_real_t t2 = parameters[XY6] * (PUMA560_C(2.0) * t1) - t0 * parameters[XX6R];
     const puma560_real_t t3 = t0 * t2;
     const puma560_real_t t4 = parameters[XX5R] - t3;
-    const puma560_real_t t5 = PUMA560_COS(q[4]);
     const puma560_real_t t6 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
     const puma560_real_t t7 = t6 - parameters[XY5];
-    const puma560_real_t t8 = PUMA560_SIN(q[4]);
     const puma560_real_t t9 = t5 * (parameters[ZZ6] - t4) - t7 * (PUMA560_C(2.0) * t8);
     const puma560_real_t t10 = t5 * t9;
     const puma560_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    const puma560_real_t t12 = PUMA560_SIN(q[3]);
     const puma560_real_t t13 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const puma560_real_t t14 = parameters[MY4R] + t13;
-    const puma560_real_t t15 = PUMA560_COS(q[3]);
     const puma560_real_t t16 = t0 * parameters[MX6] - t1 * parameters[MY6];
     const puma560_real_t t17 = parameters[MX5] + t16;
     const puma560_real_t t18 = t5 * t17 - t8 * parameters[MY5R];
@@ -124,7 +128,6 @@ int puma560_mass_matrix(
     const puma560_real_t t20 = t15 * t19 - t12 * t14;
     const puma560_real_t t21 = PUMA560_C(0.0406) * t20;
     const puma560_real_t t22 = t11 + t21;
-    const puma560_real_t t23 = PUMA560_COS(q[2]);
     const puma560_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
     const puma560_real_t t25 = parameters[XX4R] + (parameters[ZZ6] - t10);
     const puma560_real_t t26 = parameters[XZ5] - (parameters[XY6] - t1 * t2);
@@ -143,19 +146,16 @@ int puma560_mass_matrix(
     const puma560_real_t t39 = t12 * t38 - t15 * t36;
     const puma560_real_t t40 = PUMA560_C(-0.4318) * t20;
     const puma560_real_t t41 = parameters[XY3R] + (t39 + (t40 + PUMA560_C(-0.0203) * t33));
-    const puma560_real_t t42 = PUMA560_SIN(q[2]);
     const puma560_real_t t43 = t23 * (t22 - t35) + t41 * (PUMA560_C(2.0) * t42);
     const puma560_real_t t44 = t23 * t43;
     const puma560_real_t t45 = t15 * t14 + t12 * t19;
     const puma560_real_t t46 = PUMA560_C(-0.2508) * t45;
     const puma560_real_t t47 = parameters[XX2R] + (t22 - t44 + t46);
-    const puma560_real_t t48 = PUMA560_COS(q[1]);
     const puma560_real_t t49 = parameters[MY3R] + t33;
     const puma560_real_t t50 = parameters[MX3R] + t20;
     const puma560_real_t t51 = t23 * t50 - t42 * t49;
     const puma560_real_t t52 = PUMA560_C(0.8636) * t51;
     const puma560_real_t t53 = t23 * t49 + t42 * t50;
-    const puma560_real_t t54 = PUMA560_SIN(q[1]);
     const puma560_real_t t55 = (parameters[XY2] + (t41 - t42 * t43
         + PUMA560_C(-0.4318) * t53)) * (PUMA560_C(2.0) * t54);
     const puma560_real_t t56 = t48 * (t35 + t44 + (t52 + t46) - t47) + t55;

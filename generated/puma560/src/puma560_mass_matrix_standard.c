@@ -103,7 +103,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int puma560_mass_matrix_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within(parameters, 78, PUMA560_C(1.0e18))) {
         status |= PUMA560_STATUS_INPUT;
     }
@@ -127,26 +127,30 @@ int puma560_mass_matrix_standard(
         return status;
     }
 
-    const puma560_real_t t0 = PUMA560_COS(q[5]);
-    const puma560_real_t t1 = PUMA560_SIN(q[5]);
+    puma560_real_t t65, t57;
+    PUMA560_SINCOS(q[1], &t65, &t57);
+    puma560_real_t t49, t27;
+    PUMA560_SINCOS(q[2], &t49, &t27);
+    puma560_real_t t15, t18;
+    PUMA560_SINCOS(q[3], &t15, &t18);
+    puma560_real_t t9, t5;
+    PUMA560_SINCOS(q[4], &t9, &t5);
+    puma560_real_t t1, t0;
+    PUMA560_SINCOS(q[5], &t1, &t0);
     const puma560_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
         + parameters[XY6] * (PUMA560_C(2.0) * t1);
     const puma560_real_t t3 = t0 * t2;
     const puma560_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
-    const puma560_real_t t5 = PUMA560_COS(q[4]);
     const puma560_real_t t6 = parameters[YY5] + parameters[ZZ6];
     const puma560_real_t t7 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
     const puma560_real_t t8 = t7 - parameters[XY5];
-    const puma560_real_t t9 = PUMA560_SIN(q[4]);
     const puma560_real_t t10 = t5 * (t6 - t4) - t8 * (PUMA560_C(2.0) * t9);
     const puma560_real_t t11 = t5 * t10;
     const puma560_real_t t12 = parameters[ZZ4] + (t4 + t11);
     const puma560_real_t t13 = parameters[M4] + (parameters[M5] + parameters[M6]);
     const puma560_real_t t14 = PUMA560_C(0.0203) * t13;
-    const puma560_real_t t15 = PUMA560_SIN(q[3]);
     const puma560_real_t t16 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const puma560_real_t t17 = parameters[MZ5] - t16 - parameters[MY4];
-    const puma560_real_t t18 = PUMA560_COS(q[3]);
     const puma560_real_t t19 = parameters[MY5] + parameters[MZ6];
     const puma560_real_t t20 = t0 * parameters[MX6] - t1 * parameters[MY6];
     const puma560_real_t t21 = parameters[MX5] + t20;
@@ -155,7 +159,6 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t24 = t15 * t17 + t18 * t23;
     const puma560_real_t t25 = PUMA560_C(0.0203) * (t14 + PUMA560_C(2.0) * t24);
     const puma560_real_t t26 = parameters[YY3] + (t12 + t25);
-    const puma560_real_t t27 = PUMA560_COS(q[2]);
     const puma560_real_t t28 = parameters[ZZ5] + (parameters[XX6] + t3);
     const puma560_real_t t29 = parameters[YY4] + t28;
     const puma560_real_t t30 = parameters[XX4] + (t6 - t11);
@@ -178,7 +181,6 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t47 = t24 + t14;
     const puma560_real_t t48 = parameters[XY3] + (t46 + (PUMA560_C(-0.0203) * t40
         + PUMA560_C(-0.4318) * t47));
-    const puma560_real_t t49 = PUMA560_SIN(q[2]);
     const puma560_real_t t50 = t27 * (t42 - t26) - t48 * (PUMA560_C(2.0) * t49);
     const puma560_real_t t51 = t27 * t50;
     const puma560_real_t t52 = parameters[M3] + t13;
@@ -186,7 +188,6 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t54 = parameters[MZ3] + t53;
     const puma560_real_t t55 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t52 + PUMA560_C(2.0) * t54);
     const puma560_real_t t56 = parameters[XX2] + (t26 + t51 + t55);
-    const puma560_real_t t57 = PUMA560_COS(q[1]);
     const puma560_real_t t58 = PUMA560_C(0.4318) * t52;
     const puma560_real_t t59 = parameters[MY3] + (t40 + t38);
     const puma560_real_t t60 = parameters[MX3] + t47;
@@ -194,7 +195,6 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t62 = PUMA560_C(0.4318) * (t58 + PUMA560_C(2.0) * t61);
     const puma560_real_t t63 = t57 * (parameters[YY2] + (t42 - t51 + (t62 + t55)) - t56);
     const puma560_real_t t64 = t27 * t59 + t49 * t60;
-    const puma560_real_t t65 = PUMA560_SIN(q[1]);
     const puma560_real_t t66 = (parameters[XY2] + (t48 + t49 * t50
         + PUMA560_C(-0.4318) * t64)) * (PUMA560_C(2.0) * t65);
     const puma560_real_t t67 = parameters[ZZ1] + (t56 + t57 * (t63 + t66))

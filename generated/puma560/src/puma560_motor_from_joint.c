@@ -25,7 +25,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int puma560_motor_from_joint(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq, 6, PUMA560_C(1.0e16))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq, PUMA560_C(1.0e16))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define PUMA560_MATH_double(name) name
 #define PUMA560_MATH(name) PUMA560_JOIN(PUMA560_MATH_, PUMA560_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DPUMA560_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, PUMA560_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DPUMA560_SINCOS=my_sincos, or with both of
+ * -DPUMA560_SIN=my_sin -DPUMA560_COS=my_cos; -include my_header.h declares it.
+ */
+#define PUMA560_SINGLE_float 1
+#define PUMA560_SINGLE_double 0
+#if !defined(PUMA560_SINCOS) && !defined(PUMA560_SIN) && !defined(PUMA560_COS)
+#define PUMA560_OWN_SINCOS PUMA560_JOIN(PUMA560_SINGLE_, PUMA560_REAL)
+#else
+#define PUMA560_OWN_SINCOS 0
+#endif
 #ifndef PUMA560_SIN
 #define PUMA560_SIN PUMA560_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline puma560_real_t puma560_select(puma560_real_t condition, puma560_re
     return condition > PUMA560_C(0.0) ? a : b;
 }
 
+#if PUMA560_OWN_SINCOS
+typedef struct {
+    puma560_real_t sine;
+    puma560_real_t cosine;
+} puma560_pair_t;
+
+/* Two numbers by value travel in registers. */
+puma560_pair_t puma560_sincos(puma560_real_t x);
+#endif
+
+#ifndef PUMA560_SINCOS
+#define PUMA560_SINCOS puma560_sine_cosine
+static inline void puma560_sine_cosine(puma560_real_t x, puma560_real_t *sine, puma560_real_t *cosine)
+{
+#if PUMA560_OWN_SINCOS
+    const puma560_pair_t pair = puma560_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = PUMA560_SIN(x);
+    *cosine = PUMA560_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int puma560_within(const puma560_real_t x[], int n, puma560_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int puma560_within(const puma560_real_t x[], int n, puma560_real_t
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int puma560_within_joints(const puma560_real_t x[], puma560_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
 
 static inline void puma560_zero(puma560_real_t x[], int n)

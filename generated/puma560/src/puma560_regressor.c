@@ -32,7 +32,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -44,9 +44,9 @@ int puma560_regressor(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq, 6, PUMA560_C(1.0e16))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq, PUMA560_C(1.0e16))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {
@@ -54,11 +54,19 @@ int puma560_regressor(
         return status;
     }
 
+    puma560_real_t t3, t0;
+    PUMA560_SINCOS(q[1], &t3, &t0);
+    puma560_real_t t19, t20;
+    PUMA560_SINCOS(q[2], &t19, &t20);
+    puma560_real_t t61, t60;
+    PUMA560_SINCOS(q[3], &t61, &t60);
+    puma560_real_t t118, t119;
+    PUMA560_SINCOS(q[4], &t118, &t119);
+    puma560_real_t t173, t174;
+    PUMA560_SINCOS(q[5], &t173, &t174);
     out[0] = PUMA560_C(-0.06944177768728742) * ddq[0];
-    const puma560_real_t t0 = PUMA560_COS(q[1]);
     const puma560_real_t t1 = t0 * dq[0];
     const puma560_real_t t2 = dq[1] * t1;
-    const puma560_real_t t3 = PUMA560_SIN(q[1]);
     const puma560_real_t t4 = t3 * ddq[0];
     const puma560_real_t t5 = t2 + t4;
     const puma560_real_t t6 = PUMA560_C(-0.06944177768728742) * t3;
@@ -86,8 +94,6 @@ int puma560_regressor(
     out[58] = PUMA560_C(-0.39560519327592153) * t0;
     out[59] = PUMA560_C(0.39560519327592153) * t3;
     const puma560_real_t t18 = dq[1] + dq[2];
-    const puma560_real_t t19 = PUMA560_SIN(q[2]);
-    const puma560_real_t t20 = PUMA560_COS(q[2]);
     const puma560_real_t t21 = t0 * t20 - t3 * t19;
     const puma560_real_t t22 = dq[0] * t21;
     const puma560_real_t t23 = t18 * t22;
@@ -149,8 +155,6 @@ int puma560_regressor(
     const puma560_real_t t59 = t20 * t54 - t19 * t55;
     out[66] = t43 * t52 + t57 * t53 + PUMA560_C(0.04032672714331514) * t59;
     out[118] = PUMA560_C(-0.08095560645504385) * t59;
-    const puma560_real_t t60 = PUMA560_COS(q[3]);
-    const puma560_real_t t61 = PUMA560_SIN(q[3]);
     const puma560_real_t t62 = t60 * t18 - t61 * t28;
     const puma560_real_t t63 = t22 - dq[3];
     const puma560_real_t t64 = t62 * t63;
@@ -235,8 +239,6 @@ int puma560_regressor(
     const puma560_real_t t117 = t90 * t109 + t112 * t110 + PUMA560_C(-0.0008186325610092972) * t77 - t115;
     out[125] = PUMA560_C(2.007492603288627) * t117;
     out[177] = PUMA560_C(0.18787994020908783) * t113;
-    const puma560_real_t t118 = PUMA560_SIN(q[4]);
-    const puma560_real_t t119 = PUMA560_COS(q[4]);
     const puma560_real_t t120 = t118 * t68 - t119 * t63;
     const puma560_real_t t121 = dq[4] + t62;
     const puma560_real_t t122 = t120 * t121;
@@ -325,8 +327,6 @@ int puma560_regressor(
     out[132] = PUMA560_C(2.007492603288627) * t172;
     out[184] = t101 * t135;
     out[236] = PUMA560_C(0.19862511694053758) * t168;
-    const puma560_real_t t173 = PUMA560_SIN(q[5]);
-    const puma560_real_t t174 = PUMA560_COS(q[5]);
     const puma560_real_t t175 = t173 * t126 - t174 * t121;
     const puma560_real_t t176 = dq[5] + t120;
     const puma560_real_t t177 = t175 * t176;

@@ -34,7 +34,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int puma560_regressor_standard(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq, 6, PUMA560_C(1.0e16))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq, PUMA560_C(1.0e16))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {
@@ -56,11 +56,19 @@ int puma560_regressor_standard(
         return status;
     }
 
+    puma560_real_t t1, t3;
+    PUMA560_SINCOS(q[1], &t1, &t3);
+    puma560_real_t t24, t23;
+    PUMA560_SINCOS(q[2], &t24, &t23);
+    puma560_real_t t74, t75;
+    PUMA560_SINCOS(q[3], &t74, &t75);
+    puma560_real_t t144, t145;
+    PUMA560_SINCOS(q[4], &t144, &t145);
+    puma560_real_t t209, t210;
+    PUMA560_SINCOS(q[5], &t209, &t210);
     const puma560_real_t t0 = PUMA560_C(-0.06944177768728742) * ddq[0];
     out[5] = t0;
-    const puma560_real_t t1 = PUMA560_SIN(q[1]);
     const puma560_real_t t2 = t1 * ddq[0];
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = dq[1] * t4;
     const puma560_real_t t6 = t2 + t5;
@@ -94,8 +102,6 @@ int puma560_regressor_standard(
     out[93] = PUMA560_C(0.04032672714331514) * ddq[1];
     out[94] = PUMA560_C(-0.39560519327592153) * t3;
     out[95] = PUMA560_C(0.39560519327592153) * t1;
-    const puma560_real_t t23 = PUMA560_COS(q[2]);
-    const puma560_real_t t24 = PUMA560_SIN(q[2]);
     const puma560_real_t t25 = t1 * t23 + t3 * t24;
     const puma560_real_t t26 = ddq[0] * t25;
     const puma560_real_t t27 = t3 * t23 - t1 * t24;
@@ -174,8 +180,6 @@ int puma560_regressor_standard(
     out[106] = PUMA560_C(0.017413080780483477) * t2;
     out[29] = t62 * t61 - (t71 * t59 + t68 * t60);
     out[107] = t71 * t64 - t68 * t65;
-    const puma560_real_t t74 = PUMA560_SIN(q[3]);
-    const puma560_real_t t75 = PUMA560_COS(q[3]);
     const puma560_real_t t76 = t75 * t41 - t74 * t53;
     const puma560_real_t t77 = t75 * t29 - t74 * t33;
     const puma560_real_t t78 = t28 - dq[3];
@@ -285,8 +289,6 @@ int puma560_regressor_standard(
     const puma560_real_t t143 = PUMA560_C(2.007492603288627) * (t132 * t128 - t120 * t129
         + PUMA560_C(-0.0008186325610092972) * t117);
     out[195] = t143;
-    const puma560_real_t t144 = PUMA560_SIN(q[4]);
-    const puma560_real_t t145 = PUMA560_COS(q[4]);
     const puma560_real_t t146 = t144 * t107 - t145 * t93;
     const puma560_real_t t147 = t145 * t78 - t144 * t82;
     const puma560_real_t t148 = dq[4] + t77;
@@ -397,8 +399,6 @@ int puma560_regressor_standard(
     out[49] = t141;
     out[127] = t142;
     out[205] = t143;
-    const puma560_real_t t209 = PUMA560_SIN(q[5]);
-    const puma560_real_t t210 = PUMA560_COS(q[5]);
     const puma560_real_t t211 = t210 * t167 - t209 * t181;
     const puma560_real_t t212 = t210 * t148 - t209 * t152;
     const puma560_real_t t213 = t147 - dq[5];

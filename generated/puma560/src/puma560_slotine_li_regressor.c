@@ -34,7 +34,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA676F8CUL
+#if PUMA560_GENERATION != 0x5A5F931EUL
 #error "puma560.h and puma560_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -47,10 +47,10 @@ int puma560_slotine_li_regressor(
 {
     int status = PUMA560_STATUS_OK;
 
-    if (!puma560_within(q, 6, PUMA560_C(1.0e8))
-        || !puma560_within(dq, 6, PUMA560_C(1.0e10))
-        || !puma560_within(dq_r, 6, PUMA560_C(1.0e10))
-        || !puma560_within(ddq_r, 6, PUMA560_C(1.0e16))) {
+    if (!puma560_within_joints(q, PUMA560_C(1.0e8))
+        || !puma560_within_joints(dq, PUMA560_C(1.0e10))
+        || !puma560_within_joints(dq_r, PUMA560_C(1.0e10))
+        || !puma560_within_joints(ddq_r, PUMA560_C(1.0e16))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {
@@ -58,11 +58,19 @@ int puma560_slotine_li_regressor(
         return status;
     }
 
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t22, t21;
+    PUMA560_SINCOS(q[2], &t22, &t21);
+    puma560_real_t t69, t67;
+    PUMA560_SINCOS(q[3], &t69, &t67);
+    puma560_real_t t130, t129;
+    PUMA560_SINCOS(q[4], &t130, &t129);
+    puma560_real_t t189, t188;
+    PUMA560_SINCOS(q[5], &t189, &t188);
     out[0] = PUMA560_C(-0.06944177768728742) * ddq_r[0];
-    const puma560_real_t t0 = PUMA560_SIN(q[1]);
     const puma560_real_t t1 = PUMA560_C(0.06944177768728742) * t0;
     const puma560_real_t t2 = t0 * ddq_r[0];
-    const puma560_real_t t3 = PUMA560_COS(q[1]);
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = t3 * dq_r[0];
     const puma560_real_t t6 = PUMA560_C(-0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -92,8 +100,6 @@ int puma560_slotine_li_regressor(
     out[57] = PUMA560_C(0.04032672714331514) * ddq_r[1];
     out[58] = PUMA560_C(-0.39560519327592153) * t3;
     out[59] = PUMA560_C(0.39560519327592153) * t0;
-    const puma560_real_t t21 = PUMA560_COS(q[2]);
-    const puma560_real_t t22 = PUMA560_SIN(q[2]);
     const puma560_real_t t23 = t21 * t1 + t22 * t8;
     const puma560_real_t t24 = t0 * t21 + t3 * t22;
     const puma560_real_t t25 = t24 * ddq_r[0];
@@ -160,9 +166,7 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t66 = t21 * t61 - t22 * t62;
     out[66] = t60 * t64 - t59 * t50 + PUMA560_C(0.04032672714331514) * t66;
     out[118] = PUMA560_C(-0.08095560645504385) * t66;
-    const puma560_real_t t67 = PUMA560_COS(q[3]);
     const puma560_real_t t68 = t67 * t23;
-    const puma560_real_t t69 = PUMA560_SIN(q[3]);
     const puma560_real_t t70 = t67 * t39 - t69 * t50;
     const puma560_real_t t71 = t67 * t29 - t69 * t34;
     const puma560_real_t t72 = dq_r[3] - t30;
@@ -250,8 +254,6 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t128 = t126 + (t121 * t123 - t120 * t101 + PUMA560_C(0.0008186325610092972) * t88);
     out[125] = PUMA560_C(2.007492603288627) * t128;
     out[177] = PUMA560_C(0.18787994020908783) * t124;
-    const puma560_real_t t129 = PUMA560_COS(q[4]);
-    const puma560_real_t t130 = PUMA560_SIN(q[4]);
     const puma560_real_t t131 = t129 * t68 + t130 * t33;
     const puma560_real_t t132 = t130 * t101 + t129 * t88;
     const puma560_real_t t133 = t130 * t78 - t129 * t73;
@@ -344,8 +346,6 @@ int puma560_slotine_li_regressor(
     out[132] = PUMA560_C(2.007492603288627) * t187;
     out[184] = t150 * t112;
     out[236] = PUMA560_C(0.19862511694053758) * t183;
-    const puma560_real_t t188 = PUMA560_COS(q[5]);
-    const puma560_real_t t189 = PUMA560_SIN(q[5]);
     const puma560_real_t t190 = t188 * t131 - t189 * t77;
     const puma560_real_t t191 = t189 * t166 - t188 * t153;
     const puma560_real_t t192 = t188 * t135 - t189 * t140;

@@ -81,7 +81,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0xCE665A66UL
+#define RX90_GENERATION 0x4F4B5E98UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef RX90_REAL
@@ -111,7 +111,7 @@ typedef RX90_REAL rx90_real_t;
 
 #define RX90_STATUS_OK     0
 #define RX90_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define RX90_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define RX90_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define RX90_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -78,7 +78,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -93,8 +93,8 @@ int rx90_bias(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -103,9 +103,17 @@ int rx90_bias(
         return status;
     }
 
+    rx90_real_t t1, t2;
+    RX90_SINCOS(q[1], &t1, &t2);
+    rx90_real_t t12, t11;
+    RX90_SINCOS(q[2], &t12, &t11);
+    rx90_real_t t25, t24;
+    RX90_SINCOS(q[3], &t25, &t24);
+    rx90_real_t t51, t50;
+    RX90_SINCOS(q[4], &t51, &t50);
+    rx90_real_t t74, t73;
+    RX90_SINCOS(q[5], &t74, &t73);
     const rx90_real_t t0 = rx90_sign(dq[0]);
-    const rx90_real_t t1 = RX90_SIN(q[1]);
-    const rx90_real_t t2 = RX90_COS(q[1]);
     const rx90_real_t t3 = t2 * dq[0];
     const rx90_real_t t4 = dq[1] * t3;
     const rx90_real_t t5 = t1 * dq[0];
@@ -115,8 +123,6 @@ int rx90_bias(
     const rx90_real_t t8 = t5 * t3;
     const rx90_real_t t9 = dq[1] * dq[1];
     const rx90_real_t t10 = t3 * t3;
-    const rx90_real_t t11 = RX90_COS(q[2]);
-    const rx90_real_t t12 = RX90_SIN(q[2]);
     const rx90_real_t t13 = t11 * t3 - t12 * t5;
     const rx90_real_t t14 = dq[1] + dq[2];
     const rx90_real_t t15 = t13 * t14;
@@ -129,8 +135,6 @@ int rx90_bias(
     const rx90_real_t t21 = t13 * t13;
     const rx90_real_t t22 = t14 * t14;
     const rx90_real_t t23 = RX90_C(0.9) * t6;
-    const rx90_real_t t24 = RX90_COS(q[3]);
-    const rx90_real_t t25 = RX90_SIN(q[3]);
     const rx90_real_t t26 = RX90_C(2.0) * t15;
     const rx90_real_t t27 = t25 * t19 + t24 * t26;
     const rx90_real_t t28 = t25 * t16 + t24 * t14;
@@ -156,8 +160,6 @@ int rx90_bias(
     const rx90_real_t t47 = t16 * t16;
     const rx90_real_t t48 = t47 + t22;
     const rx90_real_t t49 = t46 + RX90_C(-0.45) * t48;
-    const rx90_real_t t50 = RX90_COS(q[4]);
-    const rx90_real_t t51 = RX90_SIN(q[4]);
     const rx90_real_t t52 = t17 - t37;
     const rx90_real_t t53 = t30 + t31;
     const rx90_real_t t54 = t51 * t52 + t50 * t53;
@@ -180,8 +182,6 @@ int rx90_bias(
     const rx90_real_t t70 = t69 + RX90_C(-0.45) * t19;
     const rx90_real_t t71 = t23 - RX90_C(-0.9) * t15;
     const rx90_real_t t72 = t25 * t70 - t24 * t71;
-    const rx90_real_t t73 = RX90_COS(q[5]);
-    const rx90_real_t t74 = RX90_SIN(q[5]);
     const rx90_real_t t75 = t35 + t64;
     const rx90_real_t t76 = t57 + t58;
     const rx90_real_t t77 = t74 * t75 + t73 * t76;

@@ -104,7 +104,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -120,8 +120,8 @@ int rx90_bias_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -130,9 +130,17 @@ int rx90_bias_standard(
         return status;
     }
 
+    rx90_real_t t1, t2;
+    RX90_SINCOS(q[1], &t1, &t2);
+    rx90_real_t t15, t13;
+    RX90_SINCOS(q[2], &t15, &t13);
+    rx90_real_t t32, t31;
+    RX90_SINCOS(q[3], &t32, &t31);
+    rx90_real_t t58, t57;
+    RX90_SINCOS(q[4], &t58, &t57);
+    rx90_real_t t80, t79;
+    RX90_SINCOS(q[5], &t80, &t79);
     const rx90_real_t t0 = rx90_sign(dq[0]);
-    const rx90_real_t t1 = RX90_SIN(q[1]);
-    const rx90_real_t t2 = RX90_COS(q[1]);
     const rx90_real_t t3 = t2 * dq[0];
     const rx90_real_t t4 = dq[1] * t3;
     const rx90_real_t t5 = t1 * dq[0];
@@ -144,9 +152,7 @@ int rx90_bias_standard(
     const rx90_real_t t10 = dq[1] * dq[1];
     const rx90_real_t t11 = RX90_C(9.81) * t2;
     const rx90_real_t t12 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2] - t11 * parameters[MZ2];
-    const rx90_real_t t13 = RX90_COS(q[2]);
     const rx90_real_t t14 = dq[1] + dq[2];
-    const rx90_real_t t15 = RX90_SIN(q[2]);
     const rx90_real_t t16 = t15 * t5 - t13 * t3;
     const rx90_real_t t17 = t14 * t16;
     const rx90_real_t t18 = t13 * t5 + t15 * t3;
@@ -164,8 +170,6 @@ int rx90_bias_standard(
     const rx90_real_t t29 = t15 * t27 + t13 * t28;
     const rx90_real_t t30 = t21 - parameters[XZ3] * t22 + parameters[YZ3] * (t24 - t23)
         + (parameters[MY3] * t25 - parameters[MZ3] * t29);
-    const rx90_real_t t31 = RX90_COS(q[3]);
-    const rx90_real_t t32 = RX90_SIN(q[3]);
     const rx90_real_t t33 = RX90_C(2.0) * t17;
     const rx90_real_t t34 = t32 * t22 + t31 * t33;
     const rx90_real_t t35 = t31 * t14 + t32 * t18;
@@ -192,8 +196,6 @@ int rx90_bias_standard(
     const rx90_real_t t55 = t31 * t54 - t32 * t53;
     const rx90_real_t t56 = t44 + parameters[XZ4] * t46 - parameters[YZ4] * (t47 - t48)
         - (parameters[MY4] * t51 + parameters[MZ4] * t55);
-    const rx90_real_t t57 = RX90_COS(q[4]);
-    const rx90_real_t t58 = RX90_SIN(q[4]);
     const rx90_real_t t59 = t19 - t45;
     const rx90_real_t t60 = t38 - t37;
     const rx90_real_t t61 = t58 * t59 + t57 * t60;
@@ -216,8 +218,6 @@ int rx90_bias_standard(
     const rx90_real_t t77 = t58 * t76 + t57 * t51;
     const rx90_real_t t78 = t71 + parameters[XZ5] * t73 + parameters[YZ5] * (t74 - t75)
         + (parameters[MY5] * t55 - parameters[MZ5] * t77);
-    const rx90_real_t t79 = RX90_COS(q[5]);
-    const rx90_real_t t80 = RX90_SIN(q[5]);
     const rx90_real_t t81 = t42 - t72;
     const rx90_real_t t82 = t64 + t65;
     const rx90_real_t t83 = t80 * t81 + t79 * t82;

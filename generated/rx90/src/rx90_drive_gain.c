@@ -21,7 +21,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int rx90_drive_gain(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {

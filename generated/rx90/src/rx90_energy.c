@@ -79,7 +79,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -95,8 +95,8 @@ int rx90_energy(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -106,15 +106,21 @@ int rx90_energy(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_SIN(q[1]);
+    rx90_real_t t0, t2;
+    RX90_SINCOS(q[1], &t0, &t2);
+    rx90_real_t t8, t7;
+    RX90_SINCOS(q[2], &t8, &t7);
+    rx90_real_t t22, t21;
+    RX90_SINCOS(q[3], &t22, &t21);
+    rx90_real_t t35, t34;
+    RX90_SINCOS(q[4], &t35, &t34);
+    rx90_real_t t47, t46;
+    RX90_SINCOS(q[5], &t47, &t46);
     const rx90_real_t t1 = t0 * dq[0];
-    const rx90_real_t t2 = RX90_COS(q[1]);
     const rx90_real_t t3 = t2 * dq[0];
     const rx90_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
     const rx90_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3 + parameters[ZZ2R] * dq[1]);
     const rx90_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const rx90_real_t t7 = RX90_COS(q[2]);
-    const rx90_real_t t8 = RX90_SIN(q[2]);
     const rx90_real_t t9 = t7 * t1 + t8 * t3;
     const rx90_real_t t10 = t7 * t3 - t8 * t1;
     const rx90_real_t t11 = dq[1] + dq[2];
@@ -129,8 +135,6 @@ int rx90_energy(
     const rx90_real_t t19 = t8 * t16;
     const rx90_real_t t20 = parameters[MX3] * (t11 * t17 - t10 * t18) + parameters[MY3R] * (t9 * t18
         - t11 * t19);
-    const rx90_real_t t21 = RX90_COS(q[3]);
-    const rx90_real_t t22 = RX90_SIN(q[3]);
     const rx90_real_t t23 = t21 * t9 - t22 * t11;
     const rx90_real_t t24 = t22 * t9 + t21 * t11;
     const rx90_real_t t25 = dq[3] + t10;
@@ -143,8 +147,6 @@ int rx90_energy(
     const rx90_real_t t32 = t22 * t30 - t21 * t29;
     const rx90_real_t t33 = parameters[MX4] * (t24 * t17 - t25 * t31) + parameters[MY4R] * (t23 * t17
         + t25 * t32);
-    const rx90_real_t t34 = RX90_COS(q[4]);
-    const rx90_real_t t35 = RX90_SIN(q[4]);
     const rx90_real_t t36 = t34 * t23 + t35 * t25;
     const rx90_real_t t37 = t34 * t25 - t35 * t23;
     const rx90_real_t t38 = dq[4] + t24;
@@ -156,8 +158,6 @@ int rx90_energy(
     const rx90_real_t t44 = t34 * t32 - t35 * t17;
     const rx90_real_t t45 = parameters[MX5] * (t38 * t43 - t37 * t31) + parameters[MY5R] * (t36 * t31
         + t38 * t44);
-    const rx90_real_t t46 = RX90_COS(q[5]);
-    const rx90_real_t t47 = RX90_SIN(q[5]);
     const rx90_real_t t48 = t46 * t36 - t47 * t38;
     const rx90_real_t t49 = t47 * t36 + t46 * t38;
     const rx90_real_t t50 = dq[5] + t37;

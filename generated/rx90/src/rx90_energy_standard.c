@@ -105,7 +105,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,8 +122,8 @@ int rx90_energy_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -133,16 +133,22 @@ int rx90_energy_standard(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_SIN(q[1]);
+    rx90_real_t t0, t2;
+    RX90_SINCOS(q[1], &t0, &t2);
+    rx90_real_t t9, t8;
+    RX90_SINCOS(q[2], &t9, &t8);
+    rx90_real_t t24, t25;
+    RX90_SINCOS(q[3], &t24, &t25);
+    rx90_real_t t41, t40;
+    RX90_SINCOS(q[4], &t41, &t40);
+    rx90_real_t t55, t54;
+    RX90_SINCOS(q[5], &t55, &t54);
     const rx90_real_t t1 = t0 * dq[0];
-    const rx90_real_t t2 = RX90_COS(q[1]);
     const rx90_real_t t3 = t2 * dq[0];
     const rx90_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const rx90_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
     const rx90_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
     const rx90_real_t t7 = RX90_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + RX90_C(0.5) * (t4 + t5 + t6);
-    const rx90_real_t t8 = RX90_COS(q[2]);
-    const rx90_real_t t9 = RX90_SIN(q[2]);
     const rx90_real_t t10 = t8 * t1 + t9 * t3;
     const rx90_real_t t11 = t8 * t3 - t9 * t1;
     const rx90_real_t t12 = dq[1] + dq[2];
@@ -158,8 +164,6 @@ int rx90_energy_standard(
     const rx90_real_t t22 = parameters[MX3] * (t12 * t18 + t11 * t20) - parameters[MY3] * (t10 * t20
         + t12 * t17);
     const rx90_real_t t23 = t7 + RX90_C(0.5) * t21 + (t22 + parameters[MZ3] * (t11 * t17 - t10 * t18));
-    const rx90_real_t t24 = RX90_SIN(q[3]);
-    const rx90_real_t t25 = RX90_COS(q[3]);
     const rx90_real_t t26 = t25 * t10 - t24 * t12;
     const rx90_real_t t27 = t25 * t12 + t24 * t10;
     const rx90_real_t t28 = dq[3] + t11;
@@ -175,8 +179,6 @@ int rx90_energy_standard(
     const rx90_real_t t38 = parameters[MX4] * (t28 * t35 + t27 * t18) + parameters[MY4] * (t26 * t18
         - t28 * t34);
     const rx90_real_t t39 = t23 + RX90_C(0.5) * t37 + (t38 - parameters[MZ4] * (t27 * t34 + t26 * t35));
-    const rx90_real_t t40 = RX90_COS(q[4]);
-    const rx90_real_t t41 = RX90_SIN(q[4]);
     const rx90_real_t t42 = t40 * t26 + t41 * t28;
     const rx90_real_t t43 = t41 * t26 - t40 * t28;
     const rx90_real_t t44 = dq[4] + t27;
@@ -190,8 +192,6 @@ int rx90_energy_standard(
     const rx90_real_t t52 = parameters[MX5] * (t44 * t49 + t43 * t35) + parameters[MY5] * (t42 * t35
         + t44 * t48);
     const rx90_real_t t53 = t39 + RX90_C(0.5) * t51 + (parameters[MZ5] * (t42 * t49 - t43 * t48) - t52);
-    const rx90_real_t t54 = RX90_COS(q[5]);
-    const rx90_real_t t55 = RX90_SIN(q[5]);
     const rx90_real_t t56 = t55 * t44 - t54 * t42;
     const rx90_real_t t57 = t55 * t42 + t54 * t44;
     const rx90_real_t t58 = t43 - dq[5];

@@ -80,7 +80,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -96,9 +96,9 @@ int rx90_forward_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(input, 6, RX90_C(1.0e18))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(input, RX90_C(1.0e18))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -107,11 +107,19 @@ int rx90_forward_dynamics(
         return status;
     }
 
+    rx90_real_t t2, t3;
+    RX90_SINCOS(q[1], &t2, &t3);
+    rx90_real_t t13, t12;
+    RX90_SINCOS(q[2], &t13, &t12);
+    rx90_real_t t26, t25;
+    RX90_SINCOS(q[3], &t26, &t25);
+    rx90_real_t t52, t51;
+    RX90_SINCOS(q[4], &t52, &t51);
+    rx90_real_t t75, t74;
+    RX90_SINCOS(q[5], &t75, &t74);
     const rx90_real_t t0 = rx90_sign(dq[0]);
     const rx90_real_t t1 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0]))
         + RX90_C(-1.0e2) * (parameters[FC1] * t0);
-    const rx90_real_t t2 = RX90_SIN(q[1]);
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = t3 * dq[0];
     const rx90_real_t t5 = dq[1] * t4;
     const rx90_real_t t6 = t2 * dq[0];
@@ -121,8 +129,6 @@ int rx90_forward_dynamics(
     const rx90_real_t t9 = t6 * t4;
     const rx90_real_t t10 = dq[1] * dq[1];
     const rx90_real_t t11 = t4 * t4;
-    const rx90_real_t t12 = RX90_COS(q[2]);
-    const rx90_real_t t13 = RX90_SIN(q[2]);
     const rx90_real_t t14 = t12 * t4 - t13 * t6;
     const rx90_real_t t15 = dq[1] + dq[2];
     const rx90_real_t t16 = t14 * t15;
@@ -135,8 +141,6 @@ int rx90_forward_dynamics(
     const rx90_real_t t22 = t14 * t14;
     const rx90_real_t t23 = t15 * t15;
     const rx90_real_t t24 = RX90_C(-0.9) * t7;
-    const rx90_real_t t25 = RX90_COS(q[3]);
-    const rx90_real_t t26 = RX90_SIN(q[3]);
     const rx90_real_t t27 = RX90_C(2.0) * t16;
     const rx90_real_t t28 = t26 * t20 + t25 * t27;
     const rx90_real_t t29 = t26 * t17 + t25 * t15;
@@ -162,8 +166,6 @@ int rx90_forward_dynamics(
     const rx90_real_t t48 = t17 * t17;
     const rx90_real_t t49 = t48 + t23;
     const rx90_real_t t50 = t47 + RX90_C(0.45) * t49;
-    const rx90_real_t t51 = RX90_COS(q[4]);
-    const rx90_real_t t52 = RX90_SIN(q[4]);
     const rx90_real_t t53 = t38 - t18;
     const rx90_real_t t54 = t32 - t31;
     const rx90_real_t t55 = t52 * t53 + t51 * t54;
@@ -186,8 +188,6 @@ int rx90_forward_dynamics(
     const rx90_real_t t71 = t70 + RX90_C(-0.45) * t20;
     const rx90_real_t t72 = t24 + RX90_C(-0.9) * t16;
     const rx90_real_t t73 = t26 * t71 + t25 * t72;
-    const rx90_real_t t74 = RX90_COS(q[5]);
-    const rx90_real_t t75 = RX90_SIN(q[5]);
     const rx90_real_t t76 = t36 + t65;
     const rx90_real_t t77 = t59 - t58;
     const rx90_real_t t78 = t74 * t77 - t75 * t76;

@@ -106,7 +106,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,9 +123,9 @@ int rx90_forward_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(input, 6, RX90_C(1.0e18))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(input, RX90_C(1.0e18))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -134,11 +134,19 @@ int rx90_forward_dynamics_standard(
         return status;
     }
 
+    rx90_real_t t2, t3;
+    RX90_SINCOS(q[1], &t2, &t3);
+    rx90_real_t t16, t14;
+    RX90_SINCOS(q[2], &t16, &t14);
+    rx90_real_t t33, t32;
+    RX90_SINCOS(q[3], &t33, &t32);
+    rx90_real_t t59, t58;
+    RX90_SINCOS(q[4], &t59, &t58);
+    rx90_real_t t81, t80;
+    RX90_SINCOS(q[5], &t81, &t80);
     const rx90_real_t t0 = rx90_sign(dq[0]);
     const rx90_real_t t1 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1])
         + RX90_C(-1.0e2) * (t0 * parameters[FC1]);
-    const rx90_real_t t2 = RX90_SIN(q[1]);
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = t3 * dq[0];
     const rx90_real_t t5 = dq[1] * t4;
     const rx90_real_t t6 = t2 * dq[0];
@@ -150,9 +158,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t11 = dq[1] * dq[1];
     const rx90_real_t t12 = RX90_C(-9.81) * t3;
     const rx90_real_t t13 = t8 - t9 * parameters[XZ2] + (t11 - t10) * parameters[YZ2] - t12 * parameters[MZ2];
-    const rx90_real_t t14 = RX90_COS(q[2]);
     const rx90_real_t t15 = dq[1] + dq[2];
-    const rx90_real_t t16 = RX90_SIN(q[2]);
     const rx90_real_t t17 = t14 * t4 - t16 * t6;
     const rx90_real_t t18 = t15 * t17;
     const rx90_real_t t19 = t14 * t6 + t16 * t4;
@@ -170,8 +176,6 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t30 = t14 * t29 - t16 * t28;
     const rx90_real_t t31 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t24 - t25)
         - (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const rx90_real_t t32 = RX90_COS(q[3]);
-    const rx90_real_t t33 = RX90_SIN(q[3]);
     const rx90_real_t t34 = RX90_C(2.0) * t18;
     const rx90_real_t t35 = t33 * t23 + t32 * t34;
     const rx90_real_t t36 = t32 * t15 + t33 * t19;
@@ -198,8 +202,6 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t56 = t33 * t54 - t32 * t55;
     const rx90_real_t t57 = t45 + parameters[XZ4] * t47 + parameters[YZ4] * (t49 - t48)
         + (parameters[MY4] * t52 + parameters[MZ4] * t56);
-    const rx90_real_t t58 = RX90_COS(q[4]);
-    const rx90_real_t t59 = RX90_SIN(q[4]);
     const rx90_real_t t60 = t46 - t20;
     const rx90_real_t t61 = t39 - t38;
     const rx90_real_t t62 = t59 * t60 + t58 * t61;
@@ -222,8 +224,6 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t78 = t59 * t77 - t58 * t52;
     const rx90_real_t t79 = t72 - parameters[XZ5] * t74 + parameters[YZ5] * (t76 - t75)
         + (parameters[MY5] * t56 + parameters[MZ5] * t78);
-    const rx90_real_t t80 = RX90_COS(q[5]);
-    const rx90_real_t t81 = RX90_SIN(q[5]);
     const rx90_real_t t82 = t43 - t73;
     const rx90_real_t t83 = t65 + t66;
     const rx90_real_t t84 = t80 * t83 - t81 * t82;

@@ -27,7 +27,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int rx90_forward_kinematics(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {
@@ -45,18 +45,26 @@ int rx90_forward_kinematics(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_COS(q[0]);
+    rx90_real_t t1, t0;
+    RX90_SINCOS(q[0], &t1, &t0);
+    rx90_real_t t4, t2;
+    RX90_SINCOS(q[1], &t4, &t2);
+    rx90_real_t t9, t8;
+    RX90_SINCOS(q[2], &t9, &t8);
+    rx90_real_t t20, t19;
+    RX90_SINCOS(q[3], &t20, &t19);
+    rx90_real_t t31, t30;
+    RX90_SINCOS(q[4], &t31, &t30);
+    rx90_real_t t39, t38;
+    RX90_SINCOS(q[5], &t39, &t38);
     out[0] = t0;
-    const rx90_real_t t1 = RX90_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = RX90_C(1.0);
     out[15] = RX90_C(1.0);
-    const rx90_real_t t2 = RX90_COS(q[1]);
     const rx90_real_t t3 = t0 * t2;
     out[16] = t3;
-    const rx90_real_t t4 = RX90_SIN(q[1]);
     const rx90_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -68,8 +76,6 @@ int rx90_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = RX90_C(1.0);
-    const rx90_real_t t8 = RX90_COS(q[2]);
-    const rx90_real_t t9 = RX90_SIN(q[2]);
     const rx90_real_t t10 = t8 * t3 - t9 * t5;
     out[32] = t10;
     const rx90_real_t t11 = t9 * t3 + t8 * t5;
@@ -91,8 +97,6 @@ int rx90_forward_kinematics(
     const rx90_real_t t18 = RX90_C(0.45) * t4;
     out[43] = t18;
     out[47] = RX90_C(1.0);
-    const rx90_real_t t19 = RX90_COS(q[3]);
-    const rx90_real_t t20 = RX90_SIN(q[3]);
     const rx90_real_t t21 = t19 * t10 - t1 * t20;
     out[48] = t21;
     const rx90_real_t t22 = t20 * t10 + t1 * t19;
@@ -115,8 +119,6 @@ int rx90_forward_kinematics(
     const rx90_real_t t29 = t18 + RX90_C(0.45) * t17;
     out[59] = t29;
     out[63] = RX90_C(1.0);
-    const rx90_real_t t30 = RX90_COS(q[4]);
-    const rx90_real_t t31 = RX90_SIN(q[4]);
     const rx90_real_t t32 = t30 * t21 - t31 * t11;
     out[64] = t32;
     const rx90_real_t t33 = t31 * t21 + t30 * t11;
@@ -136,8 +138,6 @@ int rx90_forward_kinematics(
     out[74] = t28;
     out[75] = t29;
     out[79] = RX90_C(1.0);
-    const rx90_real_t t38 = RX90_COS(q[5]);
-    const rx90_real_t t39 = RX90_SIN(q[5]);
     out[80] = t38 * t32 - t39 * t22;
     out[81] = -(t39 * t32 + t38 * t22);
     out[82] = -t33;

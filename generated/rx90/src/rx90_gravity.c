@@ -77,7 +77,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -91,7 +91,7 @@ int rx90_gravity(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -100,24 +100,24 @@ int rx90_gravity(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_SIN(q[1]);
-    const rx90_real_t t1 = RX90_COS(q[2]);
-    const rx90_real_t t2 = RX90_COS(q[3]);
-    const rx90_real_t t3 = RX90_SIN(q[2]);
+    rx90_real_t t0, t5;
+    RX90_SINCOS(q[1], &t0, &t5);
+    rx90_real_t t3, t1;
+    RX90_SINCOS(q[2], &t3, &t1);
+    rx90_real_t t9, t2;
+    RX90_SINCOS(q[3], &t9, &t2);
+    rx90_real_t t13, t8;
+    RX90_SINCOS(q[4], &t13, &t8);
+    rx90_real_t t17, t12;
+    RX90_SINCOS(q[5], &t17, &t12);
     const rx90_real_t t4 = RX90_C(-9.81) * t0;
-    const rx90_real_t t5 = RX90_COS(q[1]);
     const rx90_real_t t6 = RX90_C(9.81) * t5;
     const rx90_real_t t7 = t3 * t4 + t1 * t6;
-    const rx90_real_t t8 = RX90_COS(q[4]);
-    const rx90_real_t t9 = RX90_SIN(q[3]);
     const rx90_real_t t10 = t1 * t4 - t3 * t6;
     const rx90_real_t t11 = t9 * t10;
-    const rx90_real_t t12 = RX90_COS(q[5]);
-    const rx90_real_t t13 = RX90_SIN(q[4]);
     const rx90_real_t t14 = t2 * t10;
     const rx90_real_t t15 = t13 * t14 + t8 * t7;
     const rx90_real_t t16 = parameters[MY6] * t15;
-    const rx90_real_t t17 = RX90_SIN(q[5]);
     const rx90_real_t t18 = parameters[MX6] * t15;
     const rx90_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
     const rx90_real_t t20 = t8 * t14 - t13 * t7;

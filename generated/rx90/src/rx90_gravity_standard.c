@@ -103,7 +103,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int rx90_gravity_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -127,23 +127,23 @@ int rx90_gravity_standard(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_SIN(q[1]);
-    const rx90_real_t t1 = RX90_COS(q[1]);
+    rx90_real_t t0, t1;
+    RX90_SINCOS(q[1], &t0, &t1);
+    rx90_real_t t4, t3;
+    RX90_SINCOS(q[2], &t4, &t3);
+    rx90_real_t t8, t7;
+    RX90_SINCOS(q[3], &t8, &t7);
+    rx90_real_t t12, t11;
+    RX90_SINCOS(q[4], &t12, &t11);
+    rx90_real_t t16, t15;
+    RX90_SINCOS(q[5], &t16, &t15);
     const rx90_real_t t2 = RX90_C(9.81) * t1;
-    const rx90_real_t t3 = RX90_COS(q[2]);
-    const rx90_real_t t4 = RX90_SIN(q[2]);
     const rx90_real_t t5 = RX90_C(-9.81) * t0;
     const rx90_real_t t6 = t4 * t5 + t3 * t2;
-    const rx90_real_t t7 = RX90_COS(q[3]);
-    const rx90_real_t t8 = RX90_SIN(q[3]);
     const rx90_real_t t9 = t4 * t2 - t3 * t5;
     const rx90_real_t t10 = t8 * t9;
-    const rx90_real_t t11 = RX90_COS(q[4]);
-    const rx90_real_t t12 = RX90_SIN(q[4]);
     const rx90_real_t t13 = t7 * t9;
     const rx90_real_t t14 = t11 * t6 - t12 * t13;
-    const rx90_real_t t15 = RX90_COS(q[5]);
-    const rx90_real_t t16 = RX90_SIN(q[5]);
     const rx90_real_t t17 = t11 * t13 + t12 * t6;
     const rx90_real_t t18 = t16 * t17 + t15 * t10;
     const rx90_real_t t19 = t14 * parameters[MY6] + t18 * parameters[MZ6];

@@ -79,7 +79,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -95,9 +95,9 @@ int rx90_inverse_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq, 6, RX90_C(1.0e16))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq, RX90_C(1.0e16))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -106,10 +106,18 @@ int rx90_inverse_dynamics(
         return status;
     }
 
+    rx90_real_t t1, t3;
+    RX90_SINCOS(q[1], &t1, &t3);
+    rx90_real_t t20, t16;
+    RX90_SINCOS(q[2], &t20, &t16);
+    rx90_real_t t38, t37;
+    RX90_SINCOS(q[3], &t38, &t37);
+    rx90_real_t t66, t65;
+    RX90_SINCOS(q[4], &t66, &t65);
+    rx90_real_t t90, t89;
+    RX90_SINCOS(q[5], &t90, &t89);
     const rx90_real_t t0 = rx90_sign(dq[0]);
-    const rx90_real_t t1 = RX90_SIN(q[1]);
     const rx90_real_t t2 = dq[1] * dq[1];
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = t3 * dq[0];
     const rx90_real_t t5 = t4 * t4;
     const rx90_real_t t6 = dq[1] * t4;
@@ -123,11 +131,9 @@ int rx90_inverse_dynamics(
     const rx90_real_t t14 = ddq[1] + t13;
     const rx90_real_t t15 = parameters[ZZ2R] * t6 + parameters[XX2R] * t8 - parameters[XY2] * t12
         + parameters[XZ2R] * t14;
-    const rx90_real_t t16 = RX90_COS(q[2]);
     const rx90_real_t t17 = RX90_C(0.45) * t12;
     const rx90_real_t t18 = dq[1] + dq[2];
     const rx90_real_t t19 = t18 * t18;
-    const rx90_real_t t20 = RX90_SIN(q[2]);
     const rx90_real_t t21 = t1 * t20 - t3 * t16;
     const rx90_real_t t22 = dq[0] * t21;
     const rx90_real_t t23 = t22 * t22;
@@ -145,8 +151,6 @@ int rx90_inverse_dynamics(
     const rx90_real_t t35 = t34 - t33;
     const rx90_real_t t36 = parameters[XZ3] * t35 - (parameters[ZZ3R] * t24 + parameters[XX3R] * t27
         + parameters[XY3] * t32);
-    const rx90_real_t t37 = RX90_COS(q[3]);
-    const rx90_real_t t38 = RX90_SIN(q[3]);
     const rx90_real_t t39 = t37 * t18 + t38 * t28;
     const rx90_real_t t40 = t39 * t39;
     const rx90_real_t t41 = t22 - dq[3];
@@ -174,8 +178,6 @@ int rx90_inverse_dynamics(
     const rx90_real_t t62 = t61 + RX90_C(0.45) * t14;
     const rx90_real_t t63 = t20 * t60 + t16 * t62;
     const rx90_real_t t64 = RX90_C(-0.45) * t58 + t63;
-    const rx90_real_t t65 = RX90_COS(q[4]);
-    const rx90_real_t t66 = RX90_SIN(q[4]);
     const rx90_real_t t67 = t65 * t41 - t66 * t48;
     const rx90_real_t t68 = t67 * t67;
     const rx90_real_t t69 = dq[4] + t39;
@@ -199,8 +201,6 @@ int rx90_inverse_dynamics(
     const rx90_real_t t86 = t85 + RX90_C(0.45) * t44;
     const rx90_real_t t87 = t17 - RX90_C(0.45) * t45;
     const rx90_real_t t88 = t38 * t86 - t37 * t87;
-    const rx90_real_t t89 = RX90_COS(q[5]);
-    const rx90_real_t t90 = RX90_SIN(q[5]);
     const rx90_real_t t91 = t89 * t69 - t90 * t76;
     const rx90_real_t t92 = t91 * t91;
     const rx90_real_t t93 = t67 - dq[5];

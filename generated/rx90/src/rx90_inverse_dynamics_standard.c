@@ -105,7 +105,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,9 +122,9 @@ int rx90_inverse_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq, 6, RX90_C(1.0e16))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq, RX90_C(1.0e16))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -133,11 +133,19 @@ int rx90_inverse_dynamics_standard(
         return status;
     }
 
+    rx90_real_t t2, t3;
+    RX90_SINCOS(q[1], &t2, &t3);
+    rx90_real_t t22, t20;
+    RX90_SINCOS(q[2], &t22, &t20);
+    rx90_real_t t47, t46;
+    RX90_SINCOS(q[3], &t47, &t46);
+    rx90_real_t t75, t74;
+    RX90_SINCOS(q[4], &t75, &t74);
+    rx90_real_t t98, t97;
+    RX90_SINCOS(q[5], &t98, &t97);
     const rx90_real_t t0 = rx90_sign(dq[0]);
     const rx90_real_t t1 = RX90_C(1.0e2) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + RX90_C(1.0e2) * ddq[0] * parameters[IA1];
-    const rx90_real_t t2 = RX90_SIN(q[1]);
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = RX90_C(9.81) * t3;
     const rx90_real_t t5 = t3 * dq[0];
     const rx90_real_t t6 = t5 * t5;
@@ -156,9 +164,7 @@ int rx90_inverse_dynamics_standard(
     const rx90_real_t t18 = ddq[1] + t17;
     const rx90_real_t t19 = (t6 - t7) * parameters[YZ2] + (t16 + t18 * parameters[XZ2])
         - t4 * parameters[MZ2];
-    const rx90_real_t t20 = RX90_COS(q[2]);
     const rx90_real_t t21 = RX90_C(0.45) * t15;
-    const rx90_real_t t22 = RX90_SIN(q[2]);
     const rx90_real_t t23 = RX90_C(-9.81) * t2;
     const rx90_real_t t24 = t23 + RX90_C(0.45) * (t6 + t7);
     const rx90_real_t t25 = t4 + RX90_C(0.45) * t18;
@@ -184,8 +190,6 @@ int rx90_inverse_dynamics_standard(
     const rx90_real_t t44 = t42 + t43;
     const rx90_real_t t45 = t21 * parameters[MY3] - t26 * parameters[MZ3] + ((t29 - t31) * parameters[YZ3]
         + (t41 + t44 * parameters[XZ3]));
-    const rx90_real_t t46 = RX90_COS(q[3]);
-    const rx90_real_t t47 = RX90_SIN(q[3]);
     const rx90_real_t t48 = t47 * t36 + t46 * t30;
     const rx90_real_t t49 = t48 * t48;
     const rx90_real_t t50 = dq[3] + t28;
@@ -214,8 +218,6 @@ int rx90_inverse_dynamics_standard(
     const rx90_real_t t72 = t46 * t71 - t47 * t70;
     const rx90_real_t t73 = (t49 - t51) * parameters[YZ4] + (t62 + t65 * parameters[XZ4])
         + (t68 * parameters[MY4] + t72 * parameters[MZ4]);
-    const rx90_real_t t74 = RX90_COS(q[4]);
-    const rx90_real_t t75 = RX90_SIN(q[4]);
     const rx90_real_t t76 = t74 * t50 - t75 * t57;
     const rx90_real_t t77 = t76 * t76;
     const rx90_real_t t78 = dq[4] + t48;
@@ -239,8 +241,6 @@ int rx90_inverse_dynamics_standard(
     const rx90_real_t t95 = t75 * t94 + t74 * t68;
     const rx90_real_t t96 = (t77 - t79) * parameters[YZ5] + (t90 + t93 * parameters[XZ5])
         + (t72 * parameters[MY5] - t95 * parameters[MZ5]);
-    const rx90_real_t t97 = RX90_COS(q[5]);
-    const rx90_real_t t98 = RX90_SIN(q[5]);
     const rx90_real_t t99 = t98 * t85 + t97 * t78;
     const rx90_real_t t100 = t99 * t99;
     const rx90_real_t t101 = dq[5] + t76;

@@ -21,7 +21,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int rx90_jacobian(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {
@@ -39,18 +39,22 @@ int rx90_jacobian(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_SIN(q[0]);
-    const rx90_real_t t1 = RX90_COS(q[1]);
+    rx90_real_t t0, t10;
+    RX90_SINCOS(q[0], &t0, &t10);
+    rx90_real_t t5, t1;
+    RX90_SINCOS(q[1], &t5, &t1);
+    rx90_real_t t3, t4;
+    RX90_SINCOS(q[2], &t3, &t4);
+    rx90_real_t t19, t21;
+    RX90_SINCOS(q[3], &t19, &t21);
+    rx90_real_t t22, t23;
+    RX90_SINCOS(q[4], &t22, &t23);
     const rx90_real_t t2 = t0 * t1;
-    const rx90_real_t t3 = RX90_SIN(q[2]);
-    const rx90_real_t t4 = RX90_COS(q[2]);
-    const rx90_real_t t5 = RX90_SIN(q[1]);
     const rx90_real_t t6 = t0 * t5;
     const rx90_real_t t7 = t3 * t2 + t4 * t6;
     const rx90_real_t t8 = RX90_C(0.45) * t7;
     const rx90_real_t t9 = RX90_C(-0.45) * t2 + t8;
     out[0] = t9;
-    const rx90_real_t t10 = RX90_COS(q[0]);
     const rx90_real_t t11 = t1 * t4 - t5 * t3;
     const rx90_real_t t12 = RX90_C(-0.45) * t11;
     const rx90_real_t t13 = RX90_C(-0.45) * t5 + t12;
@@ -69,12 +73,8 @@ int rx90_jacobian(
     out[19] = t0;
     out[20] = t0;
     out[21] = -t16;
-    const rx90_real_t t19 = RX90_SIN(q[3]);
     const rx90_real_t t20 = t4 * t14 - t3 * t15;
-    const rx90_real_t t21 = RX90_COS(q[3]);
     out[22] = t19 * t20 + t0 * t21;
-    const rx90_real_t t22 = RX90_SIN(q[4]);
-    const rx90_real_t t23 = RX90_COS(q[4]);
     const rx90_real_t t24 = t22 * (t0 * t19 - t21 * t20) - t23 * t16;
     out[23] = t24;
     out[25] = -t10;

@@ -25,7 +25,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int rx90_joint_from_motor(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q_m, 6, RX90_C(1.0e18))
-        || !rx90_within(dq_m, 6, RX90_C(1.0e18))
-        || !rx90_within(ddq_m, 6, RX90_C(1.0e18))) {
+    if (!rx90_within_joints(q_m, RX90_C(1.0e18))
+        || !rx90_within_joints(dq_m, RX90_C(1.0e18))
+        || !rx90_within_joints(ddq_m, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {

@@ -77,7 +77,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -91,7 +91,7 @@ int rx90_mass_matrix(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within(parameters, 52, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -100,28 +100,31 @@ int rx90_mass_matrix(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_COS(q[5]);
-    const rx90_real_t t1 = RX90_SIN(q[5]);
+    rx90_real_t t50, t44;
+    RX90_SINCOS(q[1], &t50, &t44);
+    rx90_real_t t40, t12;
+    RX90_SINCOS(q[2], &t40, &t12);
+    rx90_real_t t21, t14;
+    RX90_SINCOS(q[3], &t21, &t14);
+    rx90_real_t t8, t5;
+    RX90_SINCOS(q[4], &t8, &t5);
+    rx90_real_t t1, t0;
+    RX90_SINCOS(q[5], &t1, &t0);
     const rx90_real_t t2 = parameters[XY6] * (RX90_C(2.0) * t1) - t0 * parameters[XX6R];
     const rx90_real_t t3 = t0 * t2;
     const rx90_real_t t4 = parameters[XX5R] - t3;
-    const rx90_real_t t5 = RX90_COS(q[4]);
     const rx90_real_t t6 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
     const rx90_real_t t7 = parameters[XY5] + t6;
-    const rx90_real_t t8 = RX90_SIN(q[4]);
     const rx90_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (RX90_C(2.0) * t8);
     const rx90_real_t t10 = t5 * t9;
     const rx90_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    const rx90_real_t t12 = RX90_COS(q[2]);
     const rx90_real_t t13 = parameters[ZZ5R] + (parameters[XX6R] + t3);
-    const rx90_real_t t14 = RX90_COS(q[3]);
     const rx90_real_t t15 = parameters[XX4R] + (parameters[ZZ6] - t10);
     const rx90_real_t t16 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
     const rx90_real_t t17 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
     const rx90_real_t t18 = parameters[YZ5] - t17;
     const rx90_real_t t19 = t5 * t16 - t8 * t18;
     const rx90_real_t t20 = t19 - parameters[XY4];
-    const rx90_real_t t21 = RX90_SIN(q[3]);
     const rx90_real_t t22 = t14 * (t13 - t15) - t20 * (RX90_C(2.0) * t21);
     const rx90_real_t t23 = t14 * t22;
     const rx90_real_t t24 = t1 * parameters[MY6] - t0 * parameters[MX6];
@@ -140,17 +143,14 @@ int rx90_mass_matrix(
     const rx90_real_t t37 = RX90_C(0.45) * t36;
     const rx90_real_t t38 = t14 * t29 + t21 * t31 + t37;
     const rx90_real_t t39 = parameters[XY3] + t38;
-    const rx90_real_t t40 = RX90_SIN(q[2]);
     const rx90_real_t t41 = t12 * (t11 - t28) + t39 * (RX90_C(2.0) * t40);
     const rx90_real_t t42 = t12 * t41;
     const rx90_real_t t43 = parameters[XX2R] + (t11 - t42);
-    const rx90_real_t t44 = RX90_COS(q[1]);
     const rx90_real_t t45 = parameters[MY3R] + t26;
     const rx90_real_t t46 = parameters[MX3] - t36;
     const rx90_real_t t47 = t12 * t46 - t40 * t45;
     const rx90_real_t t48 = RX90_C(0.9) * t47;
     const rx90_real_t t49 = t39 - t40 * t41 + RX90_C(-0.45) * (t12 * t45 + t40 * t46);
-    const rx90_real_t t50 = RX90_SIN(q[1]);
     const rx90_real_t t51 = t44 * (t28 + t42 + t48 - t43) + (parameters[XY2] + t49) * (RX90_C(2.0) * t50);
     out[0] = parameters[ZZ1R] + (t43 + t44 * t51);
     const rx90_real_t t52 = t14 * t33 + t21 * t35;

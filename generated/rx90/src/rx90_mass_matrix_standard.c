@@ -103,7 +103,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int rx90_mass_matrix_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
         status |= RX90_STATUS_INPUT;
     }
@@ -127,31 +127,34 @@ int rx90_mass_matrix_standard(
         return status;
     }
 
-    const rx90_real_t t0 = RX90_COS(q[5]);
-    const rx90_real_t t1 = RX90_SIN(q[5]);
+    rx90_real_t t57, t51;
+    RX90_SINCOS(q[1], &t57, &t51);
+    rx90_real_t t47, t14;
+    RX90_SINCOS(q[2], &t47, &t14);
+    rx90_real_t t24, t17;
+    RX90_SINCOS(q[3], &t24, &t17);
+    rx90_real_t t9, t5;
+    RX90_SINCOS(q[4], &t9, &t5);
+    rx90_real_t t1, t0;
+    RX90_SINCOS(q[5], &t1, &t0);
     const rx90_real_t t2 = t0 * (parameters[YY6] - parameters[XX6]) + parameters[XY6] * (RX90_C(2.0) * t1);
     const rx90_real_t t3 = t0 * t2;
     const rx90_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
-    const rx90_real_t t5 = RX90_COS(q[4]);
     const rx90_real_t t6 = parameters[YY5] + parameters[ZZ6];
     const rx90_real_t t7 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
     const rx90_real_t t8 = parameters[XY5] + t7;
-    const rx90_real_t t9 = RX90_SIN(q[4]);
     const rx90_real_t t10 = t5 * (t6 - t4) + t8 * (RX90_C(2.0) * t9);
     const rx90_real_t t11 = t5 * t10;
     const rx90_real_t t12 = parameters[ZZ4] + (t4 + t11);
     const rx90_real_t t13 = parameters[YY3] + t12;
-    const rx90_real_t t14 = RX90_COS(q[2]);
     const rx90_real_t t15 = parameters[ZZ5] + (parameters[XX6] + t3);
     const rx90_real_t t16 = parameters[YY4] + t15;
-    const rx90_real_t t17 = RX90_COS(q[3]);
     const rx90_real_t t18 = parameters[XX4] + (t6 - t11);
     const rx90_real_t t19 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
     const rx90_real_t t20 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
     const rx90_real_t t21 = parameters[YZ5] - t20;
     const rx90_real_t t22 = t5 * t19 - t9 * t21;
     const rx90_real_t t23 = t22 - parameters[XY4];
-    const rx90_real_t t24 = RX90_SIN(q[3]);
     const rx90_real_t t25 = t17 * (t16 - t18) - t23 * (RX90_C(2.0) * t24);
     const rx90_real_t t26 = t17 * t25;
     const rx90_real_t t27 = parameters[M4] + (parameters[M5] + parameters[M6]);
@@ -174,17 +177,14 @@ int rx90_mass_matrix_standard(
     const rx90_real_t t44 = RX90_C(0.45) * t43;
     const rx90_real_t t45 = t17 * t36 + t24 * t38 + t44;
     const rx90_real_t t46 = parameters[XY3] + t45;
-    const rx90_real_t t47 = RX90_SIN(q[2]);
     const rx90_real_t t48 = t14 * (t35 - t13) - t46 * (RX90_C(2.0) * t47);
     const rx90_real_t t49 = t14 * t48;
     const rx90_real_t t50 = parameters[XX2] + (t13 + t49);
-    const rx90_real_t t51 = RX90_COS(q[1]);
     const rx90_real_t t52 = parameters[MY3] + (t33 + t28);
     const rx90_real_t t53 = parameters[MX3] - t43;
     const rx90_real_t t54 = t14 * t53 - t47 * t52;
     const rx90_real_t t55 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t27) + RX90_C(2.0) * t54);
     const rx90_real_t t56 = t46 + t47 * t48 + RX90_C(-0.45) * (t14 * t52 + t47 * t53);
-    const rx90_real_t t57 = RX90_SIN(q[1]);
     const rx90_real_t t58 = t51 * (parameters[YY2] + (t35 - t49 + t55) - t50) + (parameters[XY2]
         + t56) * (RX90_C(2.0) * t57);
     out[0] = parameters[ZZ1] + (t50 + t51 * t58) + RX90_C(1.0e4) * parameters[IA1];

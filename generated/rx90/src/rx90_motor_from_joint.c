@@ -25,7 +25,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int rx90_motor_from_joint(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq, 6, RX90_C(1.0e16))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq, RX90_C(1.0e16))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define RX90_MATH_double(name) name
 #define RX90_MATH(name) RX90_JOIN(RX90_MATH_, RX90_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DRX90_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, RX90_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DRX90_SINCOS=my_sincos, or with both of
+ * -DRX90_SIN=my_sin -DRX90_COS=my_cos; -include my_header.h declares it.
+ */
+#define RX90_SINGLE_float 1
+#define RX90_SINGLE_double 0
+#if !defined(RX90_SINCOS) && !defined(RX90_SIN) && !defined(RX90_COS)
+#define RX90_OWN_SINCOS RX90_JOIN(RX90_SINGLE_, RX90_REAL)
+#else
+#define RX90_OWN_SINCOS 0
+#endif
 #ifndef RX90_SIN
 #define RX90_SIN RX90_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline rx90_real_t rx90_select(rx90_real_t condition, rx90_real_t a, rx90
     return condition > RX90_C(0.0) ? a : b;
 }
 
+#if RX90_OWN_SINCOS
+typedef struct {
+    rx90_real_t sine;
+    rx90_real_t cosine;
+} rx90_pair_t;
+
+/* Two numbers by value travel in registers. */
+rx90_pair_t rx90_sincos(rx90_real_t x);
+#endif
+
+#ifndef RX90_SINCOS
+#define RX90_SINCOS rx90_sine_cosine
+static inline void rx90_sine_cosine(rx90_real_t x, rx90_real_t *sine, rx90_real_t *cosine)
+{
+#if RX90_OWN_SINCOS
+    const rx90_pair_t pair = rx90_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = RX90_SIN(x);
+    *cosine = RX90_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int rx90_within(const rx90_real_t x[], int n, rx90_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int rx90_within(const rx90_real_t x[], int n, rx90_real_t limit)
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int rx90_within_joints(const rx90_real_t x[], rx90_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
 
 static inline void rx90_zero(rx90_real_t x[], int n)

@@ -32,7 +32,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -44,9 +44,9 @@ int rx90_regressor(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq, 6, RX90_C(1.0e16))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq, RX90_C(1.0e16))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {
@@ -54,11 +54,19 @@ int rx90_regressor(
         return status;
     }
 
+    rx90_real_t t3, t0;
+    RX90_SINCOS(q[1], &t3, &t0);
+    rx90_real_t t19, t20;
+    RX90_SINCOS(q[2], &t19, &t20);
+    rx90_real_t t60, t59;
+    RX90_SINCOS(q[3], &t60, &t59);
+    rx90_real_t t108, t109;
+    RX90_SINCOS(q[4], &t108, &t109);
+    rx90_real_t t159, t160;
+    RX90_SINCOS(q[5], &t159, &t160);
     out[0] = RX90_C(0.03333333333333333) * ddq[0];
-    const rx90_real_t t0 = RX90_COS(q[1]);
     const rx90_real_t t1 = t0 * dq[0];
     const rx90_real_t t2 = dq[1] * t1;
-    const rx90_real_t t3 = RX90_SIN(q[1]);
     const rx90_real_t t4 = t3 * ddq[0];
     const rx90_real_t t5 = t2 + t4;
     const rx90_real_t t6 = RX90_C(0.03333333333333333) * t3;
@@ -86,8 +94,6 @@ int rx90_regressor(
     out[58] = RX90_C(0.327) * t0;
     out[59] = RX90_C(-0.327) * t3;
     const rx90_real_t t18 = dq[1] + dq[2];
-    const rx90_real_t t19 = RX90_SIN(q[2]);
-    const rx90_real_t t20 = RX90_COS(q[2]);
     const rx90_real_t t21 = t3 * t19 - t0 * t20;
     const rx90_real_t t22 = dq[0] * t21;
     const rx90_real_t t23 = t18 * t22;
@@ -147,8 +153,6 @@ int rx90_regressor(
     const rx90_real_t t58 = RX90_C(0.03333333333333333) * t57;
     out[66] = t45 * t50 + t56 * t51 + t58;
     out[118] = t58;
-    const rx90_real_t t59 = RX90_COS(q[3]);
-    const rx90_real_t t60 = RX90_SIN(q[3]);
     const rx90_real_t t61 = t59 * t18 + t60 * t28;
     const rx90_real_t t62 = t22 - dq[3];
     const rx90_real_t t63 = t61 * t62;
@@ -224,8 +228,6 @@ int rx90_regressor(
     out[73] = t106 + (t101 * t107 - t76 * t51);
     out[125] = t106 + RX90_C(0.015) * t107;
     out[177] = RX90_C(0.1) * t103;
-    const rx90_real_t t108 = RX90_SIN(q[4]);
-    const rx90_real_t t109 = RX90_COS(q[4]);
     const rx90_real_t t110 = t108 * t67 + t109 * t62;
     const rx90_real_t t111 = dq[4] + t61;
     const rx90_real_t t112 = t110 * t111;
@@ -310,8 +312,6 @@ int rx90_regressor(
     out[132] = t156 + RX90_C(0.015) * t157;
     out[184] = t96 * t125;
     out[236] = RX90_C(0.1) * t152;
-    const rx90_real_t t159 = RX90_SIN(q[5]);
-    const rx90_real_t t160 = RX90_COS(q[5]);
     const rx90_real_t t161 = t160 * t111 - t159 * t116;
     const rx90_real_t t162 = t110 - dq[5];
     const rx90_real_t t163 = t161 * t162;

@@ -34,7 +34,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int rx90_regressor_standard(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq, 6, RX90_C(1.0e16))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq, RX90_C(1.0e16))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {
@@ -56,11 +56,19 @@ int rx90_regressor_standard(
         return status;
     }
 
+    rx90_real_t t1, t3;
+    RX90_SINCOS(q[1], &t1, &t3);
+    rx90_real_t t23, t22;
+    RX90_SINCOS(q[2], &t23, &t22);
+    rx90_real_t t68, t69;
+    RX90_SINCOS(q[3], &t68, &t69);
+    rx90_real_t t130, t131;
+    RX90_SINCOS(q[4], &t130, &t131);
+    rx90_real_t t192, t193;
+    RX90_SINCOS(q[5], &t192, &t193);
     const rx90_real_t t0 = RX90_C(0.03333333333333333) * ddq[0];
     out[5] = t0;
-    const rx90_real_t t1 = RX90_SIN(q[1]);
     const rx90_real_t t2 = t1 * ddq[0];
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = t3 * dq[0];
     const rx90_real_t t5 = dq[1] * t4;
     const rx90_real_t t6 = t2 + t5;
@@ -93,8 +101,6 @@ int rx90_regressor_standard(
     out[93] = RX90_C(0.03333333333333333) * ddq[1];
     out[94] = RX90_C(0.327) * t3;
     out[95] = RX90_C(-0.327) * t1;
-    const rx90_real_t t22 = RX90_COS(q[2]);
-    const rx90_real_t t23 = RX90_SIN(q[2]);
     const rx90_real_t t24 = t1 * t22 + t3 * t23;
     const rx90_real_t t25 = ddq[0] * t24;
     const rx90_real_t t26 = t1 * t23 - t3 * t22;
@@ -167,8 +173,6 @@ int rx90_regressor_standard(
     out[106] = RX90_C(-0.015) * t2;
     out[29] = t56 * t55;
     out[107] = t65 * t57 - t61 * t58;
-    const rx90_real_t t68 = RX90_SIN(q[3]);
-    const rx90_real_t t69 = RX90_COS(q[3]);
     const rx90_real_t t70 = t68 * t51 + t69 * t39;
     const rx90_real_t t71 = t68 * t32 + t69 * t28;
     const rx90_real_t t72 = t27 - dq[3];
@@ -267,8 +271,6 @@ int rx90_regressor_standard(
     out[117] = t128;
     const rx90_real_t t129 = RX90_C(0.015) * t127;
     out[195] = t129;
-    const rx90_real_t t130 = RX90_SIN(q[4]);
-    const rx90_real_t t131 = RX90_COS(q[4]);
     const rx90_real_t t132 = t130 * t101 - t131 * t87;
     const rx90_real_t t133 = t130 * t76 + t131 * t72;
     const rx90_real_t t134 = dq[4] + t71;
@@ -376,8 +378,6 @@ int rx90_regressor_standard(
     out[49] = t126;
     out[127] = t128;
     out[205] = t129;
-    const rx90_real_t t192 = RX90_SIN(q[5]);
-    const rx90_real_t t193 = RX90_COS(q[5]);
     const rx90_real_t t194 = t192 * t167 + t193 * t153;
     const rx90_real_t t195 = t192 * t138 - t193 * t134;
     const rx90_real_t t196 = t133 - dq[5];

@@ -34,7 +34,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCE665A66UL
+#if RX90_GENERATION != 0x4F4B5E98UL
 #error "rx90.h and rx90_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -47,10 +47,10 @@ int rx90_slotine_li_regressor(
 {
     int status = RX90_STATUS_OK;
 
-    if (!rx90_within(q, 6, RX90_C(1.0e8))
-        || !rx90_within(dq, 6, RX90_C(1.0e10))
-        || !rx90_within(dq_r, 6, RX90_C(1.0e10))
-        || !rx90_within(ddq_r, 6, RX90_C(1.0e16))) {
+    if (!rx90_within_joints(q, RX90_C(1.0e8))
+        || !rx90_within_joints(dq, RX90_C(1.0e10))
+        || !rx90_within_joints(dq_r, RX90_C(1.0e10))
+        || !rx90_within_joints(ddq_r, RX90_C(1.0e16))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {
@@ -58,11 +58,19 @@ int rx90_slotine_li_regressor(
         return status;
     }
 
+    rx90_real_t t0, t3;
+    RX90_SINCOS(q[1], &t0, &t3);
+    rx90_real_t t22, t21;
+    RX90_SINCOS(q[2], &t22, &t21);
+    rx90_real_t t68, t66;
+    RX90_SINCOS(q[3], &t68, &t66);
+    rx90_real_t t120, t119;
+    RX90_SINCOS(q[4], &t120, &t119);
+    rx90_real_t t175, t174;
+    RX90_SINCOS(q[5], &t175, &t174);
     out[0] = RX90_C(0.03333333333333333) * ddq_r[0];
-    const rx90_real_t t0 = RX90_SIN(q[1]);
     const rx90_real_t t1 = RX90_C(0.03333333333333333) * t0;
     const rx90_real_t t2 = t0 * ddq_r[0];
-    const rx90_real_t t3 = RX90_COS(q[1]);
     const rx90_real_t t4 = t3 * dq[0];
     const rx90_real_t t5 = t3 * dq_r[0];
     const rx90_real_t t6 = RX90_C(0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -92,8 +100,6 @@ int rx90_slotine_li_regressor(
     out[57] = RX90_C(0.03333333333333333) * ddq_r[1];
     out[58] = RX90_C(0.327) * t3;
     out[59] = RX90_C(-0.327) * t0;
-    const rx90_real_t t21 = RX90_COS(q[2]);
-    const rx90_real_t t22 = RX90_SIN(q[2]);
     const rx90_real_t t23 = t21 * t1 + t22 * t8;
     const rx90_real_t t24 = t0 * t21 + t3 * t22;
     const rx90_real_t t25 = t24 * ddq_r[0];
@@ -158,9 +164,7 @@ int rx90_slotine_li_regressor(
     const rx90_real_t t65 = RX90_C(0.03333333333333333) * t64;
     out[66] = t57 * t52 + t58 * t63 + t65;
     out[118] = t65;
-    const rx90_real_t t66 = RX90_COS(q[3]);
     const rx90_real_t t67 = t66 * t23;
-    const rx90_real_t t68 = RX90_SIN(q[3]);
     const rx90_real_t t69 = t68 * t52 - t66 * t40;
     const rx90_real_t t70 = t66 * t29 + t68 * t34;
     const rx90_real_t t71 = dq_r[3] + t30;
@@ -239,8 +243,6 @@ int rx90_slotine_li_regressor(
     out[73] = t117 + (t58 * t87 + t112 * t118);
     out[125] = t117 + RX90_C(0.015) * t118;
     out[177] = RX90_C(0.1) * t114;
-    const rx90_real_t t119 = RX90_COS(q[4]);
-    const rx90_real_t t120 = RX90_SIN(q[4]);
     const rx90_real_t t121 = t119 * t67 - t120 * t33;
     const rx90_real_t t122 = t120 * t100 - t119 * t87;
     const rx90_real_t t123 = t120 * t77 + t119 * t72;
@@ -329,8 +331,6 @@ int rx90_slotine_li_regressor(
     out[132] = t171 + RX90_C(0.015) * t172;
     out[184] = t140 * t107;
     out[236] = RX90_C(0.1) * t167;
-    const rx90_real_t t174 = RX90_COS(q[5]);
-    const rx90_real_t t175 = RX90_SIN(q[5]);
     const rx90_real_t t176 = t174 * t121 - t175 * t76;
     const rx90_real_t t177 = t175 * t156 + t174 * t143;
     const rx90_real_t t178 = t175 * t130 - t174 * t125;

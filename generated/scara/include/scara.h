@@ -52,7 +52,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0xA0949E80UL
+#define SCARA_GENERATION 0x06CE1AB2UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef SCARA_REAL
@@ -82,7 +82,7 @@ typedef SCARA_REAL scara_real_t;
 
 #define SCARA_STATUS_OK     0
 #define SCARA_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define SCARA_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define SCARA_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define SCARA_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

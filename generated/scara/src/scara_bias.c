@@ -43,7 +43,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -57,8 +57,8 @@ int scara_bias(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -67,17 +67,17 @@ int scara_bias(
         return status;
     }
 
+    scara_real_t t1, t4;
+    SCARA_SINCOS(q[1], &t1, &t4);
+    scara_real_t t6, t10;
+    SCARA_SINCOS(q[3], &t6, &t10);
     const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = SCARA_SIN(q[1]);
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t3 = t1 * t2;
-    const scara_real_t t4 = SCARA_COS(q[1]);
     const scara_real_t t5 = t4 * t2;
-    const scara_real_t t6 = SCARA_SIN(q[3]);
     const scara_real_t t7 = dq[0] + dq[1];
     const scara_real_t t8 = t7 * t7;
     const scara_real_t t9 = SCARA_C(-0.275) * t8 - t5;
-    const scara_real_t t10 = SCARA_COS(q[3]);
     const scara_real_t t11 = parameters[MX4] * (t6 * t9 + t10 * t3) + parameters[MY4] * (t10 * t9 - t6 * t3);
     const scara_real_t t12 = dq[3] - t7;
     const scara_real_t t13 = t12 * t12;

@@ -76,7 +76,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -91,8 +91,8 @@ int scara_bias_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -101,17 +101,17 @@ int scara_bias_standard(
         return status;
     }
 
+    scara_real_t t1, t4;
+    SCARA_SINCOS(q[1], &t1, &t4);
+    scara_real_t t9, t10;
+    SCARA_SINCOS(q[3], &t9, &t10);
     const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = SCARA_SIN(q[1]);
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t3 = t1 * t2;
-    const scara_real_t t4 = SCARA_COS(q[1]);
     const scara_real_t t5 = t4 * t2;
     const scara_real_t t6 = dq[0] + dq[1];
     const scara_real_t t7 = t6 * t6;
     const scara_real_t t8 = SCARA_C(-0.275) * t7 - t5;
-    const scara_real_t t9 = SCARA_SIN(q[3]);
-    const scara_real_t t10 = SCARA_COS(q[3]);
     const scara_real_t t11 = t9 * t8 + t10 * t3;
     const scara_real_t t12 = t10 * t8 - t9 * t3;
     const scara_real_t t13 = parameters[MX4] * t11 + parameters[MY4] * t12;

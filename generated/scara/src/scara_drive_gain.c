@@ -19,7 +19,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int scara_drive_gain(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {

@@ -44,7 +44,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -59,8 +59,8 @@ int scara_energy(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -70,21 +70,21 @@ int scara_energy(
         return status;
     }
 
+    scara_real_t t5, t2;
+    SCARA_SINCOS(q[1], &t5, &t2);
+    scara_real_t t12, t13;
+    SCARA_SINCOS(q[3], &t12, &t13);
     const scara_real_t t0 = dq[0] + dq[1];
     const scara_real_t t1 = SCARA_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + SCARA_C(0.5) * (t0 * (parameters[ZZ2R] * t0));
-    const scara_real_t t2 = SCARA_COS(q[1]);
     const scara_real_t t3 = SCARA_C(0.325) * dq[0];
     const scara_real_t t4 = t2 * t3;
-    const scara_real_t t5 = SCARA_SIN(q[1]);
     const scara_real_t t6 = t5 * t3;
     const scara_real_t t7 = t1 + (parameters[MX2R] * (t0 * t4) - parameters[MY2R] * (t0 * t6));
     const scara_real_t t8 = dq[2] * dq[2];
     const scara_real_t t9 = t4 + SCARA_C(0.275) * t0;
     const scara_real_t t10 = SCARA_C(0.5) * (parameters[M3R] * (t8 + (t6 * t6 + t9 * t9)));
     const scara_real_t t11 = dq[3] - t0;
-    const scara_real_t t12 = SCARA_SIN(q[3]);
-    const scara_real_t t13 = SCARA_COS(q[3]);
     const scara_real_t t14 = parameters[MY4] * (t11 * (t12 * t9 - t13 * t6))
         - parameters[MX4] * (t11 * (t12 * t6 + t13 * t9));
     const scara_real_t t15 = t7 + t10 + SCARA_C(0.5) * (t11 * (parameters[ZZ4] * t11)) + t14;

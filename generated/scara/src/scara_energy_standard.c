@@ -77,7 +77,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -93,8 +93,8 @@ int scara_energy_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -104,12 +104,14 @@ int scara_energy_standard(
         return status;
     }
 
+    scara_real_t t1, t5;
+    SCARA_SINCOS(q[1], &t1, &t5);
+    scara_real_t t16, t15;
+    SCARA_SINCOS(q[3], &t16, &t15);
     const scara_real_t t0 = dq[0] + dq[1];
-    const scara_real_t t1 = SCARA_SIN(q[1]);
     const scara_real_t t2 = SCARA_C(0.325) * dq[0];
     const scara_real_t t3 = t1 * t2;
     const scara_real_t t4 = t3 * t3;
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = t5 * t2;
     const scara_real_t t7 = t0 * (t0 * parameters[ZZ2]) + parameters[M2] * (t4 + t6 * t6);
     const scara_real_t t8 = t0 * t3;
@@ -120,8 +122,6 @@ int scara_energy_standard(
     const scara_real_t t12 = t0 * (t0 * parameters[ZZ3]) + parameters[M3] * (t10 + (t4 + t11 * t11));
     const scara_real_t t13 = t9 + SCARA_C(0.5) * t12 + (parameters[MX3] * (t0 * t11) + parameters[MY3] * t8);
     const scara_real_t t14 = dq[3] - t0;
-    const scara_real_t t15 = SCARA_COS(q[3]);
-    const scara_real_t t16 = SCARA_SIN(q[3]);
     const scara_real_t t17 = t15 * t3 - t16 * t11;
     const scara_real_t t18 = t16 * t3 + t15 * t11;
     const scara_real_t t19 = t14 * (t14 * parameters[ZZ4]) + parameters[M4] * (t10 + (t17 * t17 + t18 * t18));

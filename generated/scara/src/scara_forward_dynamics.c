@@ -45,7 +45,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -60,9 +60,9 @@ int scara_forward_dynamics(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(input, 4, SCARA_C(1.0e18))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(input, SCARA_C(1.0e18))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -71,19 +71,19 @@ int scara_forward_dynamics(
         return status;
     }
 
+    scara_real_t t2, t5;
+    SCARA_SINCOS(q[1], &t2, &t5);
+    scara_real_t t7, t11;
+    SCARA_SINCOS(q[3], &t7, &t11);
     const scara_real_t t0 = scara_sign(dq[0]);
     const scara_real_t t1 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0]))
         + SCARA_C(-80.0) * (parameters[FC1] * t0);
-    const scara_real_t t2 = SCARA_SIN(q[1]);
     const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = t2 * t3;
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = t5 * t3;
-    const scara_real_t t7 = SCARA_SIN(q[3]);
     const scara_real_t t8 = dq[0] + dq[1];
     const scara_real_t t9 = t8 * t8;
     const scara_real_t t10 = t6 + SCARA_C(0.275) * t9;
-    const scara_real_t t11 = SCARA_COS(q[3]);
     const scara_real_t t12 = parameters[MX4] * (t7 * t10 - t11 * t4) + parameters[MY4] * (t11 * t10
         + t7 * t4);
     const scara_real_t t13 = t8 - dq[3];

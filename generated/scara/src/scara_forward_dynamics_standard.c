@@ -78,7 +78,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -94,9 +94,9 @@ int scara_forward_dynamics_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(input, 4, SCARA_C(1.0e18))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(input, SCARA_C(1.0e18))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -105,19 +105,19 @@ int scara_forward_dynamics_standard(
         return status;
     }
 
+    scara_real_t t2, t5;
+    SCARA_SINCOS(q[1], &t2, &t5);
+    scara_real_t t10, t11;
+    SCARA_SINCOS(q[3], &t10, &t11);
     const scara_real_t t0 = scara_sign(dq[0]);
     const scara_real_t t1 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1])
         + SCARA_C(-80.0) * (t0 * parameters[FC1]);
-    const scara_real_t t2 = SCARA_SIN(q[1]);
     const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = t2 * t3;
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = t5 * t3;
     const scara_real_t t7 = dq[0] + dq[1];
     const scara_real_t t8 = t7 * t7;
     const scara_real_t t9 = t6 + SCARA_C(0.275) * t8;
-    const scara_real_t t10 = SCARA_SIN(q[3]);
-    const scara_real_t t11 = SCARA_COS(q[3]);
     const scara_real_t t12 = t10 * t9 - t11 * t4;
     const scara_real_t t13 = t11 * t9 + t10 * t4;
     const scara_real_t t14 = parameters[MX4] * t12 + parameters[MY4] * t13;

@@ -23,7 +23,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -33,7 +33,7 @@ int scara_forward_kinematics(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {
@@ -41,17 +41,19 @@ int scara_forward_kinematics(
         return status;
     }
 
-    const scara_real_t t0 = SCARA_COS(q[0]);
+    scara_real_t t1, t0;
+    SCARA_SINCOS(q[0], &t1, &t0);
+    scara_real_t t3, t2;
+    SCARA_SINCOS(q[1], &t3, &t2);
+    scara_real_t t12, t11;
+    SCARA_SINCOS(q[3], &t12, &t11);
     out[0] = t0;
-    const scara_real_t t1 = SCARA_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = SCARA_C(1.0);
     out[11] = SCARA_C(0.4);
     out[15] = SCARA_C(1.0);
-    const scara_real_t t2 = SCARA_COS(q[1]);
-    const scara_real_t t3 = SCARA_SIN(q[1]);
     const scara_real_t t4 = t0 * t2 - t1 * t3;
     out[16] = t4;
     const scara_real_t t5 = t0 * t3 + t1 * t2;
@@ -77,8 +79,6 @@ int scara_forward_kinematics(
     const scara_real_t t10 = SCARA_C(0.4) - q[2];
     out[43] = t10;
     out[47] = SCARA_C(1.0);
-    const scara_real_t t11 = SCARA_COS(q[3]);
-    const scara_real_t t12 = SCARA_SIN(q[3]);
     const scara_real_t t13 = t11 * t4 + t12 * t5;
     out[48] = t13;
     const scara_real_t t14 = t11 * t5 - t12 * t4;

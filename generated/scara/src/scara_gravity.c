@@ -42,7 +42,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -55,7 +55,7 @@ int scara_gravity(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }

@@ -75,7 +75,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,7 +89,7 @@ int scara_gravity_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }

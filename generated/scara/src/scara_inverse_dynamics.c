@@ -45,7 +45,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -60,9 +60,9 @@ int scara_inverse_dynamics(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq, 4, SCARA_C(1.0e16))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq, SCARA_C(1.0e16))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -71,20 +71,20 @@ int scara_inverse_dynamics(
         return status;
     }
 
+    scara_real_t t2, t4;
+    SCARA_SINCOS(q[1], &t2, &t4);
+    scara_real_t t9, t13;
+    SCARA_SINCOS(q[3], &t9, &t13);
     const scara_real_t t0 = scara_sign(dq[0]);
     const scara_real_t t1 = ddq[0] + ddq[1];
-    const scara_real_t t2 = SCARA_SIN(q[1]);
     const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t4 = SCARA_COS(q[1]);
     const scara_real_t t5 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t6 = t2 * t3 + t4 * t5;
     const scara_real_t t7 = t2 * t5 - t4 * t3;
     const scara_real_t t8 = t1 - ddq[3];
-    const scara_real_t t9 = SCARA_SIN(q[3]);
     const scara_real_t t10 = dq[0] + dq[1];
     const scara_real_t t11 = t10 * t10;
     const scara_real_t t12 = SCARA_C(-0.275) * t11 + t7;
-    const scara_real_t t13 = SCARA_COS(q[3]);
     const scara_real_t t14 = t6 + SCARA_C(0.275) * t1;
     const scara_real_t t15 = parameters[MX4] * (t9 * t12 + t13 * t14) + parameters[MY4] * (t13 * t12
         - t9 * t14);

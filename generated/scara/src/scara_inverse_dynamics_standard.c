@@ -78,7 +78,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -94,9 +94,9 @@ int scara_inverse_dynamics_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq, 4, SCARA_C(1.0e16))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq, SCARA_C(1.0e16))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -105,13 +105,15 @@ int scara_inverse_dynamics_standard(
         return status;
     }
 
+    scara_real_t t3, t5;
+    SCARA_SINCOS(q[1], &t3, &t5);
+    scara_real_t t14, t15;
+    SCARA_SINCOS(q[3], &t14, &t15);
     const scara_real_t t0 = scara_sign(dq[0]);
     const scara_real_t t1 = SCARA_C(80.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + SCARA_C(80.0) * ddq[0] * parameters[IA1];
     const scara_real_t t2 = ddq[0] + ddq[1];
-    const scara_real_t t3 = SCARA_SIN(q[1]);
     const scara_real_t t4 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t7 = t3 * t4 + t5 * t6;
     const scara_real_t t8 = t3 * t6 - t5 * t4;
@@ -120,8 +122,6 @@ int scara_inverse_dynamics_standard(
     const scara_real_t t11 = t10 * t10;
     const scara_real_t t12 = t8 + SCARA_C(-0.275) * t11;
     const scara_real_t t13 = t2 - ddq[3];
-    const scara_real_t t14 = SCARA_SIN(q[3]);
-    const scara_real_t t15 = SCARA_COS(q[3]);
     const scara_real_t t16 = t14 * t12 + t15 * t9;
     const scara_real_t t17 = t15 * t12 - t14 * t9;
     const scara_real_t t18 = t13 * parameters[ZZ4] + (t16 * parameters[MX4] + t17 * parameters[MY4]);

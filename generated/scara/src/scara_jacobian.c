@@ -19,7 +19,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int scara_jacobian(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {
@@ -37,10 +37,10 @@ int scara_jacobian(
         return status;
     }
 
-    const scara_real_t t0 = SCARA_SIN(q[0]);
-    const scara_real_t t1 = SCARA_COS(q[0]);
-    const scara_real_t t2 = SCARA_SIN(q[1]);
-    const scara_real_t t3 = SCARA_COS(q[1]);
+    scara_real_t t0, t1;
+    SCARA_SINCOS(q[0], &t0, &t1);
+    scara_real_t t2, t3;
+    SCARA_SINCOS(q[1], &t2, &t3);
     const scara_real_t t4 = SCARA_C(-0.275) * (t1 * t2 + t0 * t3);
     out[0] = SCARA_C(-0.325) * t0 + t4;
     out[1] = t4;

@@ -23,7 +23,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int scara_joint_from_motor(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q_m, 4, SCARA_C(1.0e18))
-        || !scara_within(dq_m, 4, SCARA_C(1.0e18))
-        || !scara_within(ddq_m, 4, SCARA_C(1.0e18))) {
+    if (!scara_within_joints(q_m, SCARA_C(1.0e18))
+        || !scara_within_joints(dq_m, SCARA_C(1.0e18))
+        || !scara_within_joints(ddq_m, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {

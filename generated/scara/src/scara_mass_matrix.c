@@ -42,7 +42,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -55,7 +55,7 @@ int scara_mass_matrix(
         IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -64,14 +64,14 @@ int scara_mass_matrix(
         return status;
     }
 
-    const scara_real_t t0 = SCARA_SIN(q[3]);
-    const scara_real_t t1 = SCARA_COS(q[3]);
+    scara_real_t t5, t7;
+    SCARA_SINCOS(q[1], &t5, &t7);
+    scara_real_t t0, t1;
+    SCARA_SINCOS(q[3], &t0, &t1);
     const scara_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
     const scara_real_t t3 = SCARA_C(0.275) * parameters[M3R];
     const scara_real_t t4 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t2 + t3));
-    const scara_real_t t5 = SCARA_SIN(q[1]);
     const scara_real_t t6 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const scara_real_t t7 = SCARA_COS(q[1]);
     const scara_real_t t8 = t5 * (t6 - parameters[MY2R]) + t7 * (parameters[MX2R] + (t2 + t3));
     const scara_real_t t9 = parameters[ZZ1R] + (t4 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(2.0) * t8));

@@ -75,7 +75,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,7 +89,7 @@ int scara_mass_matrix_standard(
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
         status |= SCARA_STATUS_INPUT;
     }
@@ -98,17 +98,17 @@ int scara_mass_matrix_standard(
         return status;
     }
 
+    scara_real_t t7, t9;
+    SCARA_SINCOS(q[1], &t7, &t9);
+    scara_real_t t2, t3;
+    SCARA_SINCOS(q[3], &t2, &t3);
     const scara_real_t t0 = parameters[M3] + parameters[M4];
     const scara_real_t t1 = SCARA_C(0.275) * t0;
-    const scara_real_t t2 = SCARA_SIN(q[3]);
-    const scara_real_t t3 = SCARA_COS(q[3]);
     const scara_real_t t4 = t2 * parameters[MY4] - t3 * parameters[MX4];
     const scara_real_t t5 = parameters[MX3] - t4;
     const scara_real_t t6 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t1
         + SCARA_C(2.0) * t5));
-    const scara_real_t t7 = SCARA_SIN(q[1]);
     const scara_real_t t8 = t3 * parameters[MY4] + t2 * parameters[MX4];
-    const scara_real_t t9 = SCARA_COS(q[1]);
     const scara_real_t t10 = t7 * (parameters[MY3] + t8 - parameters[MY2]) + t9 * (parameters[MX2] + (t5
         + t1));
     const scara_real_t t11 = t6 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)

@@ -23,7 +23,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int scara_motor_from_joint(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq, 4, SCARA_C(1.0e16))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq, SCARA_C(1.0e16))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define SCARA_MATH_double(name) name
 #define SCARA_MATH(name) SCARA_JOIN(SCARA_MATH_, SCARA_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DSCARA_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, SCARA_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DSCARA_SINCOS=my_sincos, or with both of
+ * -DSCARA_SIN=my_sin -DSCARA_COS=my_cos; -include my_header.h declares it.
+ */
+#define SCARA_SINGLE_float 1
+#define SCARA_SINGLE_double 0
+#if !defined(SCARA_SINCOS) && !defined(SCARA_SIN) && !defined(SCARA_COS)
+#define SCARA_OWN_SINCOS SCARA_JOIN(SCARA_SINGLE_, SCARA_REAL)
+#else
+#define SCARA_OWN_SINCOS 0
+#endif
 #ifndef SCARA_SIN
 #define SCARA_SIN SCARA_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline scara_real_t scara_select(scara_real_t condition, scara_real_t a, 
     return condition > SCARA_C(0.0) ? a : b;
 }
 
+#if SCARA_OWN_SINCOS
+typedef struct {
+    scara_real_t sine;
+    scara_real_t cosine;
+} scara_pair_t;
+
+/* Two numbers by value travel in registers. */
+scara_pair_t scara_sincos(scara_real_t x);
+#endif
+
+#ifndef SCARA_SINCOS
+#define SCARA_SINCOS scara_sine_cosine
+static inline void scara_sine_cosine(scara_real_t x, scara_real_t *sine, scara_real_t *cosine)
+{
+#if SCARA_OWN_SINCOS
+    const scara_pair_t pair = scara_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = SCARA_SIN(x);
+    *cosine = SCARA_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int scara_within(const scara_real_t x[], int n, scara_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int scara_within(const scara_real_t x[], int n, scara_real_t limit
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int scara_within_joints(const scara_real_t x[], scara_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
 
 static inline void scara_zero(scara_real_t x[], int n)

@@ -26,7 +26,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int scara_regressor_packed(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq, 4, SCARA_C(1.0e16))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq, SCARA_C(1.0e16))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {
@@ -56,15 +56,17 @@ int scara_regressor_packed(
         return status;
     }
 
+    scara_real_t t3, t5;
+    SCARA_SINCOS(q[1], &t3, &t5);
+    scara_real_t t15, t16;
+    SCARA_SINCOS(q[3], &t15, &t16);
     out[0] = SCARA_C(0.0625) * ddq[0];
     const scara_real_t t0 = ddq[0] + ddq[1];
     out[1] = SCARA_C(0.0625) * t0;
     out[10] = SCARA_C(0.1) * t0;
     const scara_real_t t1 = dq[0] + dq[1];
     const scara_real_t t2 = t1 * t1;
-    const scara_real_t t3 = SCARA_SIN(q[1]);
     const scara_real_t t4 = SCARA_C(-0.0203125) * t3;
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = SCARA_C(0.0203125) * t5;
     const scara_real_t t7 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t8 = SCARA_C(0.325) * ddq[0];
@@ -84,8 +86,6 @@ int scara_regressor_packed(
     out[5] = SCARA_C(0.0625) * t14;
     out[14] = SCARA_C(0.1) * t14;
     out[24] = SCARA_C(-0.5) * t14;
-    const scara_real_t t15 = SCARA_SIN(q[3]);
-    const scara_real_t t16 = SCARA_COS(q[3]);
     const scara_real_t t17 = t15 * t11 + t16 * t12;
     const scara_real_t t18 = SCARA_C(0.0625) * t17;
     const scara_real_t t19 = dq[3] - t1;

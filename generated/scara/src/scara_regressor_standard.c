@@ -30,7 +30,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -42,9 +42,9 @@ int scara_regressor_standard(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq, 4, SCARA_C(1.0e16))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq, SCARA_C(1.0e16))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {
@@ -52,15 +52,17 @@ int scara_regressor_standard(
         return status;
     }
 
+    scara_real_t t3, t5;
+    SCARA_SINCOS(q[1], &t3, &t5);
+    scara_real_t t24, t25;
+    SCARA_SINCOS(q[3], &t24, &t25);
     out[5] = SCARA_C(0.0625) * ddq[0];
     const scara_real_t t0 = ddq[0] + ddq[1];
     const scara_real_t t1 = SCARA_C(0.0625) * t0;
     out[15] = t1;
     const scara_real_t t2 = SCARA_C(0.1) * t0;
     out[67] = t2;
-    const scara_real_t t3 = SCARA_SIN(q[1]);
     const scara_real_t t4 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t5 = SCARA_COS(q[1]);
     const scara_real_t t6 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t7 = t3 * t4 + t5 * t6;
     const scara_real_t t8 = dq[0] + dq[1];
@@ -96,8 +98,6 @@ int scara_regressor_standard(
     out[35] = SCARA_C(0.0625) * t23;
     out[87] = SCARA_C(0.1) * t23;
     out[191] = SCARA_C(-0.5) * t23;
-    const scara_real_t t24 = SCARA_SIN(q[3]);
-    const scara_real_t t25 = SCARA_COS(q[3]);
     const scara_real_t t26 = t24 * t19 + t25 * t17;
     const scara_real_t t27 = dq[3] - t8;
     const scara_real_t t28 = t27 * t27;

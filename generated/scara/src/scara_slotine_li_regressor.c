@@ -29,7 +29,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xA0949E80UL
+#if SCARA_GENERATION != 0x06CE1AB2UL
 #error "scara.h and scara_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -42,10 +42,10 @@ int scara_slotine_li_regressor(
 {
     int status = SCARA_STATUS_OK;
 
-    if (!scara_within(q, 4, SCARA_C(1.0e8))
-        || !scara_within(dq, 4, SCARA_C(1.0e10))
-        || !scara_within(dq_r, 4, SCARA_C(1.0e10))
-        || !scara_within(ddq_r, 4, SCARA_C(1.0e16))) {
+    if (!scara_within_joints(q, SCARA_C(1.0e8))
+        || !scara_within_joints(dq, SCARA_C(1.0e10))
+        || !scara_within_joints(dq_r, SCARA_C(1.0e10))
+        || !scara_within_joints(ddq_r, SCARA_C(1.0e16))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {
@@ -53,16 +53,18 @@ int scara_slotine_li_regressor(
         return status;
     }
 
+    scara_real_t t1, t6;
+    SCARA_SINCOS(q[1], &t1, &t6);
+    scara_real_t t16, t17;
+    SCARA_SINCOS(q[3], &t16, &t17);
     out[0] = SCARA_C(0.0625) * ddq_r[0];
     const scara_real_t t0 = ddq_r[0] + ddq_r[1];
     out[1] = SCARA_C(0.0625) * t0;
     out[20] = SCARA_C(0.1) * t0;
-    const scara_real_t t1 = SCARA_SIN(q[1]);
     const scara_real_t t2 = SCARA_C(-0.0203125) * t1;
     const scara_real_t t3 = dq[0] + dq[1];
     const scara_real_t t4 = dq_r[0] + dq_r[1];
     const scara_real_t t5 = t3 * t4;
-    const scara_real_t t6 = SCARA_COS(q[1]);
     const scara_real_t t7 = SCARA_C(0.0203125) * t6;
     const scara_real_t t8 = SCARA_C(0.325) * (dq[0] * dq_r[0]);
     const scara_real_t t9 = SCARA_C(0.325) * ddq_r[0];
@@ -82,8 +84,6 @@ int scara_slotine_li_regressor(
     out[5] = SCARA_C(0.0625) * t15;
     out[24] = SCARA_C(0.1) * t15;
     out[62] = SCARA_C(-0.5) * t15;
-    const scara_real_t t16 = SCARA_SIN(q[3]);
-    const scara_real_t t17 = SCARA_COS(q[3]);
     const scara_real_t t18 = t16 * t12 + t17 * t14;
     const scara_real_t t19 = SCARA_C(0.0625) * t18;
     const scara_real_t t20 = (dq[3] - t3) * (dq_r[3] - t4);

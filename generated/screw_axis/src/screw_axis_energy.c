@@ -25,7 +25,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x24075DA4UL
+#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
 #error "screw_axis.h and screw_axis_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -39,8 +39,8 @@ int screw_axis_energy(
     enum { M1R = 0, FV1, FC1 };
     int status = SCREW_AXIS_STATUS_OK;
 
-    if (!screw_axis_within(q, 1, SCREW_AXIS_C(1.0e8))
-        || !screw_axis_within(dq, 1, SCREW_AXIS_C(1.0e10))
+    if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
+        || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
         || !screw_axis_within(parameters, 3, SCREW_AXIS_C(1.0e18))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }

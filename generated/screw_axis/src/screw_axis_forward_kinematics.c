@@ -16,7 +16,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x24075DA4UL
+#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
 #error "screw_axis.h and screw_axis_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,7 @@ int screw_axis_forward_kinematics(
 {
     int status = SCREW_AXIS_STATUS_OK;
 
-    if (!screw_axis_within(q, 1, SCREW_AXIS_C(1.0e8))) {
+    if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }
     if (status != SCREW_AXIS_STATUS_OK) {

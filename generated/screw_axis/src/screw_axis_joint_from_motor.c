@@ -20,7 +20,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x24075DA4UL
+#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
 #error "screw_axis.h and screw_axis_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -34,9 +34,9 @@ int screw_axis_joint_from_motor(
 {
     int status = SCREW_AXIS_STATUS_OK;
 
-    if (!screw_axis_within(q_m, 1, SCREW_AXIS_C(1.0e18))
-        || !screw_axis_within(dq_m, 1, SCREW_AXIS_C(1.0e18))
-        || !screw_axis_within(ddq_m, 1, SCREW_AXIS_C(1.0e18))) {
+    if (!screw_axis_within_joints(q_m, SCREW_AXIS_C(1.0e18))
+        || !screw_axis_within_joints(dq_m, SCREW_AXIS_C(1.0e18))
+        || !screw_axis_within_joints(ddq_m, SCREW_AXIS_C(1.0e18))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }
     if (status != SCREW_AXIS_STATUS_OK) {

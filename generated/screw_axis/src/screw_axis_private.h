@@ -12,7 +12,7 @@
 
 #include "screw_axis.h"
 
-#if SCREW_AXIS_GENERATION != 0x24075DA4UL
+#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
 #error "screw_axis.h and screw_axis_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define SCREW_AXIS_MATH_double(name) name
 #define SCREW_AXIS_MATH(name) SCREW_AXIS_JOIN(SCREW_AXIS_MATH_, SCREW_AXIS_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DSCREW_AXIS_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, SCREW_AXIS_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DSCREW_AXIS_SINCOS=my_sincos, or with both of
+ * -DSCREW_AXIS_SIN=my_sin -DSCREW_AXIS_COS=my_cos; -include my_header.h declares it.
+ */
+#define SCREW_AXIS_SINGLE_float 1
+#define SCREW_AXIS_SINGLE_double 0
+#if !defined(SCREW_AXIS_SINCOS) && !defined(SCREW_AXIS_SIN) && !defined(SCREW_AXIS_COS)
+#define SCREW_AXIS_OWN_SINCOS SCREW_AXIS_JOIN(SCREW_AXIS_SINGLE_, SCREW_AXIS_REAL)
+#else
+#define SCREW_AXIS_OWN_SINCOS 0
+#endif
 #ifndef SCREW_AXIS_SIN
 #define SCREW_AXIS_SIN SCREW_AXIS_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline screw_axis_real_t screw_axis_select(screw_axis_real_t condition, s
     return condition > SCREW_AXIS_C(0.0) ? a : b;
 }
 
+#if SCREW_AXIS_OWN_SINCOS
+typedef struct {
+    screw_axis_real_t sine;
+    screw_axis_real_t cosine;
+} screw_axis_pair_t;
+
+/* Two numbers by value travel in registers. */
+screw_axis_pair_t screw_axis_sincos(screw_axis_real_t x);
+#endif
+
+#ifndef SCREW_AXIS_SINCOS
+#define SCREW_AXIS_SINCOS screw_axis_sine_cosine
+static inline void screw_axis_sine_cosine(screw_axis_real_t x, screw_axis_real_t *sine, screw_axis_real_t *cosine)
+{
+#if SCREW_AXIS_OWN_SINCOS
+    const screw_axis_pair_t pair = screw_axis_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = SCREW_AXIS_SIN(x);
+    *cosine = SCREW_AXIS_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int screw_axis_within(const screw_axis_real_t x[], int n, screw_axis_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int screw_axis_within(const screw_axis_real_t x[], int n, screw_ax
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int screw_axis_within_joints(const screw_axis_real_t x[], screw_axis_real_t limit)
+{
+    return x[0] * x[0] <= limit;
 }
 
 static inline void screw_axis_zero(screw_axis_real_t x[], int n)

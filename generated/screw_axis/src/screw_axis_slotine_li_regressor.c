@@ -24,7 +24,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x24075DA4UL
+#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
 #error "screw_axis.h and screw_axis_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -37,10 +37,10 @@ int screw_axis_slotine_li_regressor(
 {
     int status = SCREW_AXIS_STATUS_OK;
 
-    if (!screw_axis_within(q, 1, SCREW_AXIS_C(1.0e8))
-        || !screw_axis_within(dq, 1, SCREW_AXIS_C(1.0e10))
-        || !screw_axis_within(dq_r, 1, SCREW_AXIS_C(1.0e10))
-        || !screw_axis_within(ddq_r, 1, SCREW_AXIS_C(1.0e16))) {
+    if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
+        || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
+        || !screw_axis_within_joints(dq_r, SCREW_AXIS_C(1.0e10))
+        || !screw_axis_within_joints(ddq_r, SCREW_AXIS_C(1.0e16))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }
     if (status != SCREW_AXIS_STATUS_OK) {

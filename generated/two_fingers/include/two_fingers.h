@@ -70,7 +70,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0xAB9B90EDUL
+#define TWO_FINGERS_GENERATION 0xC24492A1UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef TWO_FINGERS_REAL
@@ -100,7 +100,7 @@ typedef TWO_FINGERS_REAL two_fingers_real_t;
 
 #define TWO_FINGERS_STATUS_OK     0
 #define TWO_FINGERS_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define TWO_FINGERS_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define TWO_FINGERS_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define TWO_FINGERS_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

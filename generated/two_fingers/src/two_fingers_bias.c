@@ -67,7 +67,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -82,8 +82,8 @@ int two_fingers_bias(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -92,9 +92,15 @@ int two_fingers_bias(
         return status;
     }
 
+    two_fingers_real_t t47, t48;
+    TWO_FINGERS_SINCOS(q[1], &t47, &t48);
+    two_fingers_real_t t59, t58;
+    TWO_FINGERS_SINCOS(q[2], &t59, &t58);
+    two_fingers_real_t t1, t2;
+    TWO_FINGERS_SINCOS(q[3], &t1, &t2);
+    two_fingers_real_t t15, t14;
+    TWO_FINGERS_SINCOS(q[4], &t15, &t14);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = dq[3] * t3;
     const two_fingers_real_t t5 = t1 * dq[0];
@@ -107,8 +113,6 @@ int two_fingers_bias(
     const two_fingers_real_t t11 = t3 * t3;
     const two_fingers_real_t t12 = dq[0] * dq[0];
     const two_fingers_real_t t13 = TWO_FINGERS_C(8.673617379884035e-19) * t12;
-    const two_fingers_real_t t14 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t15 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t16 = t14 * t3 - t15 * t5;
     const two_fingers_real_t t17 = dq[3] + dq[4];
     const two_fingers_real_t t18 = t16 * t17;
@@ -149,8 +153,6 @@ int two_fingers_bias(
         + TWO_FINGERS_C(0.984807753012208) * t45)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t44
         + TWO_FINGERS_C(0.17364817766693028) * t45);
-    const two_fingers_real_t t47 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t48 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t49 = t48 * dq[0];
     const two_fingers_real_t t50 = dq[1] * t49;
     const two_fingers_real_t t51 = t47 * dq[0];
@@ -161,8 +163,6 @@ int two_fingers_bias(
         + parameters[XZ2R] * t54;
     const two_fingers_real_t t56 = dq[1] * dq[1];
     const two_fingers_real_t t57 = t49 * t49;
-    const two_fingers_real_t t58 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t59 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t60 = t58 * t49 - t59 * t51;
     const two_fingers_real_t t61 = dq[1] + dq[2];
     const two_fingers_real_t t62 = t60 * t61;

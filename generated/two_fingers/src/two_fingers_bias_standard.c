@@ -90,7 +90,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -106,8 +106,8 @@ int two_fingers_bias_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -116,9 +116,15 @@ int two_fingers_bias_standard(
         return status;
     }
 
+    two_fingers_real_t t58, t59;
+    TWO_FINGERS_SINCOS(q[1], &t58, &t59);
+    two_fingers_real_t t74, t72;
+    TWO_FINGERS_SINCOS(q[2], &t74, &t72);
+    two_fingers_real_t t1, t2;
+    TWO_FINGERS_SINCOS(q[3], &t1, &t2);
+    two_fingers_real_t t19, t17;
+    TWO_FINGERS_SINCOS(q[4], &t19, &t17);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = dq[3] * t3;
     const two_fingers_real_t t5 = t1 * dq[0];
@@ -135,9 +141,7 @@ int two_fingers_bias_standard(
     const two_fingers_real_t t15 = TWO_FINGERS_C(9.81) * t2 + t1 * t14;
     const two_fingers_real_t t16 = t8 + t9 * parameters[XZ4] + (t10 - t11) * parameters[YZ4]
         - (parameters[MY4] * t13 + parameters[MZ4] * t15);
-    const two_fingers_real_t t17 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t18 = dq[3] + dq[4];
-    const two_fingers_real_t t19 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t20 = t19 * t5 - t17 * t3;
     const two_fingers_real_t t21 = t18 * t20;
     const two_fingers_real_t t22 = t17 * t5 + t19 * t3;
@@ -192,8 +196,6 @@ int two_fingers_bias_standard(
         + TWO_FINGERS_C(0.984807753012208) * t56)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t54
         + TWO_FINGERS_C(0.17364817766693028) * t56);
-    const two_fingers_real_t t58 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t59 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t60 = t59 * dq[0];
     const two_fingers_real_t t61 = dq[1] * t60;
     const two_fingers_real_t t62 = t58 * dq[0];
@@ -208,9 +210,7 @@ int two_fingers_bias_standard(
     const two_fingers_real_t t70 = t58 * t69 + TWO_FINGERS_C(9.81) * t59;
     const two_fingers_real_t t71 = t65 + t66 * parameters[XZ2] + (t67 - t68) * parameters[YZ2]
         - t70 * parameters[MZ2];
-    const two_fingers_real_t t72 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t73 = dq[1] + dq[2];
-    const two_fingers_real_t t74 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t75 = t74 * t62 - t72 * t60;
     const two_fingers_real_t t76 = t73 * t75;
     const two_fingers_real_t t77 = t72 * t62 + t74 * t60;

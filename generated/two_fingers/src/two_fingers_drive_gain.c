@@ -20,7 +20,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -30,7 +30,7 @@ int two_fingers_drive_gain(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {

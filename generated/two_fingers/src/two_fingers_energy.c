@@ -68,7 +68,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -84,8 +84,8 @@ int two_fingers_energy(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -95,9 +95,15 @@ int two_fingers_energy(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_SIN(q[1]);
+    two_fingers_real_t t0, t2;
+    TWO_FINGERS_SINCOS(q[1], &t0, &t2);
+    two_fingers_real_t t22, t21;
+    TWO_FINGERS_SINCOS(q[2], &t22, &t21);
+    two_fingers_real_t t9, t11;
+    TWO_FINGERS_SINCOS(q[3], &t9, &t11);
+    two_fingers_real_t t34, t33;
+    TWO_FINGERS_SINCOS(q[4], &t34, &t33);
     const two_fingers_real_t t1 = t0 * dq[0];
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
@@ -107,9 +113,7 @@ int two_fingers_energy(
     const two_fingers_real_t t7 = TWO_FINGERS_C(-0.03) * dq[0];
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + TWO_FINGERS_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const two_fingers_real_t t9 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t10 = t9 * dq[0];
-    const two_fingers_real_t t11 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t12 = t11 * dq[0];
     const two_fingers_real_t t13 = t10 * (parameters[XX4R] * t10 + parameters[XY4] * t12
         + parameters[XZ4R] * dq[3]);
@@ -122,8 +126,6 @@ int two_fingers_energy(
     const two_fingers_real_t t19 = t11 * t16;
     const two_fingers_real_t t20 = parameters[MX4R] * (dq[3] * t17 - t12 * t18) + parameters[MY4] * (t10 * t18
         + dq[3] * t19);
-    const two_fingers_real_t t21 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t22 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t23 = t21 * t1 + t22 * t3;
     const two_fingers_real_t t24 = t21 * t3 - t22 * t1;
     const two_fingers_real_t t25 = dq[1] + dq[2];
@@ -137,8 +139,6 @@ int two_fingers_energy(
     const two_fingers_real_t t31 = parameters[MX3] * (t25 * (t21 * t29) - t24 * t30)
         + parameters[MY3] * (t23 * t30 - t25 * (t22 * t29));
     const two_fingers_real_t t32 = t8 + TWO_FINGERS_C(0.5) * t15 + t20 + TWO_FINGERS_C(0.5) * t28 + t31;
-    const two_fingers_real_t t33 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t34 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t35 = t33 * t10 + t34 * t12;
     const two_fingers_real_t t36 = t33 * t12 - t34 * t10;
     const two_fingers_real_t t37 = dq[3] + dq[4];

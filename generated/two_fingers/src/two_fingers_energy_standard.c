@@ -91,7 +91,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -108,8 +108,8 @@ int two_fingers_energy_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -119,9 +119,15 @@ int two_fingers_energy_standard(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_SIN(q[1]);
+    two_fingers_real_t t0, t2;
+    TWO_FINGERS_SINCOS(q[1], &t0, &t2);
+    two_fingers_real_t t25, t24;
+    TWO_FINGERS_SINCOS(q[2], &t25, &t24);
+    two_fingers_real_t t10, t12;
+    TWO_FINGERS_SINCOS(q[3], &t10, &t12);
+    two_fingers_real_t t40, t39;
+    TWO_FINGERS_SINCOS(q[4], &t40, &t39);
     const two_fingers_real_t t1 = t0 * dq[0];
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2]
         + dq[1] * parameters[XZ2]);
@@ -133,9 +139,7 @@ int two_fingers_energy_standard(
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const two_fingers_real_t t10 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t11 = t10 * dq[0];
-    const two_fingers_real_t t12 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t13 = t12 * dq[0];
     const two_fingers_real_t t14 = t11 * (t11 * parameters[XX4] + t13 * parameters[XY4]
         + dq[3] * parameters[XZ4]);
@@ -152,8 +156,6 @@ int two_fingers_energy_standard(
         + parameters[MY4] * (dq[3] * t18 - t11 * t20);
     const two_fingers_real_t t23 = t9 + TWO_FINGERS_C(0.5) * (t14 + t15 + t16 + t21) + (t22
         - parameters[MZ4] * (t13 * t18 + t11 * t19));
-    const two_fingers_real_t t24 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t25 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t26 = t24 * t1 + t25 * t3;
     const two_fingers_real_t t27 = t24 * t3 - t25 * t1;
     const two_fingers_real_t t28 = dq[1] + dq[2];
@@ -172,8 +174,6 @@ int two_fingers_energy_standard(
         + t28 * t33);
     const two_fingers_real_t t38 = t23 + TWO_FINGERS_C(0.5) * (t29 + t30 + t31 + t36) + (t37
         + parameters[MZ3] * (t27 * t33 - t26 * t34));
-    const two_fingers_real_t t39 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t40 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t41 = t39 * t11 + t40 * t13;
     const two_fingers_real_t t42 = t39 * t13 - t40 * t11;
     const two_fingers_real_t t43 = dq[3] + dq[4];

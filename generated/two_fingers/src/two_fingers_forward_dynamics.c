@@ -69,7 +69,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -85,9 +85,9 @@ int two_fingers_forward_dynamics(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(input, 5, TWO_FINGERS_C(1.0e18))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(input, TWO_FINGERS_C(1.0e18))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -96,11 +96,17 @@ int two_fingers_forward_dynamics(
         return status;
     }
 
+    two_fingers_real_t t48, t49;
+    TWO_FINGERS_SINCOS(q[1], &t48, &t49);
+    two_fingers_real_t t60, t59;
+    TWO_FINGERS_SINCOS(q[2], &t60, &t59);
+    two_fingers_real_t t2, t3;
+    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
+    two_fingers_real_t t16, t15;
+    TWO_FINGERS_SINCOS(q[4], &t16, &t15);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
     const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0]))
         + TWO_FINGERS_C(-60.0) * (parameters[FC1] * t0);
-    const two_fingers_real_t t2 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = dq[3] * t4;
     const two_fingers_real_t t6 = t2 * dq[0];
@@ -113,8 +119,6 @@ int two_fingers_forward_dynamics(
     const two_fingers_real_t t12 = t4 * t4;
     const two_fingers_real_t t13 = dq[0] * dq[0];
     const two_fingers_real_t t14 = TWO_FINGERS_C(-8.673617379884035e-19) * t13;
-    const two_fingers_real_t t15 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t16 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t17 = t16 * t6 - t15 * t4;
     const two_fingers_real_t t18 = dq[3] + dq[4];
     const two_fingers_real_t t19 = t17 * t18;
@@ -155,8 +159,6 @@ int two_fingers_forward_dynamics(
         + TWO_FINGERS_C(0.984807753012208) * t46)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t45
         + TWO_FINGERS_C(0.17364817766693028) * t46);
-    const two_fingers_real_t t48 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t49 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t50 = t49 * dq[0];
     const two_fingers_real_t t51 = dq[1] * t50;
     const two_fingers_real_t t52 = t48 * dq[0];
@@ -167,8 +169,6 @@ int two_fingers_forward_dynamics(
         - parameters[XZ2R] * t55;
     const two_fingers_real_t t57 = dq[1] * dq[1];
     const two_fingers_real_t t58 = t50 * t50;
-    const two_fingers_real_t t59 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t60 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t61 = t60 * t52 - t59 * t50;
     const two_fingers_real_t t62 = dq[1] + dq[2];
     const two_fingers_real_t t63 = t61 * t62;

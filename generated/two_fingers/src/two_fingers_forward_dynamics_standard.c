@@ -92,7 +92,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -109,9 +109,9 @@ int two_fingers_forward_dynamics_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(input, 5, TWO_FINGERS_C(1.0e18))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(input, TWO_FINGERS_C(1.0e18))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -120,11 +120,17 @@ int two_fingers_forward_dynamics_standard(
         return status;
     }
 
+    two_fingers_real_t t59, t60;
+    TWO_FINGERS_SINCOS(q[1], &t59, &t60);
+    two_fingers_real_t t75, t73;
+    TWO_FINGERS_SINCOS(q[2], &t75, &t73);
+    two_fingers_real_t t2, t3;
+    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
+    two_fingers_real_t t20, t18;
+    TWO_FINGERS_SINCOS(q[4], &t20, &t18);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
     const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1])
         + TWO_FINGERS_C(-60.0) * (t0 * parameters[FC1]);
-    const two_fingers_real_t t2 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = dq[3] * t4;
     const two_fingers_real_t t6 = t2 * dq[0];
@@ -141,9 +147,7 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t16 = TWO_FINGERS_C(9.81) * t3 + t2 * t15;
     const two_fingers_real_t t17 = t9 - t10 * parameters[XZ4] + (t12 - t11) * parameters[YZ4]
         + (parameters[MZ4] * t16 - parameters[MY4] * t14);
-    const two_fingers_real_t t18 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t19 = dq[3] + dq[4];
-    const two_fingers_real_t t20 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t21 = t18 * t4 - t20 * t6;
     const two_fingers_real_t t22 = t19 * t21;
     const two_fingers_real_t t23 = t18 * t6 + t20 * t4;
@@ -198,8 +202,6 @@ int two_fingers_forward_dynamics_standard(
         + TWO_FINGERS_C(0.984807753012208) * t57)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t55
         + TWO_FINGERS_C(0.17364817766693028) * t57);
-    const two_fingers_real_t t59 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t60 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t61 = t60 * dq[0];
     const two_fingers_real_t t62 = dq[1] * t61;
     const two_fingers_real_t t63 = t59 * dq[0];
@@ -214,9 +216,7 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t71 = t59 * t70 + TWO_FINGERS_C(9.81) * t60;
     const two_fingers_real_t t72 = t66 - t67 * parameters[XZ2] + (t69 - t68) * parameters[YZ2]
         + t71 * parameters[MZ2];
-    const two_fingers_real_t t73 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t74 = dq[1] + dq[2];
-    const two_fingers_real_t t75 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t76 = t73 * t61 - t75 * t63;
     const two_fingers_real_t t77 = t74 * t76;
     const two_fingers_real_t t78 = t73 * t63 + t75 * t61;

@@ -25,7 +25,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -35,7 +35,7 @@ int two_fingers_forward_kinematics(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {
@@ -43,19 +43,25 @@ int two_fingers_forward_kinematics(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_COS(q[0]);
+    two_fingers_real_t t1, t0;
+    TWO_FINGERS_SINCOS(q[0], &t1, &t0);
+    two_fingers_real_t t4, t2;
+    TWO_FINGERS_SINCOS(q[1], &t4, &t2);
+    two_fingers_real_t t11, t10;
+    TWO_FINGERS_SINCOS(q[2], &t11, &t10);
+    two_fingers_real_t t15, t12;
+    TWO_FINGERS_SINCOS(q[3], &t15, &t12);
+    two_fingers_real_t t23, t22;
+    TWO_FINGERS_SINCOS(q[4], &t23, &t22);
     out[0] = t0;
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = TWO_FINGERS_C(1.0);
     out[11] = TWO_FINGERS_C(0.2);
     out[15] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t3 = t0 * t2;
     out[16] = t3;
-    const two_fingers_real_t t4 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -72,8 +78,6 @@ int two_fingers_forward_kinematics(
     out[25] = t2;
     out[27] = TWO_FINGERS_C(0.28);
     out[31] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t10 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t11 = TWO_FINGERS_SIN(q[2]);
     out[32] = t10 * t3 - t11 * t5;
     out[33] = -(t11 * t3 + t10 * t5);
     out[34] = t1;
@@ -86,12 +90,10 @@ int two_fingers_forward_kinematics(
     out[41] = t2 * t10 - t4 * t11;
     out[43] = TWO_FINGERS_C(0.05) * t4 + TWO_FINGERS_C(0.28);
     out[47] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t12 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t13 = TWO_FINGERS_C(0.984807753012208) * t0
         + TWO_FINGERS_C(0.17364817766693028) * t1;
     const two_fingers_real_t t14 = t12 * t13;
     out[48] = -t14;
-    const two_fingers_real_t t15 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t16 = t15 * t13;
     out[49] = t16;
     const two_fingers_real_t t17 = TWO_FINGERS_C(0.17364817766693028) * t0
@@ -112,8 +114,6 @@ int two_fingers_forward_kinematics(
     out[57] = t12;
     out[59] = TWO_FINGERS_C(0.27);
     out[63] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t22 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t23 = TWO_FINGERS_SIN(q[4]);
     out[64] = t23 * t16 - t22 * t14;
     out[65] = t23 * t14 + t22 * t16;
     out[66] = t17;

@@ -66,7 +66,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -80,7 +80,7 @@ int two_fingers_gravity(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -89,22 +89,22 @@ int two_fingers_gravity(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_COS(q[1]);
+    two_fingers_real_t t2, t0;
+    TWO_FINGERS_SINCOS(q[1], &t2, &t0);
+    two_fingers_real_t t4, t5;
+    TWO_FINGERS_SINCOS(q[2], &t4, &t5);
+    two_fingers_real_t t9, t7;
+    TWO_FINGERS_SINCOS(q[3], &t9, &t7);
+    two_fingers_real_t t11, t12;
+    TWO_FINGERS_SINCOS(q[4], &t11, &t12);
     const two_fingers_real_t t1 = TWO_FINGERS_C(9.81) * t0;
-    const two_fingers_real_t t2 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t3 = TWO_FINGERS_C(-9.81) * t2;
-    const two_fingers_real_t t4 = TWO_FINGERS_SIN(q[2]);
-    const two_fingers_real_t t5 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t6 = parameters[MX3] * (t4 * t3 + t5 * t1) + parameters[MY3] * (t5 * t3
         - t4 * t1);
     out[1] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX2R] * t1 + parameters[MY2] * t3 + t6);
     out[2] = TWO_FINGERS_C(1.6666666666666667) * t6;
-    const two_fingers_real_t t7 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t8 = TWO_FINGERS_C(9.81) * t7;
-    const two_fingers_real_t t9 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t10 = TWO_FINGERS_C(-9.81) * t9;
-    const two_fingers_real_t t11 = TWO_FINGERS_SIN(q[4]);
-    const two_fingers_real_t t12 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t13 = parameters[MX5] * (t11 * t10 + t12 * t8) + parameters[MY5] * (t12 * t10
         - t11 * t8);
     out[3] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX4R] * t8 + parameters[MY4] * t10 + t13);

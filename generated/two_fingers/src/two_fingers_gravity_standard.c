@@ -89,7 +89,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,7 +104,7 @@ int two_fingers_gravity_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -113,11 +113,15 @@ int two_fingers_gravity_standard(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t1 = TWO_FINGERS_COS(q[3]);
+    two_fingers_real_t t17, t18;
+    TWO_FINGERS_SINCOS(q[1], &t17, &t18);
+    two_fingers_real_t t21, t20;
+    TWO_FINGERS_SINCOS(q[2], &t21, &t20);
+    two_fingers_real_t t0, t1;
+    TWO_FINGERS_SINCOS(q[3], &t0, &t1);
+    two_fingers_real_t t4, t3;
+    TWO_FINGERS_SINCOS(q[4], &t4, &t3);
     const two_fingers_real_t t2 = TWO_FINGERS_C(9.81) * t1;
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t4 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t5 = TWO_FINGERS_C(-9.81) * t0;
     const two_fingers_real_t t6 = t4 * t5 + t3 * t2;
     const two_fingers_real_t t7 = t6 * parameters[MZ5];
@@ -131,11 +135,7 @@ int two_fingers_gravity_standard(
     const two_fingers_real_t t15 = t3 * t13 - t4 * t12;
     const two_fingers_real_t t16 = t10 - t11 + TWO_FINGERS_C(8.673617379884035e-19) * (t14
         + t0 * (t2 * parameters[M4] + t15));
-    const two_fingers_real_t t17 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t18 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t19 = TWO_FINGERS_C(9.81) * t18;
-    const two_fingers_real_t t20 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t21 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t22 = TWO_FINGERS_C(-9.81) * t17;
     const two_fingers_real_t t23 = t21 * t22 + t20 * t19;
     const two_fingers_real_t t24 = t23 * parameters[MZ3];

@@ -68,7 +68,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -84,9 +84,9 @@ int two_fingers_inverse_dynamics(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq, 5, TWO_FINGERS_C(1.0e16))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e16))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -95,10 +95,16 @@ int two_fingers_inverse_dynamics(
         return status;
     }
 
+    two_fingers_real_t t63, t65;
+    TWO_FINGERS_SINCOS(q[1], &t63, &t65);
+    two_fingers_real_t t83, t79;
+    TWO_FINGERS_SINCOS(q[2], &t83, &t79);
+    two_fingers_real_t t1, t3;
+    TWO_FINGERS_SINCOS(q[3], &t1, &t3);
+    two_fingers_real_t t24, t20;
+    TWO_FINGERS_SINCOS(q[4], &t24, &t20);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t2 = dq[3] * dq[3];
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = t4 * t4;
     const two_fingers_real_t t6 = dq[3] * t4;
@@ -119,11 +125,9 @@ int two_fingers_inverse_dynamics(
         + TWO_FINGERS_C(0.03446827135542729) * ddq[0];
     const two_fingers_real_t t19 = TWO_FINGERS_C(0.17364817766693028) * t17
         + TWO_FINGERS_C(-0.984807753012208) * t18;
-    const two_fingers_real_t t20 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t21 = t19 + TWO_FINGERS_C(-0.045) * t12;
     const two_fingers_real_t t22 = dq[3] + dq[4];
     const two_fingers_real_t t23 = t22 * t22;
-    const two_fingers_real_t t24 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t25 = t3 * t20 - t1 * t24;
     const two_fingers_real_t t26 = dq[0] * t25;
     const two_fingers_real_t t27 = t26 * t26;
@@ -171,9 +175,7 @@ int two_fingers_inverse_dynamics(
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t59
         + TWO_FINGERS_C(0.17364817766693028) * t60);
     const two_fingers_real_t t62 = parameters[ZZ1R] * ddq[0] + (t1 * t46 + t3 * t52 + t61);
-    const two_fingers_real_t t63 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t64 = dq[1] * dq[1];
-    const two_fingers_real_t t65 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t66 = t65 * dq[0];
     const two_fingers_real_t t67 = t66 * t66;
     const two_fingers_real_t t68 = dq[1] * t66;
@@ -188,11 +190,9 @@ int two_fingers_inverse_dynamics(
     const two_fingers_real_t t77 = parameters[ZZ2R] * t68 + parameters[XX2R] * t70 + parameters[XY2] * t74
         + parameters[XZ2R] * t76;
     const two_fingers_real_t t78 = TWO_FINGERS_C(-0.03) * ddq[0];
-    const two_fingers_real_t t79 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t80 = t78 + TWO_FINGERS_C(-0.05) * t74;
     const two_fingers_real_t t81 = dq[1] + dq[2];
     const two_fingers_real_t t82 = t81 * t81;
-    const two_fingers_real_t t83 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t84 = t65 * t79 - t63 * t83;
     const two_fingers_real_t t85 = dq[0] * t84;
     const two_fingers_real_t t86 = t85 * t85;

@@ -91,7 +91,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -108,9 +108,9 @@ int two_fingers_inverse_dynamics_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq, 5, TWO_FINGERS_C(1.0e16))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e16))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -119,11 +119,17 @@ int two_fingers_inverse_dynamics_standard(
         return status;
     }
 
+    two_fingers_real_t t78, t79;
+    TWO_FINGERS_SINCOS(q[1], &t78, &t79);
+    two_fingers_real_t t100, t98;
+    TWO_FINGERS_SINCOS(q[2], &t100, &t98);
+    two_fingers_real_t t2, t3;
+    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
+    two_fingers_real_t t27, t25;
+    TWO_FINGERS_SINCOS(q[4], &t27, &t25);
     const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
     const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + TWO_FINGERS_C(60.0) * ddq[0] * parameters[IA1];
-    const two_fingers_real_t t2 = TWO_FINGERS_SIN(q[3]);
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = t4 * t4;
     const two_fingers_real_t t6 = dq[3] * dq[3];
@@ -151,9 +157,7 @@ int two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t t23 = t2 * t22 + TWO_FINGERS_C(9.81) * t3;
     const two_fingers_real_t t24 = (t5 - t6) * parameters[YZ4] + (t15 + t17 * parameters[XZ4])
         - (t21 * parameters[MY4] + t23 * parameters[MZ4]);
-    const two_fingers_real_t t25 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t26 = TWO_FINGERS_C(-0.045) * t14 - t21;
-    const two_fingers_real_t t27 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t28 = t3 * t22 + TWO_FINGERS_C(-9.81) * t2;
     const two_fingers_real_t t29 = t5 + t6;
     const two_fingers_real_t t30 = t28 + TWO_FINGERS_C(0.045) * t29;
@@ -221,8 +225,6 @@ int two_fingers_inverse_dynamics_standard(
         + TWO_FINGERS_C(0.984807753012208) * t76)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t74
         + TWO_FINGERS_C(0.17364817766693028) * t76);
-    const two_fingers_real_t t78 = TWO_FINGERS_SIN(q[1]);
-    const two_fingers_real_t t79 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t80 = t79 * dq[0];
     const two_fingers_real_t t81 = t80 * t80;
     const two_fingers_real_t t82 = dq[1] * dq[1];
@@ -243,9 +245,7 @@ int two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t t96 = TWO_FINGERS_C(0.03) * ddq[0];
     const two_fingers_real_t t97 = (t81 - t82) * parameters[YZ2] + (t91 + t93 * parameters[XZ2])
         - (t95 * parameters[MZ2] + t96 * parameters[MY2]);
-    const two_fingers_real_t t98 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t99 = t96 - TWO_FINGERS_C(-0.05) * t90;
-    const two_fingers_real_t t100 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t101 = t79 * t94 + TWO_FINGERS_C(-9.81) * t78;
     const two_fingers_real_t t102 = t101 + TWO_FINGERS_C(0.05) * (t81 + t82);
     const two_fingers_real_t t103 = t95 + TWO_FINGERS_C(0.05) * t93;

@@ -20,7 +20,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -30,7 +30,7 @@ int two_fingers_jacobian(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {
@@ -38,16 +38,16 @@ int two_fingers_jacobian(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_SIN(q[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_COS(q[0]);
-    const two_fingers_real_t t2 = TWO_FINGERS_COS(q[3]);
+    two_fingers_real_t t0, t1;
+    TWO_FINGERS_SINCOS(q[0], &t0, &t1);
+    two_fingers_real_t t6, t2;
+    TWO_FINGERS_SINCOS(q[3], &t6, &t2);
     const two_fingers_real_t t3 = TWO_FINGERS_C(0.17364817766693028) * t1
         + TWO_FINGERS_C(-0.984807753012208) * t0;
     const two_fingers_real_t t4 = TWO_FINGERS_C(0.045) * (t2 * t3);
     out[0] = TWO_FINGERS_C(0.03446827135542729) * t0 + TWO_FINGERS_C(-0.00607768621834256) * t1 - t4;
     const two_fingers_real_t t5 = TWO_FINGERS_C(0.984807753012208) * t1
         + TWO_FINGERS_C(0.17364817766693028) * t0;
-    const two_fingers_real_t t6 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t7 = TWO_FINGERS_C(0.045) * t6;
     out[3] = t5 * t7;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.045) * (t2 * t5);

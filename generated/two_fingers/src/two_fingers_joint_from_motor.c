@@ -24,7 +24,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -38,9 +38,9 @@ int two_fingers_joint_from_motor(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q_m, 5, TWO_FINGERS_C(1.0e18))
-        || !two_fingers_within(dq_m, 5, TWO_FINGERS_C(1.0e18))
-        || !two_fingers_within(ddq_m, 5, TWO_FINGERS_C(1.0e18))) {
+    if (!two_fingers_within_joints(q_m, TWO_FINGERS_C(1.0e18))
+        || !two_fingers_within_joints(dq_m, TWO_FINGERS_C(1.0e18))
+        || !two_fingers_within_joints(ddq_m, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {

@@ -66,7 +66,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -80,7 +80,7 @@ int two_fingers_mass_matrix(
         FV4, FC4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -89,32 +89,32 @@ int two_fingers_mass_matrix(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[4]);
+    two_fingers_real_t t24, t20;
+    TWO_FINGERS_SINCOS(q[1], &t24, &t20);
+    two_fingers_real_t t16, t15;
+    TWO_FINGERS_SINCOS(q[2], &t16, &t15);
+    two_fingers_real_t t9, t5;
+    TWO_FINGERS_SINCOS(q[3], &t9, &t5);
+    two_fingers_real_t t1, t0;
+    TWO_FINGERS_SINCOS(q[4], &t1, &t0);
     const two_fingers_real_t t2 = t0 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t1);
     const two_fingers_real_t t3 = t0 * t2;
     const two_fingers_real_t t4 = parameters[XX4R] + t3;
-    const two_fingers_real_t t5 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t6 = t0 * parameters[MX5] - t1 * parameters[MY5];
     const two_fingers_real_t t7 = TWO_FINGERS_C(0.09) * t6;
     const two_fingers_real_t t8 = t0 * parameters[MY5] + t1 * parameters[MX5];
-    const two_fingers_real_t t9 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t10 = (parameters[XY4] + (parameters[XY5] + t1 * t2
         + TWO_FINGERS_C(-0.045) * t8)) * (TWO_FINGERS_C(2.0) * t9);
     const two_fingers_real_t t11 = t5 * (t5 * (parameters[XX5R] - t3 + t7 - t4) + t10);
     const two_fingers_real_t t12 = parameters[MY4] + t8;
     const two_fingers_real_t t13 = parameters[MX4R] + t6;
     const two_fingers_real_t t14 = t4 + t11 + TWO_FINGERS_C(0.06999999999999999) * (t5 * t13 - t9 * t12);
-    const two_fingers_real_t t15 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t16 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t17 = t15 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t16);
     const two_fingers_real_t t18 = t15 * t17;
     const two_fingers_real_t t19 = parameters[XX2R] + t18;
-    const two_fingers_real_t t20 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t21 = t15 * parameters[MX3] - t16 * parameters[MY3];
     const two_fingers_real_t t22 = TWO_FINGERS_C(0.1) * t21;
     const two_fingers_real_t t23 = t15 * parameters[MY3] + t16 * parameters[MX3];
-    const two_fingers_real_t t24 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t25 = (parameters[XY2] + (parameters[XY3] + t16 * t17
         + TWO_FINGERS_C(-0.05) * t23)) * (TWO_FINGERS_C(2.0) * t24);
     const two_fingers_real_t t26 = t20 * (t20 * (parameters[XX3R] - t18 + t22 - t19) + t25);

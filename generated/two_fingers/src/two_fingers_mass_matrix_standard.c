@@ -89,7 +89,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,7 +104,7 @@ int two_fingers_mass_matrix_standard(
         FC4, IA4, FV5, FC5, IA5 };
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
@@ -113,18 +113,22 @@ int two_fingers_mass_matrix_standard(
         return status;
     }
 
-    const two_fingers_real_t t0 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[4]);
+    two_fingers_real_t t31, t26;
+    TWO_FINGERS_SINCOS(q[1], &t31, &t26);
+    two_fingers_real_t t22, t21;
+    TWO_FINGERS_SINCOS(q[2], &t22, &t21);
+    two_fingers_real_t t10, t5;
+    TWO_FINGERS_SINCOS(q[3], &t10, &t5);
+    two_fingers_real_t t1, t0;
+    TWO_FINGERS_SINCOS(q[4], &t1, &t0);
     const two_fingers_real_t t2 = t0 * (parameters[XX5] - parameters[YY5])
         - parameters[XY5] * (TWO_FINGERS_C(2.0) * t1);
     const two_fingers_real_t t3 = t0 * t2;
     const two_fingers_real_t t4 = parameters[XX4] + (parameters[YY5] + t3);
-    const two_fingers_real_t t5 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t6 = TWO_FINGERS_C(0.045) * parameters[M5];
     const two_fingers_real_t t7 = t0 * parameters[MX5] - t1 * parameters[MY5];
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.045) * (t6 + TWO_FINGERS_C(2.0) * t7);
     const two_fingers_real_t t9 = t0 * parameters[MY5] + t1 * parameters[MX5];
-    const two_fingers_real_t t10 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t11 = (parameters[XY4] + (parameters[XY5] + t1 * t2
         + TWO_FINGERS_C(-0.045) * t9)) * (TWO_FINGERS_C(2.0) * t10);
     const two_fingers_real_t t12 = t5 * (parameters[YY4] + (parameters[XX5] - t3 + t8) - t4) + t11;
@@ -141,18 +145,14 @@ int two_fingers_mass_matrix_standard(
         + TWO_FINGERS_C(0.984807753012208) * t17);
     const two_fingers_real_t t20 = t4 + t5 * t12 + (TWO_FINGERS_C(0.03446827135542729) * t18
         + TWO_FINGERS_C(0.00607768621834256) * t19);
-    const two_fingers_real_t t21 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t22 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t23 = t21 * (parameters[XX3] - parameters[YY3])
         - parameters[XY3] * (TWO_FINGERS_C(2.0) * t22);
     const two_fingers_real_t t24 = t21 * t23;
     const two_fingers_real_t t25 = parameters[XX2] + (parameters[YY3] + t24);
-    const two_fingers_real_t t26 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t27 = TWO_FINGERS_C(0.05) * parameters[M3];
     const two_fingers_real_t t28 = t21 * parameters[MX3] - t22 * parameters[MY3];
     const two_fingers_real_t t29 = TWO_FINGERS_C(0.05) * (t27 + TWO_FINGERS_C(2.0) * t28);
     const two_fingers_real_t t30 = t21 * parameters[MY3] + t22 * parameters[MX3];
-    const two_fingers_real_t t31 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t32 = (parameters[XY2] + (parameters[XY3] + t22 * t23
         + TWO_FINGERS_C(-0.05) * t30)) * (TWO_FINGERS_C(2.0) * t31);
     const two_fingers_real_t t33 = t26 * (parameters[YY2] + (parameters[XX3] - t24 + t29) - t25) + t32;

@@ -24,7 +24,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -38,9 +38,9 @@ int two_fingers_motor_from_joint(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq, 5, TWO_FINGERS_C(1.0e16))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e16))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "two_fingers.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define TWO_FINGERS_MATH_double(name) name
 #define TWO_FINGERS_MATH(name) TWO_FINGERS_JOIN(TWO_FINGERS_MATH_, TWO_FINGERS_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DTWO_FINGERS_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, TWO_FINGERS_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DTWO_FINGERS_SINCOS=my_sincos, or with both of
+ * -DTWO_FINGERS_SIN=my_sin -DTWO_FINGERS_COS=my_cos; -include my_header.h declares it.
+ */
+#define TWO_FINGERS_SINGLE_float 1
+#define TWO_FINGERS_SINGLE_double 0
+#if !defined(TWO_FINGERS_SINCOS) && !defined(TWO_FINGERS_SIN) && !defined(TWO_FINGERS_COS)
+#define TWO_FINGERS_OWN_SINCOS TWO_FINGERS_JOIN(TWO_FINGERS_SINGLE_, TWO_FINGERS_REAL)
+#else
+#define TWO_FINGERS_OWN_SINCOS 0
+#endif
 #ifndef TWO_FINGERS_SIN
 #define TWO_FINGERS_SIN TWO_FINGERS_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline two_fingers_real_t two_fingers_select(two_fingers_real_t condition
     return condition > TWO_FINGERS_C(0.0) ? a : b;
 }
 
+#if TWO_FINGERS_OWN_SINCOS
+typedef struct {
+    two_fingers_real_t sine;
+    two_fingers_real_t cosine;
+} two_fingers_pair_t;
+
+/* Two numbers by value travel in registers. */
+two_fingers_pair_t two_fingers_sincos(two_fingers_real_t x);
+#endif
+
+#ifndef TWO_FINGERS_SINCOS
+#define TWO_FINGERS_SINCOS two_fingers_sine_cosine
+static inline void two_fingers_sine_cosine(two_fingers_real_t x, two_fingers_real_t *sine, two_fingers_real_t *cosine)
+{
+#if TWO_FINGERS_OWN_SINCOS
+    const two_fingers_pair_t pair = two_fingers_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = TWO_FINGERS_SIN(x);
+    *cosine = TWO_FINGERS_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int two_fingers_within(const two_fingers_real_t x[], int n, two_fingers_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int two_fingers_within(const two_fingers_real_t x[], int n, two_fi
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int two_fingers_within_joints(const two_fingers_real_t x[], two_fingers_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] <= limit;
 }
 
 static inline void two_fingers_zero(two_fingers_real_t x[], int n)

@@ -29,7 +29,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -53,9 +53,9 @@ int two_fingers_regressor_packed(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq, 5, TWO_FINGERS_C(1.0e16))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e16))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {
@@ -63,11 +63,17 @@ int two_fingers_regressor_packed(
         return status;
     }
 
+    two_fingers_real_t t3, t0;
+    TWO_FINGERS_SINCOS(q[1], &t3, &t0);
+    two_fingers_real_t t25, t26;
+    TWO_FINGERS_SINCOS(q[2], &t25, &t26);
+    two_fingers_real_t t64, t61;
+    TWO_FINGERS_SINCOS(q[3], &t64, &t61);
+    two_fingers_real_t t87, t88;
+    TWO_FINGERS_SINCOS(q[4], &t87, &t88);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * ddq[0];
-    const two_fingers_real_t t0 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t1 = t0 * dq[0];
     const two_fingers_real_t t2 = dq[1] * t1;
-    const two_fingers_real_t t3 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t4 = t3 * ddq[0];
     const two_fingers_real_t t5 = t2 + t4;
     const two_fingers_real_t t6 = TWO_FINGERS_C(0.4166666666666667) * t3;
@@ -103,8 +109,6 @@ int two_fingers_regressor_packed(
     const two_fingers_real_t t23 = t0 * t21 + TWO_FINGERS_C(-9.81) * t3;
     out[37] = TWO_FINGERS_C(1.6666666666666667) * t23;
     const two_fingers_real_t t24 = dq[1] + dq[2];
-    const two_fingers_real_t t25 = TWO_FINGERS_SIN(q[2]);
-    const two_fingers_real_t t26 = TWO_FINGERS_COS(q[2]);
     const two_fingers_real_t t27 = t0 * t26 - t3 * t25;
     const two_fingers_real_t t28 = dq[0] * t27;
     const two_fingers_real_t t29 = t24 * t28;
@@ -160,10 +164,8 @@ int two_fingers_regressor_packed(
     const two_fingers_real_t t60 = TWO_FINGERS_C(1.6666666666666667) * (t26 * t57 - t25 * t58);
     out[44] = (t48 + t43) * t56 - t50 * t55 + t60;
     out[53] = t60;
-    const two_fingers_real_t t61 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t62 = t61 * dq[0];
     const two_fingers_real_t t63 = dq[3] * t62;
-    const two_fingers_real_t t64 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t65 = t64 * ddq[0];
     const two_fingers_real_t t66 = t63 + t65;
     const two_fingers_real_t t67 = TWO_FINGERS_C(0.4166666666666667) * t64;
@@ -204,8 +206,6 @@ int two_fingers_regressor_packed(
     const two_fingers_real_t t85 = TWO_FINGERS_C(-9.81) * t64 + t61 * t83;
     out[63] = TWO_FINGERS_C(1.6666666666666667) * t85;
     const two_fingers_real_t t86 = dq[3] + dq[4];
-    const two_fingers_real_t t87 = TWO_FINGERS_SIN(q[4]);
-    const two_fingers_real_t t88 = TWO_FINGERS_COS(q[4]);
     const two_fingers_real_t t89 = t61 * t88 - t64 * t87;
     const two_fingers_real_t t90 = dq[0] * t89;
     const two_fingers_real_t t91 = t86 * t90;

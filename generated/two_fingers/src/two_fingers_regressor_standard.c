@@ -32,7 +32,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -44,9 +44,9 @@ int two_fingers_regressor_standard(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq, 5, TWO_FINGERS_C(1.0e16))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e16))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {
@@ -54,11 +54,17 @@ int two_fingers_regressor_standard(
         return status;
     }
 
+    two_fingers_real_t t1, t3;
+    TWO_FINGERS_SINCOS(q[1], &t1, &t3);
+    two_fingers_real_t t29, t28;
+    TWO_FINGERS_SINCOS(q[2], &t29, &t28);
+    two_fingers_real_t t69, t71;
+    TWO_FINGERS_SINCOS(q[3], &t69, &t71);
+    two_fingers_real_t t99, t98;
+    TWO_FINGERS_SINCOS(q[4], &t99, &t98);
     const two_fingers_real_t t0 = TWO_FINGERS_C(0.4166666666666667) * ddq[0];
     out[5] = t0;
-    const two_fingers_real_t t1 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t2 = t1 * ddq[0];
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = dq[1] * t4;
     const two_fingers_real_t t6 = t2 + t5;
@@ -100,8 +106,6 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t27 = t3 * t25 + TWO_FINGERS_C(-9.81) * t1;
     out[82] = TWO_FINGERS_C(1.6666666666666667) * t27;
     out[19] = TWO_FINGERS_C(0.000375) * ddq[0];
-    const two_fingers_real_t t28 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t29 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t30 = t1 * t28 + t3 * t29;
     const two_fingers_real_t t31 = ddq[0] * t30;
     const two_fingers_real_t t32 = t3 * t28 - t1 * t29;
@@ -169,9 +173,7 @@ int two_fingers_regressor_standard(
     out[93] = TWO_FINGERS_C(-0.08333333333333334) * t2;
     out[29] = -(t60 * t59);
     out[94] = t67 * t61 + t65 * t62;
-    const two_fingers_real_t t69 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t70 = t69 * ddq[0];
-    const two_fingers_real_t t71 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t72 = t71 * dq[0];
     const two_fingers_real_t t73 = dq[3] * t72;
     const two_fingers_real_t t74 = t70 + t73;
@@ -220,8 +222,6 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t97 = TWO_FINGERS_C(-7.228014483236697e-19) * ddq[0];
     out[38] = t97;
     out[39] = TWO_FINGERS_C(-0.014583333333333334) * t93;
-    const two_fingers_real_t t98 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t99 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t100 = t69 * t98 + t71 * t99;
     const two_fingers_real_t t101 = ddq[0] * t100;
     const two_fingers_real_t t102 = t71 * t98 - t69 * t99;

@@ -32,7 +32,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xAB9B90EDUL
+#if TWO_FINGERS_GENERATION != 0xC24492A1UL
 #error "two_fingers.h and two_fingers_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -45,10 +45,10 @@ int two_fingers_slotine_li_regressor(
 {
     int status = TWO_FINGERS_STATUS_OK;
 
-    if (!two_fingers_within(q, 5, TWO_FINGERS_C(1.0e8))
-        || !two_fingers_within(dq, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(dq_r, 5, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(ddq_r, 5, TWO_FINGERS_C(1.0e16))) {
+    if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
+        || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(dq_r, TWO_FINGERS_C(1.0e10))
+        || !two_fingers_within_joints(ddq_r, TWO_FINGERS_C(1.0e16))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {
@@ -56,11 +56,17 @@ int two_fingers_slotine_li_regressor(
         return status;
     }
 
+    two_fingers_real_t t0, t3;
+    TWO_FINGERS_SINCOS(q[1], &t0, &t3);
+    two_fingers_real_t t28, t27;
+    TWO_FINGERS_SINCOS(q[2], &t28, &t27);
+    two_fingers_real_t t68, t71;
+    TWO_FINGERS_SINCOS(q[3], &t68, &t71);
+    two_fingers_real_t t97, t96;
+    TWO_FINGERS_SINCOS(q[4], &t97, &t96);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * ddq_r[0];
-    const two_fingers_real_t t0 = TWO_FINGERS_SIN(q[1]);
     const two_fingers_real_t t1 = TWO_FINGERS_C(0.4166666666666667) * t0;
     const two_fingers_real_t t2 = t0 * ddq_r[0];
-    const two_fingers_real_t t3 = TWO_FINGERS_COS(q[1]);
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = t3 * dq_r[0];
     const two_fingers_real_t t6 = TWO_FINGERS_C(0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -98,8 +104,6 @@ int two_fingers_slotine_li_regressor(
     out[7] = TWO_FINGERS_C(-0.0125) * t14 + t1 * t22;
     const two_fingers_real_t t26 = TWO_FINGERS_C(-9.81) * t0 + t3 * t24;
     out[48] = TWO_FINGERS_C(1.6666666666666667) * t26;
-    const two_fingers_real_t t27 = TWO_FINGERS_COS(q[2]);
-    const two_fingers_real_t t28 = TWO_FINGERS_SIN(q[2]);
     const two_fingers_real_t t29 = t27 * t1 + t28 * t8;
     const two_fingers_real_t t30 = t0 * t27 + t3 * t28;
     const two_fingers_real_t t31 = t30 * ddq_r[0];
@@ -160,10 +164,8 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t67 = TWO_FINGERS_C(1.6666666666666667) * (t27 * t64 - t28 * t65);
     out[55] = t67 - (t62 * t57 + t63 * (t49 + t55));
     out[96] = t67;
-    const two_fingers_real_t t68 = TWO_FINGERS_SIN(q[3]);
     const two_fingers_real_t t69 = TWO_FINGERS_C(0.4166666666666667) * t68;
     const two_fingers_real_t t70 = t68 * ddq_r[0];
-    const two_fingers_real_t t71 = TWO_FINGERS_COS(q[3]);
     const two_fingers_real_t t72 = t71 * dq[0];
     const two_fingers_real_t t73 = t71 * dq_r[0];
     const two_fingers_real_t t74 = TWO_FINGERS_C(0.5) * (t72 * dq_r[3] + dq[3] * t73);
@@ -206,8 +208,6 @@ int two_fingers_slotine_li_regressor(
     out[21] = TWO_FINGERS_C(-0.014583333333333334) * t82 + t69 * t92;
     const two_fingers_real_t t95 = TWO_FINGERS_C(-9.81) * t68 + t71 * t93;
     out[144] = TWO_FINGERS_C(1.6666666666666667) * t95;
-    const two_fingers_real_t t96 = TWO_FINGERS_COS(q[4]);
-    const two_fingers_real_t t97 = TWO_FINGERS_SIN(q[4]);
     const two_fingers_real_t t98 = t96 * t69 + t97 * t76;
     const two_fingers_real_t t99 = t68 * t96 + t71 * t97;
     const two_fingers_real_t t100 = t99 * ddq_r[0];

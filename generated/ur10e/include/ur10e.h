@@ -82,7 +82,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0x5F7CA820UL
+#define UR10E_GENERATION 0x15D6C590UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef UR10E_REAL
@@ -112,7 +112,7 @@ typedef UR10E_REAL ur10e_real_t;
 
 #define UR10E_STATUS_OK     0
 #define UR10E_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define UR10E_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define UR10E_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define UR10E_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

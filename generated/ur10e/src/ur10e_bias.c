@@ -79,7 +79,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -94,8 +94,8 @@ int ur10e_bias(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -104,9 +104,17 @@ int ur10e_bias(
         return status;
     }
 
+    ur10e_real_t t1, t2;
+    UR10E_SINCOS(q[1], &t1, &t2);
+    ur10e_real_t t12, t11;
+    UR10E_SINCOS(q[2], &t12, &t11);
+    ur10e_real_t t25, t24;
+    UR10E_SINCOS(q[3], &t25, &t24);
+    ur10e_real_t t39, t38;
+    UR10E_SINCOS(q[4], &t39, &t38);
+    ur10e_real_t t70, t69;
+    UR10E_SINCOS(q[5], &t70, &t69);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_SIN(q[1]);
-    const ur10e_real_t t2 = UR10E_COS(q[1]);
     const ur10e_real_t t3 = t2 * dq[0];
     const ur10e_real_t t4 = dq[1] * t3;
     const ur10e_real_t t5 = t1 * dq[0];
@@ -116,8 +124,6 @@ int ur10e_bias(
     const ur10e_real_t t8 = t5 * t3;
     const ur10e_real_t t9 = dq[1] * dq[1];
     const ur10e_real_t t10 = t3 * t3;
-    const ur10e_real_t t11 = UR10E_COS(q[2]);
-    const ur10e_real_t t12 = UR10E_SIN(q[2]);
     const ur10e_real_t t13 = t11 * t3 - t12 * t5;
     const ur10e_real_t t14 = dq[1] + dq[2];
     const ur10e_real_t t15 = t13 * t14;
@@ -130,8 +136,6 @@ int ur10e_bias(
     const ur10e_real_t t21 = t13 * t13;
     const ur10e_real_t t22 = t14 * t14;
     const ur10e_real_t t23 = UR10E_C(-1.2254) * t6;
-    const ur10e_real_t t24 = UR10E_COS(q[3]);
-    const ur10e_real_t t25 = UR10E_SIN(q[3]);
     const ur10e_real_t t26 = t25 * t16 - t24 * t13;
     const ur10e_real_t t27 = dq[3] + t14;
     const ur10e_real_t t28 = t26 * t27;
@@ -145,8 +149,6 @@ int ur10e_bias(
     const ur10e_real_t t35 = t27 * t27;
     const ur10e_real_t t36 = t16 * t16;
     const ur10e_real_t t37 = t23 + (UR10E_C(-1.1431) * t17 + UR10E_C(-0.17415) * (t36 + t21));
-    const ur10e_real_t t38 = UR10E_COS(q[4]);
-    const ur10e_real_t t39 = UR10E_SIN(q[4]);
     const ur10e_real_t t40 = UR10E_C(2.0) * t28;
     const ur10e_real_t t41 = t39 * t32 - t38 * t40;
     const ur10e_real_t t42 = t39 * t29 - t38 * t27;
@@ -177,8 +179,6 @@ int ur10e_bias(
     const ur10e_real_t t66 = t29 * t29;
     const ur10e_real_t t67 = t66 + t35;
     const ur10e_real_t t68 = t65 + UR10E_C(-0.11985) * t67;
-    const ur10e_real_t t69 = UR10E_COS(q[5]);
-    const ur10e_real_t t70 = UR10E_SIN(q[5]);
     const ur10e_real_t t71 = t30 + t51;
     const ur10e_real_t t72 = t45 - t44;
     const ur10e_real_t t73 = t69 * t72 - t70 * t71;

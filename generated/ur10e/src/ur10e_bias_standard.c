@@ -104,7 +104,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -120,8 +120,8 @@ int ur10e_bias_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
         || !ur10e_within(parameters, 78, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -130,9 +130,17 @@ int ur10e_bias_standard(
         return status;
     }
 
+    ur10e_real_t t1, t2;
+    UR10E_SINCOS(q[1], &t1, &t2);
+    ur10e_real_t t15, t13;
+    UR10E_SINCOS(q[2], &t15, &t13);
+    ur10e_real_t t33, t31;
+    UR10E_SINCOS(q[3], &t33, &t31);
+    ur10e_real_t t53, t52;
+    UR10E_SINCOS(q[4], &t53, &t52);
+    ur10e_real_t t79, t78;
+    UR10E_SINCOS(q[5], &t79, &t78);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_SIN(q[1]);
-    const ur10e_real_t t2 = UR10E_COS(q[1]);
     const ur10e_real_t t3 = t2 * dq[0];
     const ur10e_real_t t4 = dq[1] * t3;
     const ur10e_real_t t5 = t1 * dq[0];
@@ -144,9 +152,7 @@ int ur10e_bias_standard(
     const ur10e_real_t t10 = dq[1] * dq[1];
     const ur10e_real_t t11 = UR10E_C(-9.81) * t2;
     const ur10e_real_t t12 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2] + t11 * parameters[MZ2];
-    const ur10e_real_t t13 = UR10E_COS(q[2]);
     const ur10e_real_t t14 = dq[1] + dq[2];
-    const ur10e_real_t t15 = UR10E_SIN(q[2]);
     const ur10e_real_t t16 = t13 * t3 - t15 * t5;
     const ur10e_real_t t17 = t14 * t16;
     const ur10e_real_t t18 = t13 * t5 + t15 * t3;
@@ -164,9 +170,7 @@ int ur10e_bias_standard(
     const ur10e_real_t t29 = t15 * t27 + t13 * t28;
     const ur10e_real_t t30 = t21 + parameters[XZ3] * t22 + parameters[YZ3] * (t24 - t23)
         + (parameters[MY3] * t25 + parameters[MZ3] * t29);
-    const ur10e_real_t t31 = UR10E_COS(q[3]);
     const ur10e_real_t t32 = dq[3] + t14;
-    const ur10e_real_t t33 = UR10E_SIN(q[3]);
     const ur10e_real_t t34 = t31 * t16 - t33 * t18;
     const ur10e_real_t t35 = t32 * t34;
     const ur10e_real_t t36 = t31 * t18 + t33 * t16;
@@ -187,8 +191,6 @@ int ur10e_bias_standard(
     const ur10e_real_t t50 = t33 * t48 + t31 * t49;
     const ur10e_real_t t51 = t39 + parameters[XZ4] * t40 + parameters[YZ4] * (t42 - t41)
         + (parameters[MY4] * t45 + parameters[MZ4] * t50);
-    const ur10e_real_t t52 = UR10E_COS(q[4]);
-    const ur10e_real_t t53 = UR10E_SIN(q[4]);
     const ur10e_real_t t54 = UR10E_C(-2.0) * t35;
     const ur10e_real_t t55 = t53 * t40 + t52 * t54;
     const ur10e_real_t t56 = t52 * t32 - t53 * t36;
@@ -215,8 +217,6 @@ int ur10e_bias_standard(
     const ur10e_real_t t76 = t53 * t74 + t52 * t75;
     const ur10e_real_t t77 = t65 + parameters[XZ5] * t67 + parameters[YZ5] * (t68 - t69)
         + (parameters[MY5] * t72 - parameters[MZ5] * t76);
-    const ur10e_real_t t78 = UR10E_COS(q[5]);
-    const ur10e_real_t t79 = UR10E_SIN(q[5]);
     const ur10e_real_t t80 = t37 - t66;
     const ur10e_real_t t81 = t58 + t59;
     const ur10e_real_t t82 = t79 * t80 + t78 * t81;

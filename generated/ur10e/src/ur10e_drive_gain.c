@@ -21,7 +21,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int ur10e_drive_gain(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {

@@ -80,7 +80,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -96,8 +96,8 @@ int ur10e_energy(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -107,15 +107,21 @@ int ur10e_energy(
         return status;
     }
 
-    const ur10e_real_t t0 = UR10E_SIN(q[1]);
+    ur10e_real_t t0, t2;
+    UR10E_SINCOS(q[1], &t0, &t2);
+    ur10e_real_t t8, t7;
+    UR10E_SINCOS(q[2], &t8, &t7);
+    ur10e_real_t t22, t21;
+    UR10E_SINCOS(q[3], &t22, &t21);
+    ur10e_real_t t36, t35;
+    UR10E_SINCOS(q[4], &t36, &t35);
+    ur10e_real_t t50, t49;
+    UR10E_SINCOS(q[5], &t50, &t49);
     const ur10e_real_t t1 = t0 * dq[0];
-    const ur10e_real_t t2 = UR10E_COS(q[1]);
     const ur10e_real_t t3 = t2 * dq[0];
     const ur10e_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
     const ur10e_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3 + parameters[ZZ2R] * dq[1]);
     const ur10e_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const ur10e_real_t t7 = UR10E_COS(q[2]);
-    const ur10e_real_t t8 = UR10E_SIN(q[2]);
     const ur10e_real_t t9 = t7 * t1 + t8 * t3;
     const ur10e_real_t t10 = t7 * t3 - t8 * t1;
     const ur10e_real_t t11 = dq[1] + dq[2];
@@ -130,8 +136,6 @@ int ur10e_energy(
     const ur10e_real_t t19 = t8 * t16;
     const ur10e_real_t t20 = parameters[MY3] * (t9 * t18 + t11 * t19) - parameters[MX3R] * (t11 * t17
         + t10 * t18);
-    const ur10e_real_t t21 = UR10E_COS(q[3]);
-    const ur10e_real_t t22 = UR10E_SIN(q[3]);
     const ur10e_real_t t23 = t21 * t9 + t22 * t10;
     const ur10e_real_t t24 = t22 * t9 - t21 * t10;
     const ur10e_real_t t25 = dq[3] + t11;
@@ -145,8 +149,6 @@ int ur10e_energy(
     const ur10e_real_t t33 = t21 * t29 + t22 * t30;
     const ur10e_real_t t34 = parameters[MX4] * (t24 * t32 - t25 * t31) + parameters[MY4R] * (t23 * t32
         + t25 * t33);
-    const ur10e_real_t t35 = UR10E_COS(q[4]);
-    const ur10e_real_t t36 = UR10E_SIN(q[4]);
     const ur10e_real_t t37 = t35 * t23 + t36 * t25;
     const ur10e_real_t t38 = t35 * t25 - t36 * t23;
     const ur10e_real_t t39 = dq[4] + t24;
@@ -160,8 +162,6 @@ int ur10e_energy(
     const ur10e_real_t t47 = t35 * t44 - t36 * t45;
     const ur10e_real_t t48 = parameters[MX5] * (t39 * t46 - t38 * t31) + parameters[MY5R] * (t37 * t31
         + t39 * t47);
-    const ur10e_real_t t49 = UR10E_COS(q[5]);
-    const ur10e_real_t t50 = UR10E_SIN(q[5]);
     const ur10e_real_t t51 = t49 * t37 - t50 * t39;
     const ur10e_real_t t52 = t50 * t37 + t49 * t39;
     const ur10e_real_t t53 = dq[5] + t38;

@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,8 +122,8 @@ int ur10e_energy_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
         || !ur10e_within(parameters, 78, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -133,17 +133,23 @@ int ur10e_energy_standard(
         return status;
     }
 
-    const ur10e_real_t t0 = UR10E_SIN(q[1]);
+    ur10e_real_t t0, t2;
+    UR10E_SINCOS(q[1], &t0, &t2);
+    ur10e_real_t t9, t8;
+    UR10E_SINCOS(q[2], &t9, &t8);
+    ur10e_real_t t24, t23;
+    UR10E_SINCOS(q[3], &t24, &t23);
+    ur10e_real_t t40, t41;
+    UR10E_SINCOS(q[4], &t40, &t41);
+    ur10e_real_t t57, t56;
+    UR10E_SINCOS(q[5], &t57, &t56);
     const ur10e_real_t t1 = t0 * dq[0];
-    const ur10e_real_t t2 = UR10E_COS(q[1]);
     const ur10e_real_t t3 = t2 * dq[0];
     const ur10e_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const ur10e_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
     const ur10e_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
     const ur10e_real_t t7 = UR10E_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + UR10E_C(0.5) * (t4 + t5
         + t6);
-    const ur10e_real_t t8 = UR10E_COS(q[2]);
-    const ur10e_real_t t9 = UR10E_SIN(q[2]);
     const ur10e_real_t t10 = t8 * t1 + t9 * t3;
     const ur10e_real_t t11 = t9 * t1 - t8 * t3;
     const ur10e_real_t t12 = dq[1] + dq[2];
@@ -159,8 +165,6 @@ int ur10e_energy_standard(
         + t12 * t17);
     const ur10e_real_t t22 = t7 + UR10E_C(0.5) * (t13 + t14 + t15 + t20) + (t21 + parameters[MZ3] * (t11 * t17
         + t10 * t18));
-    const ur10e_real_t t23 = UR10E_COS(q[3]);
-    const ur10e_real_t t24 = UR10E_SIN(q[3]);
     const ur10e_real_t t25 = t23 * t10 - t24 * t11;
     const ur10e_real_t t26 = t24 * t10 + t23 * t11;
     const ur10e_real_t t27 = dq[3] + t12;
@@ -177,8 +181,6 @@ int ur10e_energy_standard(
     const ur10e_real_t t38 = parameters[MX4] * (t27 * t34 + t26 * t36) + parameters[MY4] * (t25 * t36
         + t27 * t33);
     const ur10e_real_t t39 = t22 + UR10E_C(0.5) * t37 + (t38 + parameters[MZ4] * (t26 * t33 - t25 * t34));
-    const ur10e_real_t t40 = UR10E_SIN(q[4]);
-    const ur10e_real_t t41 = UR10E_COS(q[4]);
     const ur10e_real_t t42 = t40 * t27 + t41 * t25;
     const ur10e_real_t t43 = t41 * t27 - t40 * t25;
     const ur10e_real_t t44 = dq[4] + t26;
@@ -194,8 +196,6 @@ int ur10e_energy_standard(
     const ur10e_real_t t54 = parameters[MX5] * (t44 * t51 + t43 * t34) + parameters[MY5] * (t44 * t50
         - t42 * t34);
     const ur10e_real_t t55 = t39 + UR10E_C(0.5) * t53 + (t54 - parameters[MZ5] * (t43 * t50 + t42 * t51));
-    const ur10e_real_t t56 = UR10E_COS(q[5]);
-    const ur10e_real_t t57 = UR10E_SIN(q[5]);
     const ur10e_real_t t58 = t56 * t42 - t57 * t44;
     const ur10e_real_t t59 = t57 * t42 + t56 * t44;
     const ur10e_real_t t60 = dq[5] + t43;

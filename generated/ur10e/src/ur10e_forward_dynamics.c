@@ -81,7 +81,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -97,9 +97,9 @@ int ur10e_forward_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(input, 6, UR10E_C(1.0e18))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(input, UR10E_C(1.0e18))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -108,11 +108,19 @@ int ur10e_forward_dynamics(
         return status;
     }
 
+    ur10e_real_t t2, t3;
+    UR10E_SINCOS(q[1], &t2, &t3);
+    ur10e_real_t t13, t12;
+    UR10E_SINCOS(q[2], &t13, &t12);
+    ur10e_real_t t26, t25;
+    UR10E_SINCOS(q[3], &t26, &t25);
+    ur10e_real_t t40, t39;
+    UR10E_SINCOS(q[4], &t40, &t39);
+    ur10e_real_t t71, t70;
+    UR10E_SINCOS(q[5], &t71, &t70);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
     const ur10e_real_t t1 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0]))
         + UR10E_C(-101.0) * (parameters[FC1] * t0);
-    const ur10e_real_t t2 = UR10E_SIN(q[1]);
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = t3 * dq[0];
     const ur10e_real_t t5 = dq[1] * t4;
     const ur10e_real_t t6 = t2 * dq[0];
@@ -122,8 +130,6 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t9 = t6 * t4;
     const ur10e_real_t t10 = dq[1] * dq[1];
     const ur10e_real_t t11 = t4 * t4;
-    const ur10e_real_t t12 = UR10E_COS(q[2]);
-    const ur10e_real_t t13 = UR10E_SIN(q[2]);
     const ur10e_real_t t14 = t13 * t6 - t12 * t4;
     const ur10e_real_t t15 = dq[1] + dq[2];
     const ur10e_real_t t16 = t14 * t15;
@@ -136,8 +142,6 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t22 = t14 * t14;
     const ur10e_real_t t23 = t15 * t15;
     const ur10e_real_t t24 = UR10E_C(1.2254) * t7;
-    const ur10e_real_t t25 = UR10E_COS(q[3]);
-    const ur10e_real_t t26 = UR10E_SIN(q[3]);
     const ur10e_real_t t27 = t26 * t17 + t25 * t14;
     const ur10e_real_t t28 = dq[3] + t15;
     const ur10e_real_t t29 = t27 * t28;
@@ -151,8 +155,6 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t36 = t28 * t28;
     const ur10e_real_t t37 = t17 * t17;
     const ur10e_real_t t38 = t24 + (UR10E_C(1.1431) * t18 + UR10E_C(0.17415) * (t37 + t22));
-    const ur10e_real_t t39 = UR10E_COS(q[4]);
-    const ur10e_real_t t40 = UR10E_SIN(q[4]);
     const ur10e_real_t t41 = UR10E_C(2.0) * t29;
     const ur10e_real_t t42 = t40 * t33 + t39 * t41;
     const ur10e_real_t t43 = t40 * t30 + t39 * t28;
@@ -183,8 +185,6 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t67 = t30 * t30;
     const ur10e_real_t t68 = t67 + t36;
     const ur10e_real_t t69 = t66 + UR10E_C(0.11985) * t68;
-    const ur10e_real_t t70 = UR10E_COS(q[5]);
-    const ur10e_real_t t71 = UR10E_SIN(q[5]);
     const ur10e_real_t t72 = t31 - t52;
     const ur10e_real_t t73 = t46 - t45;
     const ur10e_real_t t74 = t71 * t72 - t70 * t73;

@@ -106,7 +106,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,9 +123,9 @@ int ur10e_forward_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(input, 6, UR10E_C(1.0e18))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(input, UR10E_C(1.0e18))
         || !ur10e_within(parameters, 78, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -134,11 +134,19 @@ int ur10e_forward_dynamics_standard(
         return status;
     }
 
+    ur10e_real_t t2, t3;
+    UR10E_SINCOS(q[1], &t2, &t3);
+    ur10e_real_t t16, t14;
+    UR10E_SINCOS(q[2], &t16, &t14);
+    ur10e_real_t t34, t32;
+    UR10E_SINCOS(q[3], &t34, &t32);
+    ur10e_real_t t54, t53;
+    UR10E_SINCOS(q[4], &t54, &t53);
+    ur10e_real_t t80, t79;
+    UR10E_SINCOS(q[5], &t80, &t79);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
     const ur10e_real_t t1 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1])
         + UR10E_C(-101.0) * (t0 * parameters[FC1]);
-    const ur10e_real_t t2 = UR10E_SIN(q[1]);
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = t3 * dq[0];
     const ur10e_real_t t5 = dq[1] * t4;
     const ur10e_real_t t6 = t2 * dq[0];
@@ -151,9 +159,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t12 = UR10E_C(9.81) * t3;
     const ur10e_real_t t13 = t8 - t9 * parameters[XZ2] + (t11 - t10) * parameters[YZ2]
         + t12 * parameters[MZ2];
-    const ur10e_real_t t14 = UR10E_COS(q[2]);
     const ur10e_real_t t15 = dq[1] + dq[2];
-    const ur10e_real_t t16 = UR10E_SIN(q[2]);
     const ur10e_real_t t17 = t16 * t6 - t14 * t4;
     const ur10e_real_t t18 = t15 * t17;
     const ur10e_real_t t19 = t14 * t6 + t16 * t4;
@@ -171,9 +177,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t30 = t16 * t28 + t14 * t29;
     const ur10e_real_t t31 = t22 + parameters[XZ3] * t23 + parameters[YZ3] * (t24 - t25)
         + (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const ur10e_real_t t32 = UR10E_COS(q[3]);
     const ur10e_real_t t33 = dq[3] + t15;
-    const ur10e_real_t t34 = UR10E_SIN(q[3]);
     const ur10e_real_t t35 = t34 * t19 + t32 * t17;
     const ur10e_real_t t36 = t33 * t35;
     const ur10e_real_t t37 = t32 * t19 - t34 * t17;
@@ -194,8 +198,6 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t51 = t32 * t50 - t34 * t49;
     const ur10e_real_t t52 = t40 + parameters[XZ4] * t41 + parameters[YZ4] * (t42 - t43)
         + (parameters[MY4] * t46 + parameters[MZ4] * t51);
-    const ur10e_real_t t53 = UR10E_COS(q[4]);
-    const ur10e_real_t t54 = UR10E_SIN(q[4]);
     const ur10e_real_t t55 = UR10E_C(2.0) * t36;
     const ur10e_real_t t56 = t53 * t55 - t54 * t41;
     const ur10e_real_t t57 = t53 * t33 - t54 * t37;
@@ -222,8 +224,6 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t77 = t54 * t75 + t53 * t76;
     const ur10e_real_t t78 = t66 - parameters[XZ5] * t68 + parameters[YZ5] * (t70 - t69)
         + (parameters[MY5] * t73 - parameters[MZ5] * t77);
-    const ur10e_real_t t79 = UR10E_COS(q[5]);
-    const ur10e_real_t t80 = UR10E_SIN(q[5]);
     const ur10e_real_t t81 = t67 - t38;
     const ur10e_real_t t82 = t60 - t59;
     const ur10e_real_t t83 = t80 * t81 - t79 * t82;

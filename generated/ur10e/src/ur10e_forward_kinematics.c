@@ -27,7 +27,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int ur10e_forward_kinematics(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {
@@ -45,19 +45,27 @@ int ur10e_forward_kinematics(
         return status;
     }
 
-    const ur10e_real_t t0 = UR10E_COS(q[0]);
+    ur10e_real_t t1, t0;
+    UR10E_SINCOS(q[0], &t1, &t0);
+    ur10e_real_t t4, t2;
+    UR10E_SINCOS(q[1], &t4, &t2);
+    ur10e_real_t t9, t8;
+    UR10E_SINCOS(q[2], &t9, &t8);
+    ur10e_real_t t20, t19;
+    UR10E_SINCOS(q[3], &t20, &t19);
+    ur10e_real_t t31, t30;
+    UR10E_SINCOS(q[4], &t31, &t30);
+    ur10e_real_t t42, t41;
+    UR10E_SINCOS(q[5], &t42, &t41);
     out[0] = t0;
-    const ur10e_real_t t1 = UR10E_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = UR10E_C(1.0);
     out[11] = UR10E_C(0.1807);
     out[15] = UR10E_C(1.0);
-    const ur10e_real_t t2 = UR10E_COS(q[1]);
     const ur10e_real_t t3 = t0 * t2;
     out[16] = t3;
-    const ur10e_real_t t4 = UR10E_SIN(q[1]);
     const ur10e_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -70,8 +78,6 @@ int ur10e_forward_kinematics(
     out[25] = t2;
     out[27] = UR10E_C(0.1807);
     out[31] = UR10E_C(1.0);
-    const ur10e_real_t t8 = UR10E_COS(q[2]);
-    const ur10e_real_t t9 = UR10E_SIN(q[2]);
     const ur10e_real_t t10 = t8 * t3 - t9 * t5;
     out[32] = t10;
     const ur10e_real_t t11 = t9 * t3 + t8 * t5;
@@ -93,8 +99,6 @@ int ur10e_forward_kinematics(
     const ur10e_real_t t18 = UR10E_C(-0.6127) * t4 + UR10E_C(0.1807);
     out[43] = t18;
     out[47] = UR10E_C(1.0);
-    const ur10e_real_t t19 = UR10E_COS(q[3]);
-    const ur10e_real_t t20 = UR10E_SIN(q[3]);
     const ur10e_real_t t21 = t19 * t10 - t20 * t11;
     out[48] = t21;
     const ur10e_real_t t22 = t20 * t10 + t19 * t11;
@@ -116,8 +120,6 @@ int ur10e_forward_kinematics(
     const ur10e_real_t t29 = t18 + UR10E_C(-0.57155) * t16;
     out[59] = t29;
     out[63] = UR10E_C(1.0);
-    const ur10e_real_t t30 = UR10E_COS(q[4]);
-    const ur10e_real_t t31 = UR10E_SIN(q[4]);
     const ur10e_real_t t32 = t30 * t21 + t1 * t31;
     out[64] = t32;
     const ur10e_real_t t33 = t1 * t30 - t31 * t21;
@@ -140,8 +142,6 @@ int ur10e_forward_kinematics(
     const ur10e_real_t t40 = t29 + UR10E_C(-0.11985) * t28;
     out[75] = t40;
     out[79] = UR10E_C(1.0);
-    const ur10e_real_t t41 = UR10E_COS(q[5]);
-    const ur10e_real_t t42 = UR10E_SIN(q[5]);
     out[80] = t41 * t32 - t42 * t22;
     out[81] = -(t42 * t32 + t41 * t22);
     out[82] = t33;

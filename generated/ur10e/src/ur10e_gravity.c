@@ -78,7 +78,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -92,7 +92,7 @@ int ur10e_gravity(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -101,24 +101,24 @@ int ur10e_gravity(
         return status;
     }
 
-    const ur10e_real_t t0 = UR10E_SIN(q[1]);
-    const ur10e_real_t t1 = UR10E_COS(q[2]);
-    const ur10e_real_t t2 = UR10E_COS(q[3]);
-    const ur10e_real_t t3 = UR10E_COS(q[4]);
-    const ur10e_real_t t4 = UR10E_SIN(q[3]);
+    ur10e_real_t t0, t7;
+    UR10E_SINCOS(q[1], &t0, &t7);
+    ur10e_real_t t6, t1;
+    UR10E_SINCOS(q[2], &t6, &t1);
+    ur10e_real_t t4, t2;
+    UR10E_SINCOS(q[3], &t4, &t2);
+    ur10e_real_t t13, t3;
+    UR10E_SINCOS(q[4], &t13, &t3);
+    ur10e_real_t t17, t12;
+    UR10E_SINCOS(q[5], &t17, &t12);
     const ur10e_real_t t5 = UR10E_C(-9.81) * t0;
-    const ur10e_real_t t6 = UR10E_SIN(q[2]);
-    const ur10e_real_t t7 = UR10E_COS(q[1]);
     const ur10e_real_t t8 = UR10E_C(9.81) * t7;
     const ur10e_real_t t9 = t1 * t5 - t6 * t8;
     const ur10e_real_t t10 = t6 * t5 + t1 * t8;
     const ur10e_real_t t11 = t4 * t9 + t2 * t10;
-    const ur10e_real_t t12 = UR10E_COS(q[5]);
-    const ur10e_real_t t13 = UR10E_SIN(q[4]);
     const ur10e_real_t t14 = t2 * t9 - t4 * t10;
     const ur10e_real_t t15 = t13 * t14;
     const ur10e_real_t t16 = parameters[MY6] * t15;
-    const ur10e_real_t t17 = UR10E_SIN(q[5]);
     const ur10e_real_t t18 = parameters[MX6] * t15;
     const ur10e_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
     const ur10e_real_t t20 = t3 * t14;

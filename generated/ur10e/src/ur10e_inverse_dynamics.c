@@ -80,7 +80,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -96,9 +96,9 @@ int ur10e_inverse_dynamics(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq, 6, UR10E_C(1.0e16))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq, UR10E_C(1.0e16))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -107,10 +107,18 @@ int ur10e_inverse_dynamics(
         return status;
     }
 
+    ur10e_real_t t1, t3;
+    UR10E_SINCOS(q[1], &t1, &t3);
+    ur10e_real_t t20, t16;
+    UR10E_SINCOS(q[2], &t20, &t16);
+    ur10e_real_t t39, t36;
+    UR10E_SINCOS(q[3], &t39, &t36);
+    ur10e_real_t t59, t58;
+    UR10E_SINCOS(q[4], &t59, &t58);
+    ur10e_real_t t92, t91;
+    UR10E_SINCOS(q[5], &t92, &t91);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_SIN(q[1]);
     const ur10e_real_t t2 = dq[1] * dq[1];
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = t3 * dq[0];
     const ur10e_real_t t5 = t4 * t4;
     const ur10e_real_t t6 = dq[1] * t4;
@@ -124,11 +132,9 @@ int ur10e_inverse_dynamics(
     const ur10e_real_t t14 = ddq[1] + t13;
     const ur10e_real_t t15 = parameters[ZZ2R] * t6 + parameters[XX2R] * t8 + parameters[XY2] * t12
         + parameters[XZ2R] * t14;
-    const ur10e_real_t t16 = UR10E_COS(q[2]);
     const ur10e_real_t t17 = UR10E_C(0.6127) * t12;
     const ur10e_real_t t18 = dq[1] + dq[2];
     const ur10e_real_t t19 = t18 * t18;
-    const ur10e_real_t t20 = UR10E_SIN(q[2]);
     const ur10e_real_t t21 = t3 * t16 - t1 * t20;
     const ur10e_real_t t22 = dq[0] * t21;
     const ur10e_real_t t23 = t22 * t22;
@@ -145,10 +151,8 @@ int ur10e_inverse_dynamics(
     const ur10e_real_t t34 = t32 + t33;
     const ur10e_real_t t35 = parameters[ZZ3R] * t24 + parameters[XX3R] * t27 + parameters[XY3] * t31
         + parameters[XZ3R] * t34;
-    const ur10e_real_t t36 = UR10E_COS(q[3]);
     const ur10e_real_t t37 = dq[3] + t18;
     const ur10e_real_t t38 = t37 * t37;
-    const ur10e_real_t t39 = UR10E_SIN(q[3]);
     const ur10e_real_t t40 = t39 * t25 - t36 * t21;
     const ur10e_real_t t41 = dq[0] * t40;
     const ur10e_real_t t42 = t41 * t41;
@@ -168,8 +172,6 @@ int ur10e_inverse_dynamics(
         + parameters[XZ4] * t54;
     const ur10e_real_t t56 = t28 * t28;
     const ur10e_real_t t57 = t17 + (UR10E_C(-0.17415) * (t56 + t23) + UR10E_C(0.57155) * t31);
-    const ur10e_real_t t58 = UR10E_COS(q[4]);
-    const ur10e_real_t t59 = UR10E_SIN(q[4]);
     const ur10e_real_t t60 = t58 * t37 - t59 * t47;
     const ur10e_real_t t61 = t60 * t60;
     const ur10e_real_t t62 = dq[4] + t41;
@@ -202,8 +204,6 @@ int ur10e_inverse_dynamics(
     const ur10e_real_t t88 = t87 + (UR10E_C(0.57155) * t34 + UR10E_C(0.17415) * t26);
     const ur10e_real_t t89 = t39 * t86 + t36 * t88;
     const ur10e_real_t t90 = UR10E_C(-0.11985) * t79 + t89;
-    const ur10e_real_t t91 = UR10E_COS(q[5]);
-    const ur10e_real_t t92 = UR10E_SIN(q[5]);
     const ur10e_real_t t93 = t92 * t69 + t91 * t62;
     const ur10e_real_t t94 = t93 * t93;
     const ur10e_real_t t95 = dq[5] + t60;

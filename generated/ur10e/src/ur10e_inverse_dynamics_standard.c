@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -122,9 +122,9 @@ int ur10e_inverse_dynamics_standard(
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq, 6, UR10E_C(1.0e16))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq, UR10E_C(1.0e16))
         || !ur10e_within(parameters, 78, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -133,11 +133,19 @@ int ur10e_inverse_dynamics_standard(
         return status;
     }
 
+    ur10e_real_t t2, t3;
+    UR10E_SINCOS(q[1], &t2, &t3);
+    ur10e_real_t t22, t20;
+    UR10E_SINCOS(q[2], &t22, &t20);
+    ur10e_real_t t47, t46;
+    UR10E_SINCOS(q[3], &t47, &t46);
+    ur10e_real_t t76, t75;
+    UR10E_SINCOS(q[4], &t76, &t75);
+    ur10e_real_t t104, t103;
+    UR10E_SINCOS(q[5], &t104, &t103);
     const ur10e_real_t t0 = ur10e_sign(dq[0]);
     const ur10e_real_t t1 = UR10E_C(101.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + UR10E_C(101.0) * ddq[0] * parameters[IA1];
-    const ur10e_real_t t2 = UR10E_SIN(q[1]);
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = UR10E_C(-9.81) * t3;
     const ur10e_real_t t5 = t3 * dq[0];
     const ur10e_real_t t6 = t5 * t5;
@@ -156,9 +164,7 @@ int ur10e_inverse_dynamics_standard(
     const ur10e_real_t t18 = ddq[1] + t17;
     const ur10e_real_t t19 = t4 * parameters[MZ2] + ((t6 - t7) * parameters[YZ2] + (t16
         + t18 * parameters[XZ2]));
-    const ur10e_real_t t20 = UR10E_COS(q[2]);
     const ur10e_real_t t21 = UR10E_C(0.6127) * t15;
-    const ur10e_real_t t22 = UR10E_SIN(q[2]);
     const ur10e_real_t t23 = UR10E_C(9.81) * t2;
     const ur10e_real_t t24 = t23 + UR10E_C(0.6127) * (t6 + t7);
     const ur10e_real_t t25 = t4 + UR10E_C(0.6127) * t18;
@@ -184,8 +190,6 @@ int ur10e_inverse_dynamics_standard(
     const ur10e_real_t t44 = t42 + t43;
     const ur10e_real_t t45 = t21 * parameters[MY3] + t26 * parameters[MZ3] + ((t29 - t31) * parameters[YZ3]
         + (t41 + t44 * parameters[XZ3]));
-    const ur10e_real_t t46 = UR10E_COS(q[3]);
-    const ur10e_real_t t47 = UR10E_SIN(q[3]);
     const ur10e_real_t t48 = t47 * t33 - t46 * t27;
     const ur10e_real_t t49 = dq[0] * t48;
     const ur10e_real_t t50 = t49 * t49;
@@ -215,8 +219,6 @@ int ur10e_inverse_dynamics_standard(
     const ur10e_real_t t73 = t47 * t71 + t46 * t72;
     const ur10e_real_t t74 = (t50 - t52) * parameters[YZ4] + (t62 + t65 * parameters[XZ4])
         + (t68 * parameters[MY4] + t73 * parameters[MZ4]);
-    const ur10e_real_t t75 = UR10E_COS(q[4]);
-    const ur10e_real_t t76 = UR10E_SIN(q[4]);
     const ur10e_real_t t77 = t75 * t51 - t76 * t57;
     const ur10e_real_t t78 = t77 * t77;
     const ur10e_real_t t79 = dq[4] + t49;
@@ -245,8 +247,6 @@ int ur10e_inverse_dynamics_standard(
     const ur10e_real_t t101 = t76 * t99 + t75 * t100;
     const ur10e_real_t t102 = (t78 - t80) * parameters[YZ5] + (t91 + t94 * parameters[XZ5])
         + (t97 * parameters[MY5] - t101 * parameters[MZ5]);
-    const ur10e_real_t t103 = UR10E_COS(q[5]);
-    const ur10e_real_t t104 = UR10E_SIN(q[5]);
     const ur10e_real_t t105 = t104 * t86 + t103 * t79;
     const ur10e_real_t t106 = t105 * t105;
     const ur10e_real_t t107 = dq[5] + t77;

@@ -78,7 +78,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -92,7 +92,7 @@ int ur10e_mass_matrix(
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
         || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
         status |= UR10E_STATUS_INPUT;
     }
@@ -101,21 +101,26 @@ int ur10e_mass_matrix(
         return status;
     }
 
-    const ur10e_real_t t0 = UR10E_COS(q[4]);
-    const ur10e_real_t t1 = UR10E_COS(q[5]);
-    const ur10e_real_t t2 = UR10E_SIN(q[5]);
+    ur10e_real_t t48, t42;
+    UR10E_SINCOS(q[1], &t48, &t42);
+    ur10e_real_t t38, t34;
+    UR10E_SINCOS(q[2], &t38, &t34);
+    ur10e_real_t t24, t14;
+    UR10E_SINCOS(q[3], &t24, &t14);
+    ur10e_real_t t8, t0;
+    UR10E_SINCOS(q[4], &t8, &t0);
+    ur10e_real_t t2, t1;
+    UR10E_SINCOS(q[5], &t2, &t1);
     const ur10e_real_t t3 = t1 * parameters[XX6R] - parameters[XY6] * (UR10E_C(2.0) * t2);
     const ur10e_real_t t4 = t1 * t3;
     const ur10e_real_t t5 = parameters[XX5R] + t4;
     const ur10e_real_t t6 = t1 * parameters[XZ6R] - t2 * parameters[YZ6R];
     const ur10e_real_t t7 = parameters[XY5] + t6;
-    const ur10e_real_t t8 = UR10E_SIN(q[4]);
     const ur10e_real_t t9 = t0 * (t5 - parameters[ZZ6]) + t7 * (UR10E_C(-2.0) * t8);
     const ur10e_real_t t10 = t0 * t9;
     const ur10e_real_t t11 = t1 * parameters[MY6] + t2 * parameters[MX6];
     const ur10e_real_t t12 = UR10E_C(-0.2397) * t11;
     const ur10e_real_t t13 = parameters[XX4R] + (parameters[ZZ6] + t10 + t12);
-    const ur10e_real_t t14 = UR10E_COS(q[3]);
     const ur10e_real_t t15 = parameters[ZZ5R] + (parameters[XX6R] - t4);
     const ur10e_real_t t16 = parameters[XZ5] - (parameters[XY6] + t2 * t3);
     const ur10e_real_t t17 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
@@ -125,7 +130,6 @@ int ur10e_mass_matrix(
     const ur10e_real_t t21 = t0 * t20 - t8 * parameters[MY5R];
     const ur10e_real_t t22 = t8 * t18 - t0 * t16 + UR10E_C(0.11985) * t21;
     const ur10e_real_t t23 = parameters[XY4] + t22;
-    const ur10e_real_t t24 = UR10E_SIN(q[3]);
     const ur10e_real_t t25 = t14 * (t13 - t15) + t23 * (UR10E_C(-2.0) * t24);
     const ur10e_real_t t26 = t14 * t25;
     const ur10e_real_t t27 = parameters[MY4R] + t11;
@@ -135,21 +139,17 @@ int ur10e_mass_matrix(
     const ur10e_real_t t31 = t0 * parameters[MY5R] + t8 * t20;
     const ur10e_real_t t32 = UR10E_C(0.3483) * t31;
     const ur10e_real_t t33 = t13 - t26 + (t30 + t32);
-    const ur10e_real_t t34 = UR10E_COS(q[2]);
     const ur10e_real_t t35 = parameters[XX3R] + (t15 + t26 + t32);
     const ur10e_real_t t36 = t14 * t27 + t24 * t28;
     const ur10e_real_t t37 = parameters[XY3] + (t23 + t24 * t25 + UR10E_C(0.57155) * t36);
-    const ur10e_real_t t38 = UR10E_SIN(q[2]);
     const ur10e_real_t t39 = t34 * (t33 - t35) + t37 * (UR10E_C(2.0) * t38);
     const ur10e_real_t t40 = t34 * t39;
     const ur10e_real_t t41 = parameters[XX2R] + (t33 - t40);
-    const ur10e_real_t t42 = UR10E_COS(q[1]);
     const ur10e_real_t t43 = parameters[MY3] + t36;
     const ur10e_real_t t44 = parameters[MX3R] - t29;
     const ur10e_real_t t45 = t38 * t43 - t34 * t44;
     const ur10e_real_t t46 = UR10E_C(1.2254) * t45;
     const ur10e_real_t t47 = t37 - t38 * t39 + UR10E_C(0.6127) * (t34 * t43 + t38 * t44);
-    const ur10e_real_t t48 = UR10E_SIN(q[1]);
     const ur10e_real_t t49 = t42 * (t35 + t40 + t46 - t41) + (parameters[XY2] + t47) * (UR10E_C(2.0) * t48);
     out[0] = parameters[ZZ1R] + (t41 + t42 * t49);
     const ur10e_real_t t50 = parameters[XZ4] + (t7 + t8 * t9);

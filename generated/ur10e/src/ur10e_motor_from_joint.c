@@ -25,7 +25,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int ur10e_motor_from_joint(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq, 6, UR10E_C(1.0e16))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq, UR10E_C(1.0e16))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {

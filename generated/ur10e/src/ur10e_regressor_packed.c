@@ -31,7 +31,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -60,9 +60,9 @@ int ur10e_regressor_packed(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq, 6, UR10E_C(1.0e16))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq, UR10E_C(1.0e16))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {
@@ -70,11 +70,19 @@ int ur10e_regressor_packed(
         return status;
     }
 
+    ur10e_real_t t3, t0;
+    UR10E_SINCOS(q[1], &t3, &t0);
+    ur10e_real_t t19, t20;
+    UR10E_SINCOS(q[2], &t19, &t20);
+    ur10e_real_t t54, t55;
+    UR10E_SINCOS(q[3], &t54, &t55);
+    ur10e_real_t t101, t100;
+    UR10E_SINCOS(q[4], &t101, &t100);
+    ur10e_real_t t150, t151;
+    UR10E_SINCOS(q[5], &t150, &t151);
     out[0] = UR10E_C(0.08250825082508251) * ddq[0];
-    const ur10e_real_t t0 = UR10E_COS(q[1]);
     const ur10e_real_t t1 = t0 * dq[0];
     const ur10e_real_t t2 = dq[1] * t1;
-    const ur10e_real_t t3 = UR10E_SIN(q[1]);
     const ur10e_real_t t4 = t3 * ddq[0];
     const ur10e_real_t t5 = t2 + t4;
     const ur10e_real_t t6 = UR10E_C(0.08250825082508251) * t3;
@@ -102,8 +110,6 @@ int ur10e_regressor_packed(
     out[41] = UR10E_C(0.8094059405940595) * t0;
     out[42] = UR10E_C(-0.8094059405940595) * t3;
     const ur10e_real_t t18 = dq[1] + dq[2];
-    const ur10e_real_t t19 = UR10E_SIN(q[2]);
-    const ur10e_real_t t20 = UR10E_COS(q[2]);
     const ur10e_real_t t21 = t0 * t20 - t3 * t19;
     const ur10e_real_t t22 = dq[0] * t21;
     const ur10e_real_t t23 = t18 * t22;
@@ -158,8 +164,6 @@ int ur10e_regressor_packed(
     out[49] = t52;
     out[79] = UR10E_C(0.09900990099009899) * t51;
     const ur10e_real_t t53 = dq[3] + t18;
-    const ur10e_real_t t54 = UR10E_SIN(q[3]);
-    const ur10e_real_t t55 = UR10E_COS(q[3]);
     const ur10e_real_t t56 = t55 * t21 - t54 * t24;
     const ur10e_real_t t57 = dq[0] * t56;
     const ur10e_real_t t58 = t53 * t57;
@@ -232,8 +236,6 @@ int ur10e_regressor_packed(
     out[56] = t96 * t89 - t78 * t88 + t99;
     out[86] = UR10E_C(1.1999999999999997) * (t99 + (t96 * t95 - t78 * t94));
     out[110] = UR10E_C(0.11001100110011) * t98;
-    const ur10e_real_t t100 = UR10E_COS(q[4]);
-    const ur10e_real_t t101 = UR10E_SIN(q[4]);
     const ur10e_real_t t102 = t101 * t63 - t100 * t53;
     const ur10e_real_t t103 = t57 - dq[4];
     const ur10e_real_t t104 = t102 * t103;
@@ -317,8 +319,6 @@ int ur10e_regressor_packed(
     out[93] = UR10E_C(1.1999999999999997) * (t149 + (t117 * t95 + t144 * t147));
     out[117] = UR10E_C(1.3333333333333333) * (t149 + UR10E_C(-0.009888613861386139) * t147);
     out[134] = UR10E_C(0.11001100110011001) * t145;
-    const ur10e_real_t t150 = UR10E_SIN(q[5]);
-    const ur10e_real_t t151 = UR10E_COS(q[5]);
     const ur10e_real_t t152 = t151 * t103 - t150 * t108;
     const ur10e_real_t t153 = dq[5] - t102;
     const ur10e_real_t t154 = t152 * t153;

@@ -34,7 +34,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,9 +46,9 @@ int ur10e_regressor_standard(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq, 6, UR10E_C(1.0e16))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq, UR10E_C(1.0e16))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {
@@ -56,11 +56,19 @@ int ur10e_regressor_standard(
         return status;
     }
 
+    ur10e_real_t t1, t3;
+    UR10E_SINCOS(q[1], &t1, &t3);
+    ur10e_real_t t23, t22;
+    UR10E_SINCOS(q[2], &t23, &t22);
+    ur10e_real_t t67, t66;
+    UR10E_SINCOS(q[3], &t67, &t66);
+    ur10e_real_t t126, t127;
+    UR10E_SINCOS(q[4], &t126, &t127);
+    ur10e_real_t t199, t200;
+    UR10E_SINCOS(q[5], &t199, &t200);
     const ur10e_real_t t0 = UR10E_C(0.08250825082508251) * ddq[0];
     out[5] = t0;
-    const ur10e_real_t t1 = UR10E_SIN(q[1]);
     const ur10e_real_t t2 = t1 * ddq[0];
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = t3 * dq[0];
     const ur10e_real_t t5 = dq[1] * t4;
     const ur10e_real_t t6 = t2 + t5;
@@ -93,8 +101,6 @@ int ur10e_regressor_standard(
     out[93] = UR10E_C(0.08250825082508251) * ddq[1];
     out[94] = UR10E_C(0.8094059405940595) * t3;
     out[95] = UR10E_C(-0.8094059405940595) * t1;
-    const ur10e_real_t t22 = UR10E_COS(q[2]);
-    const ur10e_real_t t23 = UR10E_SIN(q[2]);
     const ur10e_real_t t24 = t1 * t22 + t3 * t23;
     const ur10e_real_t t25 = ddq[0] * t24;
     const ur10e_real_t t26 = t3 * t22 - t1 * t23;
@@ -165,8 +171,6 @@ int ur10e_regressor_standard(
     out[106] = t65;
     out[29] = -(t55 * t54);
     out[107] = t62 * t57 - t61 * t58;
-    const ur10e_real_t t66 = UR10E_COS(q[3]);
-    const ur10e_real_t t67 = UR10E_SIN(q[3]);
     const ur10e_real_t t68 = t66 * t24 + t67 * t26;
     const ur10e_real_t t69 = ddq[0] * t68;
     const ur10e_real_t t70 = t66 * t26 - t67 * t24;
@@ -263,8 +267,6 @@ int ur10e_regressor_standard(
     out[117] = t124;
     const ur10e_real_t t125 = t118 * t114 - t112 * t115;
     out[195] = UR10E_C(1.1999999999999997) * t125;
-    const ur10e_real_t t126 = UR10E_SIN(q[4]);
-    const ur10e_real_t t127 = UR10E_COS(q[4]);
     const ur10e_real_t t128 = t126 * t96 + t127 * t85;
     const ur10e_real_t t129 = t126 * t76 - t127 * t72;
     const ur10e_real_t t130 = t71 - dq[4];
@@ -385,8 +387,6 @@ int ur10e_regressor_standard(
     out[205] = UR10E_C(1.1999999999999997) * t197;
     const ur10e_real_t t198 = t195 + UR10E_C(-0.009888613861386139) * t118;
     out[283] = UR10E_C(1.3333333333333333) * t198;
-    const ur10e_real_t t199 = UR10E_SIN(q[5]);
-    const ur10e_real_t t200 = UR10E_COS(q[5]);
     const ur10e_real_t t201 = t199 * t159 - t200 * t145;
     const ur10e_real_t t202 = t199 * t134 - t200 * t130;
     const ur10e_real_t t203 = dq[5] - t129;

@@ -34,7 +34,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x5F7CA820UL
+#if UR10E_GENERATION != 0x15D6C590UL
 #error "ur10e.h and ur10e_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -47,10 +47,10 @@ int ur10e_slotine_li_regressor(
 {
     int status = UR10E_STATUS_OK;
 
-    if (!ur10e_within(q, 6, UR10E_C(1.0e8))
-        || !ur10e_within(dq, 6, UR10E_C(1.0e10))
-        || !ur10e_within(dq_r, 6, UR10E_C(1.0e10))
-        || !ur10e_within(ddq_r, 6, UR10E_C(1.0e16))) {
+    if (!ur10e_within_joints(q, UR10E_C(1.0e8))
+        || !ur10e_within_joints(dq, UR10E_C(1.0e10))
+        || !ur10e_within_joints(dq_r, UR10E_C(1.0e10))
+        || !ur10e_within_joints(ddq_r, UR10E_C(1.0e16))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {
@@ -58,11 +58,19 @@ int ur10e_slotine_li_regressor(
         return status;
     }
 
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t22, t21;
+    UR10E_SINCOS(q[2], &t22, &t21);
+    ur10e_real_t t61, t60;
+    UR10E_SINCOS(q[3], &t61, &t60);
+    ur10e_real_t t113, t111;
+    UR10E_SINCOS(q[4], &t113, &t111);
+    ur10e_real_t t166, t165;
+    UR10E_SINCOS(q[5], &t166, &t165);
     out[0] = UR10E_C(0.08250825082508251) * ddq_r[0];
-    const ur10e_real_t t0 = UR10E_SIN(q[1]);
     const ur10e_real_t t1 = UR10E_C(0.08250825082508251) * t0;
     const ur10e_real_t t2 = t0 * ddq_r[0];
-    const ur10e_real_t t3 = UR10E_COS(q[1]);
     const ur10e_real_t t4 = t3 * dq[0];
     const ur10e_real_t t5 = t3 * dq_r[0];
     const ur10e_real_t t6 = UR10E_C(0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -92,8 +100,6 @@ int ur10e_slotine_li_regressor(
     out[57] = UR10E_C(0.08250825082508251) * ddq_r[1];
     out[58] = UR10E_C(0.8094059405940595) * t3;
     out[59] = UR10E_C(-0.8094059405940595) * t0;
-    const ur10e_real_t t21 = UR10E_COS(q[2]);
-    const ur10e_real_t t22 = UR10E_SIN(q[2]);
     const ur10e_real_t t23 = t21 * t1 + t22 * t8;
     const ur10e_real_t t24 = t0 * t21 + t3 * t22;
     const ur10e_real_t t25 = t24 * ddq_r[0];
@@ -152,8 +158,6 @@ int ur10e_slotine_li_regressor(
     const ur10e_real_t t59 = t52 * t49 + t54 * (t42 + t48) + UR10E_C(0.08250825082508251) * t58;
     out[66] = t59;
     out[118] = UR10E_C(0.09900990099009899) * t58;
-    const ur10e_real_t t60 = UR10E_COS(q[3]);
-    const ur10e_real_t t61 = UR10E_SIN(q[3]);
     const ur10e_real_t t62 = t60 * t23 - t61 * t33;
     const ur10e_real_t t63 = t60 * t24 + t61 * t26;
     const ur10e_real_t t64 = t63 * ddq_r[0];
@@ -231,9 +235,7 @@ int ur10e_slotine_li_regressor(
     out[73] = t99 * t89 + t100 * t107 + t110;
     out[125] = UR10E_C(1.1999999999999997) * (t110 + (t105 * t89 + t106 * t107));
     out[177] = UR10E_C(0.11001100110011) * t109;
-    const ur10e_real_t t111 = UR10E_COS(q[4]);
     const ur10e_real_t t112 = t111 * t62;
-    const ur10e_real_t t113 = UR10E_SIN(q[4]);
     const ur10e_real_t t114 = t113 * t89 + t111 * t78;
     const ur10e_real_t t115 = t111 * t68 - t113 * t73;
     const ur10e_real_t t116 = t69 - dq_r[4];
@@ -320,8 +322,6 @@ int ur10e_slotine_li_regressor(
     out[132] = UR10E_C(1.1999999999999997) * (t164 + (t106 * t132 + t159 * t162));
     out[184] = UR10E_C(1.3333333333333333) * (t164 + UR10E_C(-0.009888613861386139) * t162);
     out[236] = UR10E_C(0.11001100110011001) * t160;
-    const ur10e_real_t t165 = UR10E_COS(q[5]);
-    const ur10e_real_t t166 = UR10E_SIN(q[5]);
     const ur10e_real_t t167 = t166 * t72 - t165 * t112;
     const ur10e_real_t t168 = t166 * t145 - t165 * t132;
     const ur10e_real_t t169 = t166 * t122 - t165 * t117;

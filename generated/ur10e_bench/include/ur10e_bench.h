@@ -65,7 +65,7 @@
 #define UR10E_BENCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_BENCH_GENERATION 0xBC084F32UL
+#define UR10E_BENCH_GENERATION 0x686D0BCFUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef UR10E_BENCH_REAL
@@ -96,7 +96,7 @@ typedef UR10E_BENCH_REAL ur10e_bench_real_t;
 
 #define UR10E_BENCH_STATUS_OK     0
 #define UR10E_BENCH_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define UR10E_BENCH_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define UR10E_BENCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define UR10E_BENCH_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -62,7 +62,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -77,8 +77,8 @@ int ur10e_bench_bias(
         };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
         || !ur10e_bench_within(parameters, 36, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -87,8 +87,16 @@ int ur10e_bench_bias(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t11, t10;
+    UR10E_BENCH_SINCOS(q[2], &t11, &t10);
+    ur10e_bench_real_t t24, t23;
+    UR10E_BENCH_SINCOS(q[3], &t24, &t23);
+    ur10e_bench_real_t t38, t37;
+    UR10E_BENCH_SINCOS(q[4], &t38, &t37);
+    ur10e_bench_real_t t69, t68;
+    UR10E_BENCH_SINCOS(q[5], &t69, &t68);
     const ur10e_bench_real_t t2 = t1 * dq[0];
     const ur10e_bench_real_t t3 = dq[1] * t2;
     const ur10e_bench_real_t t4 = t0 * dq[0];
@@ -98,8 +106,6 @@ int ur10e_bench_bias(
     const ur10e_bench_real_t t7 = t4 * t2;
     const ur10e_bench_real_t t8 = t2 * t2;
     const ur10e_bench_real_t t9 = dq[1] * dq[1];
-    const ur10e_bench_real_t t10 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t11 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t12 = t10 * t2 - t11 * t4;
     const ur10e_bench_real_t t13 = dq[1] + dq[2];
     const ur10e_bench_real_t t14 = t12 * t13;
@@ -112,8 +118,6 @@ int ur10e_bench_bias(
     const ur10e_bench_real_t t20 = t12 * t12;
     const ur10e_bench_real_t t21 = t13 * t13;
     const ur10e_bench_real_t t22 = UR10E_BENCH_C(-1.2254) * t5;
-    const ur10e_bench_real_t t23 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t24 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t25 = t24 * t15 - t23 * t12;
     const ur10e_bench_real_t t26 = dq[3] + t13;
     const ur10e_bench_real_t t27 = t25 * t26;
@@ -128,8 +132,6 @@ int ur10e_bench_bias(
     const ur10e_bench_real_t t35 = t15 * t15;
     const ur10e_bench_real_t t36 = t22 + (UR10E_BENCH_C(-1.1431) * t16 + UR10E_BENCH_C(-0.17415) * (t35
         + t20));
-    const ur10e_bench_real_t t37 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t38 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t39 = UR10E_BENCH_C(2.0) * t27;
     const ur10e_bench_real_t t40 = t38 * t31 - t37 * t39;
     const ur10e_bench_real_t t41 = t38 * t28 - t37 * t26;
@@ -160,8 +162,6 @@ int ur10e_bench_bias(
     const ur10e_bench_real_t t65 = t28 * t28;
     const ur10e_bench_real_t t66 = t65 + t34;
     const ur10e_bench_real_t t67 = t64 + UR10E_BENCH_C(-0.11985) * t66;
-    const ur10e_bench_real_t t68 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t69 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t70 = t29 + t50;
     const ur10e_bench_real_t t71 = t44 - t43;
     const ur10e_bench_real_t t72 = t68 * t71 - t69 * t70;

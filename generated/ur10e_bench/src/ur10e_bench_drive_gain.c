@@ -21,7 +21,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int ur10e_bench_drive_gain(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {

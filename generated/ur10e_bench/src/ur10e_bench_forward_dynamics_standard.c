@@ -88,7 +88,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,9 +104,9 @@ int ur10e_bench_forward_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6 };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(input, 6, UR10E_BENCH_C(1.0e18))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(input, UR10E_BENCH_C(1.0e18))
         || !ur10e_bench_within(parameters, 60, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -115,8 +115,16 @@ int ur10e_bench_forward_dynamics_standard(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t14, t12;
+    UR10E_BENCH_SINCOS(q[2], &t14, &t12);
+    ur10e_bench_real_t t32, t30;
+    UR10E_BENCH_SINCOS(q[3], &t32, &t30);
+    ur10e_bench_real_t t52, t51;
+    UR10E_BENCH_SINCOS(q[4], &t52, &t51);
+    ur10e_bench_real_t t78, t77;
+    UR10E_BENCH_SINCOS(q[5], &t78, &t77);
     const ur10e_bench_real_t t2 = t1 * dq[0];
     const ur10e_bench_real_t t3 = dq[1] * t2;
     const ur10e_bench_real_t t4 = t0 * dq[0];
@@ -129,9 +137,7 @@ int ur10e_bench_forward_dynamics_standard(
     const ur10e_bench_real_t t10 = UR10E_BENCH_C(9.81) * t1;
     const ur10e_bench_real_t t11 = t6 - t7 * parameters[XZ2] + (t9 - t8) * parameters[YZ2]
         + t10 * parameters[MZ2];
-    const ur10e_bench_real_t t12 = UR10E_BENCH_COS(q[2]);
     const ur10e_bench_real_t t13 = dq[1] + dq[2];
-    const ur10e_bench_real_t t14 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t15 = t14 * t4 - t12 * t2;
     const ur10e_bench_real_t t16 = t13 * t15;
     const ur10e_bench_real_t t17 = t12 * t4 + t14 * t2;
@@ -149,9 +155,7 @@ int ur10e_bench_forward_dynamics_standard(
     const ur10e_bench_real_t t28 = t14 * t26 + t12 * t27;
     const ur10e_bench_real_t t29 = t20 + parameters[XZ3] * t21 + parameters[YZ3] * (t22 - t23)
         + (parameters[MY3] * t24 + parameters[MZ3] * t28);
-    const ur10e_bench_real_t t30 = UR10E_BENCH_COS(q[3]);
     const ur10e_bench_real_t t31 = dq[3] + t13;
-    const ur10e_bench_real_t t32 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t33 = t32 * t17 + t30 * t15;
     const ur10e_bench_real_t t34 = t31 * t33;
     const ur10e_bench_real_t t35 = t30 * t17 - t32 * t15;
@@ -172,8 +176,6 @@ int ur10e_bench_forward_dynamics_standard(
     const ur10e_bench_real_t t49 = t30 * t48 - t32 * t47;
     const ur10e_bench_real_t t50 = t38 + parameters[XZ4] * t39 + parameters[YZ4] * (t40 - t41)
         + (parameters[MY4] * t44 + parameters[MZ4] * t49);
-    const ur10e_bench_real_t t51 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t52 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t53 = UR10E_BENCH_C(2.0) * t34;
     const ur10e_bench_real_t t54 = t51 * t53 - t52 * t39;
     const ur10e_bench_real_t t55 = t51 * t31 - t52 * t35;
@@ -200,8 +202,6 @@ int ur10e_bench_forward_dynamics_standard(
     const ur10e_bench_real_t t75 = t52 * t73 + t51 * t74;
     const ur10e_bench_real_t t76 = t64 - parameters[XZ5] * t66 + parameters[YZ5] * (t68 - t67)
         + (parameters[MY5] * t71 - parameters[MZ5] * t75);
-    const ur10e_bench_real_t t77 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t78 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t79 = t65 - t36;
     const ur10e_bench_real_t t80 = t58 - t57;
     const ur10e_bench_real_t t81 = t78 * t79 - t77 * t80;

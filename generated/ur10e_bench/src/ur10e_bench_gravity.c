@@ -61,7 +61,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -75,7 +75,7 @@ int ur10e_bench_gravity(
         };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
         || !ur10e_bench_within(parameters, 36, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -84,24 +84,24 @@ int ur10e_bench_gravity(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t2 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t3 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t4 = UR10E_BENCH_SIN(q[3]);
+    ur10e_bench_real_t t0, t7;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t7);
+    ur10e_bench_real_t t6, t1;
+    UR10E_BENCH_SINCOS(q[2], &t6, &t1);
+    ur10e_bench_real_t t4, t2;
+    UR10E_BENCH_SINCOS(q[3], &t4, &t2);
+    ur10e_bench_real_t t13, t3;
+    UR10E_BENCH_SINCOS(q[4], &t13, &t3);
+    ur10e_bench_real_t t17, t12;
+    UR10E_BENCH_SINCOS(q[5], &t17, &t12);
     const ur10e_bench_real_t t5 = UR10E_BENCH_C(-9.81) * t0;
-    const ur10e_bench_real_t t6 = UR10E_BENCH_SIN(q[2]);
-    const ur10e_bench_real_t t7 = UR10E_BENCH_COS(q[1]);
     const ur10e_bench_real_t t8 = UR10E_BENCH_C(9.81) * t7;
     const ur10e_bench_real_t t9 = t1 * t5 - t6 * t8;
     const ur10e_bench_real_t t10 = t6 * t5 + t1 * t8;
     const ur10e_bench_real_t t11 = t4 * t9 + t2 * t10;
-    const ur10e_bench_real_t t12 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t13 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t14 = t2 * t9 - t4 * t10;
     const ur10e_bench_real_t t15 = t13 * t14;
     const ur10e_bench_real_t t16 = parameters[MY6] * t15;
-    const ur10e_bench_real_t t17 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t18 = parameters[MX6] * t15;
     const ur10e_bench_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
     const ur10e_bench_real_t t20 = t3 * t14;

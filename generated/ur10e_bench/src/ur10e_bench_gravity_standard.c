@@ -85,7 +85,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -99,7 +99,7 @@ int ur10e_bench_gravity_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6 };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
         || !ur10e_bench_within(parameters, 60, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -108,23 +108,23 @@ int ur10e_bench_gravity_standard(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t4, t3;
+    UR10E_BENCH_SINCOS(q[2], &t4, &t3);
+    ur10e_bench_real_t t8, t7;
+    UR10E_BENCH_SINCOS(q[3], &t8, &t7);
+    ur10e_bench_real_t t12, t11;
+    UR10E_BENCH_SINCOS(q[4], &t12, &t11);
+    ur10e_bench_real_t t16, t15;
+    UR10E_BENCH_SINCOS(q[5], &t16, &t15);
     const ur10e_bench_real_t t2 = UR10E_BENCH_C(-9.81) * t1;
-    const ur10e_bench_real_t t3 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t4 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t5 = UR10E_BENCH_C(9.81) * t0;
     const ur10e_bench_real_t t6 = t4 * t5 + t3 * t2;
-    const ur10e_bench_real_t t7 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t8 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t9 = t4 * t2 - t3 * t5;
     const ur10e_bench_real_t t10 = t7 * t6 - t8 * t9;
-    const ur10e_bench_real_t t11 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t12 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t13 = t7 * t9 + t8 * t6;
     const ur10e_bench_real_t t14 = t12 * t13;
-    const ur10e_bench_real_t t15 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t16 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t17 = t11 * t13;
     const ur10e_bench_real_t t18 = t16 * t17 - t15 * t10;
     const ur10e_bench_real_t t19 = t18 * parameters[MZ6] - t14 * parameters[MY6];

@@ -63,7 +63,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -79,9 +79,9 @@ int ur10e_bench_inverse_dynamics(
         };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq, 6, UR10E_BENCH_C(1.0e16))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq, UR10E_BENCH_C(1.0e16))
         || !ur10e_bench_within(parameters, 36, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -90,8 +90,16 @@ int ur10e_bench_inverse_dynamics(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t19, t15;
+    UR10E_BENCH_SINCOS(q[2], &t19, &t15);
+    ur10e_bench_real_t t38, t35;
+    UR10E_BENCH_SINCOS(q[3], &t38, &t35);
+    ur10e_bench_real_t t58, t57;
+    UR10E_BENCH_SINCOS(q[4], &t58, &t57);
+    ur10e_bench_real_t t91, t90;
+    UR10E_BENCH_SINCOS(q[5], &t91, &t90);
     const ur10e_bench_real_t t2 = t1 * dq[0];
     const ur10e_bench_real_t t3 = t2 * t2;
     const ur10e_bench_real_t t4 = dq[1] * dq[1];
@@ -106,11 +114,9 @@ int ur10e_bench_inverse_dynamics(
     const ur10e_bench_real_t t13 = ddq[1] + t12;
     const ur10e_bench_real_t t14 = parameters[ZZ2R] * t5 + parameters[XX2R] * t7 + parameters[XY2] * t11
         + parameters[XZ2R] * t13;
-    const ur10e_bench_real_t t15 = UR10E_BENCH_COS(q[2]);
     const ur10e_bench_real_t t16 = UR10E_BENCH_C(0.6127) * t11;
     const ur10e_bench_real_t t17 = dq[1] + dq[2];
     const ur10e_bench_real_t t18 = t17 * t17;
-    const ur10e_bench_real_t t19 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t20 = t1 * t15 - t0 * t19;
     const ur10e_bench_real_t t21 = dq[0] * t20;
     const ur10e_bench_real_t t22 = t21 * t21;
@@ -127,10 +133,8 @@ int ur10e_bench_inverse_dynamics(
     const ur10e_bench_real_t t33 = t31 + t32;
     const ur10e_bench_real_t t34 = parameters[ZZ3R] * t23 + parameters[XX3R] * t26 + parameters[XY3] * t30
         + parameters[XZ3R] * t33;
-    const ur10e_bench_real_t t35 = UR10E_BENCH_COS(q[3]);
     const ur10e_bench_real_t t36 = dq[3] + t17;
     const ur10e_bench_real_t t37 = t36 * t36;
-    const ur10e_bench_real_t t38 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t39 = t38 * t24 - t35 * t20;
     const ur10e_bench_real_t t40 = dq[0] * t39;
     const ur10e_bench_real_t t41 = t40 * t40;
@@ -151,8 +155,6 @@ int ur10e_bench_inverse_dynamics(
     const ur10e_bench_real_t t55 = t27 * t27;
     const ur10e_bench_real_t t56 = t16 + (UR10E_BENCH_C(-0.17415) * (t55 + t22)
         + UR10E_BENCH_C(0.57155) * t30);
-    const ur10e_bench_real_t t57 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t58 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t59 = t57 * t36 - t58 * t46;
     const ur10e_bench_real_t t60 = t59 * t59;
     const ur10e_bench_real_t t61 = dq[4] + t40;
@@ -185,8 +187,6 @@ int ur10e_bench_inverse_dynamics(
     const ur10e_bench_real_t t87 = t86 + (UR10E_BENCH_C(0.57155) * t33 + UR10E_BENCH_C(0.17415) * t25);
     const ur10e_bench_real_t t88 = t38 * t85 + t35 * t87;
     const ur10e_bench_real_t t89 = UR10E_BENCH_C(-0.11985) * t78 + t88;
-    const ur10e_bench_real_t t90 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t91 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t92 = t91 * t68 + t90 * t61;
     const ur10e_bench_real_t t93 = t92 * t92;
     const ur10e_bench_real_t t94 = dq[5] + t59;

@@ -87,7 +87,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -103,9 +103,9 @@ int ur10e_bench_inverse_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6 };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq, 6, UR10E_BENCH_C(1.0e16))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq, UR10E_BENCH_C(1.0e16))
         || !ur10e_bench_within(parameters, 60, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -114,8 +114,16 @@ int ur10e_bench_inverse_dynamics_standard(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t20, t18;
+    UR10E_BENCH_SINCOS(q[2], &t20, &t18);
+    ur10e_bench_real_t t45, t44;
+    UR10E_BENCH_SINCOS(q[3], &t45, &t44);
+    ur10e_bench_real_t t74, t73;
+    UR10E_BENCH_SINCOS(q[4], &t74, &t73);
+    ur10e_bench_real_t t102, t101;
+    UR10E_BENCH_SINCOS(q[5], &t102, &t101);
     const ur10e_bench_real_t t2 = UR10E_BENCH_C(-9.81) * t1;
     const ur10e_bench_real_t t3 = t1 * dq[0];
     const ur10e_bench_real_t t4 = t3 * t3;
@@ -134,9 +142,7 @@ int ur10e_bench_inverse_dynamics_standard(
     const ur10e_bench_real_t t16 = ddq[1] + t15;
     const ur10e_bench_real_t t17 = t2 * parameters[MZ2] + ((t4 - t5) * parameters[YZ2] + (t14
         + t16 * parameters[XZ2]));
-    const ur10e_bench_real_t t18 = UR10E_BENCH_COS(q[2]);
     const ur10e_bench_real_t t19 = UR10E_BENCH_C(0.6127) * t13;
-    const ur10e_bench_real_t t20 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t21 = UR10E_BENCH_C(9.81) * t0;
     const ur10e_bench_real_t t22 = t21 + UR10E_BENCH_C(0.6127) * (t4 + t5);
     const ur10e_bench_real_t t23 = t2 + UR10E_BENCH_C(0.6127) * t16;
@@ -162,8 +168,6 @@ int ur10e_bench_inverse_dynamics_standard(
     const ur10e_bench_real_t t42 = t40 + t41;
     const ur10e_bench_real_t t43 = t19 * parameters[MY3] + t24 * parameters[MZ3] + ((t27
         - t29) * parameters[YZ3] + (t39 + t42 * parameters[XZ3]));
-    const ur10e_bench_real_t t44 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t45 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t46 = t45 * t31 - t44 * t25;
     const ur10e_bench_real_t t47 = dq[0] * t46;
     const ur10e_bench_real_t t48 = t47 * t47;
@@ -193,8 +197,6 @@ int ur10e_bench_inverse_dynamics_standard(
     const ur10e_bench_real_t t71 = t45 * t69 + t44 * t70;
     const ur10e_bench_real_t t72 = (t48 - t50) * parameters[YZ4] + (t60 + t63 * parameters[XZ4])
         + (t66 * parameters[MY4] + t71 * parameters[MZ4]);
-    const ur10e_bench_real_t t73 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t74 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t75 = t73 * t49 - t74 * t55;
     const ur10e_bench_real_t t76 = t75 * t75;
     const ur10e_bench_real_t t77 = dq[4] + t47;
@@ -223,8 +225,6 @@ int ur10e_bench_inverse_dynamics_standard(
     const ur10e_bench_real_t t99 = t74 * t97 + t73 * t98;
     const ur10e_bench_real_t t100 = (t76 - t78) * parameters[YZ5] + (t89 + t92 * parameters[XZ5])
         + (t95 * parameters[MY5] - t99 * parameters[MZ5]);
-    const ur10e_bench_real_t t101 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t102 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t103 = t102 * t84 + t101 * t77;
     const ur10e_bench_real_t t104 = t103 * t103;
     const ur10e_bench_real_t t105 = dq[5] + t75;

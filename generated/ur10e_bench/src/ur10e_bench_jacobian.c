@@ -21,7 +21,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -31,7 +31,7 @@ int ur10e_bench_jacobian(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {
@@ -39,23 +39,23 @@ int ur10e_bench_jacobian(
         return status;
     }
 
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[0]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
+    ur10e_bench_real_t t0, t9;
+    UR10E_BENCH_SINCOS(q[0], &t0, &t9);
+    ur10e_bench_real_t t6, t1;
+    UR10E_BENCH_SINCOS(q[1], &t6, &t1);
+    ur10e_bench_real_t t5, t4;
+    UR10E_BENCH_SINCOS(q[2], &t5, &t4);
+    ur10e_bench_real_t t11, t12;
+    UR10E_BENCH_SINCOS(q[3], &t11, &t12);
+    ur10e_bench_real_t t15, t16;
+    UR10E_BENCH_SINCOS(q[4], &t15, &t16);
     const ur10e_bench_real_t t2 = t0 * t1;
     const ur10e_bench_real_t t3 = UR10E_BENCH_C(0.6127) * t2;
-    const ur10e_bench_real_t t4 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t5 = UR10E_BENCH_SIN(q[2]);
-    const ur10e_bench_real_t t6 = UR10E_BENCH_SIN(q[1]);
     const ur10e_bench_real_t t7 = t0 * t6;
     const ur10e_bench_real_t t8 = t4 * t2 - t5 * t7;
-    const ur10e_bench_real_t t9 = UR10E_BENCH_COS(q[0]);
     const ur10e_bench_real_t t10 = t3 + (UR10E_BENCH_C(0.57155) * t8 + UR10E_BENCH_C(0.17415) * t9);
-    const ur10e_bench_real_t t11 = UR10E_BENCH_SIN(q[3]);
-    const ur10e_bench_real_t t12 = UR10E_BENCH_COS(q[3]);
     const ur10e_bench_real_t t13 = t5 * t2 + t4 * t7;
     const ur10e_bench_real_t t14 = t11 * t8 + t12 * t13;
-    const ur10e_bench_real_t t15 = UR10E_BENCH_SIN(q[4]);
-    const ur10e_bench_real_t t16 = UR10E_BENCH_COS(q[4]);
     const ur10e_bench_real_t t17 = t15 * (t11 * t13 - t12 * t8) - t9 * t16;
     const ur10e_bench_real_t t18 = UR10E_BENCH_C(-0.11655) * t17;
     const ur10e_bench_real_t t19 = t10 + UR10E_BENCH_C(-0.11985) * t14 + t18;

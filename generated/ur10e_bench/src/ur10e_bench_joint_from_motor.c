@@ -25,7 +25,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int ur10e_bench_joint_from_motor(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q_m, 6, UR10E_BENCH_C(1.0e18))
-        || !ur10e_bench_within(dq_m, 6, UR10E_BENCH_C(1.0e18))
-        || !ur10e_bench_within(ddq_m, 6, UR10E_BENCH_C(1.0e18))) {
+    if (!ur10e_bench_within_joints(q_m, UR10E_BENCH_C(1.0e18))
+        || !ur10e_bench_within_joints(dq_m, UR10E_BENCH_C(1.0e18))
+        || !ur10e_bench_within_joints(ddq_m, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {

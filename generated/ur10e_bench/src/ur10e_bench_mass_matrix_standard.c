@@ -85,7 +85,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -99,7 +99,7 @@ int ur10e_bench_mass_matrix_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6 };
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
         || !ur10e_bench_within(parameters, 60, UR10E_BENCH_C(1.0e18))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
@@ -108,10 +108,17 @@ int ur10e_bench_mass_matrix_standard(
         return status;
     }
 
+    ur10e_bench_real_t t61, t54;
+    UR10E_BENCH_SINCOS(q[1], &t61, &t54);
+    ur10e_bench_real_t t50, t46;
+    UR10E_BENCH_SINCOS(q[2], &t50, &t46);
+    ur10e_bench_real_t t32, t21;
+    UR10E_BENCH_SINCOS(q[3], &t32, &t21);
+    ur10e_bench_real_t t12, t1;
+    UR10E_BENCH_SINCOS(q[4], &t12, &t1);
+    ur10e_bench_real_t t3, t2;
+    UR10E_BENCH_SINCOS(q[5], &t3, &t2);
     const ur10e_bench_real_t t0 = parameters[YY5] + parameters[ZZ6];
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t2 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t3 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t4 = t2 * (parameters[XX6] - parameters[YY6])
         - parameters[XY6] * (UR10E_BENCH_C(2.0) * t3);
     const ur10e_bench_real_t t5 = t2 * t4;
@@ -121,7 +128,6 @@ int ur10e_bench_mass_matrix_standard(
     const ur10e_bench_real_t t9 = t2 * parameters[MX6] - t3 * parameters[MY6];
     const ur10e_bench_real_t t10 = t2 * parameters[XZ6] - t3 * parameters[YZ6] + UR10E_BENCH_C(-0.11655) * t9;
     const ur10e_bench_real_t t11 = parameters[XY5] + t10;
-    const ur10e_bench_real_t t12 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t13 = t1 * (t8 - t0) + t11 * (UR10E_BENCH_C(-2.0) * t12);
     const ur10e_bench_real_t t14 = t1 * t13;
     const ur10e_bench_real_t t15 = parameters[M5] + parameters[M6];
@@ -130,7 +136,6 @@ int ur10e_bench_mass_matrix_standard(
     const ur10e_bench_real_t t18 = t17 - parameters[MZ5];
     const ur10e_bench_real_t t19 = UR10E_BENCH_C(0.11985) * (t16 + UR10E_BENCH_C(-2.0) * t18);
     const ur10e_bench_real_t t20 = parameters[XX4] + (t0 + t14 + t19);
-    const ur10e_bench_real_t t21 = UR10E_BENCH_COS(q[3]);
     const ur10e_bench_real_t t22 = parameters[ZZ5] + (parameters[XX6] - t5 + t7);
     const ur10e_bench_real_t t23 = parameters[YY4] + t22;
     const ur10e_bench_real_t t24 = parameters[XZ5] - (parameters[XY6] + t3 * t4);
@@ -142,7 +147,6 @@ int ur10e_bench_mass_matrix_standard(
     const ur10e_bench_real_t t29 = t1 * t28 - t12 * t27;
     const ur10e_bench_real_t t30 = t12 * t26 - t1 * t24 + UR10E_BENCH_C(0.11985) * t29;
     const ur10e_bench_real_t t31 = parameters[XY4] + t30;
-    const ur10e_bench_real_t t32 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t33 = t21 * (t20 - t23) + t31 * (UR10E_BENCH_C(-2.0) * t32);
     const ur10e_bench_real_t t34 = t21 * t33;
     const ur10e_bench_real_t t35 = parameters[M4] + t15;
@@ -156,15 +160,12 @@ int ur10e_bench_mass_matrix_standard(
     const ur10e_bench_real_t t43 = parameters[MZ4] + t42;
     const ur10e_bench_real_t t44 = UR10E_BENCH_C(0.17415) * (t41 + UR10E_BENCH_C(2.0) * t43);
     const ur10e_bench_real_t t45 = parameters[YY3] + (t20 - t34 + (t40 + t44));
-    const ur10e_bench_real_t t46 = UR10E_BENCH_COS(q[2]);
     const ur10e_bench_real_t t47 = parameters[XX3] + (t23 + t34 + t44);
     const ur10e_bench_real_t t48 = t21 * t37 + t32 * t38;
     const ur10e_bench_real_t t49 = parameters[XY3] + (t31 + t32 * t33 + UR10E_BENCH_C(0.57155) * t48);
-    const ur10e_bench_real_t t50 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t51 = t46 * (t47 - t45) - t49 * (UR10E_BENCH_C(2.0) * t50);
     const ur10e_bench_real_t t52 = t46 * t51;
     const ur10e_bench_real_t t53 = parameters[XX2] + (t45 + t52);
-    const ur10e_bench_real_t t54 = UR10E_BENCH_COS(q[1]);
     const ur10e_bench_real_t t55 = parameters[MY3] + t48;
     const ur10e_bench_real_t t56 = t39 + t36;
     const ur10e_bench_real_t t57 = parameters[MX3] - t56;
@@ -172,7 +173,6 @@ int ur10e_bench_mass_matrix_standard(
     const ur10e_bench_real_t t59 = UR10E_BENCH_C(0.6127) * (UR10E_BENCH_C(0.6127) * (parameters[M3] + t35)
         + UR10E_BENCH_C(2.0) * t58);
     const ur10e_bench_real_t t60 = t49 + t50 * t51 + UR10E_BENCH_C(0.6127) * (t46 * t55 + t50 * t57);
-    const ur10e_bench_real_t t61 = UR10E_BENCH_SIN(q[1]);
     const ur10e_bench_real_t t62 = t54 * (parameters[YY2] + (t47 - t52 + t59) - t53) + (parameters[XY2]
         + t60) * (UR10E_BENCH_C(2.0) * t61);
     out[0] = parameters[ZZ1] + (t53 + t54 * t62);

@@ -25,7 +25,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -39,9 +39,9 @@ int ur10e_bench_motor_from_joint(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq, 6, UR10E_BENCH_C(1.0e16))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq, UR10E_BENCH_C(1.0e16))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {

@@ -12,7 +12,7 @@
 
 #include "ur10e_bench.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define UR10E_BENCH_MATH_double(name) name
 #define UR10E_BENCH_MATH(name) UR10E_BENCH_JOIN(UR10E_BENCH_MATH_, UR10E_BENCH_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DUR10E_BENCH_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, UR10E_BENCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DUR10E_BENCH_SINCOS=my_sincos, or with both of
+ * -DUR10E_BENCH_SIN=my_sin -DUR10E_BENCH_COS=my_cos; -include my_header.h declares it.
+ */
+#define UR10E_BENCH_SINGLE_float 1
+#define UR10E_BENCH_SINGLE_double 0
+#if !defined(UR10E_BENCH_SINCOS) && !defined(UR10E_BENCH_SIN) && !defined(UR10E_BENCH_COS)
+#define UR10E_BENCH_OWN_SINCOS UR10E_BENCH_JOIN(UR10E_BENCH_SINGLE_, UR10E_BENCH_REAL)
+#else
+#define UR10E_BENCH_OWN_SINCOS 0
+#endif
 #ifndef UR10E_BENCH_SIN
 #define UR10E_BENCH_SIN UR10E_BENCH_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline ur10e_bench_real_t ur10e_bench_select(ur10e_bench_real_t condition
     return condition > UR10E_BENCH_C(0.0) ? a : b;
 }
 
+#if UR10E_BENCH_OWN_SINCOS
+typedef struct {
+    ur10e_bench_real_t sine;
+    ur10e_bench_real_t cosine;
+} ur10e_bench_pair_t;
+
+/* Two numbers by value travel in registers. */
+ur10e_bench_pair_t ur10e_bench_sincos(ur10e_bench_real_t x);
+#endif
+
+#ifndef UR10E_BENCH_SINCOS
+#define UR10E_BENCH_SINCOS ur10e_bench_sine_cosine
+static inline void ur10e_bench_sine_cosine(ur10e_bench_real_t x, ur10e_bench_real_t *sine, ur10e_bench_real_t *cosine)
+{
+#if UR10E_BENCH_OWN_SINCOS
+    const ur10e_bench_pair_t pair = ur10e_bench_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = UR10E_BENCH_SIN(x);
+    *cosine = UR10E_BENCH_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int ur10e_bench_within(const ur10e_bench_real_t x[], int n, ur10e_bench_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int ur10e_bench_within(const ur10e_bench_real_t x[], int n, ur10e_
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int ur10e_bench_within_joints(const ur10e_bench_real_t x[], ur10e_bench_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
 
 static inline void ur10e_bench_zero(ur10e_bench_real_t x[], int n)

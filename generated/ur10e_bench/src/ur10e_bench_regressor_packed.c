@@ -30,7 +30,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -58,9 +58,9 @@ int ur10e_bench_regressor_packed(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq, 6, UR10E_BENCH_C(1.0e16))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq, UR10E_BENCH_C(1.0e16))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {
@@ -68,9 +68,17 @@ int ur10e_bench_regressor_packed(
         return status;
     }
 
+    ur10e_bench_real_t t0, t1;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
+    ur10e_bench_real_t t19, t18;
+    UR10E_BENCH_SINCOS(q[2], &t19, &t18);
+    ur10e_bench_real_t t51, t50;
+    UR10E_BENCH_SINCOS(q[3], &t51, &t50);
+    ur10e_bench_real_t t94, t93;
+    UR10E_BENCH_SINCOS(q[4], &t94, &t93);
+    ur10e_bench_real_t t143, t144;
+    UR10E_BENCH_SINCOS(q[5], &t143, &t144);
     out[0] = ddq[0];
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
-    const ur10e_bench_real_t t1 = UR10E_BENCH_COS(q[1]);
     const ur10e_bench_real_t t2 = t1 * dq[0];
     const ur10e_bench_real_t t3 = dq[1] * t2;
     const ur10e_bench_real_t t4 = t0 * ddq[0];
@@ -99,8 +107,6 @@ int ur10e_bench_regressor_packed(
     out[39] = t16;
     const ur10e_bench_real_t t17 = UR10E_BENCH_C(-9.81) * t0;
     out[40] = t17;
-    const ur10e_bench_real_t t18 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t19 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t20 = t0 * t18 + t1 * t19;
     const ur10e_bench_real_t t21 = dq[1] + dq[2];
     const ur10e_bench_real_t t22 = t1 * t18 - t0 * t19;
@@ -152,8 +158,6 @@ int ur10e_bench_regressor_packed(
     const ur10e_bench_real_t t49 = t18 * t43 - t19 * t44;
     out[47] = t49 + (t40 * t47 + (t39 + t34) * t48);
     out[75] = t49;
-    const ur10e_bench_real_t t50 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t51 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t52 = t50 * t20 + t51 * t22;
     const ur10e_bench_real_t t53 = dq[3] + t21;
     const ur10e_bench_real_t t54 = t50 * t22 - t51 * t20;
@@ -224,8 +228,6 @@ int ur10e_bench_regressor_packed(
     out[54] = t92 + (t73 * t86 + t90 * t87);
     out[82] = t92 + (t73 * t88 + t90 * t89);
     out[103] = t92;
-    const ur10e_bench_real_t t93 = UR10E_BENCH_COS(q[4]);
-    const ur10e_bench_real_t t94 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t95 = t94 * t59 - t93 * t53;
     const ur10e_bench_real_t t96 = t55 - dq[4];
     const ur10e_bench_real_t t97 = t95 * t96;
@@ -309,8 +311,6 @@ int ur10e_bench_regressor_packed(
     out[89] = t142 + (t108 * t89 - t137 * t140);
     out[110] = t142 + UR10E_BENCH_C(0.11985) * t140;
     out[124] = t138;
-    const ur10e_bench_real_t t143 = UR10E_BENCH_SIN(q[5]);
-    const ur10e_bench_real_t t144 = UR10E_BENCH_COS(q[5]);
     const ur10e_bench_real_t t145 = t143 * t101 - t144 * t96;
     const ur10e_bench_real_t t146 = t95 - dq[5];
     const ur10e_bench_real_t t147 = t145 * t146;

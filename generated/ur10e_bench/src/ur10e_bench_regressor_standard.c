@@ -32,7 +32,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -44,9 +44,9 @@ int ur10e_bench_regressor_standard(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq, 6, UR10E_BENCH_C(1.0e16))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq, UR10E_BENCH_C(1.0e16))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {
@@ -54,10 +54,18 @@ int ur10e_bench_regressor_standard(
         return status;
     }
 
+    ur10e_bench_real_t t0, t2;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t2);
+    ur10e_bench_real_t t21, t20;
+    UR10E_BENCH_SINCOS(q[2], &t21, &t20);
+    ur10e_bench_real_t t60, t59;
+    UR10E_BENCH_SINCOS(q[3], &t60, &t59);
+    ur10e_bench_real_t t112, t113;
+    UR10E_BENCH_SINCOS(q[4], &t112, &t113);
+    ur10e_bench_real_t t175, t176;
+    UR10E_BENCH_SINCOS(q[5], &t175, &t176);
     out[5] = ddq[0];
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
     const ur10e_bench_real_t t1 = t0 * ddq[0];
-    const ur10e_bench_real_t t2 = UR10E_BENCH_COS(q[1]);
     const ur10e_bench_real_t t3 = t2 * dq[0];
     const ur10e_bench_real_t t4 = dq[1] * t3;
     const ur10e_bench_real_t t5 = t1 + t4;
@@ -89,8 +97,6 @@ int ur10e_bench_regressor_standard(
     out[76] = t18;
     const ur10e_bench_real_t t19 = UR10E_BENCH_C(-9.81) * t0;
     out[77] = t19;
-    const ur10e_bench_real_t t20 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t21 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t22 = t0 * t20 + t2 * t21;
     const ur10e_bench_real_t t23 = ddq[0] * t22;
     const ur10e_bench_real_t t24 = t2 * t20 - t0 * t21;
@@ -156,8 +162,6 @@ int ur10e_bench_regressor_standard(
     out[88] = t58;
     out[29] = t49 * t48;
     out[89] = t56 * t54 - t52 * t55;
-    const ur10e_bench_real_t t59 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t60 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t61 = t59 * t22 + t60 * t24;
     const ur10e_bench_real_t t62 = ddq[0] * t61;
     const ur10e_bench_real_t t63 = t59 * t24 - t60 * t22;
@@ -249,8 +253,6 @@ int ur10e_bench_regressor_standard(
     out[99] = t110;
     const ur10e_bench_real_t t111 = t104 * t100 - t96 * t101;
     out[159] = t111;
-    const ur10e_bench_real_t t112 = UR10E_BENCH_SIN(q[4]);
-    const ur10e_bench_real_t t113 = UR10E_BENCH_COS(q[4]);
     const ur10e_bench_real_t t114 = t112 * t84 + t113 * t73;
     const ur10e_bench_real_t t115 = t113 * t65 - t112 * t68;
     const ur10e_bench_real_t t116 = dq[4] - t64;
@@ -361,8 +363,6 @@ int ur10e_bench_regressor_standard(
     out[169] = t173;
     const ur10e_bench_real_t t174 = t171 + UR10E_BENCH_C(-0.11985) * t104;
     out[229] = t174;
-    const ur10e_bench_real_t t175 = UR10E_BENCH_SIN(q[5]);
-    const ur10e_bench_real_t t176 = UR10E_BENCH_COS(q[5]);
     const ur10e_bench_real_t t177 = t175 * t143 + t176 * t128;
     const ur10e_bench_real_t t178 = t175 * t120 + t176 * t116;
     const ur10e_bench_real_t t179 = dq[5] + t115;

@@ -33,7 +33,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0xBC084F32UL
+#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
 #error "ur10e_bench.h and ur10e_bench_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -46,10 +46,10 @@ int ur10e_bench_slotine_li_regressor(
 {
     int status = UR10E_BENCH_STATUS_OK;
 
-    if (!ur10e_bench_within(q, 6, UR10E_BENCH_C(1.0e8))
-        || !ur10e_bench_within(dq, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(dq_r, 6, UR10E_BENCH_C(1.0e10))
-        || !ur10e_bench_within(ddq_r, 6, UR10E_BENCH_C(1.0e16))) {
+    if (!ur10e_bench_within_joints(q, UR10E_BENCH_C(1.0e8))
+        || !ur10e_bench_within_joints(dq, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(dq_r, UR10E_BENCH_C(1.0e10))
+        || !ur10e_bench_within_joints(ddq_r, UR10E_BENCH_C(1.0e16))) {
         status |= UR10E_BENCH_STATUS_INPUT;
     }
     if (status != UR10E_BENCH_STATUS_OK) {
@@ -57,10 +57,18 @@ int ur10e_bench_slotine_li_regressor(
         return status;
     }
 
+    ur10e_bench_real_t t0, t2;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t2);
+    ur10e_bench_real_t t21, t20;
+    UR10E_BENCH_SINCOS(q[2], &t21, &t20);
+    ur10e_bench_real_t t56, t55;
+    UR10E_BENCH_SINCOS(q[3], &t56, &t55);
+    ur10e_bench_real_t t103, t101;
+    UR10E_BENCH_SINCOS(q[4], &t103, &t101);
+    ur10e_bench_real_t t155, t154;
+    UR10E_BENCH_SINCOS(q[5], &t155, &t154);
     out[0] = ddq_r[0];
-    const ur10e_bench_real_t t0 = UR10E_BENCH_SIN(q[1]);
     const ur10e_bench_real_t t1 = t0 * ddq_r[0];
-    const ur10e_bench_real_t t2 = UR10E_BENCH_COS(q[1]);
     const ur10e_bench_real_t t3 = t2 * dq[0];
     const ur10e_bench_real_t t4 = t2 * dq_r[0];
     const ur10e_bench_real_t t5 = UR10E_BENCH_C(0.5) * (t3 * dq_r[1] + dq[1] * t4);
@@ -90,8 +98,6 @@ int ur10e_bench_slotine_li_regressor(
     out[42] = t18;
     const ur10e_bench_real_t t19 = UR10E_BENCH_C(-9.81) * t0;
     out[43] = t19;
-    const ur10e_bench_real_t t20 = UR10E_BENCH_COS(q[2]);
-    const ur10e_bench_real_t t21 = UR10E_BENCH_SIN(q[2]);
     const ur10e_bench_real_t t22 = t0 * t20 + t2 * t21;
     const ur10e_bench_real_t t23 = t22 * ddq_r[0];
     const ur10e_bench_real_t t24 = t2 * t20 - t0 * t21;
@@ -146,8 +152,6 @@ int ur10e_bench_slotine_li_regressor(
     const ur10e_bench_real_t t54 = t20 * t48 - t21 * t49;
     out[50] = t54 + (t51 * t45 + t53 * (t39 + t44));
     out[86] = t54;
-    const ur10e_bench_real_t t55 = UR10E_BENCH_COS(q[3]);
-    const ur10e_bench_real_t t56 = UR10E_BENCH_SIN(q[3]);
     const ur10e_bench_real_t t57 = t55 * t22 + t56 * t24;
     const ur10e_bench_real_t t58 = t57 * ddq_r[0];
     const ur10e_bench_real_t t59 = t55 * t24 - t56 * t22;
@@ -221,9 +225,7 @@ int ur10e_bench_slotine_li_regressor(
     out[57] = t100 + (t94 * t81 + t95 * t98);
     out[93] = t100 + (t96 * t81 + t97 * t98);
     out[129] = t100;
-    const ur10e_bench_real_t t101 = UR10E_BENCH_COS(q[4]);
     const ur10e_bench_real_t t102 = t101 * t57;
-    const ur10e_bench_real_t t103 = UR10E_BENCH_SIN(q[4]);
     const ur10e_bench_real_t t104 = t103 * t81 + t101 * t71;
     const ur10e_bench_real_t t105 = t103 * t66 - t101 * t62;
     const ur10e_bench_real_t t106 = dq_r[4] - t63;
@@ -309,8 +311,6 @@ int ur10e_bench_slotine_li_regressor(
     out[100] = t153 + (t97 * t119 - t148 * t151);
     out[136] = t153 + UR10E_BENCH_C(0.11985) * t151;
     out[172] = t149;
-    const ur10e_bench_real_t t154 = UR10E_BENCH_COS(q[5]);
-    const ur10e_bench_real_t t155 = UR10E_BENCH_SIN(q[5]);
     const ur10e_bench_real_t t156 = t154 * t102 + t155 * t59;
     const ur10e_bench_real_t t157 = t154 * t119 - t155 * t133;
     const ur10e_bench_real_t t158 = t155 * t112 + t154 * t107;

@@ -95,7 +95,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x050269A3UL
+#define WAM7_GENERATION 0xA48E985DUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef WAM7_REAL
@@ -125,7 +125,7 @@ typedef WAM7_REAL wam7_real_t;
 
 #define WAM7_STATUS_OK     0
 #define WAM7_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define WAM7_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define WAM7_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define WAM7_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

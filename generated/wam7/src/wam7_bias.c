@@ -89,7 +89,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -105,8 +105,8 @@ int wam7_bias(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -115,9 +115,19 @@ int wam7_bias(
         return status;
     }
 
+    wam7_real_t t1, t2;
+    WAM7_SINCOS(q[1], &t1, &t2);
+    wam7_real_t t12, t11;
+    WAM7_SINCOS(q[2], &t12, &t11);
+    wam7_real_t t33, t32;
+    WAM7_SINCOS(q[3], &t33, &t32);
+    wam7_real_t t57, t56;
+    WAM7_SINCOS(q[4], &t57, &t56);
+    wam7_real_t t84, t83;
+    WAM7_SINCOS(q[5], &t84, &t83);
+    wam7_real_t t108, t107;
+    WAM7_SINCOS(q[6], &t108, &t107);
     const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_SIN(q[1]);
-    const wam7_real_t t2 = WAM7_COS(q[1]);
     const wam7_real_t t3 = t2 * dq[0];
     const wam7_real_t t4 = dq[1] * t3;
     const wam7_real_t t5 = t1 * dq[0];
@@ -127,8 +137,6 @@ int wam7_bias(
     const wam7_real_t t8 = t5 * t3;
     const wam7_real_t t9 = dq[1] * dq[1];
     const wam7_real_t t10 = t3 * t3;
-    const wam7_real_t t11 = WAM7_COS(q[2]);
-    const wam7_real_t t12 = WAM7_SIN(q[2]);
     const wam7_real_t t13 = WAM7_C(-2.0) * t4;
     const wam7_real_t t14 = t11 * t13 - t12 * t8;
     const wam7_real_t t15 = t12 * t5 + t11 * dq[1];
@@ -149,8 +157,6 @@ int wam7_bias(
     const wam7_real_t t29 = WAM7_C(-9.81) * t2;
     const wam7_real_t t30 = t5 * t5;
     const wam7_real_t t31 = t29 + WAM7_C(0.55) * (t9 + t30);
-    const wam7_real_t t32 = WAM7_COS(q[3]);
-    const wam7_real_t t33 = WAM7_SIN(q[3]);
     const wam7_real_t t34 = t6 - t24;
     const wam7_real_t t35 = t17 + t18;
     const wam7_real_t t36 = t33 * t34 + t32 * t35;
@@ -174,8 +180,6 @@ int wam7_bias(
     const wam7_real_t t53 = WAM7_C(1.1) * t4;
     const wam7_real_t t54 = t12 * t52 + t11 * t53;
     const wam7_real_t t55 = t54 - WAM7_C(0.045) * t25;
-    const wam7_real_t t56 = WAM7_COS(q[4]);
-    const wam7_real_t t57 = WAM7_SIN(q[4]);
     const wam7_real_t t58 = t22 + t46;
     const wam7_real_t t59 = t40 - t39;
     const wam7_real_t t60 = t56 * t59 - t57 * t58;
@@ -202,8 +206,6 @@ int wam7_bias(
     const wam7_real_t t80 = t41 * t41;
     const wam7_real_t t81 = t80 + t50;
     const wam7_real_t t82 = t79 + (WAM7_C(0.045) * t47 + WAM7_C(0.3) * t81);
-    const wam7_real_t t83 = WAM7_COS(q[5]);
-    const wam7_real_t t84 = WAM7_SIN(q[5]);
     const wam7_real_t t85 = t44 + t70;
     const wam7_real_t t86 = t63 + t64;
     const wam7_real_t t87 = t83 * t86 - t84 * t85;
@@ -227,8 +229,6 @@ int wam7_bias(
     const wam7_real_t t104 = t102 + (WAM7_C(-0.045) * t103 + WAM7_C(0.3) * t58);
     const wam7_real_t t105 = t55 + (WAM7_C(-0.045) * t45 - WAM7_C(0.3) * t59);
     const wam7_real_t t106 = t57 * t104 + t56 * t105;
-    const wam7_real_t t107 = WAM7_COS(q[6]);
-    const wam7_real_t t108 = WAM7_SIN(q[6]);
     const wam7_real_t t109 = t68 + t97;
     const wam7_real_t t110 = t91 - t90;
     const wam7_real_t t111 = t107 * t110 - t108 * t109;

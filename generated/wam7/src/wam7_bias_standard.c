@@ -118,7 +118,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,8 +135,8 @@ int wam7_bias_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -145,9 +145,19 @@ int wam7_bias_standard(
         return status;
     }
 
+    wam7_real_t t1, t2;
+    WAM7_SINCOS(q[1], &t1, &t2);
+    wam7_real_t t14, t13;
+    WAM7_SINCOS(q[2], &t14, &t13);
+    wam7_real_t t39, t38;
+    WAM7_SINCOS(q[3], &t39, &t38);
+    wam7_real_t t65, t64;
+    WAM7_SINCOS(q[4], &t65, &t64);
+    wam7_real_t t93, t92;
+    WAM7_SINCOS(q[5], &t93, &t92);
+    wam7_real_t t115, t114;
+    WAM7_SINCOS(q[6], &t115, &t114);
     const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_SIN(q[1]);
-    const wam7_real_t t2 = WAM7_COS(q[1]);
     const wam7_real_t t3 = t2 * dq[0];
     const wam7_real_t t4 = dq[1] * t3;
     const wam7_real_t t5 = t1 * dq[0];
@@ -159,8 +169,6 @@ int wam7_bias_standard(
     const wam7_real_t t10 = dq[1] * dq[1];
     const wam7_real_t t11 = WAM7_C(-9.81) * t2;
     const wam7_real_t t12 = t7 - t8 * parameters[XZ2] + (t10 - t9) * parameters[YZ2] + t11 * parameters[MZ2];
-    const wam7_real_t t13 = WAM7_COS(q[2]);
-    const wam7_real_t t14 = WAM7_SIN(q[2]);
     const wam7_real_t t15 = t14 * t5 + t13 * dq[1];
     const wam7_real_t t16 = dq[2] + t3;
     const wam7_real_t t17 = t15 * t16;
@@ -186,8 +194,6 @@ int wam7_bias_standard(
     const wam7_real_t t36 = t14 * t34 + t13 * t35;
     const wam7_real_t t37 = t26 + parameters[XZ3] * t28 + (t29 - t30) * parameters[YZ3]
         - (t32 * parameters[MY3] + parameters[MZ3] * t36);
-    const wam7_real_t t38 = WAM7_COS(q[3]);
-    const wam7_real_t t39 = WAM7_SIN(q[3]);
     const wam7_real_t t40 = t39 * t21 + t38 * t16;
     const wam7_real_t t41 = dq[3] + t15;
     const wam7_real_t t42 = t40 * t41;
@@ -214,8 +220,6 @@ int wam7_bias_standard(
     const wam7_real_t t62 = t39 * t60 + t38 * t61;
     const wam7_real_t t63 = parameters[XZ4] * t54 - t52 + (t56 - t55) * parameters[YZ4]
         + (parameters[MZ4] * t62 - parameters[MY4] * t57);
-    const wam7_real_t t64 = WAM7_COS(q[4]);
-    const wam7_real_t t65 = WAM7_SIN(q[4]);
     const wam7_real_t t66 = t65 * t47 + t64 * t41;
     const wam7_real_t t67 = dq[4] + t40;
     const wam7_real_t t68 = t66 * t67;
@@ -244,8 +248,6 @@ int wam7_bias_standard(
     const wam7_real_t t90 = t65 * t88 + t64 * t89;
     const wam7_real_t t91 = t78 - parameters[XZ5] * t80 + (t81 - t82) * parameters[YZ5]
         - (parameters[MY5] * t85 + parameters[MZ5] * t90);
-    const wam7_real_t t92 = WAM7_COS(q[5]);
-    const wam7_real_t t93 = WAM7_SIN(q[5]);
     const wam7_real_t t94 = t93 * t73 + t92 * t67;
     const wam7_real_t t95 = dq[5] + t66;
     const wam7_real_t t96 = t94 * t95;
@@ -268,8 +270,6 @@ int wam7_bias_standard(
     const wam7_real_t t112 = t93 * t111 + t92 * t85;
     const wam7_real_t t113 = t106 + parameters[XZ6] * t108 + (t110 - t109) * parameters[YZ6]
         + (parameters[MZ6] * t112 - parameters[MY6] * t90);
-    const wam7_real_t t114 = WAM7_COS(q[6]);
-    const wam7_real_t t115 = WAM7_SIN(q[6]);
     const wam7_real_t t116 = t115 * t101 + t114 * t95;
     const wam7_real_t t117 = dq[6] + t94;
     const wam7_real_t t118 = t116 * t117;

@@ -22,7 +22,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int wam7_drive_gain(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {

@@ -90,7 +90,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -107,8 +107,8 @@ int wam7_energy(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -118,15 +118,23 @@ int wam7_energy(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_SIN(q[1]);
+    wam7_real_t t0, t2;
+    WAM7_SINCOS(q[1], &t0, &t2);
+    wam7_real_t t8, t7;
+    WAM7_SINCOS(q[2], &t8, &t7);
+    wam7_real_t t22, t21;
+    WAM7_SINCOS(q[3], &t22, &t21);
+    wam7_real_t t35, t34;
+    WAM7_SINCOS(q[4], &t35, &t34);
+    wam7_real_t t50, t49;
+    WAM7_SINCOS(q[5], &t50, &t49);
+    wam7_real_t t61, t60;
+    WAM7_SINCOS(q[6], &t61, &t60);
     const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t2 = WAM7_COS(q[1]);
     const wam7_real_t t3 = t2 * dq[0];
     const wam7_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2] * dq[1]);
     const wam7_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1 + parameters[YZ2] * t3));
     const wam7_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const wam7_real_t t7 = WAM7_COS(q[2]);
-    const wam7_real_t t8 = WAM7_SIN(q[2]);
     const wam7_real_t t9 = t7 * t1 - t8 * dq[1];
     const wam7_real_t t10 = t8 * t1 + t7 * dq[1];
     const wam7_real_t t11 = dq[2] + t3;
@@ -140,8 +148,6 @@ int wam7_energy(
     const wam7_real_t t18 = t8 * t16 + t7 * t17;
     const wam7_real_t t19 = t8 * t17 - t7 * t16;
     const wam7_real_t t20 = t15 + (parameters[MY3R] * (t11 * t19) - parameters[MX3R] * (t11 * t18));
-    const wam7_real_t t21 = WAM7_COS(q[3]);
-    const wam7_real_t t22 = WAM7_SIN(q[3]);
     const wam7_real_t t23 = t21 * t9 + t22 * t11;
     const wam7_real_t t24 = t22 * t9 - t21 * t11;
     const wam7_real_t t25 = dq[3] + t10;
@@ -154,8 +160,6 @@ int wam7_energy(
     const wam7_real_t t32 = t21 * t19 - t22 * t29;
     const wam7_real_t t33 = parameters[MX4R] * (t25 * t30 + t24 * t31) + parameters[MY4R] * (t23 * t31
         + t25 * t32);
-    const wam7_real_t t34 = WAM7_COS(q[4]);
-    const wam7_real_t t35 = WAM7_SIN(q[4]);
     const wam7_real_t t36 = t35 * t25 - t34 * t23;
     const wam7_real_t t37 = t35 * t23 + t34 * t25;
     const wam7_real_t t38 = t24 - dq[4];
@@ -170,8 +174,6 @@ int wam7_energy(
     const wam7_real_t t47 = parameters[MX5] * (t38 * t44 + t37 * t45) - parameters[MY5R] * (t36 * t45
         + t38 * t46);
     const wam7_real_t t48 = t20 + WAM7_C(0.5) * t28 + t33 + WAM7_C(0.5) * t41 + t47;
-    const wam7_real_t t49 = WAM7_COS(q[5]);
-    const wam7_real_t t50 = WAM7_SIN(q[5]);
     const wam7_real_t t51 = t49 * t36 + t50 * t38;
     const wam7_real_t t52 = t49 * t38 - t50 * t36;
     const wam7_real_t t53 = dq[5] + t37;
@@ -182,8 +184,6 @@ int wam7_energy(
     const wam7_real_t t58 = t49 * t46 - t50 * t45;
     const wam7_real_t t59 = parameters[MX6] * (t53 * t57 + t52 * t44) + parameters[MY6R] * (t53 * t58
         - t51 * t44);
-    const wam7_real_t t60 = WAM7_COS(q[6]);
-    const wam7_real_t t61 = WAM7_SIN(q[6]);
     const wam7_real_t t62 = t60 * t51 + t61 * t53;
     const wam7_real_t t63 = t61 * t51 - t60 * t53;
     const wam7_real_t t64 = t52 - dq[6];

@@ -119,7 +119,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -137,8 +137,8 @@ int wam7_energy_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -148,16 +148,24 @@ int wam7_energy_standard(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_SIN(q[1]);
+    wam7_real_t t0, t2;
+    WAM7_SINCOS(q[1], &t0, &t2);
+    wam7_real_t t9, t8;
+    WAM7_SINCOS(q[2], &t9, &t8);
+    wam7_real_t t23, t22;
+    WAM7_SINCOS(q[3], &t23, &t22);
+    wam7_real_t t39, t38;
+    WAM7_SINCOS(q[4], &t39, &t38);
+    wam7_real_t t56, t55;
+    WAM7_SINCOS(q[5], &t56, &t55);
+    wam7_real_t t70, t69;
+    WAM7_SINCOS(q[6], &t70, &t69);
     const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t2 = WAM7_COS(q[1]);
     const wam7_real_t t3 = t2 * dq[0];
     const wam7_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] - dq[1] * parameters[XZ2]);
     const wam7_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] - dq[1] * parameters[YZ2]);
     const wam7_real_t t6 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2] + t3 * parameters[YZ2]));
     const wam7_real_t t7 = WAM7_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + WAM7_C(0.5) * (t4 + t5 + t6);
-    const wam7_real_t t8 = WAM7_COS(q[2]);
-    const wam7_real_t t9 = WAM7_SIN(q[2]);
     const wam7_real_t t10 = t8 * t1 - t9 * dq[1];
     const wam7_real_t t11 = t9 * t1 + t8 * dq[1];
     const wam7_real_t t12 = dq[2] + t3;
@@ -171,8 +179,6 @@ int wam7_energy_standard(
     const wam7_real_t t20 = t13 + t14 + t15 + parameters[M3] * (t18 * t18 + t19 * t19);
     const wam7_real_t t21 = parameters[MZ3] * (t11 * t18 - t10 * t19) - (parameters[MX3] * (t12 * t19)
         + parameters[MY3] * (t12 * t18));
-    const wam7_real_t t22 = WAM7_COS(q[3]);
-    const wam7_real_t t23 = WAM7_SIN(q[3]);
     const wam7_real_t t24 = t22 * t10 + t23 * t12;
     const wam7_real_t t25 = t23 * t10 - t22 * t12;
     const wam7_real_t t26 = dq[3] + t11;
@@ -188,8 +194,6 @@ int wam7_energy_standard(
     const wam7_real_t t36 = parameters[MX4] * (t26 * t32 + t25 * t33) + parameters[MY4] * (t24 * t33
         - t26 * t31);
     const wam7_real_t t37 = t35 + (t36 + parameters[MZ4] * (t25 * t31 + t24 * t32));
-    const wam7_real_t t38 = WAM7_COS(q[4]);
-    const wam7_real_t t39 = WAM7_SIN(q[4]);
     const wam7_real_t t40 = t39 * t26 - t38 * t24;
     const wam7_real_t t41 = t39 * t24 + t38 * t26;
     const wam7_real_t t42 = t25 - dq[4];
@@ -206,8 +210,6 @@ int wam7_energy_standard(
     const wam7_real_t t53 = parameters[MX5] * (t42 * t49 + t41 * t51) + parameters[MY5] * (t42 * t48
         - t40 * t51);
     const wam7_real_t t54 = t37 + WAM7_C(0.5) * t52 + (t53 + parameters[MZ5] * (t41 * t48 + t40 * t49));
-    const wam7_real_t t55 = WAM7_COS(q[5]);
-    const wam7_real_t t56 = WAM7_SIN(q[5]);
     const wam7_real_t t57 = t55 * t40 + t56 * t42;
     const wam7_real_t t58 = t55 * t42 - t56 * t40;
     const wam7_real_t t59 = dq[5] + t41;
@@ -221,8 +223,6 @@ int wam7_energy_standard(
     const wam7_real_t t67 = parameters[MX6] * (t59 * t64 + t58 * t49) - parameters[MY6] * (t57 * t49
         + t59 * t63);
     const wam7_real_t t68 = t54 + WAM7_C(0.5) * t66 + (t67 + parameters[MZ6] * (t58 * t63 - t57 * t64));
-    const wam7_real_t t69 = WAM7_COS(q[6]);
-    const wam7_real_t t70 = WAM7_SIN(q[6]);
     const wam7_real_t t71 = t69 * t57 + t70 * t59;
     const wam7_real_t t72 = t69 * t59 - t70 * t57;
     const wam7_real_t t73 = t58 - dq[6];

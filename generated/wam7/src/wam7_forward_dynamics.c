@@ -91,7 +91,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -108,9 +108,9 @@ int wam7_forward_dynamics(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(input, 7, WAM7_C(1.0e18))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(input, WAM7_C(1.0e18))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -119,11 +119,21 @@ int wam7_forward_dynamics(
         return status;
     }
 
+    wam7_real_t t2, t3;
+    WAM7_SINCOS(q[1], &t2, &t3);
+    wam7_real_t t13, t12;
+    WAM7_SINCOS(q[2], &t13, &t12);
+    wam7_real_t t34, t33;
+    WAM7_SINCOS(q[3], &t34, &t33);
+    wam7_real_t t58, t57;
+    WAM7_SINCOS(q[4], &t58, &t57);
+    wam7_real_t t85, t84;
+    WAM7_SINCOS(q[5], &t85, &t84);
+    wam7_real_t t109, t108;
+    WAM7_SINCOS(q[6], &t109, &t108);
     const wam7_real_t t0 = wam7_sign(dq[0]);
     const wam7_real_t t1 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0]))
         + WAM7_C(-42.0) * (parameters[FC1] * t0);
-    const wam7_real_t t2 = WAM7_SIN(q[1]);
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = dq[1] * t4;
     const wam7_real_t t6 = t2 * dq[0];
@@ -133,8 +143,6 @@ int wam7_forward_dynamics(
     const wam7_real_t t9 = t6 * t4;
     const wam7_real_t t10 = dq[1] * dq[1];
     const wam7_real_t t11 = t4 * t4;
-    const wam7_real_t t12 = WAM7_COS(q[2]);
-    const wam7_real_t t13 = WAM7_SIN(q[2]);
     const wam7_real_t t14 = WAM7_C(2.0) * t5;
     const wam7_real_t t15 = t13 * t9 + t12 * t14;
     const wam7_real_t t16 = t13 * t6 + t12 * dq[1];
@@ -155,8 +163,6 @@ int wam7_forward_dynamics(
     const wam7_real_t t30 = WAM7_C(9.81) * t3;
     const wam7_real_t t31 = t6 * t6;
     const wam7_real_t t32 = t30 + WAM7_C(-0.55) * (t10 + t31);
-    const wam7_real_t t33 = WAM7_COS(q[3]);
-    const wam7_real_t t34 = WAM7_SIN(q[3]);
     const wam7_real_t t35 = t7 - t25;
     const wam7_real_t t36 = t19 - t18;
     const wam7_real_t t37 = t33 * t36 - t34 * t35;
@@ -180,8 +186,6 @@ int wam7_forward_dynamics(
     const wam7_real_t t54 = WAM7_C(1.1) * t5;
     const wam7_real_t t55 = t13 * t53 - t12 * t54;
     const wam7_real_t t56 = t55 + WAM7_C(0.045) * t26;
-    const wam7_real_t t57 = WAM7_COS(q[4]);
-    const wam7_real_t t58 = WAM7_SIN(q[4]);
     const wam7_real_t t59 = t23 + t47;
     const wam7_real_t t60 = t41 - t40;
     const wam7_real_t t61 = t57 * t60 - t58 * t59;
@@ -208,8 +212,6 @@ int wam7_forward_dynamics(
     const wam7_real_t t81 = t42 * t42;
     const wam7_real_t t82 = t81 + t51;
     const wam7_real_t t83 = t80 + (WAM7_C(0.045) * t48 + WAM7_C(-0.3) * t82);
-    const wam7_real_t t84 = WAM7_COS(q[5]);
-    const wam7_real_t t85 = WAM7_SIN(q[5]);
     const wam7_real_t t86 = t45 - t71;
     const wam7_real_t t87 = t64 + t65;
     const wam7_real_t t88 = t84 * t87 - t85 * t86;
@@ -233,8 +235,6 @@ int wam7_forward_dynamics(
     const wam7_real_t t105 = t103 + (WAM7_C(0.045) * t104 + WAM7_C(0.3) * t59);
     const wam7_real_t t106 = WAM7_C(0.045) * t46 - WAM7_C(-0.3) * t60 - t56;
     const wam7_real_t t107 = t58 * t105 - t57 * t106;
-    const wam7_real_t t108 = WAM7_COS(q[6]);
-    const wam7_real_t t109 = WAM7_SIN(q[6]);
     const wam7_real_t t110 = t69 - t98;
     const wam7_real_t t111 = t92 - t91;
     const wam7_real_t t112 = t108 * t111 - t109 * t110;

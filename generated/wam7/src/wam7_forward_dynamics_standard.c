@@ -120,7 +120,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -138,9 +138,9 @@ int wam7_forward_dynamics_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(input, 7, WAM7_C(1.0e18))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(input, WAM7_C(1.0e18))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -149,11 +149,21 @@ int wam7_forward_dynamics_standard(
         return status;
     }
 
+    wam7_real_t t2, t3;
+    WAM7_SINCOS(q[1], &t2, &t3);
+    wam7_real_t t15, t14;
+    WAM7_SINCOS(q[2], &t15, &t14);
+    wam7_real_t t40, t39;
+    WAM7_SINCOS(q[3], &t40, &t39);
+    wam7_real_t t66, t65;
+    WAM7_SINCOS(q[4], &t66, &t65);
+    wam7_real_t t94, t93;
+    WAM7_SINCOS(q[5], &t94, &t93);
+    wam7_real_t t116, t115;
+    WAM7_SINCOS(q[6], &t116, &t115);
     const wam7_real_t t0 = wam7_sign(dq[0]);
     const wam7_real_t t1 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1])
         + WAM7_C(-42.0) * (t0 * parameters[FC1]);
-    const wam7_real_t t2 = WAM7_SIN(q[1]);
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = dq[1] * t4;
     const wam7_real_t t6 = t2 * dq[0];
@@ -165,8 +175,6 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t11 = dq[1] * dq[1];
     const wam7_real_t t12 = WAM7_C(9.81) * t3;
     const wam7_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2] + t12 * parameters[MZ2];
-    const wam7_real_t t14 = WAM7_COS(q[2]);
-    const wam7_real_t t15 = WAM7_SIN(q[2]);
     const wam7_real_t t16 = t15 * t6 + t14 * dq[1];
     const wam7_real_t t17 = dq[2] + t4;
     const wam7_real_t t18 = t16 * t17;
@@ -192,8 +200,6 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t37 = t15 * t35 - t14 * t36;
     const wam7_real_t t38 = t27 - parameters[XZ3] * t29 + (t30 - t31) * parameters[YZ3]
         + (t33 * parameters[MY3] + parameters[MZ3] * t37);
-    const wam7_real_t t39 = WAM7_COS(q[3]);
-    const wam7_real_t t40 = WAM7_SIN(q[3]);
     const wam7_real_t t41 = t40 * t22 - t39 * t17;
     const wam7_real_t t42 = dq[3] + t16;
     const wam7_real_t t43 = t41 * t42;
@@ -220,8 +226,6 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t63 = t40 * t61 + t39 * t62;
     const wam7_real_t t64 = t53 + parameters[XZ4] * t55 + (t56 - t57) * parameters[YZ4]
         + (parameters[MZ4] * t63 - parameters[MY4] * t58);
-    const wam7_real_t t65 = WAM7_COS(q[4]);
-    const wam7_real_t t66 = WAM7_SIN(q[4]);
     const wam7_real_t t67 = t66 * t48 + t65 * t42;
     const wam7_real_t t68 = t41 - dq[4];
     const wam7_real_t t69 = t67 * t68;
@@ -250,8 +254,6 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t91 = t66 * t89 - t65 * t90;
     const wam7_real_t t92 = t79 - parameters[XZ5] * t81 + (t82 - t83) * parameters[YZ5]
         - (parameters[MY5] * t86 - parameters[MZ5] * t91);
-    const wam7_real_t t93 = WAM7_COS(q[5]);
-    const wam7_real_t t94 = WAM7_SIN(q[5]);
     const wam7_real_t t95 = t94 * t74 + t93 * t68;
     const wam7_real_t t96 = dq[5] + t67;
     const wam7_real_t t97 = t95 * t96;
@@ -274,8 +276,6 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t113 = t94 * t112 - t93 * t86;
     const wam7_real_t t114 = t107 + parameters[XZ6] * t109 + (t110 - t111) * parameters[YZ6]
         + (parameters[MZ6] * t113 - parameters[MY6] * t91);
-    const wam7_real_t t115 = WAM7_COS(q[6]);
-    const wam7_real_t t116 = WAM7_SIN(q[6]);
     const wam7_real_t t117 = t115 * t96 - t116 * t102;
     const wam7_real_t t118 = dq[6] - t95;
     const wam7_real_t t119 = t117 * t118;

@@ -29,7 +29,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -39,7 +39,7 @@ int wam7_forward_kinematics(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {
@@ -47,18 +47,28 @@ int wam7_forward_kinematics(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_COS(q[0]);
+    wam7_real_t t1, t0;
+    WAM7_SINCOS(q[0], &t1, &t0);
+    wam7_real_t t4, t2;
+    WAM7_SINCOS(q[1], &t4, &t2);
+    wam7_real_t t9, t8;
+    WAM7_SINCOS(q[2], &t9, &t8);
+    wam7_real_t t20, t19;
+    WAM7_SINCOS(q[3], &t20, &t19);
+    wam7_real_t t31, t30;
+    WAM7_SINCOS(q[4], &t31, &t30);
+    wam7_real_t t42, t41;
+    WAM7_SINCOS(q[5], &t42, &t41);
+    wam7_real_t t50, t49;
+    WAM7_SINCOS(q[6], &t50, &t49);
     out[0] = t0;
-    const wam7_real_t t1 = WAM7_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = WAM7_C(1.0);
     out[15] = WAM7_C(1.0);
-    const wam7_real_t t2 = WAM7_COS(q[1]);
     const wam7_real_t t3 = t0 * t2;
     out[16] = t3;
-    const wam7_real_t t4 = WAM7_SIN(q[1]);
     const wam7_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = -t1;
@@ -70,8 +80,6 @@ int wam7_forward_kinematics(
     out[24] = -t4;
     out[25] = -t2;
     out[31] = WAM7_C(1.0);
-    const wam7_real_t t8 = WAM7_COS(q[2]);
-    const wam7_real_t t9 = WAM7_SIN(q[2]);
     const wam7_real_t t10 = t8 * t3 - t1 * t9;
     out[32] = t10;
     const wam7_real_t t11 = t9 * t3 + t1 * t8;
@@ -94,8 +102,6 @@ int wam7_forward_kinematics(
     const wam7_real_t t18 = WAM7_C(0.55) * t2;
     out[43] = t18;
     out[47] = WAM7_C(1.0);
-    const wam7_real_t t19 = WAM7_COS(q[3]);
-    const wam7_real_t t20 = WAM7_SIN(q[3]);
     const wam7_real_t t21 = t19 * t10 - t20 * t5;
     out[48] = t21;
     const wam7_real_t t22 = t20 * t10 + t19 * t5;
@@ -118,8 +124,6 @@ int wam7_forward_kinematics(
     const wam7_real_t t29 = t18 + WAM7_C(-0.045) * t16;
     out[59] = t29;
     out[63] = WAM7_C(1.0);
-    const wam7_real_t t30 = WAM7_COS(q[4]);
-    const wam7_real_t t31 = WAM7_SIN(q[4]);
     const wam7_real_t t32 = t30 * t21 - t31 * t11;
     out[64] = t32;
     const wam7_real_t t33 = t31 * t21 + t30 * t11;
@@ -142,8 +146,6 @@ int wam7_forward_kinematics(
     const wam7_real_t t40 = t29 + (WAM7_C(0.045) * t27 + WAM7_C(0.3) * t28);
     out[75] = t40;
     out[79] = WAM7_C(1.0);
-    const wam7_real_t t41 = WAM7_COS(q[5]);
-    const wam7_real_t t42 = WAM7_SIN(q[5]);
     const wam7_real_t t43 = t41 * t32 - t42 * t22;
     out[80] = t43;
     const wam7_real_t t44 = t42 * t32 + t41 * t22;
@@ -163,8 +165,6 @@ int wam7_forward_kinematics(
     out[90] = t39;
     out[91] = t40;
     out[95] = WAM7_C(1.0);
-    const wam7_real_t t49 = WAM7_COS(q[6]);
-    const wam7_real_t t50 = WAM7_SIN(q[6]);
     out[96] = t49 * t43 - t50 * t33;
     out[97] = -(t50 * t43 + t49 * t33);
     out[98] = t44;

@@ -88,7 +88,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -103,7 +103,7 @@ int wam7_gravity(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -112,28 +112,28 @@ int wam7_gravity(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_SIN(q[1]);
-    const wam7_real_t t1 = WAM7_COS(q[2]);
-    const wam7_real_t t2 = WAM7_COS(q[1]);
+    wam7_real_t t0, t2;
+    WAM7_SINCOS(q[1], &t0, &t2);
+    wam7_real_t t5, t1;
+    WAM7_SINCOS(q[2], &t5, &t1);
+    wam7_real_t t9, t4;
+    WAM7_SINCOS(q[3], &t9, &t4);
+    wam7_real_t t13, t8;
+    WAM7_SINCOS(q[4], &t13, &t8);
+    wam7_real_t t17, t12;
+    WAM7_SINCOS(q[5], &t17, &t12);
+    wam7_real_t t21, t16;
+    WAM7_SINCOS(q[6], &t21, &t16);
     const wam7_real_t t3 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t4 = WAM7_COS(q[3]);
-    const wam7_real_t t5 = WAM7_SIN(q[2]);
     const wam7_real_t t6 = WAM7_C(9.81) * t0;
     const wam7_real_t t7 = t5 * t6;
-    const wam7_real_t t8 = WAM7_COS(q[4]);
-    const wam7_real_t t9 = WAM7_SIN(q[3]);
     const wam7_real_t t10 = t1 * t6;
     const wam7_real_t t11 = t9 * t10 + t4 * t3;
-    const wam7_real_t t12 = WAM7_COS(q[5]);
-    const wam7_real_t t13 = WAM7_SIN(q[4]);
     const wam7_real_t t14 = t4 * t10 - t9 * t3;
     const wam7_real_t t15 = t13 * t14 + t8 * t7;
-    const wam7_real_t t16 = WAM7_COS(q[6]);
-    const wam7_real_t t17 = WAM7_SIN(q[5]);
     const wam7_real_t t18 = t8 * t14 - t13 * t7;
     const wam7_real_t t19 = t17 * t18 + t12 * t11;
     const wam7_real_t t20 = parameters[MY7] * t19;
-    const wam7_real_t t21 = WAM7_SIN(q[6]);
     const wam7_real_t t22 = parameters[MX7] * t19;
     const wam7_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY6R] * t15;
     const wam7_real_t t24 = t12 * t18 - t17 * t11;

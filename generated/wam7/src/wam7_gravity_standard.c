@@ -117,7 +117,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,7 +133,7 @@ int wam7_gravity_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -142,27 +142,27 @@ int wam7_gravity_standard(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_SIN(q[1]);
-    const wam7_real_t t1 = WAM7_COS(q[1]);
+    wam7_real_t t0, t1;
+    WAM7_SINCOS(q[1], &t0, &t1);
+    wam7_real_t t4, t3;
+    WAM7_SINCOS(q[2], &t4, &t3);
+    wam7_real_t t8, t7;
+    WAM7_SINCOS(q[3], &t8, &t7);
+    wam7_real_t t12, t11;
+    WAM7_SINCOS(q[4], &t12, &t11);
+    wam7_real_t t16, t15;
+    WAM7_SINCOS(q[5], &t16, &t15);
+    wam7_real_t t20, t19;
+    WAM7_SINCOS(q[6], &t20, &t19);
     const wam7_real_t t2 = WAM7_C(-9.81) * t1;
-    const wam7_real_t t3 = WAM7_COS(q[2]);
-    const wam7_real_t t4 = WAM7_SIN(q[2]);
     const wam7_real_t t5 = WAM7_C(9.81) * t0;
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t7 = WAM7_COS(q[3]);
-    const wam7_real_t t8 = WAM7_SIN(q[3]);
     const wam7_real_t t9 = t3 * t5;
     const wam7_real_t t10 = t8 * t9 + t7 * t2;
-    const wam7_real_t t11 = WAM7_COS(q[4]);
-    const wam7_real_t t12 = WAM7_SIN(q[4]);
     const wam7_real_t t13 = t7 * t9 - t8 * t2;
     const wam7_real_t t14 = t12 * t13 + t11 * t6;
-    const wam7_real_t t15 = WAM7_COS(q[5]);
-    const wam7_real_t t16 = WAM7_SIN(q[5]);
     const wam7_real_t t17 = t11 * t13 - t12 * t6;
     const wam7_real_t t18 = t16 * t17 + t15 * t10;
-    const wam7_real_t t19 = WAM7_COS(q[6]);
-    const wam7_real_t t20 = WAM7_SIN(q[6]);
     const wam7_real_t t21 = t15 * t17 - t16 * t10;
     const wam7_real_t t22 = t20 * t21 + t19 * t14;
     const wam7_real_t t23 = t18 * parameters[MY7] + t22 * parameters[MZ7];

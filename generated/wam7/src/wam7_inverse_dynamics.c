@@ -90,7 +90,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -107,9 +107,9 @@ int wam7_inverse_dynamics(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq, 7, WAM7_C(1.0e16))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq, WAM7_C(1.0e16))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -118,10 +118,20 @@ int wam7_inverse_dynamics(
         return status;
     }
 
+    wam7_real_t t1, t3;
+    WAM7_SINCOS(q[1], &t1, &t3);
+    wam7_real_t t20, t16;
+    WAM7_SINCOS(q[2], &t20, &t16);
+    wam7_real_t t40, t39;
+    WAM7_SINCOS(q[3], &t40, &t39);
+    wam7_real_t t65, t64;
+    WAM7_SINCOS(q[4], &t65, &t64);
+    wam7_real_t t93, t92;
+    WAM7_SINCOS(q[5], &t93, &t92);
+    wam7_real_t t118, t117;
+    WAM7_SINCOS(q[6], &t118, &t117);
     const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_SIN(q[1]);
     const wam7_real_t t2 = dq[1] * dq[1];
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = t4 * t4;
     const wam7_real_t t6 = dq[1] * t4;
@@ -134,11 +144,9 @@ int wam7_inverse_dynamics(
     const wam7_real_t t13 = parameters[ZZ2R] * t6 + parameters[XX2R] * t8 + parameters[XY2] * (t12 - t10);
     const wam7_real_t t14 = t9 * t4;
     const wam7_real_t t15 = parameters[YZ2] * (t2 - t5) + (t13 - parameters[XZ2] * (ddq[1] + t14));
-    const wam7_real_t t16 = WAM7_COS(q[2]);
     const wam7_real_t t17 = WAM7_C(-9.81) * t3;
     const wam7_real_t t18 = t9 * t9;
     const wam7_real_t t19 = t17 + WAM7_C(0.55) * (t2 + t18);
-    const wam7_real_t t20 = WAM7_SIN(q[2]);
     const wam7_real_t t21 = t20 * t9 + t16 * dq[1];
     const wam7_real_t t22 = t21 * t21;
     const wam7_real_t t23 = dq[2] + t4;
@@ -158,8 +166,6 @@ int wam7_inverse_dynamics(
     const wam7_real_t t37 = t35 - t36;
     const wam7_real_t t38 = parameters[ZZ3R] * t25 + parameters[XX3R] * t29 + parameters[XY3R] * t34
         - parameters[XZ3] * t37;
-    const wam7_real_t t39 = WAM7_COS(q[3]);
-    const wam7_real_t t40 = WAM7_SIN(q[3]);
     const wam7_real_t t41 = t39 * t23 - t40 * t30;
     const wam7_real_t t42 = t41 * t41;
     const wam7_real_t t43 = dq[3] + t21;
@@ -184,8 +190,6 @@ int wam7_inverse_dynamics(
     const wam7_real_t t61 = WAM7_C(0.55) * t27;
     const wam7_real_t t62 = t20 * t60 + t16 * t61;
     const wam7_real_t t63 = t62 - WAM7_C(0.045) * t37;
-    const wam7_real_t t64 = WAM7_COS(q[4]);
-    const wam7_real_t t65 = WAM7_SIN(q[4]);
     const wam7_real_t t66 = t65 * t50 + t64 * t43;
     const wam7_real_t t67 = t66 * t66;
     const wam7_real_t t68 = dq[4] + t41;
@@ -213,8 +217,6 @@ int wam7_inverse_dynamics(
     const wam7_real_t t89 = t50 * t50;
     const wam7_real_t t90 = t89 + t44;
     const wam7_real_t t91 = t88 + (WAM7_C(0.3) * t90 + WAM7_C(0.045) * t57);
-    const wam7_real_t t92 = WAM7_COS(q[5]);
-    const wam7_real_t t93 = WAM7_SIN(q[5]);
     const wam7_real_t t94 = t92 * t68 - t93 * t75;
     const wam7_real_t t95 = t94 * t94;
     const wam7_real_t t96 = dq[5] + t66;
@@ -239,8 +241,6 @@ int wam7_inverse_dynamics(
     const wam7_real_t t114 = t112 + (WAM7_C(-0.045) * t113 + WAM7_C(0.3) * t71);
     const wam7_real_t t115 = t63 + (WAM7_C(-0.045) * t54 - WAM7_C(0.3) * t72);
     const wam7_real_t t116 = t65 * t114 + t64 * t115;
-    const wam7_real_t t117 = WAM7_COS(q[6]);
-    const wam7_real_t t118 = WAM7_SIN(q[6]);
     const wam7_real_t t119 = t118 * t103 + t117 * t96;
     const wam7_real_t t120 = t119 * t119;
     const wam7_real_t t121 = dq[6] + t94;

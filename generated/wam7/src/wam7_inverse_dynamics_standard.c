@@ -119,7 +119,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -137,9 +137,9 @@ int wam7_inverse_dynamics_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq, 7, WAM7_C(1.0e16))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq, WAM7_C(1.0e16))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -148,11 +148,21 @@ int wam7_inverse_dynamics_standard(
         return status;
     }
 
+    wam7_real_t t2, t3;
+    WAM7_SINCOS(q[1], &t2, &t3);
+    wam7_real_t t19, t18;
+    WAM7_SINCOS(q[2], &t19, &t18);
+    wam7_real_t t46, t45;
+    WAM7_SINCOS(q[3], &t46, &t45);
+    wam7_real_t t73, t72;
+    WAM7_SINCOS(q[4], &t73, &t72);
+    wam7_real_t t102, t101;
+    WAM7_SINCOS(q[5], &t102, &t101);
+    wam7_real_t t125, t124;
+    WAM7_SINCOS(q[6], &t125, &t124);
     const wam7_real_t t0 = wam7_sign(dq[0]);
     const wam7_real_t t1 = WAM7_C(42.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
         + WAM7_C(42.0) * ddq[0] * parameters[IA1];
-    const wam7_real_t t2 = WAM7_SIN(q[1]);
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = WAM7_C(-9.81) * t3;
     const wam7_real_t t5 = t3 * dq[0];
     const wam7_real_t t6 = t5 * t5;
@@ -168,8 +178,6 @@ int wam7_inverse_dynamics_standard(
         - t12) * parameters[XY2];
     const wam7_real_t t16 = t11 * t5;
     const wam7_real_t t17 = (t7 - t6) * parameters[YZ2] + (t15 - (ddq[1] + t16) * parameters[XZ2]);
-    const wam7_real_t t18 = WAM7_COS(q[2]);
-    const wam7_real_t t19 = WAM7_SIN(q[2]);
     const wam7_real_t t20 = t19 * t11 + t18 * dq[1];
     const wam7_real_t t21 = t20 * t20;
     const wam7_real_t t22 = dq[2] + t5;
@@ -197,8 +205,6 @@ int wam7_inverse_dynamics_standard(
     const wam7_real_t t43 = t19 * t41 + t18 * t42;
     const wam7_real_t t44 = (t21 - t23) * parameters[YZ3] - (t34 - t37 * parameters[XZ3])
         - (t39 * parameters[MY3] + t43 * parameters[MZ3]);
-    const wam7_real_t t45 = WAM7_COS(q[3]);
-    const wam7_real_t t46 = WAM7_SIN(q[3]);
     const wam7_real_t t47 = t46 * t29 + t45 * t22;
     const wam7_real_t t48 = t47 * t47;
     const wam7_real_t t49 = dq[3] + t20;
@@ -226,8 +232,6 @@ int wam7_inverse_dynamics_standard(
     const wam7_real_t t70 = t46 * t68 + t45 * t69;
     const wam7_real_t t71 = (t50 - t48) * parameters[YZ4] + (t61 + t64 * parameters[XZ4])
         + (t70 * parameters[MZ4] - t65 * parameters[MY4]);
-    const wam7_real_t t72 = WAM7_COS(q[4]);
-    const wam7_real_t t73 = WAM7_SIN(q[4]);
     const wam7_real_t t74 = t73 * t56 + t72 * t49;
     const wam7_real_t t75 = t74 * t74;
     const wam7_real_t t76 = dq[4] + t47;
@@ -257,8 +261,6 @@ int wam7_inverse_dynamics_standard(
     const wam7_real_t t99 = t73 * t97 + t72 * t98;
     const wam7_real_t t100 = (t75 - t77) * parameters[YZ5] - (t88 - t91 * parameters[XZ5])
         - (t94 * parameters[MY5] + t99 * parameters[MZ5]);
-    const wam7_real_t t101 = WAM7_COS(q[5]);
-    const wam7_real_t t102 = WAM7_SIN(q[5]);
     const wam7_real_t t103 = t102 * t83 + t101 * t76;
     const wam7_real_t t104 = t103 * t103;
     const wam7_real_t t105 = dq[5] + t74;
@@ -282,8 +284,6 @@ int wam7_inverse_dynamics_standard(
     const wam7_real_t t122 = t102 * t121 + t101 * t94;
     const wam7_real_t t123 = (t106 - t104) * parameters[YZ6] + (t117 + t120 * parameters[XZ6])
         + (t122 * parameters[MZ6] - t99 * parameters[MY6]);
-    const wam7_real_t t124 = WAM7_COS(q[6]);
-    const wam7_real_t t125 = WAM7_SIN(q[6]);
     const wam7_real_t t126 = t125 * t112 + t124 * t105;
     const wam7_real_t t127 = t126 * t126;
     const wam7_real_t t128 = dq[6] + t103;

@@ -22,7 +22,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -32,7 +32,7 @@ int wam7_jacobian(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {
@@ -40,26 +40,26 @@ int wam7_jacobian(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_SIN(q[0]);
-    const wam7_real_t t1 = WAM7_SIN(q[1]);
+    wam7_real_t t0, t7;
+    WAM7_SINCOS(q[0], &t0, &t7);
+    wam7_real_t t1, t5;
+    WAM7_SINCOS(q[1], &t1, &t5);
+    wam7_real_t t8, t4;
+    WAM7_SINCOS(q[2], &t8, &t4);
+    wam7_real_t t12, t11;
+    WAM7_SINCOS(q[3], &t12, &t11);
+    wam7_real_t t17, t16;
+    WAM7_SINCOS(q[4], &t17, &t16);
+    wam7_real_t t15, t19;
+    WAM7_SINCOS(q[5], &t15, &t19);
     const wam7_real_t t2 = t0 * t1;
     const wam7_real_t t3 = WAM7_C(0.55) * t2;
-    const wam7_real_t t4 = WAM7_COS(q[2]);
-    const wam7_real_t t5 = WAM7_COS(q[1]);
     const wam7_real_t t6 = t0 * t5;
-    const wam7_real_t t7 = WAM7_COS(q[0]);
-    const wam7_real_t t8 = WAM7_SIN(q[2]);
     const wam7_real_t t9 = t4 * t6 + t7 * t8;
     const wam7_real_t t10 = t3 + WAM7_C(0.045) * t9;
-    const wam7_real_t t11 = WAM7_COS(q[3]);
-    const wam7_real_t t12 = WAM7_SIN(q[3]);
     const wam7_real_t t13 = t11 * t9 - t12 * t2;
     const wam7_real_t t14 = t12 * t9 + t11 * t2;
-    const wam7_real_t t15 = WAM7_SIN(q[5]);
-    const wam7_real_t t16 = WAM7_COS(q[4]);
-    const wam7_real_t t17 = WAM7_SIN(q[4]);
     const wam7_real_t t18 = t7 * t4 - t8 * t6;
-    const wam7_real_t t19 = WAM7_COS(q[5]);
     const wam7_real_t t20 = t15 * (t16 * t13 + t17 * t18) + t19 * t14;
     const wam7_real_t t21 = WAM7_C(0.06) * t20;
     const wam7_real_t t22 = WAM7_C(0.045) * t13 + WAM7_C(-0.3) * t14 - t10 - t21;

@@ -26,7 +26,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int wam7_joint_from_motor(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q_m, 7, WAM7_C(1.0e18))
-        || !wam7_within(dq_m, 7, WAM7_C(1.0e18))
-        || !wam7_within(ddq_m, 7, WAM7_C(1.0e18))) {
+    if (!wam7_within_joints(q_m, WAM7_C(1.0e18))
+        || !wam7_within_joints(dq_m, WAM7_C(1.0e18))
+        || !wam7_within_joints(ddq_m, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {

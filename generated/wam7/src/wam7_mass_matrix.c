@@ -88,7 +88,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -103,7 +103,7 @@ int wam7_mass_matrix(
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -112,26 +112,32 @@ int wam7_mass_matrix(
         return status;
     }
 
-    const wam7_real_t t0 = WAM7_COS(q[5]);
-    const wam7_real_t t1 = WAM7_COS(q[6]);
-    const wam7_real_t t2 = WAM7_SIN(q[6]);
+    wam7_real_t t74, t66;
+    WAM7_SINCOS(q[1], &t74, &t66);
+    wam7_real_t t60, t40;
+    WAM7_SINCOS(q[2], &t60, &t40);
+    wam7_real_t t33, t35;
+    WAM7_SINCOS(q[3], &t33, &t35);
+    wam7_real_t t19, t12;
+    WAM7_SINCOS(q[4], &t19, &t12);
+    wam7_real_t t8, t0;
+    WAM7_SINCOS(q[5], &t8, &t0);
+    wam7_real_t t2, t1;
+    WAM7_SINCOS(q[6], &t2, &t1);
     const wam7_real_t t3 = parameters[XY7] * (WAM7_C(2.0) * t2) - t1 * parameters[XX7R];
     const wam7_real_t t4 = t1 * t3;
     const wam7_real_t t5 = parameters[XX6R] - t4;
     const wam7_real_t t6 = t2 * parameters[YZ7R] - t1 * parameters[XZ7R];
     const wam7_real_t t7 = parameters[XY6] + t6;
-    const wam7_real_t t8 = WAM7_SIN(q[5]);
     const wam7_real_t t9 = t0 * (parameters[ZZ7] - t5) + t7 * (WAM7_C(2.0) * t8);
     const wam7_real_t t10 = t0 * t9;
     const wam7_real_t t11 = parameters[XX5R] + (parameters[ZZ7] - t10);
-    const wam7_real_t t12 = WAM7_COS(q[4]);
     const wam7_real_t t13 = parameters[ZZ6R] + (parameters[XX7R] + t4);
     const wam7_real_t t14 = t2 * t3 - parameters[XY7] - parameters[XZ6];
     const wam7_real_t t15 = t2 * parameters[XZ7R] + t1 * parameters[YZ7R];
     const wam7_real_t t16 = parameters[YZ6] - t15;
     const wam7_real_t t17 = t0 * t14 + t8 * t16;
     const wam7_real_t t18 = t17 - parameters[XY5];
-    const wam7_real_t t19 = WAM7_SIN(q[4]);
     const wam7_real_t t20 = t12 * (t13 - t11) - t18 * (WAM7_C(2.0) * t19);
     const wam7_real_t t21 = t12 * t20;
     const wam7_real_t t22 = t1 * parameters[MY7] + t2 * parameters[MX7];
@@ -145,14 +151,11 @@ int wam7_mass_matrix(
     const wam7_real_t t30 = t8 * t25 - t0 * parameters[MY6R];
     const wam7_real_t t31 = WAM7_C(0.6) * t30;
     const wam7_real_t t32 = parameters[ZZ4R] + (t11 + t21 + (t29 + t31));
-    const wam7_real_t t33 = WAM7_SIN(q[3]);
     const wam7_real_t t34 = t30 - parameters[MY4R];
-    const wam7_real_t t35 = WAM7_COS(q[3]);
     const wam7_real_t t36 = parameters[MX4R] - t28;
     const wam7_real_t t37 = t33 * t34 + t35 * t36;
     const wam7_real_t t38 = WAM7_C(0.09) * t37;
     const wam7_real_t t39 = t32 + t38;
-    const wam7_real_t t40 = WAM7_COS(q[2]);
     const wam7_real_t t41 = parameters[ZZ5R] + (t5 + t10);
     const wam7_real_t t42 = t41 + t29;
     const wam7_real_t t43 = parameters[XX4R] + (t13 - t21 + t31);
@@ -172,13 +175,11 @@ int wam7_mass_matrix(
     const wam7_real_t t57 = parameters[YZ4] - t56;
     const wam7_real_t t58 = t35 * t55 + t33 * t57;
     const wam7_real_t t59 = t54 + t58 - parameters[XY3R];
-    const wam7_real_t t60 = WAM7_SIN(q[2]);
     const wam7_real_t t61 = t40 * (t39 - t52) - t59 * (WAM7_C(2.0) * t60);
     const wam7_real_t t62 = t40 * t61;
     const wam7_real_t t63 = t35 * t34 - t33 * t36;
     const wam7_real_t t64 = WAM7_C(1.1) * t63;
     const wam7_real_t t65 = parameters[XX2R] + (t39 - t62 + t64);
-    const wam7_real_t t66 = WAM7_COS(q[1]);
     const wam7_real_t t67 = parameters[ZZ3R] + (t43 + t51 + t38);
     const wam7_real_t t68 = parameters[XZ3] - (t49 - t33 * t50 - WAM7_C(-0.045) * t63);
     const wam7_real_t t69 = t33 * t55 - t35 * t57;
@@ -186,7 +187,6 @@ int wam7_mass_matrix(
     const wam7_real_t t71 = t53 - parameters[MY3R];
     const wam7_real_t t72 = parameters[MX3R] + t37;
     const wam7_real_t t73 = t60 * t70 - t40 * t68 + WAM7_C(0.55) * (t60 * t71 + t40 * t72);
-    const wam7_real_t t74 = WAM7_SIN(q[1]);
     const wam7_real_t t75 = t66 * (t67 - t65) + (parameters[XY2] + t73) * (WAM7_C(2.0) * t74);
     out[0] = parameters[ZZ1R] + (t65 + t66 * t75);
     const wam7_real_t t76 = t60 * t68 + t40 * t70 + WAM7_C(0.55) * (t40 * t71 - t60 * t72);

@@ -117,7 +117,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,7 +133,7 @@ int wam7_mass_matrix_standard(
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
         status |= WAM7_STATUS_INPUT;
     }
@@ -142,10 +142,19 @@ int wam7_mass_matrix_standard(
         return status;
     }
 
+    wam7_real_t t85, t77;
+    WAM7_SINCOS(q[1], &t85, &t77);
+    wam7_real_t t71, t52;
+    WAM7_SINCOS(q[2], &t71, &t52);
+    wam7_real_t t44, t46;
+    WAM7_SINCOS(q[3], &t44, &t46);
+    wam7_real_t t25, t16;
+    WAM7_SINCOS(q[4], &t25, &t16);
+    wam7_real_t t12, t1;
+    WAM7_SINCOS(q[5], &t12, &t1);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[6], &t3, &t2);
     const wam7_real_t t0 = parameters[YY6] + parameters[ZZ7];
-    const wam7_real_t t1 = WAM7_COS(q[5]);
-    const wam7_real_t t2 = WAM7_COS(q[6]);
-    const wam7_real_t t3 = WAM7_SIN(q[6]);
     const wam7_real_t t4 = t2 * (parameters[YY7] - parameters[XX7]) + parameters[XY7] * (WAM7_C(2.0) * t3);
     const wam7_real_t t5 = t2 * t4;
     const wam7_real_t t6 = WAM7_C(0.06) * parameters[M7];
@@ -154,11 +163,9 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t9 = t3 * parameters[MY7] - t2 * parameters[MX7];
     const wam7_real_t t10 = t3 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(-0.06) * t9;
     const wam7_real_t t11 = parameters[XY6] + t10;
-    const wam7_real_t t12 = WAM7_SIN(q[5]);
     const wam7_real_t t13 = t1 * (t0 - t8) + t11 * (WAM7_C(2.0) * t12);
     const wam7_real_t t14 = t1 * t13;
     const wam7_real_t t15 = parameters[XX5] + (t0 - t14);
-    const wam7_real_t t16 = WAM7_COS(q[4]);
     const wam7_real_t t17 = parameters[ZZ6] + (parameters[XX7] + t5 + t7);
     const wam7_real_t t18 = parameters[YY5] + t17;
     const wam7_real_t t19 = t3 * t4 - parameters[XY7] - parameters[XZ6];
@@ -167,7 +174,6 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t22 = parameters[YZ6] - t21;
     const wam7_real_t t23 = t1 * t19 + t12 * t22;
     const wam7_real_t t24 = t23 - parameters[XY5];
-    const wam7_real_t t25 = WAM7_SIN(q[4]);
     const wam7_real_t t26 = t16 * (t18 - t15) - t24 * (WAM7_C(2.0) * t25);
     const wam7_real_t t27 = t16 * t26;
     const wam7_real_t t28 = parameters[M5] + (parameters[M6] + parameters[M7]);
@@ -186,15 +192,12 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t41 = parameters[ZZ4] + (t15 + t27 + (t36 + t40));
     const wam7_real_t t42 = parameters[M4] + t28;
     const wam7_real_t t43 = WAM7_C(0.045) * t42;
-    const wam7_real_t t44 = WAM7_SIN(q[3]);
     const wam7_real_t t45 = t39 + t37 - parameters[MY4];
-    const wam7_real_t t46 = WAM7_COS(q[3]);
     const wam7_real_t t47 = t35 - t29;
     const wam7_real_t t48 = parameters[MX4] + t47;
     const wam7_real_t t49 = t44 * t45 + t46 * t48;
     const wam7_real_t t50 = WAM7_C(0.045) * (t43 + WAM7_C(2.0) * t49);
     const wam7_real_t t51 = parameters[YY3] + (t41 + t50);
-    const wam7_real_t t52 = WAM7_COS(q[2]);
     const wam7_real_t t53 = parameters[ZZ5] + (t8 + t14);
     const wam7_real_t t54 = parameters[YY4] + (t53 + t36);
     const wam7_real_t t55 = parameters[XX4] + (t18 - t27 + t40);
@@ -213,14 +216,12 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t68 = t46 * t65 + t44 * t67;
     const wam7_real_t t69 = parameters[MZ4] + t64;
     const wam7_real_t t70 = t68 + WAM7_C(0.045) * t69 - parameters[XY3];
-    const wam7_real_t t71 = WAM7_SIN(q[2]);
     const wam7_real_t t72 = t52 * (t51 - t63) - t70 * (WAM7_C(2.0) * t71);
     const wam7_real_t t73 = t52 * t72;
     const wam7_real_t t74 = t46 * t45 - t44 * t48;
     const wam7_real_t t75 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t42)
         + WAM7_C(2.0) * (parameters[MZ3] + t74));
     const wam7_real_t t76 = parameters[XX2] + (t51 - t73 + t75);
-    const wam7_real_t t77 = WAM7_COS(q[1]);
     const wam7_real_t t78 = parameters[ZZ3] + (t55 + t62 + t50);
     const wam7_real_t t79 = parameters[XZ3] - (t60 - t44 * t61 - WAM7_C(-0.045) * t74);
     const wam7_real_t t80 = t44 * t65 - t46 * t67;
@@ -228,7 +229,6 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t82 = parameters[MY3] + t69;
     const wam7_real_t t83 = parameters[MX3] + (t49 + t43);
     const wam7_real_t t84 = t71 * t81 - t52 * t79 + WAM7_C(0.55) * (t52 * t83 - t71 * t82);
-    const wam7_real_t t85 = WAM7_SIN(q[1]);
     const wam7_real_t t86 = t77 * (parameters[YY2] + t78 - t76) + (parameters[XY2]
         + t84) * (WAM7_C(2.0) * t85);
     out[0] = parameters[ZZ1] + (t76 + t77 * t86) + WAM7_C(1764.0) * parameters[IA1];

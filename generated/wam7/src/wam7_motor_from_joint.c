@@ -26,7 +26,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -40,9 +40,9 @@ int wam7_motor_from_joint(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq, 7, WAM7_C(1.0e16))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq, WAM7_C(1.0e16))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {

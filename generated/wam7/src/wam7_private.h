@@ -12,7 +12,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define WAM7_MATH_double(name) name
 #define WAM7_MATH(name) WAM7_JOIN(WAM7_MATH_, WAM7_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DWAM7_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, WAM7_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DWAM7_SINCOS=my_sincos, or with both of
+ * -DWAM7_SIN=my_sin -DWAM7_COS=my_cos; -include my_header.h declares it.
+ */
+#define WAM7_SINGLE_float 1
+#define WAM7_SINGLE_double 0
+#if !defined(WAM7_SINCOS) && !defined(WAM7_SIN) && !defined(WAM7_COS)
+#define WAM7_OWN_SINCOS WAM7_JOIN(WAM7_SINGLE_, WAM7_REAL)
+#else
+#define WAM7_OWN_SINCOS 0
+#endif
 #ifndef WAM7_SIN
 #define WAM7_SIN WAM7_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline wam7_real_t wam7_select(wam7_real_t condition, wam7_real_t a, wam7
     return condition > WAM7_C(0.0) ? a : b;
 }
 
+#if WAM7_OWN_SINCOS
+typedef struct {
+    wam7_real_t sine;
+    wam7_real_t cosine;
+} wam7_pair_t;
+
+/* Two numbers by value travel in registers. */
+wam7_pair_t wam7_sincos(wam7_real_t x);
+#endif
+
+#ifndef WAM7_SINCOS
+#define WAM7_SINCOS wam7_sine_cosine
+static inline void wam7_sine_cosine(wam7_real_t x, wam7_real_t *sine, wam7_real_t *cosine)
+{
+#if WAM7_OWN_SINCOS
+    const wam7_pair_t pair = wam7_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = WAM7_SIN(x);
+    *cosine = WAM7_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int wam7_within(const wam7_real_t x[], int n, wam7_real_t limit)
 {
@@ -76,6 +112,13 @@ static inline int wam7_within(const wam7_real_t x[], int n, wam7_real_t limit)
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int wam7_within_joints(const wam7_real_t x[], wam7_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
+        limit;
 }
 
 static inline void wam7_zero(wam7_real_t x[], int n)

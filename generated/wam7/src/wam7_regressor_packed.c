@@ -33,7 +33,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -65,9 +65,9 @@ int wam7_regressor_packed(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq, 7, WAM7_C(1.0e16))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq, WAM7_C(1.0e16))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {
@@ -75,11 +75,21 @@ int wam7_regressor_packed(
         return status;
     }
 
+    wam7_real_t t3, t0;
+    WAM7_SINCOS(q[1], &t3, &t0);
+    wam7_real_t t19, t20;
+    WAM7_SINCOS(q[2], &t19, &t20);
+    wam7_real_t t56, t57;
+    WAM7_SINCOS(q[3], &t56, &t57);
+    wam7_real_t t111, t112;
+    WAM7_SINCOS(q[4], &t111, &t112);
+    wam7_real_t t168, t169;
+    WAM7_SINCOS(q[5], &t168, &t169);
+    wam7_real_t t224, t225;
+    WAM7_SINCOS(q[6], &t224, &t225);
     out[0] = WAM7_C(0.05209961446285298) * ddq[0];
-    const wam7_real_t t0 = WAM7_COS(q[1]);
     const wam7_real_t t1 = t0 * dq[0];
     const wam7_real_t t2 = dq[1] * t1;
-    const wam7_real_t t3 = WAM7_SIN(q[1]);
     const wam7_real_t t4 = t3 * ddq[0];
     const wam7_real_t t5 = t2 + t4;
     const wam7_real_t t6 = WAM7_C(0.05209961446285298) * t3;
@@ -107,8 +117,6 @@ int wam7_regressor_packed(
     out[47] = WAM7_C(0.07745783389167521) * ddq[1];
     out[48] = WAM7_C(-0.7598613504773338) * t0;
     out[49] = WAM7_C(0.7598613504773338) * t3;
-    const wam7_real_t t19 = WAM7_SIN(q[2]);
-    const wam7_real_t t20 = WAM7_COS(q[2]);
     const wam7_real_t t21 = t19 * t7 + t20 * dq[1];
     const wam7_real_t t22 = dq[2] + t1;
     const wam7_real_t t23 = t21 * t22;
@@ -165,8 +173,6 @@ int wam7_regressor_packed(
     out[12] = t52 * t26 + t55 * t9 + WAM7_C(-0.55) * t50;
     out[56] = WAM7_C(-0.55) * t51 - t52 * t32;
     out[93] = WAM7_C(0.07745783389167521) * t55 + WAM7_C(0.04260180864042137) * t36;
-    const wam7_real_t t56 = WAM7_SIN(q[3]);
-    const wam7_real_t t57 = WAM7_COS(q[3]);
     const wam7_real_t t58 = t56 * t27 + t57 * t22;
     const wam7_real_t t59 = dq[3] + t21;
     const wam7_real_t t60 = t58 * t59;
@@ -248,8 +254,6 @@ int wam7_regressor_packed(
     out[63] = t110;
     out[100] = WAM7_C(-0.003485602525125384) * t75 - t97 * t72;
     out[131] = WAM7_C(0.12156576707999026) * t108;
-    const wam7_real_t t111 = WAM7_SIN(q[4]);
-    const wam7_real_t t112 = WAM7_COS(q[4]);
     const wam7_real_t t113 = t111 * t64 + t112 * t59;
     const wam7_real_t t114 = dq[4] + t58;
     const wam7_real_t t115 = t113 * t114;
@@ -340,8 +344,6 @@ int wam7_regressor_packed(
     out[107] = t146 * t127 + t162 * t73 - t161 * t165;
     out[138] = WAM7_C(0.005470459518599561) * t133 + WAM7_C(0.036469730123997075) * t164 - t146 * t130;
     out[162] = WAM7_C(0.4469713223199599) * t162;
-    const wam7_real_t t168 = WAM7_SIN(q[5]);
-    const wam7_real_t t169 = WAM7_COS(q[5]);
     const wam7_real_t t170 = t168 * t119 + t169 * t114;
     const wam7_real_t t171 = dq[5] + t113;
     const wam7_real_t t172 = t170 * t171;
@@ -440,8 +442,6 @@ int wam7_regressor_packed(
     out[145] = t223;
     out[169] = -(t149 * t190);
     out[186] = WAM7_C(0.4469713223199599) * t215;
-    const wam7_real_t t224 = WAM7_SIN(q[6]);
-    const wam7_real_t t225 = WAM7_COS(q[6]);
     const wam7_real_t t226 = t224 * t176 + t225 * t171;
     const wam7_real_t t227 = dq[6] + t170;
     const wam7_real_t t228 = t226 * t227;

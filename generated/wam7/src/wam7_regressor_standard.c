@@ -36,7 +36,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -48,9 +48,9 @@ int wam7_regressor_standard(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq, 7, WAM7_C(1.0e16))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq, WAM7_C(1.0e16))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {
@@ -58,11 +58,21 @@ int wam7_regressor_standard(
         return status;
     }
 
+    wam7_real_t t1, t3;
+    WAM7_SINCOS(q[1], &t1, &t3);
+    wam7_real_t t22, t23;
+    WAM7_SINCOS(q[2], &t22, &t23);
+    wam7_real_t t79, t80;
+    WAM7_SINCOS(q[3], &t79, &t80);
+    wam7_real_t t147, t148;
+    WAM7_SINCOS(q[4], &t147, &t148);
+    wam7_real_t t231, t232;
+    WAM7_SINCOS(q[5], &t231, &t232);
+    wam7_real_t t303, t304;
+    WAM7_SINCOS(q[6], &t303, &t304);
     const wam7_real_t t0 = WAM7_C(0.05209961446285298) * ddq[0];
     out[5] = t0;
-    const wam7_real_t t1 = WAM7_SIN(q[1]);
     const wam7_real_t t2 = t1 * ddq[0];
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = dq[1] * t4;
     const wam7_real_t t6 = t2 + t5;
@@ -95,8 +105,6 @@ int wam7_regressor_standard(
     out[106] = WAM7_C(0.07745783389167521) * ddq[1];
     out[107] = WAM7_C(-0.7598613504773338) * t3;
     out[108] = WAM7_C(0.7598613504773338) * t1;
-    const wam7_real_t t22 = WAM7_SIN(q[2]);
-    const wam7_real_t t23 = WAM7_COS(q[2]);
     const wam7_real_t t24 = t22 * t21 - t23 * t15;
     const wam7_real_t t25 = t22 * t8 + t23 * dq[1];
     const wam7_real_t t26 = dq[2] + t4;
@@ -180,8 +188,6 @@ int wam7_regressor_standard(
     out[119] = t77 + WAM7_C(1.1) * t78;
     out[29] = WAM7_C(0.55) * t75 + WAM7_C(0.30250000000000005) * t76;
     out[120] = WAM7_C(0.55) * t77 + WAM7_C(0.30250000000000005) * t78;
-    const wam7_real_t t79 = WAM7_SIN(q[3]);
-    const wam7_real_t t80 = WAM7_COS(q[3]);
     const wam7_real_t t81 = t80 * t42 - t79 * t61;
     const wam7_real_t t82 = t80 * t26 - t79 * t30;
     const wam7_real_t t83 = dq[3] + t25;
@@ -286,8 +292,6 @@ int wam7_regressor_standard(
     out[39] = t131 * t128 - (t142 * t126 + t134 * t127);
     out[130] = t131 * t139 - (t142 * t136 + t134 * t138);
     out[221] = WAM7_C(-0.003485602525125384) * t131;
-    const wam7_real_t t147 = WAM7_SIN(q[4]);
-    const wam7_real_t t148 = WAM7_COS(q[4]);
     const wam7_real_t t149 = t147 * t116 + t148 * t102;
     const wam7_real_t t150 = t147 * t87 + t148 * t83;
     const wam7_real_t t151 = dq[4] + t82;
@@ -419,8 +423,6 @@ int wam7_regressor_standard(
     out[231] = t229;
     const wam7_real_t t230 = t217 * t213 + t201 * t214 + WAM7_C(0.005470459518599561) * t198;
     out[322] = t230;
-    const wam7_real_t t231 = WAM7_SIN(q[5]);
-    const wam7_real_t t232 = WAM7_COS(q[5]);
     const wam7_real_t t233 = t232 * t174 - t231 * t185;
     const wam7_real_t t234 = t232 * t151 - t231 * t155;
     const wam7_real_t t235 = dq[5] + t150;
@@ -548,8 +550,6 @@ int wam7_regressor_standard(
     out[150] = t228;
     out[241] = t229;
     out[332] = t230;
-    const wam7_real_t t303 = WAM7_SIN(q[6]);
-    const wam7_real_t t304 = WAM7_COS(q[6]);
     const wam7_real_t t305 = t303 * t273 + t304 * t262;
     const wam7_real_t t306 = t303 * t239 + t304 * t235;
     const wam7_real_t t307 = dq[6] + t234;

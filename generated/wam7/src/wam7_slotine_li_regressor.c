@@ -36,7 +36,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x050269A3UL
+#if WAM7_GENERATION != 0xA48E985DUL
 #error "wam7.h and wam7_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -49,10 +49,10 @@ int wam7_slotine_li_regressor(
 {
     int status = WAM7_STATUS_OK;
 
-    if (!wam7_within(q, 7, WAM7_C(1.0e8))
-        || !wam7_within(dq, 7, WAM7_C(1.0e10))
-        || !wam7_within(dq_r, 7, WAM7_C(1.0e10))
-        || !wam7_within(ddq_r, 7, WAM7_C(1.0e16))) {
+    if (!wam7_within_joints(q, WAM7_C(1.0e8))
+        || !wam7_within_joints(dq, WAM7_C(1.0e10))
+        || !wam7_within_joints(dq_r, WAM7_C(1.0e10))
+        || !wam7_within_joints(ddq_r, WAM7_C(1.0e16))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {
@@ -60,11 +60,21 @@ int wam7_slotine_li_regressor(
         return status;
     }
 
+    wam7_real_t t0, t3;
+    WAM7_SINCOS(q[1], &t0, &t3);
+    wam7_real_t t24, t22;
+    WAM7_SINCOS(q[2], &t24, &t22);
+    wam7_real_t t64, t63;
+    WAM7_SINCOS(q[3], &t64, &t63);
+    wam7_real_t t123, t122;
+    WAM7_SINCOS(q[4], &t123, &t122);
+    wam7_real_t t184, t183;
+    WAM7_SINCOS(q[5], &t184, &t183);
+    wam7_real_t t244, t243;
+    WAM7_SINCOS(q[6], &t244, &t243);
     out[0] = WAM7_C(0.05209961446285298) * ddq_r[0];
-    const wam7_real_t t0 = WAM7_SIN(q[1]);
     const wam7_real_t t1 = WAM7_C(-0.05209961446285298) * t0;
     const wam7_real_t t2 = t0 * ddq_r[0];
-    const wam7_real_t t3 = WAM7_COS(q[1]);
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = t3 * dq_r[0];
     const wam7_real_t t6 = WAM7_C(-0.5) * (t4 * dq_r[1] + dq[1] * t5);
@@ -95,9 +105,7 @@ int wam7_slotine_li_regressor(
     out[67] = WAM7_C(0.07745783389167521) * ddq_r[1];
     out[68] = WAM7_C(-0.7598613504773338) * t3;
     out[69] = WAM7_C(0.7598613504773338) * t0;
-    const wam7_real_t t22 = WAM7_COS(q[2]);
     const wam7_real_t t23 = t22 * t1;
-    const wam7_real_t t24 = WAM7_SIN(q[2]);
     const wam7_real_t t25 = t22 * t14 - t24 * t21;
     const wam7_real_t t26 = t24 * t9 + t22 * dq[1];
     const wam7_real_t t27 = dq_r[2] + t5;
@@ -157,8 +165,6 @@ int wam7_slotine_li_regressor(
     out[14] = t62 * t8 - t59 * t23 + WAM7_C(-0.55) * t57;
     out[76] = WAM7_C(-0.55) * t58 - t59 * t39;
     out[138] = WAM7_C(0.07745783389167521) * t62 + WAM7_C(0.04260180864042137) * t43;
-    const wam7_real_t t63 = WAM7_COS(q[3]);
-    const wam7_real_t t64 = WAM7_SIN(q[3]);
     const wam7_real_t t65 = t64 * t8 - t63 * t23;
     const wam7_real_t t66 = t63 * t42 - t64 * t55;
     const wam7_real_t t67 = t64 * t33 + t63 * t28;
@@ -244,8 +250,6 @@ int wam7_slotine_li_regressor(
     out[83] = t121;
     out[145] = WAM7_C(-0.003485602525125384) * t86 - t83 * t108;
     out[207] = WAM7_C(0.12156576707999026) * t119;
-    const wam7_real_t t122 = WAM7_COS(q[4]);
-    const wam7_real_t t123 = WAM7_SIN(q[4]);
     const wam7_real_t t124 = t122 * t65 + t123 * t32;
     const wam7_real_t t125 = t123 * t97 + t122 * t86;
     const wam7_real_t t126 = t123 * t74 + t122 * t69;
@@ -340,8 +344,6 @@ int wam7_slotine_li_regressor(
     out[152] = t142 * t161 + t84 * t177 - t176 * t180;
     out[214] = WAM7_C(0.005470459518599561) * t148 + WAM7_C(0.036469730123997075) * t179 - t145 * t161;
     out[276] = WAM7_C(0.4469713223199599) * t177;
-    const wam7_real_t t183 = WAM7_COS(q[5]);
-    const wam7_real_t t184 = WAM7_SIN(q[5]);
     const wam7_real_t t185 = t183 * t124 + t184 * t73;
     const wam7_real_t t186 = t184 * t159 + t183 * t148;
     const wam7_real_t t187 = t184 * t133 + t183 * t128;
@@ -444,8 +446,6 @@ int wam7_slotine_li_regressor(
     out[221] = t242;
     out[283] = -(t209 * t164);
     out[345] = WAM7_C(0.4469713223199599) * t234;
-    const wam7_real_t t243 = WAM7_COS(q[6]);
-    const wam7_real_t t244 = WAM7_SIN(q[6]);
     const wam7_real_t t245 = t243 * t185 - t244 * t132;
     const wam7_real_t t246 = t244 * t223 - t243 * t212;
     const wam7_real_t t247 = t244 * t194 + t243 * t189;

@@ -49,7 +49,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0xB8EC3607UL
+#define YAW3PITCH_GENERATION 0x9BD22590UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef YAW3PITCH_REAL
@@ -79,7 +79,7 @@ typedef YAW3PITCH_REAL yaw3pitch_real_t;
 
 #define YAW3PITCH_STATUS_OK     0
 #define YAW3PITCH_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define YAW3PITCH_STATUS_PIVOT  2 /**< the mass matrix is not positive definite, or the result overflows */
+#define YAW3PITCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
 #define YAW3PITCH_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

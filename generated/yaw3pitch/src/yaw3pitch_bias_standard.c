@@ -64,7 +64,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -79,8 +79,8 @@ int yaw3pitch_bias_standard(
         };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
         || !yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -89,8 +89,12 @@ int yaw3pitch_bias_standard(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t16, t14;
+    YAW3PITCH_SINCOS(q[2], &t16, &t14);
+    yaw3pitch_real_t t34, t32;
+    YAW3PITCH_SINCOS(q[3], &t34, &t32);
     const yaw3pitch_real_t t2 = t1 * dq[0];
     const yaw3pitch_real_t t3 = dq[1] * t2;
     const yaw3pitch_real_t t4 = t0 * dq[0];
@@ -105,9 +109,7 @@ int yaw3pitch_bias_standard(
     const yaw3pitch_real_t t12 = t0 * t11 + YAW3PITCH_C(-9.81) * t1;
     const yaw3pitch_real_t t13 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2]
         + t12 * parameters[MZ2];
-    const yaw3pitch_real_t t14 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t15 = dq[1] + dq[2];
-    const yaw3pitch_real_t t16 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t17 = t16 * t4 - t14 * t2;
     const yaw3pitch_real_t t18 = t15 * t17;
     const yaw3pitch_real_t t19 = t14 * t4 + t16 * t2;
@@ -125,9 +127,7 @@ int yaw3pitch_bias_standard(
     const yaw3pitch_real_t t30 = t14 * t29 - t16 * t28;
     const yaw3pitch_real_t t31 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t25 - t24)
         + (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const yaw3pitch_real_t t32 = YAW3PITCH_COS(q[3]);
     const yaw3pitch_real_t t33 = dq[3] + t15;
-    const yaw3pitch_real_t t34 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t35 = t34 * t19 + t32 * t17;
     const yaw3pitch_real_t t36 = t33 * t35;
     const yaw3pitch_real_t t37 = t32 * t19 - t34 * t17;

@@ -19,7 +19,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int yaw3pitch_drive_gain(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {

@@ -47,7 +47,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -62,8 +62,8 @@ int yaw3pitch_energy(
         XZ4, YZ4, ZZ4, MX4, MY4 };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
         || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -73,9 +73,13 @@ int yaw3pitch_energy(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
+    yaw3pitch_real_t t0, t2;
+    YAW3PITCH_SINCOS(q[1], &t0, &t2);
+    yaw3pitch_real_t t10, t9;
+    YAW3PITCH_SINCOS(q[2], &t10, &t9);
+    yaw3pitch_real_t t23, t22;
+    YAW3PITCH_SINCOS(q[3], &t23, &t22);
     const yaw3pitch_real_t t1 = t0 * dq[0];
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
@@ -85,8 +89,6 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t7 = YAW3PITCH_C(-0.12) * dq[0];
     const yaw3pitch_real_t t8 = YAW3PITCH_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + YAW3PITCH_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const yaw3pitch_real_t t9 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t10 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t11 = t9 * t1 + t10 * t3;
     const yaw3pitch_real_t t12 = t9 * t3 - t10 * t1;
     const yaw3pitch_real_t t13 = dq[1] + dq[2];
@@ -101,8 +103,6 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t20 = t10 * t17;
     const yaw3pitch_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3] * (t11 * t19
         - t13 * t20);
-    const yaw3pitch_real_t t22 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t23 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t24 = t22 * t11 + t23 * t12;
     const yaw3pitch_real_t t25 = t22 * t12 - t23 * t11;
     const yaw3pitch_real_t t26 = dq[3] + t13;

@@ -65,7 +65,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -81,8 +81,8 @@ int yaw3pitch_energy_standard(
         };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
         || !yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -92,9 +92,13 @@ int yaw3pitch_energy_standard(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
+    yaw3pitch_real_t t0, t2;
+    YAW3PITCH_SINCOS(q[1], &t0, &t2);
+    yaw3pitch_real_t t11, t10;
+    YAW3PITCH_SINCOS(q[2], &t11, &t10);
+    yaw3pitch_real_t t26, t25;
+    YAW3PITCH_SINCOS(q[3], &t26, &t25);
     const yaw3pitch_real_t t1 = t0 * dq[0];
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const yaw3pitch_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
@@ -104,8 +108,6 @@ int yaw3pitch_energy_standard(
     const yaw3pitch_real_t t8 = YAW3PITCH_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const yaw3pitch_real_t t9 = YAW3PITCH_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const yaw3pitch_real_t t10 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t11 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t12 = t10 * t1 + t11 * t3;
     const yaw3pitch_real_t t13 = t10 * t3 - t11 * t1;
     const yaw3pitch_real_t t14 = dq[1] + dq[2];
@@ -124,8 +126,6 @@ int yaw3pitch_energy_standard(
         + t14 * t19);
     const yaw3pitch_real_t t24 = t9 + YAW3PITCH_C(0.5) * (t15 + t16 + t17 + t22) + (t23
         + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const yaw3pitch_real_t t25 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t26 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t27 = t25 * t12 + t26 * t13;
     const yaw3pitch_real_t t28 = t25 * t13 - t26 * t12;
     const yaw3pitch_real_t t29 = dq[3] + t14;

@@ -48,7 +48,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -63,9 +63,9 @@ int yaw3pitch_forward_dynamics(
         XZ4, YZ4, ZZ4, MX4, MY4 };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(input, 4, YAW3PITCH_C(1.0e18))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(input, YAW3PITCH_C(1.0e18))
         || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -74,8 +74,12 @@ int yaw3pitch_forward_dynamics(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t12, t11;
+    YAW3PITCH_SINCOS(q[2], &t12, &t11);
+    yaw3pitch_real_t t25, t24;
+    YAW3PITCH_SINCOS(q[3], &t25, &t24);
     const yaw3pitch_real_t t2 = t1 * dq[0];
     const yaw3pitch_real_t t3 = dq[1] * t2;
     const yaw3pitch_real_t t4 = t0 * dq[0];
@@ -86,8 +90,6 @@ int yaw3pitch_forward_dynamics(
         - parameters[XZ2R] * t7;
     const yaw3pitch_real_t t9 = t2 * t2;
     const yaw3pitch_real_t t10 = dq[1] * dq[1];
-    const yaw3pitch_real_t t11 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t12 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t13 = t12 * t4 - t11 * t2;
     const yaw3pitch_real_t t14 = dq[1] + dq[2];
     const yaw3pitch_real_t t15 = t13 * t14;
@@ -100,8 +102,6 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t21 = t13 * t13;
     const yaw3pitch_real_t t22 = t14 * t14;
     const yaw3pitch_real_t t23 = YAW3PITCH_C(-1.6) * t5;
-    const yaw3pitch_real_t t24 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t25 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t26 = t25 * t16 + t24 * t13;
     const yaw3pitch_real_t t27 = dq[3] + t14;
     const yaw3pitch_real_t t28 = t26 * t27;

@@ -23,7 +23,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -33,7 +33,7 @@ int yaw3pitch_forward_kinematics(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {
@@ -41,19 +41,23 @@ int yaw3pitch_forward_kinematics(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_COS(q[0]);
+    yaw3pitch_real_t t1, t0;
+    YAW3PITCH_SINCOS(q[0], &t1, &t0);
+    yaw3pitch_real_t t4, t2;
+    YAW3PITCH_SINCOS(q[1], &t4, &t2);
+    yaw3pitch_real_t t11, t10;
+    YAW3PITCH_SINCOS(q[2], &t11, &t10);
+    yaw3pitch_real_t t22, t21;
+    YAW3PITCH_SINCOS(q[3], &t22, &t21);
     out[0] = t0;
-    const yaw3pitch_real_t t1 = YAW3PITCH_SIN(q[0]);
     out[1] = -t1;
     out[4] = t1;
     out[5] = t0;
     out[10] = YAW3PITCH_C(1.0);
     out[11] = YAW3PITCH_C(0.45);
     out[15] = YAW3PITCH_C(1.0);
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t0 * t2;
     out[16] = t3;
-    const yaw3pitch_real_t t4 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t5 = t0 * t4;
     out[17] = -t5;
     out[18] = t1;
@@ -70,8 +74,6 @@ int yaw3pitch_forward_kinematics(
     out[25] = t2;
     out[27] = YAW3PITCH_C(0.45);
     out[31] = YAW3PITCH_C(1.0);
-    const yaw3pitch_real_t t10 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t11 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t12 = t10 * t3 - t11 * t5;
     out[32] = t12;
     const yaw3pitch_real_t t13 = t11 * t3 + t10 * t5;
@@ -93,8 +95,6 @@ int yaw3pitch_forward_kinematics(
     const yaw3pitch_real_t t20 = YAW3PITCH_C(0.8) * t4 + YAW3PITCH_C(0.45);
     out[43] = t20;
     out[47] = YAW3PITCH_C(1.0);
-    const yaw3pitch_real_t t21 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t22 = YAW3PITCH_SIN(q[3]);
     out[48] = t21 * t12 - t22 * t13;
     out[49] = -(t22 * t12 + t21 * t13);
     out[50] = t1;

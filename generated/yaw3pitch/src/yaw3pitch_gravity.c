@@ -45,7 +45,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -58,7 +58,7 @@ int yaw3pitch_gravity(
         XZ4, YZ4, ZZ4, MX4, MY4 };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -67,16 +67,16 @@ int yaw3pitch_gravity(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t2, t0;
+    YAW3PITCH_SINCOS(q[1], &t2, &t0);
+    yaw3pitch_real_t t4, t5;
+    YAW3PITCH_SINCOS(q[2], &t4, &t5);
+    yaw3pitch_real_t t8, t9;
+    YAW3PITCH_SINCOS(q[3], &t8, &t9);
     const yaw3pitch_real_t t1 = YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t2 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t3 = YAW3PITCH_C(-9.81) * t2;
-    const yaw3pitch_real_t t4 = YAW3PITCH_SIN(q[2]);
-    const yaw3pitch_real_t t5 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t6 = t4 * t3 + t5 * t1;
     const yaw3pitch_real_t t7 = t5 * t3 - t4 * t1;
-    const yaw3pitch_real_t t8 = YAW3PITCH_SIN(q[3]);
-    const yaw3pitch_real_t t9 = YAW3PITCH_COS(q[3]);
     const yaw3pitch_real_t t10 = parameters[MX4] * (t8 * t7 + t9 * t6) + parameters[MY4] * (t9 * t7
         - t8 * t6);
     const yaw3pitch_real_t t11 = parameters[MX3R] * t6 + parameters[MY3] * t7 + t10;

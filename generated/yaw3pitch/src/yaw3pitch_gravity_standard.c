@@ -63,7 +63,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -77,7 +77,7 @@ int yaw3pitch_gravity_standard(
         };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -86,15 +86,15 @@ int yaw3pitch_gravity_standard(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t4, t3;
+    YAW3PITCH_SINCOS(q[2], &t4, &t3);
+    yaw3pitch_real_t t8, t7;
+    YAW3PITCH_SINCOS(q[3], &t8, &t7);
     const yaw3pitch_real_t t2 = YAW3PITCH_C(-9.81) * t1;
-    const yaw3pitch_real_t t3 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t4 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t5 = YAW3PITCH_C(-9.81) * t0;
     const yaw3pitch_real_t t6 = t3 * t2 - t4 * t5;
-    const yaw3pitch_real_t t7 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t8 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t9 = t3 * t5 + t4 * t2;
     const yaw3pitch_real_t t10 = t7 * t6 - t8 * t9;
     const yaw3pitch_real_t t11 = t10 * parameters[MZ4];

@@ -47,7 +47,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -62,9 +62,9 @@ int yaw3pitch_inverse_dynamics(
         XZ4, YZ4, ZZ4, MX4, MY4 };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq, 4, YAW3PITCH_C(1.0e16))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e16))
         || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -73,8 +73,12 @@ int yaw3pitch_inverse_dynamics(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t20, t16;
+    YAW3PITCH_SINCOS(q[2], &t20, &t16);
+    yaw3pitch_real_t t39, t36;
+    YAW3PITCH_SINCOS(q[3], &t39, &t36);
     const yaw3pitch_real_t t2 = t1 * dq[0];
     const yaw3pitch_real_t t3 = t2 * t2;
     const yaw3pitch_real_t t4 = dq[1] * dq[1];
@@ -90,11 +94,9 @@ int yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t t14 = parameters[ZZ2R] * t5 + parameters[XX2R] * t7 + parameters[XY2] * t11
         + parameters[XZ2R] * t13;
     const yaw3pitch_real_t t15 = YAW3PITCH_C(-0.12) * ddq[0];
-    const yaw3pitch_real_t t16 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t17 = t15 + YAW3PITCH_C(-0.8) * t11;
     const yaw3pitch_real_t t18 = dq[1] + dq[2];
     const yaw3pitch_real_t t19 = t18 * t18;
-    const yaw3pitch_real_t t20 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t21 = t1 * t16 - t0 * t20;
     const yaw3pitch_real_t t22 = dq[0] * t21;
     const yaw3pitch_real_t t23 = t22 * t22;
@@ -111,10 +113,8 @@ int yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t t34 = t32 + t33;
     const yaw3pitch_real_t t35 = parameters[ZZ3R] * t24 + parameters[XX3R] * t27 + parameters[XY3] * t31
         + parameters[XZ3R] * t34;
-    const yaw3pitch_real_t t36 = YAW3PITCH_COS(q[3]);
     const yaw3pitch_real_t t37 = dq[3] + t18;
     const yaw3pitch_real_t t38 = t37 * t37;
-    const yaw3pitch_real_t t39 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t40 = t36 * t21 - t39 * t25;
     const yaw3pitch_real_t t41 = dq[0] * t40;
     const yaw3pitch_real_t t42 = t41 * t41;

@@ -65,7 +65,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -81,9 +81,9 @@ int yaw3pitch_inverse_dynamics_standard(
         };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq, 4, YAW3PITCH_C(1.0e16))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e16))
         || !yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -92,8 +92,12 @@ int yaw3pitch_inverse_dynamics_standard(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t22, t20;
+    YAW3PITCH_SINCOS(q[2], &t22, &t20);
+    yaw3pitch_real_t t47, t46;
+    YAW3PITCH_SINCOS(q[3], &t47, &t46);
     const yaw3pitch_real_t t2 = t1 * dq[0];
     const yaw3pitch_real_t t3 = t2 * t2;
     const yaw3pitch_real_t t4 = dq[1] * dq[1];
@@ -114,9 +118,7 @@ int yaw3pitch_inverse_dynamics_standard(
     const yaw3pitch_real_t t18 = YAW3PITCH_C(-0.12) * ddq[0];
     const yaw3pitch_real_t t19 = (t3 - t4) * parameters[YZ2] + (t13 + t15 * parameters[XZ2])
         + (t17 * parameters[MZ2] + t18 * parameters[MY2]);
-    const yaw3pitch_real_t t20 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t21 = t18 + YAW3PITCH_C(-0.8) * t12;
-    const yaw3pitch_real_t t22 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t23 = t1 * t16 + YAW3PITCH_C(9.81) * t0;
     const yaw3pitch_real_t t24 = YAW3PITCH_C(0.8) * (t3 + t4) - t23;
     const yaw3pitch_real_t t25 = t17 + YAW3PITCH_C(-0.8) * t15;
@@ -142,8 +144,6 @@ int yaw3pitch_inverse_dynamics_standard(
     const yaw3pitch_real_t t44 = t42 - t43;
     const yaw3pitch_real_t t45 = t21 * parameters[MY3] + t26 * parameters[MZ3] + ((t29
         - t31) * parameters[YZ3] + (t41 + t44 * parameters[XZ3]));
-    const yaw3pitch_real_t t46 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t47 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t48 = t47 * t33 + t46 * t27;
     const yaw3pitch_real_t t49 = dq[0] * t48;
     const yaw3pitch_real_t t50 = t49 * t49;

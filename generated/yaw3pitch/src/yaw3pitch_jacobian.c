@@ -19,7 +19,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -29,7 +29,7 @@ int yaw3pitch_jacobian(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {
@@ -37,17 +37,17 @@ int yaw3pitch_jacobian(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[0]);
+    yaw3pitch_real_t t0, t9;
+    YAW3PITCH_SINCOS(q[0], &t0, &t9);
+    yaw3pitch_real_t t6, t2;
+    YAW3PITCH_SINCOS(q[1], &t6, &t2);
+    yaw3pitch_real_t t5, t4;
+    YAW3PITCH_SINCOS(q[2], &t5, &t4);
     const yaw3pitch_real_t t1 = YAW3PITCH_C(-0.12) * t0;
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t0 * t2;
-    const yaw3pitch_real_t t4 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t5 = YAW3PITCH_SIN(q[2]);
-    const yaw3pitch_real_t t6 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t5 * (t0 * t6) - t4 * t3);
     const yaw3pitch_real_t t8 = t1 + YAW3PITCH_C(-0.8) * t3 + t7;
     out[0] = t8;
-    const yaw3pitch_real_t t9 = YAW3PITCH_COS(q[0]);
     const yaw3pitch_real_t t10 = YAW3PITCH_C(-0.7) * (t6 * t4 + t2 * t5);
     const yaw3pitch_real_t t11 = YAW3PITCH_C(-0.8) * t6 - YAW3PITCH_C(0.45) + t10 + YAW3PITCH_C(0.45);
     out[1] = t9 * t11;

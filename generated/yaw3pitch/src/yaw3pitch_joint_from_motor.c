@@ -23,7 +23,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int yaw3pitch_joint_from_motor(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q_m, 4, YAW3PITCH_C(1.0e18))
-        || !yaw3pitch_within(dq_m, 4, YAW3PITCH_C(1.0e18))
-        || !yaw3pitch_within(ddq_m, 4, YAW3PITCH_C(1.0e18))) {
+    if (!yaw3pitch_within_joints(q_m, YAW3PITCH_C(1.0e18))
+        || !yaw3pitch_within_joints(dq_m, YAW3PITCH_C(1.0e18))
+        || !yaw3pitch_within_joints(ddq_m, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {

@@ -45,7 +45,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -58,7 +58,7 @@ int yaw3pitch_mass_matrix(
         XZ4, YZ4, ZZ4, MX4, MY4 };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -67,28 +67,28 @@ int yaw3pitch_mass_matrix(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_SIN(q[3]);
+    yaw3pitch_real_t t21, t15;
+    YAW3PITCH_SINCOS(q[1], &t21, &t15);
+    yaw3pitch_real_t t11, t7;
+    YAW3PITCH_SINCOS(q[2], &t11, &t7);
+    yaw3pitch_real_t t1, t0;
+    YAW3PITCH_SINCOS(q[3], &t1, &t0);
     const yaw3pitch_real_t t2 = t0 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t1);
     const yaw3pitch_real_t t3 = t0 * t2;
     const yaw3pitch_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
     const yaw3pitch_real_t t5 = YAW3PITCH_C(1.4) * t4;
     const yaw3pitch_real_t t6 = parameters[XX4R] - t3 + t5;
-    const yaw3pitch_real_t t7 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t8 = parameters[XX3R] + t3;
     const yaw3pitch_real_t t9 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const yaw3pitch_real_t t10 = parameters[XY3] + (parameters[XY4] + t1 * t2 + YAW3PITCH_C(-0.7) * t9);
-    const yaw3pitch_real_t t11 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t12 = t7 * (t6 - t8) + t10 * (YAW3PITCH_C(2.0) * t11);
     const yaw3pitch_real_t t13 = t7 * t12;
     const yaw3pitch_real_t t14 = parameters[XX2R] + (t6 - t13);
-    const yaw3pitch_real_t t15 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t16 = parameters[MY3] + t9;
     const yaw3pitch_real_t t17 = parameters[MX3R] + t4;
     const yaw3pitch_real_t t18 = t7 * t17 - t11 * t16;
     const yaw3pitch_real_t t19 = YAW3PITCH_C(1.6) * t18;
     const yaw3pitch_real_t t20 = t7 * t16 + t11 * t17;
-    const yaw3pitch_real_t t21 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t22 = (parameters[XY2] + (t10 - t11 * t12
         + YAW3PITCH_C(-0.8) * t20)) * (YAW3PITCH_C(2.0) * t21);
     const yaw3pitch_real_t t23 = t15 * (t15 * (t8 + t13 + t19 - t14) + t22);

@@ -63,7 +63,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -77,7 +77,7 @@ int yaw3pitch_mass_matrix_standard(
         };
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
@@ -86,8 +86,12 @@ int yaw3pitch_mass_matrix_standard(
         return status;
     }
 
-    const yaw3pitch_real_t t0 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_SIN(q[3]);
+    yaw3pitch_real_t t24, t16;
+    YAW3PITCH_SINCOS(q[1], &t24, &t16);
+    yaw3pitch_real_t t12, t8;
+    YAW3PITCH_SINCOS(q[2], &t12, &t8);
+    yaw3pitch_real_t t1, t0;
+    YAW3PITCH_SINCOS(q[3], &t1, &t0);
     const yaw3pitch_real_t t2 = t0 * (parameters[XX4] - parameters[YY4])
         + parameters[XY4] * (YAW3PITCH_C(-2.0) * t1);
     const yaw3pitch_real_t t3 = t0 * t2;
@@ -95,15 +99,12 @@ int yaw3pitch_mass_matrix_standard(
     const yaw3pitch_real_t t5 = t0 * parameters[MX4] - t1 * parameters[MY4];
     const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * (t4 + YAW3PITCH_C(2.0) * t5);
     const yaw3pitch_real_t t7 = parameters[YY3] + (parameters[XX4] - t3 + t6);
-    const yaw3pitch_real_t t8 = YAW3PITCH_COS(q[2]);
     const yaw3pitch_real_t t9 = parameters[XX3] + (parameters[YY4] + t3);
     const yaw3pitch_real_t t10 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const yaw3pitch_real_t t11 = parameters[XY3] + (parameters[XY4] + t1 * t2 + YAW3PITCH_C(-0.7) * t10);
-    const yaw3pitch_real_t t12 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t13 = t8 * (t9 - t7) - t11 * (YAW3PITCH_C(2.0) * t12);
     const yaw3pitch_real_t t14 = t8 * t13;
     const yaw3pitch_real_t t15 = parameters[XX2] + (t7 + t14);
-    const yaw3pitch_real_t t16 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t17 = parameters[M3] + parameters[M4];
     const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * t17;
     const yaw3pitch_real_t t19 = parameters[MY3] + t10;
@@ -111,7 +112,6 @@ int yaw3pitch_mass_matrix_standard(
     const yaw3pitch_real_t t21 = t8 * t20 - t12 * t19;
     const yaw3pitch_real_t t22 = YAW3PITCH_C(0.8) * (t18 + YAW3PITCH_C(2.0) * t21);
     const yaw3pitch_real_t t23 = t8 * t19 + t12 * t20;
-    const yaw3pitch_real_t t24 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t25 = (parameters[XY2] + (t11 + t12 * t13
         + YAW3PITCH_C(-0.8) * t23)) * (YAW3PITCH_C(2.0) * t24);
     const yaw3pitch_real_t t26 = t16 * (parameters[YY2] + (t9 - t14 + t22) - t15) + t25;

@@ -23,7 +23,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
@@ -37,9 +37,9 @@ int yaw3pitch_motor_from_joint(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq, 4, YAW3PITCH_C(1.0e16))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e16))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {

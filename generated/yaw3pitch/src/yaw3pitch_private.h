@@ -12,7 +12,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -26,7 +26,18 @@
 #define YAW3PITCH_MATH_double(name) name
 #define YAW3PITCH_MATH(name) YAW3PITCH_JOIN(YAW3PITCH_MATH_, YAW3PITCH_REAL)(name)
 
-/* Sine and cosine may be replaced by the target's own: -DYAW3PITCH_SIN=my_sin */
+/*
+ * Sine and cosine of one angle, YAW3PITCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
+ * function. The target's own takes their place with -DYAW3PITCH_SINCOS=my_sincos, or with both of
+ * -DYAW3PITCH_SIN=my_sin -DYAW3PITCH_COS=my_cos; -include my_header.h declares it.
+ */
+#define YAW3PITCH_SINGLE_float 1
+#define YAW3PITCH_SINGLE_double 0
+#if !defined(YAW3PITCH_SINCOS) && !defined(YAW3PITCH_SIN) && !defined(YAW3PITCH_COS)
+#define YAW3PITCH_OWN_SINCOS YAW3PITCH_JOIN(YAW3PITCH_SINGLE_, YAW3PITCH_REAL)
+#else
+#define YAW3PITCH_OWN_SINCOS 0
+#endif
 #ifndef YAW3PITCH_SIN
 #define YAW3PITCH_SIN YAW3PITCH_MATH(sin)
 #endif
@@ -67,6 +78,31 @@ static inline yaw3pitch_real_t yaw3pitch_select(yaw3pitch_real_t condition, yaw3
     return condition > YAW3PITCH_C(0.0) ? a : b;
 }
 
+#if YAW3PITCH_OWN_SINCOS
+typedef struct {
+    yaw3pitch_real_t sine;
+    yaw3pitch_real_t cosine;
+} yaw3pitch_pair_t;
+
+/* Two numbers by value travel in registers. */
+yaw3pitch_pair_t yaw3pitch_sincos(yaw3pitch_real_t x);
+#endif
+
+#ifndef YAW3PITCH_SINCOS
+#define YAW3PITCH_SINCOS yaw3pitch_sine_cosine
+static inline void yaw3pitch_sine_cosine(yaw3pitch_real_t x, yaw3pitch_real_t *sine, yaw3pitch_real_t *cosine)
+{
+#if YAW3PITCH_OWN_SINCOS
+    const yaw3pitch_pair_t pair = yaw3pitch_sincos(x);
+    *sine = pair.sine;
+    *cosine = pair.cosine;
+#else
+    *sine = YAW3PITCH_SIN(x);
+    *cosine = YAW3PITCH_COS(x);
+#endif
+}
+#endif
+
 /* Whether the sum of squares is at most limit; false where an element is not a number. */
 static inline int yaw3pitch_within(const yaw3pitch_real_t x[], int n, yaw3pitch_real_t limit)
 {
@@ -76,6 +112,12 @@ static inline int yaw3pitch_within(const yaw3pitch_real_t x[], int n, yaw3pitch_
         sum += x[i] * x[i];
     }
     return sum <= limit;
+}
+
+/* The same for a vector with an element for each joint. */
+static inline int yaw3pitch_within_joints(const yaw3pitch_real_t x[], yaw3pitch_real_t limit)
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
 
 static inline void yaw3pitch_zero(yaw3pitch_real_t x[], int n)

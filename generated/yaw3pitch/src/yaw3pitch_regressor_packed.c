@@ -26,7 +26,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -49,9 +49,9 @@ int yaw3pitch_regressor_packed(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq, 4, YAW3PITCH_C(1.0e16))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e16))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {
@@ -59,9 +59,13 @@ int yaw3pitch_regressor_packed(
         return status;
     }
 
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[1], &t0, &t1);
+    yaw3pitch_real_t t22, t21;
+    YAW3PITCH_SINCOS(q[2], &t22, &t21);
+    yaw3pitch_real_t t54, t53;
+    YAW3PITCH_SINCOS(q[3], &t54, &t53);
     out[0] = ddq[0];
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
-    const yaw3pitch_real_t t1 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t2 = t1 * dq[0];
     const yaw3pitch_real_t t3 = dq[1] * t2;
     const yaw3pitch_real_t t4 = t0 * ddq[0];
@@ -95,8 +99,6 @@ int yaw3pitch_regressor_packed(
     out[7] = YAW3PITCH_C(-0.12) * t10 + t0 * t17;
     const yaw3pitch_real_t t20 = t1 * t18 + YAW3PITCH_C(-9.81) * t0;
     out[28] = t20;
-    const yaw3pitch_real_t t21 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t22 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t23 = t0 * t21 + t1 * t22;
     const yaw3pitch_real_t t24 = dq[1] + dq[2];
     const yaw3pitch_real_t t25 = t1 * t21 - t0 * t22;
@@ -148,8 +150,6 @@ int yaw3pitch_regressor_packed(
     const yaw3pitch_real_t t52 = t21 * t46 - t22 * t47;
     out[35] = t52 + ((t42 + t37) * t51 - t43 * t50);
     out[49] = t52;
-    const yaw3pitch_real_t t53 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t54 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t55 = t53 * t23 + t54 * t25;
     const yaw3pitch_real_t t56 = dq[3] + t24;
     const yaw3pitch_real_t t57 = t53 * t25 - t54 * t23;

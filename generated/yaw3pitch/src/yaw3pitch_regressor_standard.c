@@ -29,7 +29,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -41,9 +41,9 @@ int yaw3pitch_regressor_standard(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq, 4, YAW3PITCH_C(1.0e16))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e16))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {
@@ -51,10 +51,14 @@ int yaw3pitch_regressor_standard(
         return status;
     }
 
+    yaw3pitch_real_t t0, t2;
+    YAW3PITCH_SINCOS(q[1], &t0, &t2);
+    yaw3pitch_real_t t24, t23;
+    YAW3PITCH_SINCOS(q[2], &t24, &t23);
+    yaw3pitch_real_t t61, t60;
+    YAW3PITCH_SINCOS(q[3], &t61, &t60);
     out[5] = ddq[0];
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t1 = t0 * ddq[0];
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = dq[1] * t3;
     const yaw3pitch_real_t t5 = t1 + t4;
@@ -92,8 +96,6 @@ int yaw3pitch_regressor_standard(
     const yaw3pitch_real_t t22 = t2 * t20 + YAW3PITCH_C(-9.81) * t0;
     out[57] = t22;
     out[19] = YAW3PITCH_C(0.0144) * ddq[0];
-    const yaw3pitch_real_t t23 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t24 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t25 = t0 * t23 + t2 * t24;
     const yaw3pitch_real_t t26 = ddq[0] * t25;
     const yaw3pitch_real_t t27 = t2 * t23 - t0 * t24;
@@ -157,8 +159,6 @@ int yaw3pitch_regressor_standard(
     out[68] = t59;
     out[29] = -(t50 * t49);
     out[69] = t57 * t55 + t53 * t56;
-    const yaw3pitch_real_t t60 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t61 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t62 = t60 * t25 + t61 * t27;
     const yaw3pitch_real_t t63 = ddq[0] * t62;
     const yaw3pitch_real_t t64 = t60 * t27 - t61 * t25;

@@ -29,7 +29,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xB8EC3607UL
+#if YAW3PITCH_GENERATION != 0x9BD22590UL
 #error "yaw3pitch.h and yaw3pitch_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -42,10 +42,10 @@ int yaw3pitch_slotine_li_regressor(
 {
     int status = YAW3PITCH_STATUS_OK;
 
-    if (!yaw3pitch_within(q, 4, YAW3PITCH_C(1.0e8))
-        || !yaw3pitch_within(dq, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(dq_r, 4, YAW3PITCH_C(1.0e10))
-        || !yaw3pitch_within(ddq_r, 4, YAW3PITCH_C(1.0e16))) {
+    if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
+        || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(dq_r, YAW3PITCH_C(1.0e10))
+        || !yaw3pitch_within_joints(ddq_r, YAW3PITCH_C(1.0e16))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {
@@ -53,10 +53,14 @@ int yaw3pitch_slotine_li_regressor(
         return status;
     }
 
+    yaw3pitch_real_t t0, t2;
+    YAW3PITCH_SINCOS(q[1], &t0, &t2);
+    yaw3pitch_real_t t24, t23;
+    YAW3PITCH_SINCOS(q[2], &t24, &t23);
+    yaw3pitch_real_t t59, t58;
+    YAW3PITCH_SINCOS(q[3], &t59, &t58);
     out[0] = ddq_r[0];
-    const yaw3pitch_real_t t0 = YAW3PITCH_SIN(q[1]);
     const yaw3pitch_real_t t1 = t0 * ddq_r[0];
-    const yaw3pitch_real_t t2 = YAW3PITCH_COS(q[1]);
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = t2 * dq_r[0];
     const yaw3pitch_real_t t5 = YAW3PITCH_C(0.5) * (t3 * dq_r[1] + dq[1] * t4);
@@ -91,8 +95,6 @@ int yaw3pitch_slotine_li_regressor(
     out[7] = YAW3PITCH_C(-0.12) * t12 + t0 * t19;
     const yaw3pitch_real_t t22 = YAW3PITCH_C(-9.81) * t0 + t2 * t20;
     out[29] = t22;
-    const yaw3pitch_real_t t23 = YAW3PITCH_COS(q[2]);
-    const yaw3pitch_real_t t24 = YAW3PITCH_SIN(q[2]);
     const yaw3pitch_real_t t25 = t0 * t23 + t2 * t24;
     const yaw3pitch_real_t t26 = t25 * ddq_r[0];
     const yaw3pitch_real_t t27 = t2 * t23 - t0 * t24;
@@ -147,8 +149,6 @@ int yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t t57 = t23 * t51 - t24 * t52;
     out[36] = t57 + (t54 * t48 + t56 * (t42 + t47));
     out[58] = t57;
-    const yaw3pitch_real_t t58 = YAW3PITCH_COS(q[3]);
-    const yaw3pitch_real_t t59 = YAW3PITCH_SIN(q[3]);
     const yaw3pitch_real_t t60 = t58 * t25 + t59 * t27;
     const yaw3pitch_real_t t61 = t60 * ddq_r[0];
     const yaw3pitch_real_t t62 = t58 * t27 - t59 * t25;

@@ -1,0 +1,70 @@
+"""Values of the parameters that the description's nominal inertials and effects give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from modelgen.description.objects import Inertial
+from modelgen.effects import applied_effects
+from modelgen.errors import InputError
+from modelgen.functions.objects import Model
+
+
+def nominal_standard(model: Model) -> dict[str, float]:
+    """Nominal standard parameters by name, in the model's order and units.
+
+    A link's tensor and first moments are about the origin of its frame: the parallel-axis theorem
+    (Huygens, Steiner) moves the tensor there. Raises InputError for a link without nominal inertials,
+    for an effect without a nominal value, and for an arm in a fluid, whose volumes have none.
+    """
+    arm = model.arm
+    values: dict[str, float] = {}
+    for i, link in enumerate(arm.links):
+        if link is None:
+            raise InputError(f"{arm.name}: link {arm.joints[i].name} has no nominal inertials", arm.where)
+        values |= {f"{name}{i + 1}": value for name, value in _about_origin(link).items()}
+    for effect in applied_effects(arm):
+        for parameter, symbol in effect.parameters:
+            if parameter.name in effect.nominal:
+                values[symbol.name] = effect.nominal[parameter.name]
+    for p in model.standard:
+        if p.name not in values:
+            raise InputError(
+                f"{arm.name}: {p.name}, {p.text}, has no nominal value in the description", arm.where
+            )
+    return {p.name: values[p.name] for p in model.standard}
+
+
+def nominal_base(model: Model) -> dict[str, float]:
+    """Nominal base parameters by name, in the order of `parameters`. Raises as nominal_standard does."""
+    standard = list(nominal_standard(model).values())
+    return {
+        base.name: float(sum(standard[i] * _number(factor, model.arm.symbols) for i, factor in base.terms))
+        for base in model.grouping.base
+    }
+
+
+def _about_origin(link: Inertial) -> Mapping[str, float]:
+    m, (x, y, z) = link.mass, link.com
+    xx, xy, xz, yy, yz, zz = link.inertia
+    return {
+        "XX": xx + m * (y * y + z * z),
+        "XY": xy - m * x * y,
+        "XZ": xz - m * x * z,
+        "YY": yy + m * (x * x + z * z),
+        "YZ": yz - m * y * z,
+        "ZZ": zz + m * (x * x + y * y),
+        "MX": m * x,
+        "MY": m * y,
+        "MZ": m * z,
+        "M": m,
+    }
+
+
+def _number(factor: float | sp.Expr, symbols: Mapping[str, float]) -> float:
+    """A factor of the grouping with the values of its symbols."""
+    if isinstance(factor, sp.Expr):
+        factor = factor.subs({symbol: symbols[str(symbol)] for symbol in factor.free_symbols})
+    return float(factor)

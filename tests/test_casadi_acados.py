@@ -1,0 +1,112 @@
+"""export_<arm>_model() makes an AcadosModel. acados is not on PyPI: a stub stands for its class."""
+
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from arms_support import ARMS, inputs, model
+
+from modelgen.functions import Options
+from modelgen.generation import generate_arm
+
+pytestmark = pytest.mark.xdist_group("ariane4")
+
+
+class AcadosModel:
+    """The attributes that acados reads, and no others."""
+
+    __slots__ = ("f_expl_expr", "f_impl_expr", "name", "p", "u", "x", "xdot")
+
+
+def module(name: str, options: Options) -> Any:
+    made: Any = ModuleType("generated")
+    exec(generate_arm(ARMS[name], options).files[f"{name}_casadi.py"], made.__dict__)  # noqa: S102 - the text under test
+    return made
+
+
+@pytest.fixture
+def stub(monkeypatch: pytest.MonkeyPatch) -> None:
+    acados: Any = ModuleType("acados_template")
+    acados.AcadosModel = AcadosModel
+    monkeypatch.setitem(sys.modules, "acados_template", acados)
+
+
+def exported(name: str, options: Options) -> AcadosModel:
+    made: AcadosModel = getattr(module(name, options), f"export_{name}_model")()
+    return made
+
+
+VARIANTS = [
+    pytest.param(Options(), id="default"),
+    pytest.param(Options(sincos=True), id="sincos"),
+    pytest.param(Options(runtime_geometry=True), id="geometry"),
+]
+
+
+@pytest.mark.usefixtures("stub")
+@pytest.mark.parametrize("options", VARIANTS)
+def test_everything_is_sx_and_of_the_right_shape(options: Options) -> None:
+    made: Any = exported("ariane4", options)
+    assert made.name == "ariane4"
+    for name, shape in {
+        "x": (6, 1),
+        "xdot": (6, 1),
+        "u": (3, 1),
+        "f_expl_expr": (6, 1),
+        "f_impl_expr": (6, 1),
+    }.items():
+        value = getattr(made, name)
+        assert isinstance(value, ca.SX)
+        assert value.shape == shape
+    for name in ("x", "xdot", "u", "p"):
+        assert getattr(made, name).is_valid_input(), f"{name} must be free symbols"
+    symbols = ca.symvar(ca.vertcat(made.f_expl_expr, made.f_impl_expr))
+    known = ca.symvar(ca.vertcat(made.x, made.xdot, made.u, made.p))
+    assert {s.name() for s in symbols} <= {s.name() for s in known}
+
+
+@pytest.mark.usefixtures("stub")
+@pytest.mark.parametrize("options", VARIANTS)
+def test_the_implicit_form_vanishes_where_the_explicit_one_says(options: Options) -> None:
+    made: Any = exported("ariane4", options)
+    f = ca.Function("f", [made.x, made.u, made.p], [made.f_expl_expr])
+    g = ca.Function("g", [made.x, made.xdot, made.u, made.p], [made.f_impl_expr])
+    plain = model("ariane4")
+    dynamics = next(f for f in plain.functions if f.name == "forward_dynamics")
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        q, dq, u, parameters = inputs(plain, dynamics, rng)
+        p = parameters
+        if options.runtime_geometry:
+            prepared = generate_symbols(options)
+            p = np.concatenate([parameters, prepared])
+        x = np.concatenate([q, dq])
+        xdot = f(x, u, p)
+        np.testing.assert_allclose(xdot[:3].full().ravel(), dq)
+        np.testing.assert_allclose(g(x, xdot, u, p).full(), 0, atol=1e-8 * max(1.0, abs(u).max()))
+        assert abs(g(x, xdot + 1, u, p).full()).min() > 1e-3, "the implicit form must depend on xdot"
+
+
+def generate_symbols(options: Options) -> np.ndarray:
+    """Values of the run-time geometry, in the order of its input."""
+    from modelgen.functions import build_model  # noqa: PLC0415 - only this variant needs another model
+
+    made = build_model(ARMS["ariane4"], options)
+    return np.array([made.arm.symbols[name] for name in made.geometry])
+
+
+@pytest.mark.parametrize("name", ["ariane4", "scara"])
+def test_importing_the_module_does_not_need_acados(checkout: Path, name: str) -> None:
+    assert module(name, Options()).functions()
+    text = (checkout / "generated" / name / f"{name}_casadi.py").read_text()
+    assert f"def export_{name}_model():" in text
+    with pytest.raises(ImportError, match="acados_template"):
+        exported(name, Options())
+
+
+def test_row_wise_gains_leave_no_state_space_model() -> None:
+    assert not hasattr(module("gravity_arm", Options(gains="row_wise")), "export_gravity_arm_model")
