@@ -80,5 +80,7 @@ def unit_of(pattern: str, coordinate: str) -> str:
     force = {"rad": "N m", "m": "N"}.get(coordinate)
     if force:
         return pattern.format(f=force, x=coordinate)
-    times = pattern.replace("{f}", "J").split("/")[0]
-    return f"{times}/{coordinate}" + ("^2" if "{x}" in pattern else "")
+    if "{f}" not in pattern:
+        return pattern.format(x=coordinate)
+    over, _, under = pattern.replace("{f}", "J").partition("/")
+    return f"{over}/{coordinate}" + ("^2" if "{x}" in under else "")
