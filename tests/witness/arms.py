@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-
 import pytest
 from arms_support import ARMS, model
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pinocchio as pin
@@ -64,9 +64,20 @@ class RigidBodies:
                 result[self.model.joints[identifier].idx_q] = locked
         return result
 
-    def effort(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """Inverse dynamics [N m or N]."""
-        found = pin.rnea(self.model, self.data, self._q(q), self._full(dq), self._full(ddq))
+    def effort(self, q: Array, dq: Array, ddq: Array, forces: Mapping[int, pin.Force] | None = None) -> Array:
+        """Inverse dynamics [N m or N]. `forces`: what else acts on a link, at its origin in its axes."""
+        acting = [pin.Force.Zero() for _ in range(self.model.njoints)]
+        for i, force in (forces or {}).items():
+            assert self.every_joint
+            acting[self.joint_id[i]] = force
+        found = pin.rnea(
+            self.model,
+            self.data,
+            self._q(q),
+            self._full(dq),
+            self._full(ddq),
+            pin.StdVec_Force(acting),
+        )
         return np.array(found)[self.places]
 
     def mass_matrix(self, q: Array) -> Array:
