@@ -5,6 +5,8 @@
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
 #   make bench   CPU time of generation, per arm and over the number of joints
+#   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
+#   make fuzz    libFuzzer on five arms, SECONDS each (needs clang)
 #   make clean   remove the environment and the caches
 
 PYTHON ?= python3
@@ -12,7 +14,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench clean
+.PHONY: run test pytest lint format bench prove fuzz clean
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
@@ -33,6 +35,14 @@ format: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
+
+prove: $(INSTALLED)
+	PYTHONPATH=tests $(BIN)/python -m safety.eva
+
+SECONDS ?= 60
+
+fuzz: $(INSTALLED)
+	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(SECONDS)
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis
