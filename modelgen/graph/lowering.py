@@ -53,6 +53,15 @@ def reachable(graph: Graph, roots: Sequence[int]) -> list[int]:
     return sorted(seen)
 
 
+def _registers(graph: Graph, nodes: Sequence[int]) -> dict[int, int]:
+    """How many registers each node takes if nothing is shared (Sethi, Ullman, 1970); `nodes` by index."""
+    count: dict[int, int] = {}
+    for node in nodes:
+        operands = sorted((count[key >> 1] for key in graph.args[node]), reverse=True)
+        count[node] = max((needed + kept for kept, needed in enumerate(operands)), default=1)
+    return count
+
+
 class _Lowering:
     def __init__(self, graph: Graph, roots: Sequence[int], guards: Mapping[int, tuple[int, int]]) -> None:
         self.graph = graph
@@ -65,6 +74,7 @@ class _Lowering:
                 self.uses[key >> 1] += 1
         for key in roots:
             self.uses[key >> 1] += 1
+        self.registers = _registers(graph, nodes)
         self.number: dict[int, int] = {}
         self.terms: dict[int, tuple[Term, int]] = {}
         self.statements: list[Statement] = []
@@ -78,7 +88,9 @@ class _Lowering:
                 continue
             if not ready:
                 stack.append((node, True))
-                stack.extend((key >> 1, False) for key in reversed(self.graph.args[node]))
+                operands = [key >> 1 for key in reversed(self.graph.args[node])]
+                operands.sort(key=self.registers.__getitem__)
+                stack.extend((operand, False) for operand in operands)
                 continue
             term, size = self._term(node)
             op = self.graph.op[node]
@@ -143,9 +155,11 @@ def lower(
 ) -> Program:
     """The program that computes `outputs`; constant zeros are left out.
 
-    `guards` are values that must be positive, with the status bit to report where one is not; each
-    is tested as soon as it is known, before anything is divided by it. `order` lists (output,
-    element) in the order of computation, by default that of `outputs`.
+    `guards` are values that must be positive, with the status bit to report where one is not. They are
+    computed before all else, so that a bad state is left early and fewer values are alive later; each is
+    tested as soon as it is known, before anything is divided by it. `order` lists (output, element) in the
+    order of computation, by default that of `outputs`; of two operands the one that takes more registers
+    comes first.
     A value used once is written where it is used, as long as the line stays readable. Each output
     follows at once on what it needs, which keeps few values alive.
     """
@@ -156,6 +170,8 @@ def lower(
     tested = {e.key >> 1: (e.key, bit) for e, bit in guards if e.value is None}
     roots = [e.key for _, _, e in flat] + [key for key, _ in tested.values()]
     lowering = _Lowering(flat[0][2].graph, roots, tested)
+    for node in sorted(tested):  # whether or not an output leads to it
+        lowering.visit(tested[node][0])
     for name, i, expression in flat:
         lowering.visit(expression.key)
         lowering.statements.append(Statement((name, i), lowering.signed(expression.key)))
