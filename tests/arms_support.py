@@ -14,6 +14,7 @@ from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
 from modelgen.functions import Function, Model, Options, build_model
 from modelgen.resources import shipped_arms
+from modelgen.transmission import of_joint
 
 ARMS = load(shipped_arms(), known_effects())
 # One worker deals with an arm, so that its model is built once.
@@ -74,9 +75,10 @@ def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np
     standard = standard_vector(made, rng)
     result = []
     q = rng.uniform(-pi, pi, len(made.arm.coordinates))
-    for r in function.ranges:
-        if r.argument == "q":
-            q[r.index] = r.low + (r.high - r.low) * rng.uniform(0.02, 0.98)
+    for n, i in enumerate(made.arm.coordinates):
+        stroke = of_joint(made.arm, made.arm.joints[i]).joint_range()
+        if stroke:
+            q[n] = stroke[0] + (stroke[1] - stroke[0]) * rng.uniform(0.02, 0.98)
     for a in function.arguments:
         value = rng.uniform(-1, 1, a.size)
         if a.name == "q":

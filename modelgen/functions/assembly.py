@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import sympy as sp
+
 from modelgen.base_parameters import Grouping
 from modelgen.functions.arguments import arguments
 from modelgen.functions.objects import STATUS_STROKE, Argument, Function, InputRange, Output
@@ -61,7 +63,7 @@ class Assembly:
         """A function of the named inputs. `drives`: it makes sense within the levers' strokes only."""
         outputs = {output.name: list(expressions) for output, expressions in results}
         if drives:
-            guards = [*guards, *self.stroke_guards(results)]
+            guards = [*guards, *self.stroke_guards(inputs, results)]
         program = lower(outputs, guards, order)
         return Function(
             name,
@@ -93,20 +95,23 @@ class Assembly:
         return found
 
     def ranges(self, inputs: Sequence[str]) -> tuple[InputRange, ...]:
-        """Strokes of the levers, a little widened, on q or q_m where the function has it."""
-        if self.options.runtime_geometry:
-            return ()
+        """Strokes of the levers, a little widened, on q or q_m where the function has it.
+
+        With run-time geometry the range of q is not known before: `stroke_guards` stands in for it.
+        """
         result = []
         for n, drive in enumerate(self.real.drives):
-            joint, motor = drive.transmission.joint_range(), drive.transmission.motor_range()
-            if joint and "q" in inputs:
-                result.append(_range("q", n, joint, STROKE_MARGIN))
+            motor = drive.transmission.motor_range()
+            if "q" in inputs and not self.options.runtime_geometry:
+                joint = drive.transmission.joint_range()
+                if joint:
+                    result.append(_range("q", n, joint, STROKE_MARGIN))
             if motor and "q_m" in inputs:
                 result.append(_range("q_m", n, motor, 1e-3 * (motor[1] - motor[0])))
         return tuple(result)
 
-    def stroke_guards(self, results: Sequence[Result]) -> list[tuple[Expr, int]]:
-        """With run-time geometry the stroke is checked on the cylinder's length in the program."""
+    def stroke_guards(self, inputs: Sequence[str], results: Sequence[Result]) -> list[tuple[Expr, int]]:
+        """With run-time geometry the program checks that each lever is on its stroke and on its side."""
         if not self.options.runtime_geometry:
             return []
         graphs = {e.graph for _, expressions in results for e in expressions}
@@ -115,16 +120,19 @@ class Assembly:
             if equations.graph not in graphs:
                 continue
             for n, drive in enumerate(equations.drives):
-                if isinstance(drive.transmission, Levered):
-                    guards.append((self._within_stroke(equations, n, drive.transmission), STATUS_STROKE))
+                lever = drive.transmission
+                if not isinstance(lever, Levered):
+                    continue
+                tests = [lever.clearance(), lever.side()] if "q" in inputs else [lever.triangle()]
+                guards += [(self._of_lever(equations, n, lever, test), STATUS_STROKE) for test in tests]
         return guards
 
-    def _within_stroke(self, equations: Equations, n: int, lever: Levered) -> Expr:
-        """Positive while the length is between its ends, widened by a thousandth of the stroke."""
+    def _of_lever(self, equations: Equations, n: int, lever: Levered, expression: sp.Expr) -> Expr:
+        graph = equations.graph
         return from_sympy(
-            equations.graph,
-            lever.clearance(),
-            {**equations.scalars.symbols, lever.q: equations.graph.input("q", n)},
+            graph,
+            expression,
+            {**equations.scalars.symbols, lever.q: graph.input("q", n), lever.q_m: graph.input("q_m", n)},
             lambda angle: equations.trigonometry.lookup(n, lever.q, angle),
         )
 

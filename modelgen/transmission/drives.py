@@ -125,10 +125,14 @@ class Levered(Transmission):
         """q_m = m0 + (m1 - m0) (q_p - L0) / (L1 - L0)."""
         return self.drive.motor[0] + self.per_length * (self._length() - self.low)
 
+    def _length_from_motor(self) -> sp.Expr:
+        """Cylinder length q_p [m] as a function of q_m."""
+        return self.low + (self.q_m - self.drive.motor[0]) / self.per_length
+
     def joint(self) -> sp.Expr:
         """q = rev arccos((l1^2 + l2^2 - q_p^2) / (2 l1 l2)) + offset."""
         l1, l2 = sp.sympify(self.drive.l1), sp.sympify(self.drive.l2)
-        length = self.low + (self.q_m - self.drive.motor[0]) / self.per_length
+        length = self._length_from_motor()
         return self.drive.rev * sp.acos((l1**2 + l2**2 - length**2) / (2 * l1 * l2)) + self.drive.offset
 
     def clearance(self) -> sp.Expr:
@@ -136,6 +140,15 @@ class Levered(Transmission):
         low, high = (sp.sympify(end) for end in self.drive.length)
         length = self._length()
         return (length - low) * (high - length) + sp.Float(1e-3) * (high - low) ** 2
+
+    def side(self) -> sp.Expr:
+        """rev sin(q - offset): positive on the lever's own side of its dead centres."""
+        return self.drive.rev * sp.sin(self.q - self.drive.offset)
+
+    def triangle(self) -> sp.Expr:
+        """Sixteen times the squared area of the lever's triangle over q_m [m^4]: positive where it exists."""
+        l1, l2 = sp.sympify(self.drive.l1), sp.sympify(self.drive.l2)
+        return 4 * l1**2 * l2**2 - (l1**2 + l2**2 - self._length_from_motor() ** 2) ** 2
 
     def inverse_gain(self) -> sp.Expr:
         """1/K = q_p / (torque_constant (m1 - m0)/(L1 - L0) l1 l2 sin(q - offset)): one division."""
