@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -190,13 +191,13 @@ def generated(seed: int, dressed: bool = False) -> Emitted:
     return build(random_arm(seed, dressed), Options())
 
 
-def _param(kind: str, *values: Any) -> Any:
-    return pytest.param(*values, id=kind, marks=pytest.mark.xdist_group(kind))
+def _param(arm: str, make: Callable[[], Emitted], variant: str = "") -> Any:
+    return pytest.param(make, id=arm + variant, marks=pytest.mark.xdist_group(arm))
 
 
 # Each is called for an `Emitted`; one worker deals with an arm, so that its model is built once.
 SHIPPED = [_param(name, lambda name=name: shipped(name)) for name in ARMS]
-SHIPPED_LINKS = [_param(name, lambda name=name: shipped(name, "links")) for name in ARMS]
+SHIPPED_LINKS = [_param(name, lambda name=name: shipped(name, "links"), "-links") for name in ARMS]
 # The first two dozen, and some whose wrist carries a joint that slides.
 SEEDS = [*range(24), 32, 62, 81]
 RANDOM_LINKS = [_param(f"random{seed}", lambda seed=seed: generated(seed)) for seed in SEEDS]

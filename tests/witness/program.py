@@ -16,7 +16,7 @@ CALLS: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "min": min,
     "max": max,
-    "sign": lambda x: (x > 0) - (x < 0),
+    "sign": lambda x: int(x > 0) - int(x < 0),
     "select": lambda c, a, b: a if c > 0 else b,
 }
 ARITHMETIC: dict[str, Callable[..., Any]] = {
