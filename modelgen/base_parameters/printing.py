@@ -48,7 +48,8 @@ def _split(factor: Scalar) -> tuple[str, str]:
         negative = factor.could_extract_minus_sign()
         magnitude = -factor if negative else factor
         text = str(_plain(magnitude))
-        return ("-" if negative else "+"), f"({text})" if isinstance(magnitude, sp.Add) or "/" in text else text
+        bracketed = isinstance(magnitude, sp.Add) or "/" in text
+        return ("-" if negative else "+"), f"({text})" if bracketed else text
     return ("-" if factor < 0 else "+"), _shortest(abs(factor))
 
 
