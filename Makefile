@@ -6,7 +6,7 @@
 #   make format  let ruff rewrite the layout
 #   make bench   CPU time of generation, per arm and over the number of joints
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
-#   make fuzz    libFuzzer on five arms, SECONDS each (needs clang)
+#   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make clean   remove the environment and the caches
 
 PYTHON ?= python3
@@ -39,10 +39,10 @@ bench: $(INSTALLED)
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva
 
-SECONDS ?= 60
+FUZZ_SECONDS ?= 60
 
 fuzz: $(INSTALLED)
-	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(SECONDS)
+	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis

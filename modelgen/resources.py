@@ -1,4 +1,4 @@
-"""Where templates and shipped arms are: beside the package in a checkout, inside it when installed."""
+"""Where templates, CMake functions and shipped arms are: beside the package, or inside it when installed."""
 
 from __future__ import annotations
 
@@ -12,6 +12,14 @@ def templates_folder() -> Path:
     Raises FileNotFoundError where the installation is incomplete.
     """
     return _find("templates")
+
+
+def cmake_folder() -> Path:
+    """Folder of ModelgenGenerate.cmake.
+
+    Raises FileNotFoundError where the installation is incomplete.
+    """
+    return _find("cmake")
 
 
 def shipped_arms() -> Path:

@@ -196,6 +196,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 5)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
+    ZZ1 = parameters[0]  # kg m^2
     t0 = ca.sign(dq[0])
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
@@ -204,7 +205,6 @@ def _forward_dynamics(name: str) -> ca.Function:
     FV1 = parameters[3]  # N m s/rad
     FC1 = parameters[4]  # N m
     t3 = MX1 * (-9.81 * t1) + MY1 * (-9.81 * t2) - (FV1 * dq[0] + FC1 * t0)
-    ZZ1 = parameters[0]  # kg m^2
     t4 = 1.0 / ZZ1
     out[0] = (input[0] + t3) * t4
     outputs = [_vector(out)]
@@ -503,6 +503,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 12)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
+    ZZ1 = parameters[5]  # kg m^2
     t0 = ca.sign(dq[0])
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
@@ -511,7 +512,6 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     t3 = -9.81 * t1 * MX1 + -9.81 * t2 * MY1 - (dq[0] * FV1 + t0 * FC1)
-    ZZ1 = parameters[5]  # kg m^2
     t4 = 1.0 / ZZ1
     out[0] = (input[0] + t3) * t4
     outputs = [_vector(out)]

@@ -173,6 +173,15 @@ def init(
     run(name, out)
 
 
+@app.command()
+@guarded
+def cmake_dir() -> None:
+    """Print the folder of ModelgenGenerate.cmake, which generates at build time."""
+    from modelgen.resources import cmake_folder
+
+    typer.echo(cmake_folder())
+
+
 def main() -> None:
     """Entry of the command `modelgen`. Ends the process with its exit status."""
     app(prog_name="modelgen")

@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from modelgen import __version__
-from modelgen.backends import Provenance, c_files, casadi_files
+from modelgen.backends import Provenance, c_files, casadi_files, packaging_files
 from modelgen.backends.c import c_symbols
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
@@ -64,6 +64,7 @@ def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> Generated
     provenance = Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
     try:
         files = {**c_files(model, provenance), **casadi_files(model, provenance)}
+        files |= packaging_files(model, provenance, files)
     except ValueError as error:
         raise InputError(str(error), arm.where) from error
     symbols = frozenset(c_symbols(model.arm.name, files))

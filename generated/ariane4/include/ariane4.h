@@ -60,7 +60,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0xD63F8060UL
+#define ARIANE4_GENERATION 0xB921FA20UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_REAL

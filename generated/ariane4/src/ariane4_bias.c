@@ -48,7 +48,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -77,93 +77,93 @@ int ariane4_bias(
         return status;
     }
 
-    ariane4_real_t t1, t0;
-    ARIANE4_SINCOS(q[0], &t1, &t0);
-    ariane4_real_t t12, t13;
-    ARIANE4_SINCOS(q[1], &t12, &t13);
-    ariane4_real_t t24, t23;
-    ARIANE4_SINCOS(q[2], &t24, &t23);
-    const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t4 = ARIANE4_C(-1.0) / t3;
-    const ariane4_real_t t5 = ARIANE4_C(-0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t6 = ARIANE4_C(-3885.523436256565) * t2
-        + ARIANE4_C(-72.7913960548305) * (t4 * t4) * (t5 * t5);
-    const ariane4_real_t t7 = dq[0] * dq[0];
-    const ariane4_real_t t8 = t5 * (ARIANE4_C(3885.523436256565) * t4) * dq[0];
-    const ariane4_real_t t9 = ariane4_sign(t8);
-    const ariane4_real_t t10 = parameters[IA1] * (t4 * t6 * t7) + (parameters[FV1] * t8
-        + parameters[FC1] * t9);
-    const ariane4_real_t t11 = ARIANE4_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_real_t t14 = t13 * dq[0];
-    const ariane4_real_t t15 = dq[1] * t14;
-    const ariane4_real_t t16 = t12 * dq[0];
-    const ariane4_real_t t17 = dq[1] * t16;
-    const ariane4_real_t t18 = ARIANE4_C(2.0) * t17;
-    const ariane4_real_t t19 = t16 * t14;
-    const ariane4_real_t t20 = parameters[XY2] * t18 - (parameters[XX2R] * t15 + parameters[ZZ2R] * t15)
-        - parameters[XZ2R] * t19;
-    const ariane4_real_t t21 = dq[1] * dq[1];
-    const ariane4_real_t t22 = t14 * t14;
-    const ariane4_real_t t25 = t23 * t14 - t24 * t16;
-    const ariane4_real_t t26 = dq[1] + dq[2];
-    const ariane4_real_t t27 = t25 * t26;
-    const ariane4_real_t t28 = t23 * t16 + t24 * t14;
-    const ariane4_real_t t29 = t28 * t26;
-    const ariane4_real_t t30 = ARIANE4_C(2.0) * t29;
-    const ariane4_real_t t31 = t28 * t25;
-    const ariane4_real_t t32 = parameters[XY3R] * t30 - (parameters[XX3R] * t27 + parameters[ZZ3R] * t27)
-        - parameters[XZ3R] * t31;
-    const ariane4_real_t t33 = t25 * t25;
-    const ariane4_real_t t34 = t26 * t26;
-    const ariane4_real_t t35 = ARIANE4_C(-0.886) * t17;
-    const ariane4_real_t t36 = t32 + parameters[YZ3R] * (t34 - t33) + parameters[MY3R] * t35;
-    const ariane4_real_t t37 = ARIANE4_C(2.0) * t27;
-    const ariane4_real_t t38 = t29 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t37
-        - parameters[YZ3R] * t31;
-    const ariane4_real_t t39 = t28 * t28;
-    const ariane4_real_t t40 = t38 - parameters[XZ3R] * (t39 - t34) + parameters[MX3R] * t35;
-    const ariane4_real_t t41 = t20 + parameters[YZ2] * (t21 - t22) + (t23 * t36 + t24 * t40);
-    const ariane4_real_t t42 = ARIANE4_C(2.0) * t15;
-    const ariane4_real_t t43 = t17 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t42
-        + parameters[YZ2] * t19;
-    const ariane4_real_t t44 = t16 * t16;
-    const ariane4_real_t t45 = parameters[MX3R] * t30 + parameters[MY3R] * t37;
-    const ariane4_real_t t46 = t43 + parameters[XZ2R] * (t44 - t21) + (t24 * t36 - t23 * t40
-        + ARIANE4_C(0.443) * t45);
-    const ariane4_real_t t47 = t12 * t41 + t13 * t46 + ARIANE4_C(0.116) * (parameters[MX2R] * t18
-        + parameters[MY2] * t42 + t45);
-    out[0] = ARIANE4_C(-250.0) * t10 + t11 * t47;
-    const ariane4_real_t t48 = ARIANE4_C(0.8305958991958126) * t13 - ARIANE4_C(0.5568756164881881) * t12;
-    const ariane4_real_t t49 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t48 + ARIANE4_C(0.293698));
-    const ariane4_real_t t50 = ARIANE4_C(1.0) / t49;
-    const ariane4_real_t t51 = ARIANE4_C(-0.8305958991958126) * t12 + ARIANE4_C(-0.5568756164881881) * t13;
-    const ariane4_real_t t52 = ARIANE4_C(2656.3065671641784) * t48
-        + ARIANE4_C(-104.12987373940295) * (t50 * t50) * (t51 * t51);
-    const ariane4_real_t t53 = t51 * (ARIANE4_C(2656.3065671641784) * t50) * dq[1];
-    const ariane4_real_t t54 = ariane4_sign(t53);
-    const ariane4_real_t t55 = parameters[IA2] * (t50 * t52 * t21) - (parameters[FV2] * t53
-        + parameters[FC2] * t54);
-    const ariane4_real_t t56 = ARIANE4_C(-0.03137188092799786) * t49 / t51;
-    const ariane4_real_t t57 = ARIANE4_C(0.116) * t7;
-    const ariane4_real_t t58 = t12 * t57 + ARIANE4_C(9.81) * t13;
-    const ariane4_real_t t59 = t13 * t57 + ARIANE4_C(-9.81) * t12;
-    const ariane4_real_t t60 = parameters[XY2] * (t44 - t22) - parameters[XX2R] * t19
-        + (parameters[MX2R] * t58 + parameters[MY2] * t59);
-    const ariane4_real_t t61 = t59 + ARIANE4_C(0.443) * (t21 + t22);
-    const ariane4_real_t t62 = t58 + ARIANE4_C(0.443) * t19;
-    const ariane4_real_t t63 = parameters[MX3R] * (t24 * t61 + t23 * t62) + parameters[MY3R] * (t23 * t61
-        - t24 * t62);
-    const ariane4_real_t t64 = parameters[XY3R] * (t39 - t33) - parameters[XX3R] * t31 + t63;
-    const ariane4_real_t t65 = t24 * (parameters[MY3R] * t31 - parameters[MX3R] * (t33 + t34))
-        + t23 * (parameters[MX3R] * t31 - parameters[MY3R] * (t39 + t34));
-    const ariane4_real_t t66 = ARIANE4_C(83.33333333333333) * t55 + t56 * (t60 + (t64
-        + ARIANE4_C(0.443) * t65));
+    ariane4_real_t t37, t36;
+    ARIANE4_SINCOS(q[0], &t37, &t36);
+    ariane4_real_t t0, t3;
+    ARIANE4_SINCOS(q[1], &t0, &t3);
+    ariane4_real_t t2, t5;
+    ARIANE4_SINCOS(q[2], &t2, &t5);
+    const ariane4_real_t t1 = t0 * dq[0];
+    const ariane4_real_t t4 = t3 * dq[0];
+    const ariane4_real_t t6 = t5 * t4 - t2 * t1;
+    const ariane4_real_t t7 = dq[1] + dq[2];
+    const ariane4_real_t t8 = t6 * t7;
+    const ariane4_real_t t9 = t5 * t1 + t2 * t4;
+    const ariane4_real_t t10 = t9 * t7;
+    const ariane4_real_t t11 = ARIANE4_C(2.0) * t10;
+    const ariane4_real_t t12 = t9 * t6;
+    const ariane4_real_t t13 = parameters[XY3R] * t11 - (parameters[XX3R] * t8 + parameters[ZZ3R] * t8)
+        - parameters[XZ3R] * t12;
+    const ariane4_real_t t14 = t6 * t6;
+    const ariane4_real_t t15 = t7 * t7;
+    const ariane4_real_t t16 = dq[1] * t1;
+    const ariane4_real_t t17 = ARIANE4_C(-0.886) * t16;
+    const ariane4_real_t t18 = t13 + parameters[YZ3R] * (t15 - t14) + parameters[MY3R] * t17;
+    const ariane4_real_t t19 = ARIANE4_C(2.0) * t8;
+    const ariane4_real_t t20 = t10 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t19
+        - parameters[YZ3R] * t12;
+    const ariane4_real_t t21 = t9 * t9;
+    const ariane4_real_t t22 = t20 - parameters[XZ3R] * (t21 - t15) + parameters[MX3R] * t17;
+    const ariane4_real_t t23 = dq[1] * t4;
+    const ariane4_real_t t24 = ARIANE4_C(2.0) * t16;
+    const ariane4_real_t t25 = t1 * t4;
+    const ariane4_real_t t26 = parameters[XY2] * t24 - (parameters[XX2R] * t23 + parameters[ZZ2R] * t23)
+        - parameters[XZ2R] * t25;
+    const ariane4_real_t t27 = t4 * t4;
+    const ariane4_real_t t28 = dq[1] * dq[1];
+    const ariane4_real_t t29 = t26 + parameters[YZ2] * (t28 - t27) + (t5 * t18 + t2 * t22);
+    const ariane4_real_t t30 = parameters[MX3R] * t11 + parameters[MY3R] * t19;
+    const ariane4_real_t t31 = ARIANE4_C(2.0) * t23;
+    const ariane4_real_t t32 = t16 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t31
+        + parameters[YZ2] * t25;
+    const ariane4_real_t t33 = t1 * t1;
+    const ariane4_real_t t34 = t32 + parameters[XZ2R] * (t33 - t28) + (t2 * t18 - t5 * t22
+        + ARIANE4_C(0.443) * t30);
+    const ariane4_real_t t35 = t0 * t29 + t3 * t34 + ARIANE4_C(0.116) * (parameters[MX2R] * t24
+        + parameters[MY2] * t31 + t30);
+    const ariane4_real_t t38 = ARIANE4_C(0.28217402066925895) * t36 + ARIANE4_C(0.9593632378089879) * t37;
+    const ariane4_real_t t39 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t38 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t40 = ARIANE4_C(-0.28217402066925895) * t37 + ARIANE4_C(0.9593632378089879) * t36;
+    const ariane4_real_t t41 = ARIANE4_C(-0.06434139546481742) * t39 / t40;
+    const ariane4_real_t t42 = ARIANE4_C(-1.0) / t39;
+    const ariane4_real_t t43 = ARIANE4_C(-3885.523436256565) * t38
+        + ARIANE4_C(-72.7913960548305) * (t42 * t42) * (t40 * t40);
+    const ariane4_real_t t44 = dq[0] * dq[0];
+    const ariane4_real_t t45 = t40 * (ARIANE4_C(3885.523436256565) * t42) * dq[0];
+    const ariane4_real_t t46 = ariane4_sign(t45);
+    const ariane4_real_t t47 = parameters[IA1] * (t42 * t43 * t44) + (parameters[FV1] * t45
+        + parameters[FC1] * t46);
+    out[0] = ARIANE4_C(-250.0) * t47 + t41 * t35;
+    const ariane4_real_t t48 = ARIANE4_C(0.116) * t44;
+    const ariane4_real_t t49 = t3 * t48 + ARIANE4_C(-9.81) * t0;
+    const ariane4_real_t t50 = t49 + ARIANE4_C(0.443) * (t28 + t27);
+    const ariane4_real_t t51 = t0 * t48 + ARIANE4_C(9.81) * t3;
+    const ariane4_real_t t52 = t51 + ARIANE4_C(0.443) * t25;
+    const ariane4_real_t t53 = parameters[MX3R] * (t2 * t50 + t5 * t52) + parameters[MY3R] * (t5 * t50
+        - t2 * t52);
+    const ariane4_real_t t54 = parameters[XY3R] * (t21 - t14) - parameters[XX3R] * t12 + t53;
+    const ariane4_real_t t55 = t2 * (parameters[MY3R] * t12 - parameters[MX3R] * (t14 + t15))
+        + t5 * (parameters[MX3R] * t12 - parameters[MY3R] * (t21 + t15));
+    const ariane4_real_t t56 = parameters[XY2] * (t33 - t27) - parameters[XX2R] * t25
+        + (parameters[MX2R] * t51 + parameters[MY2] * t49);
+    const ariane4_real_t t57 = ARIANE4_C(0.8305958991958126) * t3 - ARIANE4_C(0.5568756164881881) * t0;
+    const ariane4_real_t t58 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t57 + ARIANE4_C(0.293698));
+    const ariane4_real_t t59 = ARIANE4_C(-0.8305958991958126) * t0 + ARIANE4_C(-0.5568756164881881) * t3;
+    const ariane4_real_t t60 = ARIANE4_C(-0.03137188092799786) * t58 / t59;
+    const ariane4_real_t t61 = ARIANE4_C(1.0) / t58;
+    const ariane4_real_t t62 = ARIANE4_C(2656.3065671641784) * t57
+        + ARIANE4_C(-104.12987373940295) * (t61 * t61) * (t59 * t59);
+    const ariane4_real_t t63 = t59 * (ARIANE4_C(2656.3065671641784) * t61) * dq[1];
+    const ariane4_real_t t64 = ariane4_sign(t63);
+    const ariane4_real_t t65 = parameters[IA2] * (t61 * t62 * t28) - (parameters[FV2] * t63
+        + parameters[FC2] * t64);
+    const ariane4_real_t t66 = ARIANE4_C(83.33333333333333) * t65 + t60 * (t56 + (t54
+        + ARIANE4_C(0.443) * t55));
     out[1] = t66;
-    const ariane4_real_t t67 = ARIANE4_C(0.06366143813161289) * t23 - ARIANE4_C(0.9979715533496006) * t24;
+    const ariane4_real_t t67 = ARIANE4_C(0.06366143813161289) * t5 - ARIANE4_C(0.9979715533496006) * t2;
     const ariane4_real_t t68 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t67 + ARIANE4_C(0.242037));
     const ariane4_real_t t69 = ARIANE4_C(-1.0) / t68;
-    const ariane4_real_t t70 = ARIANE4_C(-0.06366143813161289) * t24 + ARIANE4_C(-0.9979715533496006) * t23;
+    const ariane4_real_t t70 = ARIANE4_C(-0.06366143813161289) * t2 + ARIANE4_C(-0.9979715533496006) * t5;
     const ariane4_real_t t71 = ARIANE4_C(-7124.375926654358) * t67
         + ARIANE4_C(-188.12627071923498) * (t69 * t69) * (t70 * t70);
     const ariane4_real_t t72 = t70 * (ARIANE4_C(7124.375926654358) * t69) * dq[2];
@@ -171,6 +171,6 @@ int ariane4_bias(
     const ariane4_real_t t74 = parameters[IA3] * (t69 * t71 * (dq[2] * dq[2])) + (parameters[FV3] * t72
         + parameters[FC3] * t73);
     const ariane4_real_t t75 = ARIANE4_C(-0.046787723832235825) * t68 / t70;
-    out[2] = ARIANE4_C(-333.3333333333333) * t74 - t75 * t64;
+    out[2] = ARIANE4_C(-333.3333333333333) * t74 - t75 * t54;
     return ARIANE4_STATUS_OK;
 }

@@ -72,7 +72,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -102,132 +102,133 @@ int ariane4_bias_standard(
         return status;
     }
 
-    ariane4_real_t t1, t0;
-    ARIANE4_SINCOS(q[0], &t1, &t0);
-    ariane4_real_t t12, t13;
-    ARIANE4_SINCOS(q[1], &t12, &t13);
-    ariane4_real_t t28, t26;
-    ARIANE4_SINCOS(q[2], &t28, &t26);
-    const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t2 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t4 = ARIANE4_C(-1.0) / t3;
-    const ariane4_real_t t5 = ARIANE4_C(-0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t6 = ARIANE4_C(-3885.523436256565) * t2
-        + ARIANE4_C(-72.7913960548305) * (t4 * t4) * (t5 * t5);
-    const ariane4_real_t t7 = dq[0] * dq[0];
-    const ariane4_real_t t8 = t5 * (ARIANE4_C(3885.523436256565) * t4) * dq[0];
-    const ariane4_real_t t9 = ariane4_sign(t8);
-    const ariane4_real_t t10 = t4 * t6 * t7 * parameters[IA1] + (t8 * parameters[FV1] + t9 * parameters[FC1]);
-    const ariane4_real_t t11 = ARIANE4_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_real_t t14 = t13 * dq[0];
-    const ariane4_real_t t15 = dq[1] * t14;
-    const ariane4_real_t t16 = t12 * dq[0];
-    const ariane4_real_t t17 = dq[1] * t16;
-    const ariane4_real_t t18 = ARIANE4_C(2.0) * t17;
-    const ariane4_real_t t19 = t15 * (parameters[YY2] - parameters[ZZ2]) - t15 * parameters[XX2]
-        + t18 * parameters[XY2];
-    const ariane4_real_t t20 = t16 * t14;
-    const ariane4_real_t t21 = t14 * t14;
-    const ariane4_real_t t22 = dq[1] * dq[1];
-    const ariane4_real_t t23 = ARIANE4_C(0.116) * t7;
-    const ariane4_real_t t24 = t12 * t23 + ARIANE4_C(9.81) * t13;
-    const ariane4_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
-        + t24 * parameters[MZ2];
-    const ariane4_real_t t27 = dq[1] + dq[2];
-    const ariane4_real_t t29 = t26 * t14 - t28 * t16;
-    const ariane4_real_t t30 = t27 * t29;
-    const ariane4_real_t t31 = t26 * t16 + t28 * t14;
-    const ariane4_real_t t32 = t27 * t31;
-    const ariane4_real_t t33 = ARIANE4_C(2.0) * t32;
-    const ariane4_real_t t34 = parameters[XY3] * t33 - (parameters[XX3] * t30 + t30 * (parameters[ZZ3]
+    ariane4_real_t t63, t62;
+    ARIANE4_SINCOS(q[0], &t63, &t62);
+    ariane4_real_t t0, t3;
+    ARIANE4_SINCOS(q[1], &t0, &t3);
+    ariane4_real_t t2, t5;
+    ARIANE4_SINCOS(q[2], &t2, &t5);
+    const ariane4_real_t t1 = t0 * dq[0];
+    const ariane4_real_t t4 = t3 * dq[0];
+    const ariane4_real_t t6 = t5 * t4 - t2 * t1;
+    const ariane4_real_t t7 = dq[1] + dq[2];
+    const ariane4_real_t t8 = t7 * t6;
+    const ariane4_real_t t9 = t5 * t1 + t2 * t4;
+    const ariane4_real_t t10 = t7 * t9;
+    const ariane4_real_t t11 = ARIANE4_C(2.0) * t10;
+    const ariane4_real_t t12 = parameters[XY3] * t11 - (parameters[XX3] * t8 + t8 * (parameters[ZZ3]
         - parameters[YY3]));
-    const ariane4_real_t t35 = t31 * t29;
-    const ariane4_real_t t36 = t27 * t27;
-    const ariane4_real_t t37 = t29 * t29;
-    const ariane4_real_t t38 = t36 - t37;
-    const ariane4_real_t t39 = ARIANE4_C(0.886) * t17;
-    const ariane4_real_t t40 = t13 * t23 + ARIANE4_C(-9.81) * t12;
-    const ariane4_real_t t41 = t40 + ARIANE4_C(0.443) * (t21 + t22);
-    const ariane4_real_t t42 = t24 + ARIANE4_C(0.443) * t20;
-    const ariane4_real_t t43 = t28 * t41 + t26 * t42;
-    const ariane4_real_t t44 = t34 - parameters[XZ3] * t35 + parameters[YZ3] * t38 + (parameters[MZ3] * t43
-        - parameters[MY3] * t39);
-    const ariane4_real_t t45 = parameters[XY4] * t35 - (parameters[XX4] * t30 + t30 * (parameters[YY4]
+    const ariane4_real_t t13 = t9 * t6;
+    const ariane4_real_t t14 = t6 * t6;
+    const ariane4_real_t t15 = t7 * t7;
+    const ariane4_real_t t16 = t15 - t14;
+    const ariane4_real_t t17 = dq[0] * dq[0];
+    const ariane4_real_t t18 = ARIANE4_C(0.116) * t17;
+    const ariane4_real_t t19 = t3 * t18 + ARIANE4_C(-9.81) * t0;
+    const ariane4_real_t t20 = t4 * t4;
+    const ariane4_real_t t21 = dq[1] * dq[1];
+    const ariane4_real_t t22 = t19 + ARIANE4_C(0.443) * (t20 + t21);
+    const ariane4_real_t t23 = t0 * t18 + ARIANE4_C(9.81) * t3;
+    const ariane4_real_t t24 = t1 * t4;
+    const ariane4_real_t t25 = t23 + ARIANE4_C(0.443) * t24;
+    const ariane4_real_t t26 = t2 * t22 + t5 * t25;
+    const ariane4_real_t t27 = dq[1] * t1;
+    const ariane4_real_t t28 = ARIANE4_C(0.886) * t27;
+    const ariane4_real_t t29 = t12 - parameters[XZ3] * t13 + parameters[YZ3] * t16 + (parameters[MZ3] * t26
+        - parameters[MY3] * t28);
+    const ariane4_real_t t30 = t9 * t9;
+    const ariane4_real_t t31 = t15 + t30;
+    const ariane4_real_t t32 = t26 + (ARIANE4_C(-0.1) * t13 + ARIANE4_C(-0.436) * t31);
+    const ariane4_real_t t33 = t28 - (ARIANE4_C(0.2) * t10 + ARIANE4_C(-0.872) * t8);
+    const ariane4_real_t t34 = parameters[XY4] * t13 - (parameters[XX4] * t8 + t8 * (parameters[YY4]
         - parameters[ZZ4]));
-    const ariane4_real_t t46 = t31 * t31;
-    const ariane4_real_t t47 = t36 + t46;
-    const ariane4_real_t t48 = t43 + (ARIANE4_C(-0.1) * t35 + ARIANE4_C(-0.436) * t47);
-    const ariane4_real_t t49 = t39 - (ARIANE4_C(0.2) * t32 + ARIANE4_C(-0.872) * t30);
-    const ariane4_real_t t50 = t45 + parameters[XZ4] * t33 - parameters[YZ4] * t38 - (parameters[MY4] * t48
-        + parameters[MZ4] * t49);
-    const ariane4_real_t t51 = t46 + t37;
-    const ariane4_real_t t52 = ARIANE4_C(2.0) * t30;
-    const ariane4_real_t t53 = parameters[M4] * t49 + (parameters[MX4] * t33 + parameters[MY4] * t51
-        + parameters[MZ4] * t52);
-    const ariane4_real_t t54 = t44 + (t50 + ARIANE4_C(-0.436) * t53);
-    const ariane4_real_t t55 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t52;
-    const ariane4_real_t t56 = t36 - t46;
-    const ariane4_real_t t57 = t26 * t41 - t28 * t42;
-    const ariane4_real_t t58 = t55 + parameters[YZ3] * t35 - parameters[XZ3] * t56 + (parameters[MZ3] * t57
-        + parameters[MX3] * t39);
-    const ariane4_real_t t59 = parameters[ZZ4] * t32 - t32 * (parameters[XX4] - parameters[YY4])
-        - parameters[YZ4] * t35;
-    const ariane4_real_t t60 = t36 + t37;
-    const ariane4_real_t t61 = t57 - (ARIANE4_C(0.1) * t60 - ARIANE4_C(-0.436) * t35);
-    const ariane4_real_t t62 = t59 - parameters[XZ4] * t52 + parameters[XY4] * t56 + (parameters[MX4] * t49
-        - parameters[MY4] * t61);
-    const ariane4_real_t t63 = t58 + (t62 - ARIANE4_C(0.1) * t53);
-    const ariane4_real_t t64 = ARIANE4_C(2.0) * t15;
-    const ariane4_real_t t65 = t17 * parameters[YY2] + t17 * (parameters[ZZ2] - parameters[XX2])
-        - t64 * parameters[XY2];
-    const ariane4_real_t t66 = t16 * t16;
-    const ariane4_real_t t67 = t65 + t20 * parameters[YZ2] + (t66 - t22) * parameters[XZ2]
-        + t40 * parameters[MZ2];
-    const ariane4_real_t t68 = parameters[M3] * t39 + (parameters[MX3] * t33 + parameters[MY3] * t52
-        - parameters[MZ3] * t51);
-    const ariane4_real_t t69 = t68 + t53;
-    const ariane4_real_t t70 = t67 + (t28 * t54 + t26 * t63 + ARIANE4_C(0.443) * t69);
-    const ariane4_real_t t71 = t12 * (t25 + (t26 * t54 - t28 * t63)) + t13 * t70;
-    const ariane4_real_t t72 = t18 * parameters[MX2] + t64 * parameters[MY2] - (t66 + t21) * parameters[MZ2];
-    const ariane4_real_t t73 = ARIANE4_C(-250.0) * t10 + t11 * (t71 + ARIANE4_C(0.116) * (t72 + t69));
+    const ariane4_real_t t35 = t34 + parameters[XZ4] * t11 - parameters[YZ4] * t16 - (parameters[MY4] * t32
+        + parameters[MZ4] * t33);
+    const ariane4_real_t t36 = t30 + t14;
+    const ariane4_real_t t37 = ARIANE4_C(2.0) * t8;
+    const ariane4_real_t t38 = parameters[M4] * t33 + (parameters[MX4] * t11 + parameters[MY4] * t36
+        + parameters[MZ4] * t37);
+    const ariane4_real_t t39 = t29 + (t35 + ARIANE4_C(-0.436) * t38);
+    const ariane4_real_t t40 = parameters[YY3] * t10 - t10 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t37;
+    const ariane4_real_t t41 = t15 - t30;
+    const ariane4_real_t t42 = t5 * t22 - t2 * t25;
+    const ariane4_real_t t43 = t40 + parameters[YZ3] * t13 - parameters[XZ3] * t41 + (parameters[MZ3] * t42
+        + parameters[MX3] * t28);
+    const ariane4_real_t t44 = t15 + t14;
+    const ariane4_real_t t45 = t42 - (ARIANE4_C(0.1) * t44 - ARIANE4_C(-0.436) * t13);
+    const ariane4_real_t t46 = parameters[ZZ4] * t10 - t10 * (parameters[XX4] - parameters[YY4])
+        - parameters[YZ4] * t13;
+    const ariane4_real_t t47 = t46 - parameters[XZ4] * t37 + parameters[XY4] * t41 + (parameters[MX4] * t33
+        - parameters[MY4] * t45);
+    const ariane4_real_t t48 = t43 + (t47 - ARIANE4_C(0.1) * t38);
+    const ariane4_real_t t49 = dq[1] * t4;
+    const ariane4_real_t t50 = ARIANE4_C(2.0) * t27;
+    const ariane4_real_t t51 = t49 * (parameters[YY2] - parameters[ZZ2]) - t49 * parameters[XX2]
+        + t50 * parameters[XY2];
+    const ariane4_real_t t52 = t51 - t24 * parameters[XZ2] + (t21 - t20) * parameters[YZ2]
+        + t23 * parameters[MZ2];
+    const ariane4_real_t t53 = parameters[M3] * t28 + (parameters[MX3] * t11 + parameters[MY3] * t37
+        - parameters[MZ3] * t36);
+    const ariane4_real_t t54 = t53 + t38;
+    const ariane4_real_t t55 = ARIANE4_C(2.0) * t49;
+    const ariane4_real_t t56 = t27 * parameters[YY2] + t27 * (parameters[ZZ2] - parameters[XX2])
+        - t55 * parameters[XY2];
+    const ariane4_real_t t57 = t1 * t1;
+    const ariane4_real_t t58 = t56 + t24 * parameters[YZ2] + (t57 - t21) * parameters[XZ2]
+        + t19 * parameters[MZ2];
+    const ariane4_real_t t59 = t58 + (t2 * t39 + t5 * t48 + ARIANE4_C(0.443) * t54);
+    const ariane4_real_t t60 = t0 * (t52 + (t5 * t39 - t2 * t48)) + t3 * t59;
+    const ariane4_real_t t61 = t50 * parameters[MX2] + t55 * parameters[MY2] - (t57 + t20) * parameters[MZ2];
+    const ariane4_real_t t64 = ARIANE4_C(0.28217402066925895) * t62 + ARIANE4_C(0.9593632378089879) * t63;
+    const ariane4_real_t t65 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t64 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t66 = ARIANE4_C(-0.28217402066925895) * t63 + ARIANE4_C(0.9593632378089879) * t62;
+    const ariane4_real_t t67 = ARIANE4_C(-0.06434139546481742) * t65 / t66;
+    const ariane4_real_t t68 = ARIANE4_C(-1.0) / t65;
+    const ariane4_real_t t69 = ARIANE4_C(-3885.523436256565) * t64
+        + ARIANE4_C(-72.7913960548305) * (t68 * t68) * (t66 * t66);
+    const ariane4_real_t t70 = t66 * (ARIANE4_C(3885.523436256565) * t68) * dq[0];
+    const ariane4_real_t t71 = ariane4_sign(t70);
+    const ariane4_real_t t72 = t68 * t69 * t17 * parameters[IA1] + (t70 * parameters[FV1]
+        + t71 * parameters[FC1]);
+    const ariane4_real_t t73 = ARIANE4_C(-250.0) * t72 + t67 * (t60 + ARIANE4_C(0.116) * (t61 + t54));
     out[0] = t73;
-    const ariane4_real_t t74 = ARIANE4_C(0.8305958991958126) * t13 - ARIANE4_C(0.5568756164881881) * t12;
-    const ariane4_real_t t75 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t74 + ARIANE4_C(0.293698));
-    const ariane4_real_t t76 = ARIANE4_C(1.0) / t75;
-    const ariane4_real_t t77 = ARIANE4_C(-0.8305958991958126) * t12 + ARIANE4_C(-0.5568756164881881) * t13;
-    const ariane4_real_t t78 = ARIANE4_C(2656.3065671641784) * t74
-        + ARIANE4_C(-104.12987373940295) * (t76 * t76) * (t77 * t77);
-    const ariane4_real_t t79 = t77 * (ARIANE4_C(2656.3065671641784) * t76) * dq[1];
-    const ariane4_real_t t80 = ariane4_sign(t79);
-    const ariane4_real_t t81 = t76 * t78 * t22 * parameters[IA2] - (t79 * parameters[FV2]
-        + t80 * parameters[FC2]);
-    const ariane4_real_t t82 = ARIANE4_C(-0.03137188092799786) * t75 / t77;
-    const ariane4_real_t t83 = t20 * (parameters[YY2] - parameters[XX2]) + (t66 - t21) * parameters[XY2]
-        + (t24 * parameters[MX2] + t40 * parameters[MY2]);
-    const ariane4_real_t t84 = t46 - t37;
-    const ariane4_real_t t85 = parameters[XY3] * t84 - t35 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MX3] * t43 + parameters[MY3] * t57);
-    const ariane4_real_t t86 = parameters[XZ4] * t84 - t35 * (parameters[XX4] - parameters[ZZ4])
-        + (parameters[MZ4] * t61 + parameters[MX4] * t48);
-    const ariane4_real_t t87 = parameters[M4] * t48 + (parameters[MX4] * t35 - parameters[MZ4] * t47);
-    const ariane4_real_t t88 = parameters[MZ4] * t35 - parameters[MX4] * t60 - parameters[M4] * t61;
-    const ariane4_real_t t89 = t85 + (t86 + (ARIANE4_C(-0.1) * t87 + ARIANE4_C(-0.436) * t88));
-    const ariane4_real_t t90 = parameters[MY3] * t35 - parameters[MX3] * t60 - parameters[M3] * t57 + t88;
-    const ariane4_real_t t91 = parameters[M3] * t43 + (parameters[MX3] * t35 - parameters[MY3] * t47) + t87;
-    const ariane4_real_t t92 = t83 + (t89 + ARIANE4_C(0.443) * (t28 * t90 + t26 * t91));
-    out[1] = ARIANE4_C(83.33333333333333) * t81 + t82 * t92;
-    const ariane4_real_t t93 = ARIANE4_C(0.06366143813161289) * t26 - ARIANE4_C(0.9979715533496006) * t28;
+    const ariane4_real_t t74 = t30 - t14;
+    const ariane4_real_t t75 = parameters[XZ4] * t74 - t13 * (parameters[XX4] - parameters[ZZ4])
+        + (parameters[MZ4] * t45 + parameters[MX4] * t32);
+    const ariane4_real_t t76 = parameters[M4] * t32 + (parameters[MX4] * t13 - parameters[MZ4] * t31);
+    const ariane4_real_t t77 = parameters[MZ4] * t13 - parameters[MX4] * t44 - parameters[M4] * t45;
+    const ariane4_real_t t78 = parameters[XY3] * t74 - t13 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MX3] * t26 + parameters[MY3] * t42);
+    const ariane4_real_t t79 = t78 + (t75 + (ARIANE4_C(-0.1) * t76 + ARIANE4_C(-0.436) * t77));
+    const ariane4_real_t t80 = parameters[MY3] * t13 - parameters[MX3] * t44 - parameters[M3] * t42 + t77;
+    const ariane4_real_t t81 = parameters[M3] * t26 + (parameters[MX3] * t13 - parameters[MY3] * t31) + t76;
+    const ariane4_real_t t82 = t24 * (parameters[YY2] - parameters[XX2]) + (t57 - t20) * parameters[XY2]
+        + (t23 * parameters[MX2] + t19 * parameters[MY2]);
+    const ariane4_real_t t83 = t82 + (t79 + ARIANE4_C(0.443) * (t2 * t80 + t5 * t81));
+    const ariane4_real_t t84 = ARIANE4_C(0.8305958991958126) * t3 - ARIANE4_C(0.5568756164881881) * t0;
+    const ariane4_real_t t85 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t84 + ARIANE4_C(0.293698));
+    const ariane4_real_t t86 = ARIANE4_C(-0.8305958991958126) * t0 + ARIANE4_C(-0.5568756164881881) * t3;
+    const ariane4_real_t t87 = ARIANE4_C(-0.03137188092799786) * t85 / t86;
+    const ariane4_real_t t88 = ARIANE4_C(1.0) / t85;
+    const ariane4_real_t t89 = ARIANE4_C(2656.3065671641784) * t84
+        + ARIANE4_C(-104.12987373940295) * (t88 * t88) * (t86 * t86);
+    const ariane4_real_t t90 = t86 * (ARIANE4_C(2656.3065671641784) * t88) * dq[1];
+    const ariane4_real_t t91 = ariane4_sign(t90);
+    const ariane4_real_t t92 = t88 * t89 * t21 * parameters[IA2] - (t90 * parameters[FV2]
+        + t91 * parameters[FC2]);
+    out[1] = ARIANE4_C(83.33333333333333) * t92 + t87 * t83;
+    const ariane4_real_t t93 = ARIANE4_C(0.06366143813161289) * t5 - ARIANE4_C(0.9979715533496006) * t2;
     const ariane4_real_t t94 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t93 + ARIANE4_C(0.242037));
-    const ariane4_real_t t95 = ARIANE4_C(-1.0) / t94;
-    const ariane4_real_t t96 = ARIANE4_C(-0.06366143813161289) * t28 + ARIANE4_C(-0.9979715533496006) * t26;
-    const ariane4_real_t t97 = ARIANE4_C(-7124.375926654358) * t93
-        + ARIANE4_C(-188.12627071923498) * (t95 * t95) * (t96 * t96);
-    const ariane4_real_t t98 = t96 * (ARIANE4_C(7124.375926654358) * t95) * dq[2];
-    const ariane4_real_t t99 = ariane4_sign(t98);
-    const ariane4_real_t t100 = t95 * t97 * (dq[2] * dq[2]) * parameters[IA3] + (t98 * parameters[FV3]
-        + t99 * parameters[FC3]);
-    const ariane4_real_t t101 = ARIANE4_C(-0.046787723832235825) * t94 / t96;
-    out[2] = ARIANE4_C(-333.3333333333333) * t100 - t101 * t89;
+    const ariane4_real_t t95 = ARIANE4_C(-0.06366143813161289) * t2 + ARIANE4_C(-0.9979715533496006) * t5;
+    const ariane4_real_t t96 = ARIANE4_C(-0.046787723832235825) * t94 / t95;
+    const ariane4_real_t t97 = ARIANE4_C(-1.0) / t94;
+    const ariane4_real_t t98 = ARIANE4_C(-7124.375926654358) * t93
+        + ARIANE4_C(-188.12627071923498) * (t97 * t97) * (t95 * t95);
+    const ariane4_real_t t99 = t95 * (ARIANE4_C(7124.375926654358) * t97) * dq[2];
+    const ariane4_real_t t100 = ariane4_sign(t99);
+    const ariane4_real_t t101 = t97 * t98 * (dq[2] * dq[2]) * parameters[IA3] + (t99 * parameters[FV3]
+        + t100 * parameters[FC3]);
+    out[2] = ARIANE4_C(-333.3333333333333) * t101 - t96 * t79;
     return ARIANE4_STATUS_OK;
 }

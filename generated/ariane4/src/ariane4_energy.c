@@ -49,7 +49,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -103,10 +103,10 @@ int ariane4_energy(
     const ariane4_real_t t15 = t13 * (parameters[XZ3R] * t11 + parameters[YZ3R] * t12
         + parameters[ZZ3R] * t13);
     const ariane4_real_t t16 = t14 + t12 * (parameters[XY3R] * t11 + parameters[YZ3R] * t13) + t15;
-    const ariane4_real_t t17 = ARIANE4_C(0.443) * dq[1];
-    const ariane4_real_t t18 = t7 + ARIANE4_C(-0.443) * t3;
-    const ariane4_real_t t19 = parameters[MX3R] * (t13 * (t9 * t17) - t12 * t18)
-        + parameters[MY3R] * (t11 * t18 - t13 * (t10 * t17));
+    const ariane4_real_t t17 = t7 + ARIANE4_C(-0.443) * t3;
+    const ariane4_real_t t18 = ARIANE4_C(0.443) * dq[1];
+    const ariane4_real_t t19 = parameters[MX3R] * (t13 * (t9 * t18) - t12 * t17)
+        + parameters[MY3R] * (t11 * t17 - t13 * (t10 * t18));
     const ariane4_real_t t22 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t21
         + ARIANE4_C(0.9593632378089879) * t20) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t23 = ARIANE4_C(1.0) / t22;

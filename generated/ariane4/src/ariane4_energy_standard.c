@@ -73,7 +73,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -107,73 +107,74 @@ int ariane4_energy_standard(
 
     ariane4_real_t t34, t35;
     ARIANE4_SINCOS(q[0], &t34, &t35);
-    ariane4_real_t t0, t2;
-    ARIANE4_SINCOS(q[1], &t0, &t2);
-    ariane4_real_t t11, t10;
-    ARIANE4_SINCOS(q[2], &t11, &t10);
+    ariane4_real_t t0, t3;
+    ARIANE4_SINCOS(q[1], &t0, &t3);
+    ariane4_real_t t5, t2;
+    ARIANE4_SINCOS(q[2], &t5, &t2);
     const ariane4_real_t t1 = t0 * dq[0];
-    const ariane4_real_t t3 = t2 * dq[0];
-    const ariane4_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
-    const ariane4_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
-    const ariane4_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
-    const ariane4_real_t t7 = ARIANE4_C(0.116) * dq[0];
-    const ariane4_real_t t8 = ARIANE4_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
-    const ariane4_real_t t9 = ARIANE4_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
-        + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane4_real_t t12 = t10 * t1 + t11 * t3;
-    const ariane4_real_t t13 = t10 * t3 - t11 * t1;
-    const ariane4_real_t t14 = dq[1] + dq[2];
-    const ariane4_real_t t15 = t12 * (parameters[XX3] * t12 + parameters[XY3] * t13 + t14 * parameters[XZ3]);
-    const ariane4_real_t t16 = t13 * (parameters[XY3] * t12 + parameters[YY3] * t13 + t14 * parameters[YZ3]);
-    const ariane4_real_t t17 = t14 * (parameters[XZ3] * t12 + parameters[YZ3] * t13 + t14 * parameters[ZZ3]);
-    const ariane4_real_t t18 = ARIANE4_C(0.443) * dq[1];
-    const ariane4_real_t t19 = t11 * t18;
-    const ariane4_real_t t20 = t10 * t18;
-    const ariane4_real_t t21 = t7 + ARIANE4_C(0.443) * t3;
-    const ariane4_real_t t22 = parameters[M3] * (t19 * t19 + t20 * t20 + t21 * t21);
-    const ariane4_real_t t23 = parameters[MX3] * (t14 * t20 + t13 * t21) - parameters[MY3] * (t12 * t21
-        + t14 * t19);
-    const ariane4_real_t t24 = t9 + ARIANE4_C(0.5) * (t15 + t16 + t17 + t22) + (t23
-        + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const ariane4_real_t t25 = t12 * (parameters[XX4] * t12 - t14 * parameters[XY4] + parameters[XZ4] * t13);
-    const ariane4_real_t t26 = t14 * (t14 * parameters[YY4] - parameters[XY4] * t12 - parameters[YZ4] * t13);
-    const ariane4_real_t t27 = t13 * (t14 * parameters[YZ4] - parameters[XZ4] * t12 - parameters[ZZ4] * t13);
-    const ariane4_real_t t28 = t19 + ARIANE4_C(-0.436) * t14;
-    const ariane4_real_t t29 = t21 - (ARIANE4_C(0.436) * t12 - ARIANE4_C(-0.1) * t13);
-    const ariane4_real_t t30 = t20 + ARIANE4_C(-0.1) * t14;
-    const ariane4_real_t t31 = parameters[M4] * (t28 * t28 + t29 * t29 + t30 * t30);
-    const ariane4_real_t t32 = parameters[MX4] * (t13 * t29 + t14 * t30) + parameters[MY4] * (t12 * t30
-        - t13 * t28);
+    const ariane4_real_t t4 = t3 * dq[0];
+    const ariane4_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_real_t t7 = t2 * t4 - t5 * t1;
+    const ariane4_real_t t8 = dq[1] + dq[2];
+    const ariane4_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
+    const ariane4_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
+    const ariane4_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
+    const ariane4_real_t t12 = ARIANE4_C(0.443) * dq[1];
+    const ariane4_real_t t13 = t5 * t12;
+    const ariane4_real_t t14 = t2 * t12;
+    const ariane4_real_t t15 = ARIANE4_C(0.116) * dq[0];
+    const ariane4_real_t t16 = t15 + ARIANE4_C(0.443) * t4;
+    const ariane4_real_t t17 = parameters[M3] * (t13 * t13 + t14 * t14 + t16 * t16);
+    const ariane4_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
+    const ariane4_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
+    const ariane4_real_t t20 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2]
+        + dq[1] * parameters[ZZ2]);
+    const ariane4_real_t t21 = ARIANE4_C(0.5) * (t18 + t19 + t20 + parameters[M2] * (t15 * t15));
+    const ariane4_real_t t22 = ARIANE4_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t21
+        + (parameters[MX2] * (t4 * t15) - parameters[MY2] * (t1 * t15));
+    const ariane4_real_t t23 = parameters[MX3] * (t8 * t14 + t7 * t16) - parameters[MY3] * (t6 * t16
+        + t8 * t13);
+    const ariane4_real_t t24 = t22 + ARIANE4_C(0.5) * (t9 + t10 + t11 + t17) + (t23
+        + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    const ariane4_real_t t25 = t6 * (parameters[XX4] * t6 - t8 * parameters[XY4] + parameters[XZ4] * t7);
+    const ariane4_real_t t26 = t8 * (t8 * parameters[YY4] - parameters[XY4] * t6 - parameters[YZ4] * t7);
+    const ariane4_real_t t27 = t7 * (t8 * parameters[YZ4] - parameters[XZ4] * t6 - parameters[ZZ4] * t7);
+    const ariane4_real_t t28 = t16 - (ARIANE4_C(0.436) * t6 - ARIANE4_C(-0.1) * t7);
+    const ariane4_real_t t29 = t13 + ARIANE4_C(-0.436) * t8;
+    const ariane4_real_t t30 = t14 + ARIANE4_C(-0.1) * t8;
+    const ariane4_real_t t31 = parameters[M4] * (t29 * t29 + t28 * t28 + t30 * t30);
+    const ariane4_real_t t32 = parameters[MX4] * (t7 * t28 + t8 * t30) + parameters[MY4] * (t6 * t30
+        - t7 * t29);
     const ariane4_real_t t33 = t24 + ARIANE4_C(0.5) * (t25 + t26 - t27 + t31) + (t32
-        - parameters[MZ4] * (t14 * t28 + t12 * t29));
+        - parameters[MZ4] * (t8 * t29 + t6 * t28));
     const ariane4_real_t t36 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t35
         + ARIANE4_C(0.9593632378089879) * t34) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t37 = ARIANE4_C(1.0) / t36;
     const ariane4_real_t t38 = (ARIANE4_C(0.28217402066925895) * t34
         + ARIANE4_C(-0.9593632378089879) * t35) * (ARIANE4_C(3885.523436256565) * t37);
     const ariane4_real_t t39 = t33 + ARIANE4_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t38 * t38)));
-    const ariane4_real_t t40 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t2
+    const ariane4_real_t t40 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t3
         + ARIANE4_C(0.5568756164881881) * t0) + ARIANE4_C(0.293698));
     const ariane4_real_t t41 = ARIANE4_C(1.0) / t40;
     const ariane4_real_t t42 = (ARIANE4_C(0.8305958991958126) * t0
-        + ARIANE4_C(0.5568756164881881) * t2) * (ARIANE4_C(2656.3065671641784) * t41);
+        + ARIANE4_C(0.5568756164881881) * t3) * (ARIANE4_C(2656.3065671641784) * t41);
     const ariane4_real_t t43 = t39 + ARIANE4_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t42 * t42)));
-    const ariane4_real_t t44 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t10
-        + ARIANE4_C(-0.9979715533496006) * t11) + ARIANE4_C(0.242037));
+    const ariane4_real_t t44 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t2
+        + ARIANE4_C(-0.9979715533496006) * t5) + ARIANE4_C(0.242037));
     const ariane4_real_t t45 = ARIANE4_C(1.0) / t44;
-    const ariane4_real_t t46 = (ARIANE4_C(0.06366143813161289) * t11
-        + ARIANE4_C(0.9979715533496006) * t10) * (ARIANE4_C(7124.375926654358) * t45);
+    const ariane4_real_t t46 = (ARIANE4_C(0.06366143813161289) * t5
+        + ARIANE4_C(0.9979715533496006) * t2) * (ARIANE4_C(7124.375926654358) * t45);
     const ariane4_real_t t47 = t43 + ARIANE4_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t46 * t46)));
     kinetic[0] = t47;
     const ariane4_real_t t48 = ARIANE4_C(9.81) * t0;
-    const ariane4_real_t t49 = ARIANE4_C(9.81) * t2;
-    const ariane4_real_t t50 = t10 * t48 + t11 * t49;
-    const ariane4_real_t t51 = t10 * t49 - t11 * t48;
+    const ariane4_real_t t49 = ARIANE4_C(9.81) * t3;
+    const ariane4_real_t t50 = t2 * t48 + t5 * t49;
+    const ariane4_real_t t51 = t2 * t49 - t5 * t48;
     const ariane4_real_t t52 = ARIANE4_C(4.34583) * t0;
-    const ariane4_real_t t53 = ARIANE4_C(9.81) * parameters[MZ1] + (t48 * parameters[MX2]
-        + t49 * parameters[MY2]) + (t50 * parameters[MX3] + t51 * parameters[MY3] + parameters[M3] * t52);
-    const ariane4_real_t t54 = t50 * parameters[MX4] + t51 * parameters[MZ4] + parameters[M4] * (t52
+    const ariane4_real_t t53 = t50 * parameters[MX4] + t51 * parameters[MZ4] + parameters[M4] * (t52
         + (ARIANE4_C(-0.1) * t50 + ARIANE4_C(0.436) * t51));
-    potential[0] = t53 + t54;
+    const ariane4_real_t t54 = ARIANE4_C(9.81) * parameters[MZ1] + (t48 * parameters[MX2]
+        + t49 * parameters[MY2]) + (t50 * parameters[MX3] + t51 * parameters[MY3] + parameters[M3] * t52);
+    potential[0] = t54 + t53;
     return ARIANE4_STATUS_OK;
 }

@@ -50,7 +50,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -81,153 +81,153 @@ int ariane4_forward_dynamics(
         return status;
     }
 
+    ariane4_real_t t28, t29;
+    ARIANE4_SINCOS(q[0], &t28, &t29);
+    ariane4_real_t t8, t9;
+    ARIANE4_SINCOS(q[1], &t8, &t9);
     ariane4_real_t t0, t1;
-    ARIANE4_SINCOS(q[0], &t0, &t1);
-    ariane4_real_t t12, t13;
-    ARIANE4_SINCOS(q[1], &t12, &t13);
-    ariane4_real_t t24, t23;
-    ARIANE4_SINCOS(q[2], &t24, &t23);
-    const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t5 = ARIANE4_C(-1.0) / t4;
-    const ariane4_real_t t6 = t2 * (ARIANE4_C(3885.523436256565) * t5);
-    const ariane4_real_t t7 = t6 * dq[0];
-    const ariane4_real_t t8 = ariane4_sign(t7);
-    const ariane4_real_t t9 = ARIANE4_C(-3885.523436256565) * t3
-        + ARIANE4_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t10 = dq[0] * dq[0];
-    const ariane4_real_t t11 = t6 * (parameters[FV1] * t7) + t6 * (parameters[FC1] * t8)
-        + t6 * (parameters[IA1] * (t5 * t9 * t10));
-    const ariane4_real_t t14 = t13 * dq[0];
-    const ariane4_real_t t15 = dq[1] * t14;
-    const ariane4_real_t t16 = t12 * dq[0];
-    const ariane4_real_t t17 = dq[1] * t16;
-    const ariane4_real_t t18 = ARIANE4_C(2.0) * t17;
-    const ariane4_real_t t19 = t16 * t14;
-    const ariane4_real_t t20 = parameters[XY2] * t18 - (parameters[XX2R] * t15 + parameters[ZZ2R] * t15)
-        - parameters[XZ2R] * t19;
-    const ariane4_real_t t21 = dq[1] * dq[1];
-    const ariane4_real_t t22 = t14 * t14;
-    const ariane4_real_t t25 = t24 * t16 - t23 * t14;
-    const ariane4_real_t t26 = dq[1] + dq[2];
-    const ariane4_real_t t27 = t25 * t26;
-    const ariane4_real_t t28 = t23 * t16 + t24 * t14;
-    const ariane4_real_t t29 = t28 * t26;
-    const ariane4_real_t t30 = ARIANE4_C(2.0) * t29;
-    const ariane4_real_t t31 = t28 * t25;
-    const ariane4_real_t t32 = parameters[XX3R] * t27 + parameters[ZZ3R] * t27 + parameters[XY3R] * t30
-        + parameters[XZ3R] * t31;
-    const ariane4_real_t t33 = t25 * t25;
-    const ariane4_real_t t34 = t26 * t26;
-    const ariane4_real_t t35 = ARIANE4_C(-0.886) * t17;
-    const ariane4_real_t t36 = t32 + parameters[YZ3R] * (t34 - t33) + parameters[MY3R] * t35;
-    const ariane4_real_t t37 = ARIANE4_C(-2.0) * t27;
-    const ariane4_real_t t38 = t29 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t37
-        + parameters[YZ3R] * t31;
-    const ariane4_real_t t39 = t28 * t28;
-    const ariane4_real_t t40 = t38 - parameters[XZ3R] * (t39 - t34) + parameters[MX3R] * t35;
-    const ariane4_real_t t41 = t20 + parameters[YZ2] * (t21 - t22) + (t23 * t36 + t24 * t40);
-    const ariane4_real_t t42 = ARIANE4_C(2.0) * t15;
-    const ariane4_real_t t43 = t17 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t42
-        + parameters[YZ2] * t19;
-    const ariane4_real_t t44 = t16 * t16;
-    const ariane4_real_t t45 = parameters[MX3R] * t30 + parameters[MY3R] * t37;
-    const ariane4_real_t t46 = t43 + parameters[XZ2R] * (t44 - t21) + (t24 * t36 - t23 * t40
-        + ARIANE4_C(0.443) * t45);
-    const ariane4_real_t t47 = t12 * t41 + t13 * t46 + ARIANE4_C(0.116) * (parameters[MX2R] * t18
-        + parameters[MY2] * t42 + t45);
-    const ariane4_real_t t48 = ARIANE4_C(0.06366143813161289) * t24 + ARIANE4_C(0.9979715533496006) * t23;
-    const ariane4_real_t t49 = ARIANE4_C(0.06366143813161289) * t23 + ARIANE4_C(-0.9979715533496006) * t24;
-    const ariane4_real_t t50 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t49 + ARIANE4_C(0.242037));
-    const ariane4_real_t t51 = ARIANE4_C(1.0) / t50;
-    const ariane4_real_t t52 = t48 * (ARIANE4_C(7124.375926654358) * t51);
-    const ariane4_real_t t53 = t52 * dq[2];
-    const ariane4_real_t t54 = ariane4_sign(t53);
-    const ariane4_real_t t55 = ARIANE4_C(7124.375926654358) * t49
-        + ARIANE4_C(188.12627071923498) * (t51 * t51) * (t48 * t48);
-    const ariane4_real_t t56 = t52 * (parameters[FV3] * t53) + t52 * (parameters[FC3] * t54)
-        + t52 * (parameters[IA3] * (t51 * t55 * (dq[2] * dq[2])));
-    const ariane4_real_t t57 = ARIANE4_C(0.116) * t10;
-    const ariane4_real_t t58 = t13 * t57 - ARIANE4_C(9.81) * t12;
-    const ariane4_real_t t59 = t58 + ARIANE4_C(0.443) * (t21 + t22);
-    const ariane4_real_t t60 = t12 * t57 + ARIANE4_C(9.81) * t13;
-    const ariane4_real_t t61 = t60 + ARIANE4_C(0.443) * t19;
-    const ariane4_real_t t62 = parameters[MX3R] * (t24 * t59 + t23 * t61) + parameters[MY3R] * (t23 * t59
-        - t24 * t61);
-    const ariane4_real_t t63 = parameters[XX3R] * t31 + parameters[XY3R] * (t39 - t33) + t62;
-    const ariane4_real_t t64 = input[2] * (ARIANE4_C(0.003) * t52) + (t56 + t63);
-    const ariane4_real_t t65 = t24 * parameters[YZ3R] - t23 * parameters[XZ3R];
-    const ariane4_real_t t66 = t24 * parameters[XZ3R] + t23 * parameters[YZ3R];
-    const ariane4_real_t t67 = t13 * t66 - t12 * t65;
-    const ariane4_real_t t68 = parameters[ZZ3R] + parameters[IA3] * (t52 * t52);
-    if (!(t68 > ARIANE4_C(1.0e-9))) {
+    ARIANE4_SINCOS(q[2], &t0, &t1);
+    const ariane4_real_t t2 = ARIANE4_C(0.06366143813161289) * t0 + ARIANE4_C(0.9979715533496006) * t1;
+    const ariane4_real_t t3 = ARIANE4_C(0.06366143813161289) * t1 + ARIANE4_C(-0.9979715533496006) * t0;
+    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t3 + ARIANE4_C(0.242037));
+    const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
+    const ariane4_real_t t6 = t2 * (ARIANE4_C(7124.375926654358) * t5);
+    const ariane4_real_t t7 = parameters[ZZ3R] + parameters[IA3] * (t6 * t6);
+    if (!(t7 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t69 = ARIANE4_C(-1.0) / t68;
-    const ariane4_real_t t70 = t67 * t69;
-    const ariane4_real_t t71 = input[0] * (ARIANE4_C(-0.004) * t6) + (t47 - t11) - t64 * t70;
-    const ariane4_real_t t72 = ARIANE4_C(0.8305958991958126) * t12 + ARIANE4_C(0.5568756164881881) * t13;
-    const ariane4_real_t t73 = ARIANE4_C(-0.8305958991958126) * t13 + ARIANE4_C(0.5568756164881881) * t12;
-    const ariane4_real_t t74 = ARIANE4_SQRT(ARIANE4_C(0.078402) * t73 + ARIANE4_C(0.293698));
-    const ariane4_real_t t75 = ARIANE4_C(1.0) / t74;
-    const ariane4_real_t t76 = t72 * (ARIANE4_C(2656.3065671641784) * t75);
-    const ariane4_real_t t77 = t76 * dq[1];
-    const ariane4_real_t t78 = ariane4_sign(t77);
-    const ariane4_real_t t79 = ARIANE4_C(-2656.3065671641784) * t73
-        - ARIANE4_C(104.12987373940295) * (t75 * t75) * (t72 * t72);
-    const ariane4_real_t t80 = t76 * (parameters[FV2] * t77) + t76 * (parameters[FC2] * t78)
-        + t76 * (parameters[IA2] * (t75 * t79 * t21));
-    const ariane4_real_t t81 = parameters[XX2R] * t19 - parameters[XY2] * (t44 - t22)
-        - (parameters[MX2R] * t60 + parameters[MY2] * t58);
-    const ariane4_real_t t82 = t24 * (parameters[MX3R] * (t33 + t34) + parameters[MY3R] * t31)
-        + t23 * (parameters[MX3R] * t31 + parameters[MY3R] * (t39 + t34));
-    const ariane4_real_t t83 = input[1] * (ARIANE4_C(0.012) * t76) - (t80 - (t81 - (t63
-        - ARIANE4_C(0.443) * t82)));
-    const ariane4_real_t t84 = t23 * parameters[MX3R] - t24 * parameters[MY3R];
-    const ariane4_real_t t85 = ARIANE4_C(-0.443) * t84 - parameters[ZZ3R];
-    const ariane4_real_t t86 = t85 * t69;
-    const ariane4_real_t t87 = t83 + t64 * t86;
-    const ariane4_real_t t88 = t12 * (t65 - parameters[XZ2R]) - t13 * (parameters[YZ2] + t66) + t67 * t86;
-    const ariane4_real_t t89 = ARIANE4_C(0.886) * t84;
-    const ariane4_real_t t90 = parameters[ZZ2R] + (parameters[ZZ3R] + t89) + parameters[IA2] * (t76 * t76)
-        + t85 * t86;
-    if (!(t90 > ARIANE4_C(1.0e-9))) {
+    const ariane4_real_t t10 = ARIANE4_C(0.8305958991958126) * t8 + ARIANE4_C(0.5568756164881881) * t9;
+    const ariane4_real_t t11 = ARIANE4_C(-0.8305958991958126) * t9 + ARIANE4_C(0.5568756164881881) * t8;
+    const ariane4_real_t t12 = ARIANE4_SQRT(ARIANE4_C(0.078402) * t11 + ARIANE4_C(0.293698));
+    const ariane4_real_t t13 = ARIANE4_C(1.0) / t12;
+    const ariane4_real_t t14 = t10 * (ARIANE4_C(2656.3065671641784) * t13);
+    const ariane4_real_t t15 = t1 * parameters[MX3R] - t0 * parameters[MY3R];
+    const ariane4_real_t t16 = ARIANE4_C(0.886) * t15;
+    const ariane4_real_t t17 = ARIANE4_C(-1.0) / t7;
+    const ariane4_real_t t18 = ARIANE4_C(-0.443) * t15 - parameters[ZZ3R];
+    const ariane4_real_t t19 = t18 * t17;
+    const ariane4_real_t t20 = parameters[ZZ2R] + (parameters[ZZ3R] + t16) + parameters[IA2] * (t14 * t14)
+        + t18 * t19;
+    if (!(t20 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t91 = ARIANE4_C(1.0) / t90;
-    const ariane4_real_t t92 = t88 * t91;
-    const ariane4_real_t t93 = t23 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t24);
-    const ariane4_real_t t94 = t23 * t93;
-    const ariane4_real_t t95 = parameters[XX2R] + t94;
-    const ariane4_real_t t96 = t23 * parameters[MY3R] + t24 * parameters[MX3R];
-    const ariane4_real_t t97 = (parameters[XY2] + (parameters[XY3R] + t24 * t93
-        + ARIANE4_C(-0.443) * t96)) * (ARIANE4_C(2.0) * t12);
-    const ariane4_real_t t98 = t13 * (t13 * (parameters[XX3R] - t94 + t89 - t95) + t97);
-    const ariane4_real_t t99 = ARIANE4_C(0.232) * (t13 * (parameters[MX2R] + t84) - t12 * (parameters[MY2]
-        + t96));
-    const ariane4_real_t t100 = parameters[ZZ1R] + (t95 + t98 + t99) + parameters[IA1] * (t6 * t6);
-    const ariane4_real_t t101 = t100 + t67 * t70 - t88 * t92;
-    if (!(t101 > ARIANE4_C(1.0e-9))) {
+    const ariane4_real_t t21 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t22 = t1 * t21;
+    const ariane4_real_t t23 = parameters[XX2R] + t22;
+    const ariane4_real_t t24 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
+    const ariane4_real_t t25 = (parameters[XY2] + (parameters[XY3R] + t0 * t21
+        + ARIANE4_C(-0.443) * t24)) * (ARIANE4_C(2.0) * t8);
+    const ariane4_real_t t26 = t9 * (t9 * (parameters[XX3R] - t22 + t16 - t23) + t25);
+    const ariane4_real_t t27 = ARIANE4_C(0.232) * (t9 * (parameters[MX2R] + t15) - t8 * (parameters[MY2]
+        + t24));
+    const ariane4_real_t t30 = ARIANE4_C(-0.28217402066925895) * t28 + ARIANE4_C(0.9593632378089879) * t29;
+    const ariane4_real_t t31 = ARIANE4_C(0.28217402066925895) * t29 + ARIANE4_C(0.9593632378089879) * t28;
+    const ariane4_real_t t32 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t31 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t33 = ARIANE4_C(-1.0) / t32;
+    const ariane4_real_t t34 = t30 * (ARIANE4_C(3885.523436256565) * t33);
+    const ariane4_real_t t35 = parameters[ZZ1R] + (t23 + t26 + t27) + parameters[IA1] * (t34 * t34);
+    const ariane4_real_t t36 = t0 * parameters[YZ3R] - t1 * parameters[XZ3R];
+    const ariane4_real_t t37 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
+    const ariane4_real_t t38 = t9 * t37 - t8 * t36;
+    const ariane4_real_t t39 = t38 * t17;
+    const ariane4_real_t t40 = ARIANE4_C(1.0) / t20;
+    const ariane4_real_t t41 = t8 * (t36 - parameters[XZ2R]) - t9 * (parameters[YZ2] + t37) + t38 * t19;
+    const ariane4_real_t t42 = t41 * t40;
+    const ariane4_real_t t43 = t35 + t38 * t39 - t41 * t42;
+    if (!(t43 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t102 = ARIANE4_C(1.0) / t101;
-    const ariane4_real_t t103 = (t71 + t87 * t92) * t102;
+    const ariane4_real_t t44 = t8 * dq[0];
+    const ariane4_real_t t45 = t9 * dq[0];
+    const ariane4_real_t t46 = t0 * t44 - t1 * t45;
+    const ariane4_real_t t47 = dq[1] + dq[2];
+    const ariane4_real_t t48 = t46 * t47;
+    const ariane4_real_t t49 = t1 * t44 + t0 * t45;
+    const ariane4_real_t t50 = t49 * t47;
+    const ariane4_real_t t51 = ARIANE4_C(2.0) * t50;
+    const ariane4_real_t t52 = t49 * t46;
+    const ariane4_real_t t53 = parameters[XX3R] * t48 + parameters[ZZ3R] * t48 + parameters[XY3R] * t51
+        + parameters[XZ3R] * t52;
+    const ariane4_real_t t54 = t46 * t46;
+    const ariane4_real_t t55 = t47 * t47;
+    const ariane4_real_t t56 = dq[1] * t44;
+    const ariane4_real_t t57 = ARIANE4_C(-0.886) * t56;
+    const ariane4_real_t t58 = t53 + parameters[YZ3R] * (t55 - t54) + parameters[MY3R] * t57;
+    const ariane4_real_t t59 = ARIANE4_C(-2.0) * t48;
+    const ariane4_real_t t60 = t50 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t59
+        + parameters[YZ3R] * t52;
+    const ariane4_real_t t61 = t49 * t49;
+    const ariane4_real_t t62 = t60 - parameters[XZ3R] * (t61 - t55) + parameters[MX3R] * t57;
+    const ariane4_real_t t63 = dq[1] * t45;
+    const ariane4_real_t t64 = ARIANE4_C(2.0) * t56;
+    const ariane4_real_t t65 = t44 * t45;
+    const ariane4_real_t t66 = parameters[XY2] * t64 - (parameters[XX2R] * t63 + parameters[ZZ2R] * t63)
+        - parameters[XZ2R] * t65;
+    const ariane4_real_t t67 = t45 * t45;
+    const ariane4_real_t t68 = dq[1] * dq[1];
+    const ariane4_real_t t69 = t66 + parameters[YZ2] * (t68 - t67) + (t1 * t58 + t0 * t62);
+    const ariane4_real_t t70 = parameters[MX3R] * t51 + parameters[MY3R] * t59;
+    const ariane4_real_t t71 = ARIANE4_C(2.0) * t63;
+    const ariane4_real_t t72 = t56 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t71
+        + parameters[YZ2] * t65;
+    const ariane4_real_t t73 = t44 * t44;
+    const ariane4_real_t t74 = t72 + parameters[XZ2R] * (t73 - t68) + (t0 * t58 - t1 * t62
+        + ARIANE4_C(0.443) * t70);
+    const ariane4_real_t t75 = t8 * t69 + t9 * t74 + ARIANE4_C(0.116) * (parameters[MX2R] * t64
+        + parameters[MY2] * t71 + t70);
+    const ariane4_real_t t76 = t34 * dq[0];
+    const ariane4_real_t t77 = ariane4_sign(t76);
+    const ariane4_real_t t78 = ARIANE4_C(-3885.523436256565) * t31
+        + ARIANE4_C(-72.7913960548305) * (t33 * t33) * (t30 * t30);
+    const ariane4_real_t t79 = dq[0] * dq[0];
+    const ariane4_real_t t80 = t34 * (parameters[FV1] * t76) + t34 * (parameters[FC1] * t77)
+        + t34 * (parameters[IA1] * (t33 * t78 * t79));
+    const ariane4_real_t t81 = t6 * dq[2];
+    const ariane4_real_t t82 = ariane4_sign(t81);
+    const ariane4_real_t t83 = ARIANE4_C(7124.375926654358) * t3
+        + ARIANE4_C(188.12627071923498) * (t5 * t5) * (t2 * t2);
+    const ariane4_real_t t84 = t6 * (parameters[FV3] * t81) + t6 * (parameters[FC3] * t82)
+        + t6 * (parameters[IA3] * (t5 * t83 * (dq[2] * dq[2])));
+    const ariane4_real_t t85 = ARIANE4_C(0.116) * t79;
+    const ariane4_real_t t86 = t9 * t85 - ARIANE4_C(9.81) * t8;
+    const ariane4_real_t t87 = t86 + ARIANE4_C(0.443) * (t68 + t67);
+    const ariane4_real_t t88 = t8 * t85 + ARIANE4_C(9.81) * t9;
+    const ariane4_real_t t89 = t88 + ARIANE4_C(0.443) * t65;
+    const ariane4_real_t t90 = parameters[MX3R] * (t0 * t87 + t1 * t89) + parameters[MY3R] * (t1 * t87
+        - t0 * t89);
+    const ariane4_real_t t91 = parameters[XX3R] * t52 + parameters[XY3R] * (t61 - t54) + t90;
+    const ariane4_real_t t92 = input[2] * (ARIANE4_C(0.003) * t6) + (t84 + t91);
+    const ariane4_real_t t93 = input[0] * (ARIANE4_C(-0.004) * t34) + (t75 - t80) - t92 * t39;
+    const ariane4_real_t t94 = t0 * (parameters[MX3R] * (t54 + t55) + parameters[MY3R] * t52)
+        + t1 * (parameters[MX3R] * t52 + parameters[MY3R] * (t61 + t55));
+    const ariane4_real_t t95 = parameters[XX2R] * t65 - parameters[XY2] * (t73 - t67)
+        - (parameters[MX2R] * t88 + parameters[MY2] * t86);
+    const ariane4_real_t t96 = t14 * dq[1];
+    const ariane4_real_t t97 = ariane4_sign(t96);
+    const ariane4_real_t t98 = ARIANE4_C(-2656.3065671641784) * t11
+        - ARIANE4_C(104.12987373940295) * (t13 * t13) * (t10 * t10);
+    const ariane4_real_t t99 = t14 * (parameters[FV2] * t96) + t14 * (parameters[FC2] * t97)
+        + t14 * (parameters[IA2] * (t13 * t98 * t68));
+    const ariane4_real_t t100 = input[1] * (ARIANE4_C(0.012) * t14) - (t99 - (t95 - (t91
+        - ARIANE4_C(0.443) * t94)));
+    const ariane4_real_t t101 = t100 + t92 * t19;
+    const ariane4_real_t t102 = ARIANE4_C(1.0) / t43;
+    const ariane4_real_t t103 = (t93 + t101 * t42) * t102;
     out[0] = t103;
     if (!(t103 >= ARIANE4_C(-1.0e15) && t103 <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t104 = t87 * t91 + t92 * t103;
+    const ariane4_real_t t104 = t101 * t40 + t42 * t103;
     out[1] = t104;
     if (!(t104 >= ARIANE4_C(-1.0e15) && t104 <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    out[2] = t64 * t69 + t70 * t103 - t86 * t104;
+    out[2] = t92 * t17 + t39 * t103 - t19 * t104;
     if (!(out[2] >= ARIANE4_C(-1.0e15) && out[2] <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;

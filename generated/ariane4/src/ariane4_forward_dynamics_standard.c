@@ -74,7 +74,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -106,205 +106,206 @@ int ariane4_forward_dynamics_standard(
         return status;
     }
 
+    ariane4_real_t t42, t43;
+    ARIANE4_SINCOS(q[0], &t42, &t43);
+    ariane4_real_t t13, t14;
+    ARIANE4_SINCOS(q[1], &t13, &t14);
     ariane4_real_t t0, t1;
-    ARIANE4_SINCOS(q[0], &t0, &t1);
-    ariane4_real_t t12, t13;
-    ARIANE4_SINCOS(q[1], &t12, &t13);
-    ariane4_real_t t28, t26;
-    ARIANE4_SINCOS(q[2], &t28, &t26);
-    const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t5 = ARIANE4_C(-1.0) / t4;
-    const ariane4_real_t t6 = t2 * (ARIANE4_C(3885.523436256565) * t5);
-    const ariane4_real_t t7 = t6 * dq[0];
-    const ariane4_real_t t8 = ariane4_sign(t7);
-    const ariane4_real_t t9 = ARIANE4_C(-3885.523436256565) * t3
-        + ARIANE4_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t10 = dq[0] * dq[0];
-    const ariane4_real_t t11 = t6 * (t7 * parameters[FV1]) + t6 * (t8 * parameters[FC1])
-        + t6 * (t5 * t9 * t10 * parameters[IA1]);
-    const ariane4_real_t t14 = t13 * dq[0];
-    const ariane4_real_t t15 = dq[1] * t14;
-    const ariane4_real_t t16 = t12 * dq[0];
-    const ariane4_real_t t17 = dq[1] * t16;
-    const ariane4_real_t t18 = ARIANE4_C(2.0) * t17;
-    const ariane4_real_t t19 = t15 * (parameters[YY2] - parameters[ZZ2]) - t15 * parameters[XX2]
-        + t18 * parameters[XY2];
-    const ariane4_real_t t20 = t16 * t14;
-    const ariane4_real_t t21 = t14 * t14;
-    const ariane4_real_t t22 = dq[1] * dq[1];
-    const ariane4_real_t t23 = ARIANE4_C(-0.116) * t10;
-    const ariane4_real_t t24 = t12 * t23 + ARIANE4_C(-9.81) * t13;
-    const ariane4_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
-        - t24 * parameters[MZ2];
-    const ariane4_real_t t27 = dq[1] + dq[2];
-    const ariane4_real_t t29 = t28 * t16 - t26 * t14;
-    const ariane4_real_t t30 = t27 * t29;
-    const ariane4_real_t t31 = t26 * t16 + t28 * t14;
-    const ariane4_real_t t32 = t27 * t31;
-    const ariane4_real_t t33 = ARIANE4_C(2.0) * t32;
-    const ariane4_real_t t34 = parameters[XX3] * t30 + t30 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t33;
-    const ariane4_real_t t35 = t31 * t29;
-    const ariane4_real_t t36 = t27 * t27;
-    const ariane4_real_t t37 = t29 * t29;
-    const ariane4_real_t t38 = t36 - t37;
-    const ariane4_real_t t39 = ARIANE4_C(0.886) * t17;
-    const ariane4_real_t t40 = t13 * t23 + ARIANE4_C(9.81) * t12;
-    const ariane4_real_t t41 = t40 + ARIANE4_C(-0.443) * (t21 + t22);
-    const ariane4_real_t t42 = t24 + ARIANE4_C(-0.443) * t20;
-    const ariane4_real_t t43 = t28 * t41 + t26 * t42;
-    const ariane4_real_t t44 = t34 + parameters[XZ3] * t35 + parameters[YZ3] * t38 - (parameters[MY3] * t39
-        + parameters[MZ3] * t43);
-    const ariane4_real_t t45 = parameters[XX4] * t30 + t30 * (parameters[YY4] - parameters[ZZ4])
-        - parameters[XY4] * t35;
-    const ariane4_real_t t46 = t31 * t31;
-    const ariane4_real_t t47 = t36 + t46;
-    const ariane4_real_t t48 = t43 + (ARIANE4_C(-0.1) * t35 + ARIANE4_C(0.436) * t47);
-    const ariane4_real_t t49 = t39 - (ARIANE4_C(0.2) * t32 + ARIANE4_C(0.872) * t30);
-    const ariane4_real_t t50 = t45 + parameters[XZ4] * t33 - parameters[YZ4] * t38 + (parameters[MY4] * t48
-        - parameters[MZ4] * t49);
-    const ariane4_real_t t51 = t46 + t37;
-    const ariane4_real_t t52 = ARIANE4_C(-2.0) * t30;
-    const ariane4_real_t t53 = parameters[M4] * t49 + (parameters[MX4] * t33 + parameters[MY4] * t51
-        + parameters[MZ4] * t52);
-    const ariane4_real_t t54 = t44 + (t50 + ARIANE4_C(-0.436) * t53);
-    const ariane4_real_t t55 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t52;
-    const ariane4_real_t t56 = t36 - t46;
-    const ariane4_real_t t57 = t28 * t42 - t26 * t41;
-    const ariane4_real_t t58 = t55 - parameters[YZ3] * t35 - parameters[XZ3] * t56 + (parameters[MZ3] * t57
-        + parameters[MX3] * t39);
-    const ariane4_real_t t59 = parameters[ZZ4] * t32 - t32 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t35;
-    const ariane4_real_t t60 = t36 + t37;
-    const ariane4_real_t t61 = t57 - (ARIANE4_C(0.1) * t60 - ARIANE4_C(0.436) * t35);
-    const ariane4_real_t t62 = t59 - parameters[XZ4] * t52 + parameters[XY4] * t56 + (parameters[MX4] * t49
-        - parameters[MY4] * t61);
-    const ariane4_real_t t63 = t58 + (t62 - ARIANE4_C(0.1) * t53);
-    const ariane4_real_t t64 = ARIANE4_C(2.0) * t15;
-    const ariane4_real_t t65 = t17 * parameters[YY2] + t17 * (parameters[ZZ2] - parameters[XX2])
-        - t64 * parameters[XY2];
-    const ariane4_real_t t66 = t16 * t16;
-    const ariane4_real_t t67 = t65 + t20 * parameters[YZ2] + (t66 - t22) * parameters[XZ2]
-        - t40 * parameters[MZ2];
-    const ariane4_real_t t68 = parameters[M3] * t39 + (parameters[MX3] * t33 + parameters[MY3] * t52
-        - parameters[MZ3] * t51);
-    const ariane4_real_t t69 = t68 + t53;
-    const ariane4_real_t t70 = t67 + (t28 * t54 + t26 * t63 + ARIANE4_C(0.443) * t69);
-    const ariane4_real_t t71 = t12 * (t25 + (t26 * t54 - t28 * t63)) + t13 * t70;
-    const ariane4_real_t t72 = t18 * parameters[MX2] + t64 * parameters[MY2] - (t66 + t21) * parameters[MZ2];
-    const ariane4_real_t t73 = input[0] * (ARIANE4_C(-0.004) * t6) + (t71 + ARIANE4_C(0.116) * (t72 + t69)
-        - t11);
-    const ariane4_real_t t74 = ARIANE4_C(0.06366143813161289) * t28 + ARIANE4_C(0.9979715533496006) * t26;
-    const ariane4_real_t t75 = ARIANE4_C(0.06366143813161289) * t26 + ARIANE4_C(-0.9979715533496006) * t28;
-    const ariane4_real_t t76 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t75 + ARIANE4_C(0.242037));
-    const ariane4_real_t t77 = ARIANE4_C(1.0) / t76;
-    const ariane4_real_t t78 = t74 * (ARIANE4_C(7124.375926654358) * t77);
-    const ariane4_real_t t79 = t78 * dq[2];
-    const ariane4_real_t t80 = ariane4_sign(t79);
-    const ariane4_real_t t81 = ARIANE4_C(7124.375926654358) * t75
-        + ARIANE4_C(188.12627071923498) * (t77 * t77) * (t74 * t74);
-    const ariane4_real_t t82 = t78 * (t79 * parameters[FV3]) + t78 * (t80 * parameters[FC3])
-        + t78 * (t77 * t81 * (dq[2] * dq[2]) * parameters[IA3]);
-    const ariane4_real_t t83 = t46 - t37;
-    const ariane4_real_t t84 = t35 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * t83
-        + (parameters[MY3] * t57 - parameters[MX3] * t43);
-    const ariane4_real_t t85 = t35 * (parameters[XX4] - parameters[ZZ4]) + parameters[XZ4] * t83
-        + (parameters[MZ4] * t61 - parameters[MX4] * t48);
-    const ariane4_real_t t86 = parameters[M4] * t48 + (parameters[MX4] * t35 + parameters[MZ4] * t47);
-    const ariane4_real_t t87 = parameters[M4] * t61 + (parameters[MX4] * t60 + parameters[MZ4] * t35);
-    const ariane4_real_t t88 = t84 + (t85 - (ARIANE4_C(-0.1) * t86 - ARIANE4_C(0.436) * t87));
-    const ariane4_real_t t89 = input[2] * (ARIANE4_C(0.003) * t78) + (t82 + t88);
-    const ariane4_real_t t90 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
-    const ariane4_real_t t91 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
-    const ariane4_real_t t92 = t26 * t90 + t28 * t91;
-    const ariane4_real_t t93 = t28 * t90 - t26 * t91;
-    const ariane4_real_t t94 = t12 * t92 + t13 * t93;
-    const ariane4_real_t t95 = ARIANE4_C(0.1) * parameters[M4];
-    const ariane4_real_t t96 = ARIANE4_C(0.1) * (t95 + ARIANE4_C(-2.0) * parameters[MX4]);
-    const ariane4_real_t t97 = ARIANE4_C(0.436) * parameters[M4];
-    const ariane4_real_t t98 = ARIANE4_C(0.436) * (t97 + ARIANE4_C(2.0) * parameters[MZ4]);
-    const ariane4_real_t t99 = parameters[ZZ3] + (parameters[YY4] + (t96 + t98));
-    const ariane4_real_t t100 = t99 + parameters[IA3] * (t78 * t78);
-    if (!(t100 > ARIANE4_C(1.0e-9))) {
+    ARIANE4_SINCOS(q[2], &t0, &t1);
+    const ariane4_real_t t2 = ARIANE4_C(0.06366143813161289) * t0 + ARIANE4_C(0.9979715533496006) * t1;
+    const ariane4_real_t t3 = ARIANE4_C(0.06366143813161289) * t1 + ARIANE4_C(-0.9979715533496006) * t0;
+    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t3 + ARIANE4_C(0.242037));
+    const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
+    const ariane4_real_t t6 = t2 * (ARIANE4_C(7124.375926654358) * t5);
+    const ariane4_real_t t7 = ARIANE4_C(0.1) * parameters[M4];
+    const ariane4_real_t t8 = ARIANE4_C(0.1) * (t7 + ARIANE4_C(-2.0) * parameters[MX4]);
+    const ariane4_real_t t9 = ARIANE4_C(0.436) * parameters[M4];
+    const ariane4_real_t t10 = ARIANE4_C(0.436) * (t9 + ARIANE4_C(2.0) * parameters[MZ4]);
+    const ariane4_real_t t11 = parameters[ZZ3] + (parameters[YY4] + (t8 + t10));
+    const ariane4_real_t t12 = t11 + parameters[IA3] * (t6 * t6);
+    if (!(t12 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t101 = ARIANE4_C(-1.0) / t100;
-    const ariane4_real_t t102 = t94 * t101;
-    const ariane4_real_t t103 = ARIANE4_C(0.8305958991958126) * t12 + ARIANE4_C(0.5568756164881881) * t13;
-    const ariane4_real_t t104 = ARIANE4_C(-0.8305958991958126) * t13 + ARIANE4_C(0.5568756164881881) * t12;
-    const ariane4_real_t t105 = ARIANE4_SQRT(ARIANE4_C(0.078402) * t104 + ARIANE4_C(0.293698));
-    const ariane4_real_t t106 = ARIANE4_C(1.0) / t105;
-    const ariane4_real_t t107 = t103 * (ARIANE4_C(2656.3065671641784) * t106);
-    const ariane4_real_t t108 = t107 * dq[1];
-    const ariane4_real_t t109 = ariane4_sign(t108);
-    const ariane4_real_t t110 = ARIANE4_C(-2656.3065671641784) * t104
-        - ARIANE4_C(104.12987373940295) * (t106 * t106) * (t103 * t103);
-    const ariane4_real_t t111 = t107 * (t108 * parameters[FV2]) + t107 * (t109 * parameters[FC2])
-        + t107 * (t106 * t110 * t22 * parameters[IA2]);
-    const ariane4_real_t t112 = t20 * (parameters[XX2] - parameters[YY2]) - (t66 - t21) * parameters[XY2]
-        + (t24 * parameters[MX2] + t40 * parameters[MY2]);
-    const ariane4_real_t t113 = parameters[M3] * t57 + (parameters[MX3] * t60 + parameters[MY3] * t35) + t87;
-    const ariane4_real_t t114 = parameters[M3] * t43 + (parameters[MX3] * t35 + parameters[MY3] * t47) + t86;
-    const ariane4_real_t t115 = t112 - (t88 - ARIANE4_C(0.443) * (t28 * t113 + t26 * t114));
-    const ariane4_real_t t116 = parameters[MY3] + (parameters[MZ4] + t97);
-    const ariane4_real_t t117 = t95 - parameters[MX4];
-    const ariane4_real_t t118 = parameters[MX3] - t117;
-    const ariane4_real_t t119 = t26 * t118 - t28 * t116;
-    const ariane4_real_t t120 = ARIANE4_C(-0.443) * t119 - t99;
-    const ariane4_real_t t121 = t120 * t101;
-    const ariane4_real_t t122 = ARIANE4_C(0.012) * t107 * input[1] - (t111 - t115) + t89 * t121;
-    const ariane4_real_t t123 = t12 * (t92 + ARIANE4_C(0.443) * (parameters[MZ3] - parameters[MY4])
-        - parameters[XZ2]) + t13 * (t93 - parameters[YZ2]);
-    const ariane4_real_t t124 = t123 - t94 * t121;
-    const ariane4_real_t t125 = parameters[M3] + parameters[M4];
-    const ariane4_real_t t126 = ARIANE4_C(0.443) * t125;
-    const ariane4_real_t t127 = ARIANE4_C(0.443) * (t126 + ARIANE4_C(2.0) * t119);
-    const ariane4_real_t t128 = parameters[ZZ2] + (t99 + t127) + parameters[IA2] * (t107 * t107)
-        + t120 * t121;
-    if (!(t128 > ARIANE4_C(1.0e-9))) {
+    const ariane4_real_t t15 = ARIANE4_C(0.8305958991958126) * t13 + ARIANE4_C(0.5568756164881881) * t14;
+    const ariane4_real_t t16 = ARIANE4_C(-0.8305958991958126) * t14 + ARIANE4_C(0.5568756164881881) * t13;
+    const ariane4_real_t t17 = ARIANE4_SQRT(ARIANE4_C(0.078402) * t16 + ARIANE4_C(0.293698));
+    const ariane4_real_t t18 = ARIANE4_C(1.0) / t17;
+    const ariane4_real_t t19 = t15 * (ARIANE4_C(2656.3065671641784) * t18);
+    const ariane4_real_t t20 = parameters[MY3] + (parameters[MZ4] + t9);
+    const ariane4_real_t t21 = t7 - parameters[MX4];
+    const ariane4_real_t t22 = parameters[MX3] - t21;
+    const ariane4_real_t t23 = t1 * t22 - t0 * t20;
+    const ariane4_real_t t24 = parameters[M3] + parameters[M4];
+    const ariane4_real_t t25 = ARIANE4_C(0.443) * t24;
+    const ariane4_real_t t26 = ARIANE4_C(0.443) * (t25 + ARIANE4_C(2.0) * t23);
+    const ariane4_real_t t27 = ARIANE4_C(-1.0) / t12;
+    const ariane4_real_t t28 = ARIANE4_C(-0.443) * t23 - t11;
+    const ariane4_real_t t29 = t28 * t27;
+    const ariane4_real_t t30 = parameters[ZZ2] + (t11 + t26) + parameters[IA2] * (t19 * t19) + t28 * t29;
+    if (!(t30 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t129 = ARIANE4_C(1.0) / t128;
-    const ariane4_real_t t130 = t124 * t129;
-    const ariane4_real_t t131 = parameters[YY3] + (parameters[ZZ4] + t96);
-    const ariane4_real_t t132 = parameters[XX3] + (parameters[XX4] + t98);
-    const ariane4_real_t t133 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
-        + ARIANE4_C(0.436) * t117));
-    const ariane4_real_t t134 = t26 * (t132 - t131) - t133 * (ARIANE4_C(2.0) * t28);
-    const ariane4_real_t t135 = t26 * t134;
-    const ariane4_real_t t136 = parameters[XX2] + (t131 + t135);
-    const ariane4_real_t t137 = t26 * t116 + t28 * t118;
-    const ariane4_real_t t138 = (parameters[XY2] + (t133 + t28 * t134
-        + ARIANE4_C(-0.443) * t137)) * (ARIANE4_C(2.0) * t12);
-    const ariane4_real_t t139 = t13 * (parameters[YY2] + (t132 - t135 + t127) - t136) + t138;
-    const ariane4_real_t t140 = t13 * (parameters[MX2] + (t119 + t126)) - t12 * (parameters[MY2] + t137);
-    const ariane4_real_t t141 = t136 + t13 * t139 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2]
-        + t125) + ARIANE4_C(2.0) * t140);
-    const ariane4_real_t t142 = parameters[ZZ1] + t141 + parameters[IA1] * (t6 * t6) + t94 * t102;
-    const ariane4_real_t t143 = t142 - t124 * t130;
-    if (!(t143 > ARIANE4_C(1.0e-9))) {
+    const ariane4_real_t t31 = parameters[XX3] + (parameters[XX4] + t10);
+    const ariane4_real_t t32 = parameters[YY3] + (parameters[ZZ4] + t8);
+    const ariane4_real_t t33 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
+        + ARIANE4_C(0.436) * t21));
+    const ariane4_real_t t34 = t1 * (t31 - t32) - t33 * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t35 = t1 * t34;
+    const ariane4_real_t t36 = parameters[XX2] + (t32 + t35);
+    const ariane4_real_t t37 = t1 * t20 + t0 * t22;
+    const ariane4_real_t t38 = (parameters[XY2] + (t33 + t0 * t34
+        + ARIANE4_C(-0.443) * t37)) * (ARIANE4_C(2.0) * t13);
+    const ariane4_real_t t39 = t14 * (parameters[YY2] + (t31 - t35 + t26) - t36) + t38;
+    const ariane4_real_t t40 = t14 * (parameters[MX2] + (t23 + t25)) - t13 * (parameters[MY2] + t37);
+    const ariane4_real_t t41 = t36 + t14 * t39 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t24)
+        + ARIANE4_C(2.0) * t40);
+    const ariane4_real_t t44 = ARIANE4_C(-0.28217402066925895) * t42 + ARIANE4_C(0.9593632378089879) * t43;
+    const ariane4_real_t t45 = ARIANE4_C(0.28217402066925895) * t43 + ARIANE4_C(0.9593632378089879) * t42;
+    const ariane4_real_t t46 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t45 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t47 = ARIANE4_C(-1.0) / t46;
+    const ariane4_real_t t48 = t44 * (ARIANE4_C(3885.523436256565) * t47);
+    const ariane4_real_t t49 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
+    const ariane4_real_t t50 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
+    const ariane4_real_t t51 = t1 * t49 + t0 * t50;
+    const ariane4_real_t t52 = t0 * t49 - t1 * t50;
+    const ariane4_real_t t53 = t13 * t51 + t14 * t52;
+    const ariane4_real_t t54 = t53 * t27;
+    const ariane4_real_t t55 = parameters[ZZ1] + t41 + parameters[IA1] * (t48 * t48) + t53 * t54;
+    const ariane4_real_t t56 = ARIANE4_C(1.0) / t30;
+    const ariane4_real_t t57 = t13 * (t51 + ARIANE4_C(0.443) * (parameters[MZ3] - parameters[MY4])
+        - parameters[XZ2]) + t14 * (t52 - parameters[YZ2]);
+    const ariane4_real_t t58 = t57 - t53 * t29;
+    const ariane4_real_t t59 = t58 * t56;
+    const ariane4_real_t t60 = t55 - t58 * t59;
+    if (!(t60 > ARIANE4_C(1.0e-9))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t144 = ARIANE4_C(1.0) / t143;
-    const ariane4_real_t t145 = (t73 + t89 * t102 + t122 * t130) * t144;
+    const ariane4_real_t t61 = t13 * dq[0];
+    const ariane4_real_t t62 = t14 * dq[0];
+    const ariane4_real_t t63 = t0 * t61 - t1 * t62;
+    const ariane4_real_t t64 = dq[1] + dq[2];
+    const ariane4_real_t t65 = t64 * t63;
+    const ariane4_real_t t66 = t1 * t61 + t0 * t62;
+    const ariane4_real_t t67 = t64 * t66;
+    const ariane4_real_t t68 = ARIANE4_C(2.0) * t67;
+    const ariane4_real_t t69 = parameters[XX3] * t65 + t65 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t68;
+    const ariane4_real_t t70 = t66 * t63;
+    const ariane4_real_t t71 = t63 * t63;
+    const ariane4_real_t t72 = t64 * t64;
+    const ariane4_real_t t73 = t72 - t71;
+    const ariane4_real_t t74 = dq[0] * dq[0];
+    const ariane4_real_t t75 = ARIANE4_C(-0.116) * t74;
+    const ariane4_real_t t76 = t14 * t75 + ARIANE4_C(9.81) * t13;
+    const ariane4_real_t t77 = t62 * t62;
+    const ariane4_real_t t78 = dq[1] * dq[1];
+    const ariane4_real_t t79 = t76 + ARIANE4_C(-0.443) * (t77 + t78);
+    const ariane4_real_t t80 = t13 * t75 + ARIANE4_C(-9.81) * t14;
+    const ariane4_real_t t81 = t61 * t62;
+    const ariane4_real_t t82 = t80 + ARIANE4_C(-0.443) * t81;
+    const ariane4_real_t t83 = t0 * t79 + t1 * t82;
+    const ariane4_real_t t84 = dq[1] * t61;
+    const ariane4_real_t t85 = ARIANE4_C(0.886) * t84;
+    const ariane4_real_t t86 = t69 + parameters[XZ3] * t70 + parameters[YZ3] * t73 - (parameters[MY3] * t85
+        + parameters[MZ3] * t83);
+    const ariane4_real_t t87 = t66 * t66;
+    const ariane4_real_t t88 = t72 + t87;
+    const ariane4_real_t t89 = t83 + (ARIANE4_C(-0.1) * t70 + ARIANE4_C(0.436) * t88);
+    const ariane4_real_t t90 = t85 - (ARIANE4_C(0.2) * t67 + ARIANE4_C(0.872) * t65);
+    const ariane4_real_t t91 = parameters[XX4] * t65 + t65 * (parameters[YY4] - parameters[ZZ4])
+        - parameters[XY4] * t70;
+    const ariane4_real_t t92 = t91 + parameters[XZ4] * t68 - parameters[YZ4] * t73 + (parameters[MY4] * t89
+        - parameters[MZ4] * t90);
+    const ariane4_real_t t93 = t87 + t71;
+    const ariane4_real_t t94 = ARIANE4_C(-2.0) * t65;
+    const ariane4_real_t t95 = parameters[M4] * t90 + (parameters[MX4] * t68 + parameters[MY4] * t93
+        + parameters[MZ4] * t94);
+    const ariane4_real_t t96 = t86 + (t92 + ARIANE4_C(-0.436) * t95);
+    const ariane4_real_t t97 = parameters[YY3] * t67 - t67 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t94;
+    const ariane4_real_t t98 = t72 - t87;
+    const ariane4_real_t t99 = t0 * t82 - t1 * t79;
+    const ariane4_real_t t100 = t97 - parameters[YZ3] * t70 - parameters[XZ3] * t98 + (parameters[MZ3] * t99
+        + parameters[MX3] * t85);
+    const ariane4_real_t t101 = t72 + t71;
+    const ariane4_real_t t102 = t99 - (ARIANE4_C(0.1) * t101 - ARIANE4_C(0.436) * t70);
+    const ariane4_real_t t103 = parameters[ZZ4] * t67 - t67 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t70;
+    const ariane4_real_t t104 = t103 - parameters[XZ4] * t94 + parameters[XY4] * t98 + (parameters[MX4] * t90
+        - parameters[MY4] * t102);
+    const ariane4_real_t t105 = t100 + (t104 - ARIANE4_C(0.1) * t95);
+    const ariane4_real_t t106 = dq[1] * t62;
+    const ariane4_real_t t107 = ARIANE4_C(2.0) * t84;
+    const ariane4_real_t t108 = t106 * (parameters[YY2] - parameters[ZZ2]) - t106 * parameters[XX2]
+        + t107 * parameters[XY2];
+    const ariane4_real_t t109 = t108 - t81 * parameters[XZ2] + (t78 - t77) * parameters[YZ2]
+        - t80 * parameters[MZ2];
+    const ariane4_real_t t110 = parameters[M3] * t85 + (parameters[MX3] * t68 + parameters[MY3] * t94
+        - parameters[MZ3] * t93);
+    const ariane4_real_t t111 = t110 + t95;
+    const ariane4_real_t t112 = ARIANE4_C(2.0) * t106;
+    const ariane4_real_t t113 = t84 * parameters[YY2] + t84 * (parameters[ZZ2] - parameters[XX2])
+        - t112 * parameters[XY2];
+    const ariane4_real_t t114 = t61 * t61;
+    const ariane4_real_t t115 = t113 + t81 * parameters[YZ2] + (t114 - t78) * parameters[XZ2]
+        - t76 * parameters[MZ2];
+    const ariane4_real_t t116 = t115 + (t0 * t96 + t1 * t105 + ARIANE4_C(0.443) * t111);
+    const ariane4_real_t t117 = t13 * (t109 + (t1 * t96 - t0 * t105)) + t14 * t116;
+    const ariane4_real_t t118 = t107 * parameters[MX2] + t112 * parameters[MY2] - (t114
+        + t77) * parameters[MZ2];
+    const ariane4_real_t t119 = t48 * dq[0];
+    const ariane4_real_t t120 = ariane4_sign(t119);
+    const ariane4_real_t t121 = ARIANE4_C(-3885.523436256565) * t45
+        + ARIANE4_C(-72.7913960548305) * (t47 * t47) * (t44 * t44);
+    const ariane4_real_t t122 = t48 * (t119 * parameters[FV1]) + t48 * (t120 * parameters[FC1])
+        + t48 * (t47 * t121 * t74 * parameters[IA1]);
+    const ariane4_real_t t123 = input[0] * (ARIANE4_C(-0.004) * t48) + (t117 + ARIANE4_C(0.116) * (t118
+        + t111) - t122);
+    const ariane4_real_t t124 = t87 - t71;
+    const ariane4_real_t t125 = t70 * (parameters[XX4] - parameters[ZZ4]) + parameters[XZ4] * t124
+        + (parameters[MZ4] * t102 - parameters[MX4] * t89);
+    const ariane4_real_t t126 = parameters[M4] * t89 + (parameters[MX4] * t70 + parameters[MZ4] * t88);
+    const ariane4_real_t t127 = parameters[M4] * t102 + (parameters[MX4] * t101 + parameters[MZ4] * t70);
+    const ariane4_real_t t128 = t70 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * t124
+        + (parameters[MY3] * t99 - parameters[MX3] * t83);
+    const ariane4_real_t t129 = t128 + (t125 - (ARIANE4_C(-0.1) * t126 - ARIANE4_C(0.436) * t127));
+    const ariane4_real_t t130 = t6 * dq[2];
+    const ariane4_real_t t131 = ariane4_sign(t130);
+    const ariane4_real_t t132 = ARIANE4_C(7124.375926654358) * t3
+        + ARIANE4_C(188.12627071923498) * (t5 * t5) * (t2 * t2);
+    const ariane4_real_t t133 = t6 * (t130 * parameters[FV3]) + t6 * (t131 * parameters[FC3])
+        + t6 * (t5 * t132 * (dq[2] * dq[2]) * parameters[IA3]);
+    const ariane4_real_t t134 = input[2] * (ARIANE4_C(0.003) * t6) + (t133 + t129);
+    const ariane4_real_t t135 = parameters[M3] * t99 + (parameters[MX3] * t101 + parameters[MY3] * t70)
+        + t127;
+    const ariane4_real_t t136 = parameters[M3] * t83 + (parameters[MX3] * t70 + parameters[MY3] * t88) + t126;
+    const ariane4_real_t t137 = t81 * (parameters[XX2] - parameters[YY2]) - (t114 - t77) * parameters[XY2]
+        + (t80 * parameters[MX2] + t76 * parameters[MY2]);
+    const ariane4_real_t t138 = t137 - (t129 - ARIANE4_C(0.443) * (t0 * t135 + t1 * t136));
+    const ariane4_real_t t139 = t19 * dq[1];
+    const ariane4_real_t t140 = ariane4_sign(t139);
+    const ariane4_real_t t141 = ARIANE4_C(-2656.3065671641784) * t16
+        - ARIANE4_C(104.12987373940295) * (t18 * t18) * (t15 * t15);
+    const ariane4_real_t t142 = t19 * (t139 * parameters[FV2]) + t19 * (t140 * parameters[FC2])
+        + t19 * (t18 * t141 * t78 * parameters[IA2]);
+    const ariane4_real_t t143 = ARIANE4_C(0.012) * t19 * input[1] - (t142 - t138) + t134 * t29;
+    const ariane4_real_t t144 = ARIANE4_C(1.0) / t60;
+    const ariane4_real_t t145 = (t123 + t134 * t54 + t143 * t59) * t144;
     out[0] = t145;
     if (!(t145 >= ARIANE4_C(-1.0e15) && t145 <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t146 = t122 * t129 + t130 * t145;
+    const ariane4_real_t t146 = t143 * t56 + t59 * t145;
     out[1] = t146;
     if (!(t146 >= ARIANE4_C(-1.0e15) && t146 <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    out[2] = t89 * t101 - t102 * t145 - t121 * t146;
+    out[2] = t134 * t27 - t54 * t145 - t29 * t146;
     if (!(out[2] >= ARIANE4_C(-1.0e15) && out[2] <= ARIANE4_C(1.0e15))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;

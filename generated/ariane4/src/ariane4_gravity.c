@@ -47,7 +47,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -76,19 +76,19 @@ int ariane4_gravity(
 
     ariane4_real_t t1, t0;
     ARIANE4_SINCOS(q[1], &t1, &t0);
-    ariane4_real_t t6, t7;
-    ARIANE4_SINCOS(q[2], &t6, &t7);
+    ariane4_real_t t5, t7;
+    ARIANE4_SINCOS(q[2], &t5, &t7);
     const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t0
         + ARIANE4_C(0.5568756164881881) * t1) + ARIANE4_C(0.293698));
     const ariane4_real_t t3 = ARIANE4_C(0.03137188092799786) * t2 / (ARIANE4_C(0.8305958991958126) * t1
         + ARIANE4_C(0.5568756164881881) * t0);
-    const ariane4_real_t t4 = ARIANE4_C(9.81) * t0;
-    const ariane4_real_t t5 = ARIANE4_C(-9.81) * t1;
-    const ariane4_real_t t8 = parameters[MX3R] * (t6 * t5 + t7 * t4) + parameters[MY3R] * (t7 * t5 - t6 * t4);
-    out[1] = t3 * (parameters[MX2R] * t4 + parameters[MY2] * t5 + t8);
+    const ariane4_real_t t4 = ARIANE4_C(-9.81) * t1;
+    const ariane4_real_t t6 = ARIANE4_C(9.81) * t0;
+    const ariane4_real_t t8 = parameters[MX3R] * (t5 * t4 + t7 * t6) + parameters[MY3R] * (t7 * t4 - t5 * t6);
+    out[1] = t3 * (parameters[MX2R] * t6 + parameters[MY2] * t4 + t8);
     const ariane4_real_t t9 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t7
-        + ARIANE4_C(-0.9979715533496006) * t6) + ARIANE4_C(0.242037));
-    const ariane4_real_t t10 = ARIANE4_C(-0.046787723832235825) * t9 / (ARIANE4_C(0.06366143813161289) * t6
+        + ARIANE4_C(-0.9979715533496006) * t5) + ARIANE4_C(0.242037));
+    const ariane4_real_t t10 = ARIANE4_C(-0.046787723832235825) * t9 / (ARIANE4_C(0.06366143813161289) * t5
         + ARIANE4_C(0.9979715533496006) * t7);
     out[2] = t10 * t8;
     /* always zero */

@@ -71,7 +71,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -99,41 +99,41 @@ int ariane4_gravity_standard(
         return status;
     }
 
-    ariane4_real_t t1, t0;
-    ARIANE4_SINCOS(q[0], &t1, &t0);
-    ariane4_real_t t4, t5;
-    ARIANE4_SINCOS(q[1], &t4, &t5);
-    ariane4_real_t t8, t7;
-    ARIANE4_SINCOS(q[2], &t8, &t7);
-    const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t0
-        + ARIANE4_C(0.9593632378089879) * t1) + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t3 = ARIANE4_C(0.06434139546481742) * t2 / (ARIANE4_C(0.28217402066925895) * t1
-        + ARIANE4_C(-0.9593632378089879) * t0);
-    const ariane4_real_t t6 = ARIANE4_C(9.81) * t5;
-    const ariane4_real_t t9 = ARIANE4_C(-9.81) * t4;
-    const ariane4_real_t t10 = t8 * t9 + t7 * t6;
-    const ariane4_real_t t11 = t10 * parameters[MZ3] - t10 * parameters[MY4];
-    const ariane4_real_t t12 = t8 * t6 - t7 * t9;
-    const ariane4_real_t t13 = t12 * parameters[MZ3] - t12 * parameters[MY4];
-    const ariane4_real_t t14 = t4 * (t6 * parameters[MZ2] + (t7 * t11 + t8 * t13));
-    const ariane4_real_t t15 = t5 * (t9 * parameters[MZ2] + (t8 * t11 - t7 * t13));
-    out[0] = t3 * (t14 + t15);
-    const ariane4_real_t t16 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t5
-        + ARIANE4_C(0.5568756164881881) * t4) + ARIANE4_C(0.293698));
-    const ariane4_real_t t17 = ARIANE4_C(0.03137188092799786) * t16 / (ARIANE4_C(0.8305958991958126) * t4
-        + ARIANE4_C(0.5568756164881881) * t5);
-    const ariane4_real_t t18 = t10 * parameters[M4];
-    const ariane4_real_t t19 = t12 * parameters[M4];
-    const ariane4_real_t t20 = t10 * parameters[MX4] - t12 * parameters[MZ4] + (ARIANE4_C(-0.1) * t18
-        + ARIANE4_C(-0.436) * t19);
-    const ariane4_real_t t21 = t10 * parameters[MX3] - t12 * parameters[MY3] + t20;
-    const ariane4_real_t t22 = t8 * (t12 * parameters[M3] + t19) + t7 * (t10 * parameters[M3] + t18);
-    const ariane4_real_t t23 = t6 * parameters[MX2] + t9 * parameters[MY2] + (t21 + ARIANE4_C(0.443) * t22);
-    out[1] = t17 * t23;
-    const ariane4_real_t t24 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t7
-        + ARIANE4_C(-0.9979715533496006) * t8) + ARIANE4_C(0.242037));
-    const ariane4_real_t t25 = ARIANE4_C(-0.046787723832235825) * t24 / (ARIANE4_C(0.06366143813161289) * t8
-        + ARIANE4_C(0.9979715533496006) * t7);
-    out[2] = t25 * t21;
+    ariane4_real_t t13, t12;
+    ARIANE4_SINCOS(q[0], &t13, &t12);
+    ariane4_real_t t0, t3;
+    ARIANE4_SINCOS(q[1], &t0, &t3);
+    ariane4_real_t t2, t5;
+    ARIANE4_SINCOS(q[2], &t2, &t5);
+    const ariane4_real_t t1 = ARIANE4_C(-9.81) * t0;
+    const ariane4_real_t t4 = ARIANE4_C(9.81) * t3;
+    const ariane4_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_real_t t7 = t6 * parameters[MZ3] - t6 * parameters[MY4];
+    const ariane4_real_t t8 = t2 * t4 - t5 * t1;
+    const ariane4_real_t t9 = t8 * parameters[MZ3] - t8 * parameters[MY4];
+    const ariane4_real_t t10 = t0 * (t4 * parameters[MZ2] + (t5 * t7 + t2 * t9));
+    const ariane4_real_t t11 = t3 * (t1 * parameters[MZ2] + (t2 * t7 - t5 * t9));
+    const ariane4_real_t t14 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t12
+        + ARIANE4_C(0.9593632378089879) * t13) + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t15 = ARIANE4_C(0.06434139546481742) * t14 / (ARIANE4_C(0.28217402066925895) * t13
+        + ARIANE4_C(-0.9593632378089879) * t12);
+    out[0] = t15 * (t10 + t11);
+    const ariane4_real_t t16 = t6 * parameters[M4];
+    const ariane4_real_t t17 = t8 * parameters[M4];
+    const ariane4_real_t t18 = t6 * parameters[MX4] - t8 * parameters[MZ4] + (ARIANE4_C(-0.1) * t16
+        + ARIANE4_C(-0.436) * t17);
+    const ariane4_real_t t19 = t6 * parameters[MX3] - t8 * parameters[MY3] + t18;
+    const ariane4_real_t t20 = t2 * (t8 * parameters[M3] + t17) + t5 * (t6 * parameters[M3] + t16);
+    const ariane4_real_t t21 = t4 * parameters[MX2] + t1 * parameters[MY2] + (t19 + ARIANE4_C(0.443) * t20);
+    const ariane4_real_t t22 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t3
+        + ARIANE4_C(0.5568756164881881) * t0) + ARIANE4_C(0.293698));
+    const ariane4_real_t t23 = ARIANE4_C(0.03137188092799786) * t22 / (ARIANE4_C(0.8305958991958126) * t0
+        + ARIANE4_C(0.5568756164881881) * t3);
+    out[1] = t23 * t21;
+    const ariane4_real_t t24 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t5
+        + ARIANE4_C(-0.9979715533496006) * t2) + ARIANE4_C(0.242037));
+    const ariane4_real_t t25 = ARIANE4_C(-0.046787723832235825) * t24 / (ARIANE4_C(0.06366143813161289) * t2
+        + ARIANE4_C(0.9979715533496006) * t5);
+    out[2] = t25 * t19;
     return ARIANE4_STATUS_OK;
 }

@@ -49,7 +49,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -80,111 +80,111 @@ int ariane4_inverse_dynamics(
         return status;
     }
 
-    ariane4_real_t t0, t1;
-    ARIANE4_SINCOS(q[0], &t0, &t1);
-    ariane4_real_t t13, t15;
-    ARIANE4_SINCOS(q[1], &t13, &t15);
-    ariane4_real_t t33, t29;
-    ARIANE4_SINCOS(q[2], &t33, &t29);
-    const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t5 = ARIANE4_C(-1.0) / t4;
-    const ariane4_real_t t6 = t2 * (ARIANE4_C(3885.523436256565) * t5);
-    const ariane4_real_t t7 = t6 * dq[0];
-    const ariane4_real_t t8 = ariane4_sign(t7);
-    const ariane4_real_t t9 = ARIANE4_C(-3885.523436256565) * t3
-        + ARIANE4_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t10 = dq[0] * dq[0];
-    const ariane4_real_t t11 = parameters[FV1] * t7 + parameters[FC1] * t8 + parameters[IA1] * (t5 * t9 * t10
-        + t6 * ddq[0]);
-    const ariane4_real_t t12 = ARIANE4_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_real_t t14 = dq[1] * dq[1];
-    const ariane4_real_t t16 = t15 * dq[0];
-    const ariane4_real_t t17 = t16 * t16;
-    const ariane4_real_t t18 = dq[1] * t16;
-    const ariane4_real_t t19 = t13 * ddq[0];
-    const ariane4_real_t t20 = t18 + t19;
-    const ariane4_real_t t21 = t13 * dq[0];
+    ariane4_real_t t50, t49;
+    ARIANE4_SINCOS(q[0], &t50, &t49);
+    ariane4_real_t t0, t2;
+    ARIANE4_SINCOS(q[1], &t0, &t2);
+    ariane4_real_t t1, t3;
+    ARIANE4_SINCOS(q[2], &t1, &t3);
+    const ariane4_real_t t4 = t0 * t1 - t2 * t3;
+    const ariane4_real_t t5 = dq[0] * t4;
+    const ariane4_real_t t6 = dq[1] + dq[2];
+    const ariane4_real_t t7 = t6 * t5;
+    const ariane4_real_t t8 = t0 * t3 + t2 * t1;
+    const ariane4_real_t t9 = ddq[0] * t8;
+    const ariane4_real_t t10 = t9 - t7;
+    const ariane4_real_t t11 = dq[0] * t8;
+    const ariane4_real_t t12 = t6 * t11;
+    const ariane4_real_t t13 = ddq[0] * t4;
+    const ariane4_real_t t14 = t12 + (t12 + t13);
+    const ariane4_real_t t15 = t11 * t5;
+    const ariane4_real_t t16 = ddq[1] + ddq[2];
+    const ariane4_real_t t17 = t15 - t16;
+    const ariane4_real_t t18 = parameters[ZZ3R] * t7 - parameters[XX3R] * t10 + parameters[XY3R] * t14
+        + parameters[XZ3R] * t17;
+    const ariane4_real_t t19 = t5 * t5;
+    const ariane4_real_t t20 = t6 * t6;
+    const ariane4_real_t t21 = t0 * dq[0];
     const ariane4_real_t t22 = dq[1] * t21;
-    const ariane4_real_t t23 = t15 * ddq[0];
+    const ariane4_real_t t23 = t2 * ddq[0];
     const ariane4_real_t t24 = t22 + (t22 - t23);
-    const ariane4_real_t t25 = t21 * t16;
-    const ariane4_real_t t26 = ddq[1] + t25;
-    const ariane4_real_t t27 = parameters[XY2] * t24 - (parameters[ZZ2R] * t18 + parameters[XX2R] * t20)
-        - parameters[XZ2R] * t26;
-    const ariane4_real_t t28 = ARIANE4_C(0.116) * ddq[0];
-    const ariane4_real_t t30 = t28 + ARIANE4_C(-0.443) * t24;
-    const ariane4_real_t t31 = dq[1] + dq[2];
-    const ariane4_real_t t32 = t31 * t31;
-    const ariane4_real_t t34 = t13 * t33 - t15 * t29;
-    const ariane4_real_t t35 = dq[0] * t34;
-    const ariane4_real_t t36 = t35 * t35;
-    const ariane4_real_t t37 = t31 * t35;
-    const ariane4_real_t t38 = t13 * t29 + t15 * t33;
-    const ariane4_real_t t39 = ddq[0] * t38;
-    const ariane4_real_t t40 = t39 - t37;
-    const ariane4_real_t t41 = dq[0] * t38;
-    const ariane4_real_t t42 = t31 * t41;
-    const ariane4_real_t t43 = ddq[0] * t34;
-    const ariane4_real_t t44 = t42 + (t42 + t43);
-    const ariane4_real_t t45 = t41 * t35;
-    const ariane4_real_t t46 = ddq[1] + ddq[2];
-    const ariane4_real_t t47 = t45 - t46;
-    const ariane4_real_t t48 = parameters[ZZ3R] * t37 - parameters[XX3R] * t40 + parameters[XY3R] * t44
-        + parameters[XZ3R] * t47;
-    const ariane4_real_t t49 = parameters[MY3R] * t30 + (parameters[YZ3R] * (t32 - t36) + t48);
-    const ariane4_real_t t50 = t41 * t41;
-    const ariane4_real_t t51 = t40 - t37;
-    const ariane4_real_t t52 = t45 + t46;
-    const ariane4_real_t t53 = (parameters[XX3R] - parameters[ZZ3R]) * t42 + parameters[XY3R] * t51
-        + parameters[YZ3R] * t52;
-    const ariane4_real_t t54 = parameters[MX3R] * t30 + (parameters[XZ3R] * (t32 - t50) + t53);
-    const ariane4_real_t t55 = parameters[YZ2] * (t14 - t17) + t27 + parameters[MY2] * t28 + (t29 * t49
-        + t33 * t54);
-    const ariane4_real_t t56 = t21 * t21;
-    const ariane4_real_t t57 = t18 + t20;
-    const ariane4_real_t t58 = t22 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t57
-        + parameters[YZ2] * (t25 - ddq[1]);
-    const ariane4_real_t t59 = parameters[MX3R] * t44 + parameters[MY3R] * t51;
-    const ariane4_real_t t60 = parameters[XZ2R] * (t56 - t14) + t58 - parameters[MX2R] * t28 + (t33 * t49
-        - t29 * t54 + ARIANE4_C(0.443) * t59);
-    const ariane4_real_t t61 = t13 * t55 + t15 * t60 + ARIANE4_C(0.116) * (parameters[MX2R] * t24
-        + parameters[MY2] * t57 + t59);
-    out[0] = ARIANE4_C(-250.0) * t11 + t12 * (t61 - parameters[ZZ1R] * ddq[0]);
-    const ariane4_real_t t62 = ARIANE4_C(0.8305958991958126) * t13 + ARIANE4_C(0.5568756164881881) * t15;
-    const ariane4_real_t t63 = ARIANE4_C(0.8305958991958126) * t15 - ARIANE4_C(0.5568756164881881) * t13;
-    const ariane4_real_t t64 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t63 + ARIANE4_C(0.293698));
-    const ariane4_real_t t65 = ARIANE4_C(1.0) / t64;
-    const ariane4_real_t t66 = t62 * (ARIANE4_C(2656.3065671641784) * t65);
-    const ariane4_real_t t67 = t66 * dq[1];
-    const ariane4_real_t t68 = ariane4_sign(t67);
-    const ariane4_real_t t69 = ARIANE4_C(2656.3065671641784) * t63
-        + ARIANE4_C(-104.12987373940295) * (t65 * t65) * (t62 * t62);
-    const ariane4_real_t t70 = parameters[FV2] * t67 + parameters[FC2] * t68
-        + parameters[IA2] * (t65 * t69 * t14 + t66 * ddq[1]);
-    const ariane4_real_t t71 = ARIANE4_C(0.03137188092799786) * t64 / t62;
-    const ariane4_real_t t72 = ARIANE4_C(0.116) * t10;
-    const ariane4_real_t t73 = t13 * t72 + ARIANE4_C(9.81) * t15;
-    const ariane4_real_t t74 = t15 * t72 + ARIANE4_C(-9.81) * t13;
-    const ariane4_real_t t75 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t25 + parameters[YZ2] * t23
-        + parameters[XZ2R] * t19;
-    const ariane4_real_t t76 = parameters[MX2R] * t73 + parameters[MY2] * t74 + (parameters[XY2] * (t56 - t17)
-        + t75);
-    const ariane4_real_t t77 = t74 + ARIANE4_C(0.443) * (t14 + t17);
-    const ariane4_real_t t78 = t73 + ARIANE4_C(0.443) * t26;
-    const ariane4_real_t t79 = parameters[MX3R] * (t33 * t77 + t29 * t78) + parameters[MY3R] * (t29 * t77
-        - t33 * t78);
-    const ariane4_real_t t80 = parameters[XX3R] * t45 + parameters[ZZ3R] * t46 - parameters[YZ3R] * t43
-        + parameters[XZ3R] * t39;
-    const ariane4_real_t t81 = t79 + (parameters[XY3R] * (t50 - t36) + t80);
-    const ariane4_real_t t82 = t33 * (parameters[MX3R] * (t32 + t36) + parameters[MY3R] * t52)
-        + t29 * (parameters[MY3R] * (t32 + t50) + parameters[MX3R] * t47);
-    const ariane4_real_t t83 = ARIANE4_C(83.33333333333333) * t70 + t71 * (t76 + (t81
-        + ARIANE4_C(-0.443) * t82));
+    const ariane4_real_t t25 = ARIANE4_C(0.116) * ddq[0];
+    const ariane4_real_t t26 = t25 + ARIANE4_C(-0.443) * t24;
+    const ariane4_real_t t27 = parameters[MY3R] * t26 + (parameters[YZ3R] * (t20 - t19) + t18);
+    const ariane4_real_t t28 = t10 - t7;
+    const ariane4_real_t t29 = t15 + t16;
+    const ariane4_real_t t30 = (parameters[XX3R] - parameters[ZZ3R]) * t12 + parameters[XY3R] * t28
+        + parameters[YZ3R] * t29;
+    const ariane4_real_t t31 = t11 * t11;
+    const ariane4_real_t t32 = parameters[MX3R] * t26 + (parameters[XZ3R] * (t20 - t31) + t30);
+    const ariane4_real_t t33 = t2 * dq[0];
+    const ariane4_real_t t34 = dq[1] * t33;
+    const ariane4_real_t t35 = t0 * ddq[0];
+    const ariane4_real_t t36 = t34 + t35;
+    const ariane4_real_t t37 = t21 * t33;
+    const ariane4_real_t t38 = ddq[1] + t37;
+    const ariane4_real_t t39 = parameters[XY2] * t24 - (parameters[ZZ2R] * t34 + parameters[XX2R] * t36)
+        - parameters[XZ2R] * t38;
+    const ariane4_real_t t40 = t33 * t33;
+    const ariane4_real_t t41 = dq[1] * dq[1];
+    const ariane4_real_t t42 = parameters[YZ2] * (t41 - t40) + t39 + parameters[MY2] * t25 + (t3 * t27
+        + t1 * t32);
+    const ariane4_real_t t43 = parameters[MX3R] * t14 + parameters[MY3R] * t28;
+    const ariane4_real_t t44 = t34 + t36;
+    const ariane4_real_t t45 = t22 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t44
+        + parameters[YZ2] * (t37 - ddq[1]);
+    const ariane4_real_t t46 = t21 * t21;
+    const ariane4_real_t t47 = parameters[XZ2R] * (t46 - t41) + t45 - parameters[MX2R] * t25 + (t1 * t27
+        - t3 * t32 + ARIANE4_C(0.443) * t43);
+    const ariane4_real_t t48 = t0 * t42 + t2 * t47 + ARIANE4_C(0.116) * (parameters[MX2R] * t24
+        + parameters[MY2] * t44 + t43);
+    const ariane4_real_t t51 = ARIANE4_C(0.28217402066925895) * t49 + ARIANE4_C(0.9593632378089879) * t50;
+    const ariane4_real_t t52 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t51 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t53 = ARIANE4_C(-0.28217402066925895) * t50 + ARIANE4_C(0.9593632378089879) * t49;
+    const ariane4_real_t t54 = ARIANE4_C(-0.06434139546481742) * t52 / t53;
+    const ariane4_real_t t55 = ARIANE4_C(-1.0) / t52;
+    const ariane4_real_t t56 = t53 * (ARIANE4_C(3885.523436256565) * t55);
+    const ariane4_real_t t57 = t56 * dq[0];
+    const ariane4_real_t t58 = ariane4_sign(t57);
+    const ariane4_real_t t59 = ARIANE4_C(-3885.523436256565) * t51
+        + ARIANE4_C(-72.7913960548305) * (t55 * t55) * (t53 * t53);
+    const ariane4_real_t t60 = dq[0] * dq[0];
+    const ariane4_real_t t61 = parameters[FV1] * t57 + parameters[FC1] * t58
+        + parameters[IA1] * (t55 * t59 * t60 + t56 * ddq[0]);
+    out[0] = ARIANE4_C(-250.0) * t61 + t54 * (t48 - parameters[ZZ1R] * ddq[0]);
+    const ariane4_real_t t62 = ARIANE4_C(0.116) * t60;
+    const ariane4_real_t t63 = t2 * t62 + ARIANE4_C(-9.81) * t0;
+    const ariane4_real_t t64 = t63 + ARIANE4_C(0.443) * (t41 + t40);
+    const ariane4_real_t t65 = t0 * t62 + ARIANE4_C(9.81) * t2;
+    const ariane4_real_t t66 = t65 + ARIANE4_C(0.443) * t38;
+    const ariane4_real_t t67 = parameters[MX3R] * (t1 * t64 + t3 * t66) + parameters[MY3R] * (t3 * t64
+        - t1 * t66);
+    const ariane4_real_t t68 = parameters[XX3R] * t15 + parameters[ZZ3R] * t16 - parameters[YZ3R] * t13
+        + parameters[XZ3R] * t9;
+    const ariane4_real_t t69 = t67 + (parameters[XY3R] * (t31 - t19) + t68);
+    const ariane4_real_t t70 = t1 * (parameters[MX3R] * (t20 + t19) + parameters[MY3R] * t29)
+        + t3 * (parameters[MY3R] * (t20 + t31) + parameters[MX3R] * t17);
+    const ariane4_real_t t71 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t37 + parameters[YZ2] * t23
+        + parameters[XZ2R] * t35;
+    const ariane4_real_t t72 = parameters[MX2R] * t65 + parameters[MY2] * t63 + (parameters[XY2] * (t46 - t40)
+        + t71);
+    const ariane4_real_t t73 = ARIANE4_C(0.8305958991958126) * t2 - ARIANE4_C(0.5568756164881881) * t0;
+    const ariane4_real_t t74 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t73 + ARIANE4_C(0.293698));
+    const ariane4_real_t t75 = ARIANE4_C(0.8305958991958126) * t0 + ARIANE4_C(0.5568756164881881) * t2;
+    const ariane4_real_t t76 = ARIANE4_C(0.03137188092799786) * t74 / t75;
+    const ariane4_real_t t77 = ARIANE4_C(1.0) / t74;
+    const ariane4_real_t t78 = t75 * (ARIANE4_C(2656.3065671641784) * t77);
+    const ariane4_real_t t79 = t78 * dq[1];
+    const ariane4_real_t t80 = ariane4_sign(t79);
+    const ariane4_real_t t81 = ARIANE4_C(2656.3065671641784) * t73
+        + ARIANE4_C(-104.12987373940295) * (t77 * t77) * (t75 * t75);
+    const ariane4_real_t t82 = parameters[FV2] * t79 + parameters[FC2] * t80
+        + parameters[IA2] * (t77 * t81 * t41 + t78 * ddq[1]);
+    const ariane4_real_t t83 = ARIANE4_C(83.33333333333333) * t82 + t76 * (t72 + (t69
+        + ARIANE4_C(-0.443) * t70));
     out[1] = t83;
-    const ariane4_real_t t84 = ARIANE4_C(-0.06366143813161289) * t33 + ARIANE4_C(-0.9979715533496006) * t29;
-    const ariane4_real_t t85 = ARIANE4_C(0.06366143813161289) * t29 - ARIANE4_C(0.9979715533496006) * t33;
+    const ariane4_real_t t84 = ARIANE4_C(-0.06366143813161289) * t1 + ARIANE4_C(-0.9979715533496006) * t3;
+    const ariane4_real_t t85 = ARIANE4_C(0.06366143813161289) * t3 - ARIANE4_C(0.9979715533496006) * t1;
     const ariane4_real_t t86 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t85 + ARIANE4_C(0.242037));
     const ariane4_real_t t87 = ARIANE4_C(-1.0) / t86;
     const ariane4_real_t t88 = t84 * (ARIANE4_C(7124.375926654358) * t87);
@@ -195,7 +195,7 @@ int ariane4_inverse_dynamics(
     const ariane4_real_t t92 = parameters[IA3] * (t87 * t91 * (dq[2] * dq[2]) + t88 * ddq[2]);
     const ariane4_real_t t93 = ARIANE4_C(-0.046787723832235825) * t86 / t84;
     const ariane4_real_t t94 = ARIANE4_C(-333.3333333333333) * (parameters[FV3] * t89 + parameters[FC3] * t90
-        + t92) - t93 * t81;
+        + t92) - t93 * t69;
     out[2] = t94;
     return ARIANE4_STATUS_OK;
 }

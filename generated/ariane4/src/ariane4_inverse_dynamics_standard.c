@@ -73,7 +73,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -105,163 +105,163 @@ int ariane4_inverse_dynamics_standard(
         return status;
     }
 
-    ariane4_real_t t0, t1;
-    ARIANE4_SINCOS(q[0], &t0, &t1);
-    ariane4_real_t t13, t14;
-    ARIANE4_SINCOS(q[1], &t13, &t14);
-    ariane4_real_t t35, t33;
-    ARIANE4_SINCOS(q[2], &t35, &t33);
-    const ariane4_real_t t2 = ARIANE4_C(-0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
-    const ariane4_real_t t3 = ARIANE4_C(0.28217402066925895) * t1 + ARIANE4_C(0.9593632378089879) * t0;
-    const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t3 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t5 = ARIANE4_C(-1.0) / t4;
-    const ariane4_real_t t6 = t2 * (ARIANE4_C(3885.523436256565) * t5);
-    const ariane4_real_t t7 = t6 * dq[0];
-    const ariane4_real_t t8 = ariane4_sign(t7);
-    const ariane4_real_t t9 = ARIANE4_C(-3885.523436256565) * t3
-        + ARIANE4_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t10 = dq[0] * dq[0];
-    const ariane4_real_t t11 = t7 * parameters[FV1] + t8 * parameters[FC1] + (t6 * ddq[0]
-        + t5 * t9 * t10) * parameters[IA1];
-    const ariane4_real_t t12 = ARIANE4_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_real_t t15 = t14 * dq[0];
-    const ariane4_real_t t16 = t15 * t15;
-    const ariane4_real_t t17 = dq[1] * dq[1];
-    const ariane4_real_t t18 = dq[1] * t15;
-    const ariane4_real_t t19 = t13 * ddq[0];
-    const ariane4_real_t t20 = t19 + t18;
-    const ariane4_real_t t21 = t13 * dq[0];
-    const ariane4_real_t t22 = dq[1] * t21;
-    const ariane4_real_t t23 = t14 * ddq[0];
-    const ariane4_real_t t24 = t22 - t23;
-    const ariane4_real_t t25 = t22 + t24;
-    const ariane4_real_t t26 = t18 * (parameters[YY2] - parameters[ZZ2]) - t20 * parameters[XX2]
-        + t25 * parameters[XY2];
-    const ariane4_real_t t27 = t21 * t15;
-    const ariane4_real_t t28 = ddq[1] + t27;
-    const ariane4_real_t t29 = ARIANE4_C(0.116) * t10;
-    const ariane4_real_t t30 = t13 * t29 + ARIANE4_C(9.81) * t14;
-    const ariane4_real_t t31 = ARIANE4_C(-0.116) * ddq[0];
-    const ariane4_real_t t32 = (t17 - t16) * parameters[YZ2] + (t26 - t28 * parameters[XZ2])
-        + (t30 * parameters[MZ2] - t31 * parameters[MY2]);
-    const ariane4_real_t t34 = t31 + ARIANE4_C(0.443) * t25;
-    const ariane4_real_t t36 = t14 * t29 + ARIANE4_C(-9.81) * t13;
-    const ariane4_real_t t37 = t36 + ARIANE4_C(0.443) * (t16 + t17);
-    const ariane4_real_t t38 = t30 + ARIANE4_C(0.443) * t28;
-    const ariane4_real_t t39 = t35 * t37 + t33 * t38;
-    const ariane4_real_t t40 = t13 * t35 - t14 * t33;
-    const ariane4_real_t t41 = dq[0] * t40;
-    const ariane4_real_t t42 = t41 * t41;
-    const ariane4_real_t t43 = dq[1] + dq[2];
-    const ariane4_real_t t44 = t43 * t43;
-    const ariane4_real_t t45 = t42 - t44;
-    const ariane4_real_t t46 = t41 * t43;
-    const ariane4_real_t t47 = t13 * t33 + t14 * t35;
-    const ariane4_real_t t48 = ddq[0] * t47;
-    const ariane4_real_t t49 = t48 - t46;
-    const ariane4_real_t t50 = dq[0] * t47;
-    const ariane4_real_t t51 = t50 * t43;
-    const ariane4_real_t t52 = ddq[0] * t40;
-    const ariane4_real_t t53 = t52 + t51;
-    const ariane4_real_t t54 = t51 + t53;
-    const ariane4_real_t t55 = t46 * (parameters[ZZ3] - parameters[YY3]) - t49 * parameters[XX3]
-        + t54 * parameters[XY3];
-    const ariane4_real_t t56 = ddq[1] + ddq[2];
-    const ariane4_real_t t57 = t50 * t41;
-    const ariane4_real_t t58 = t56 - t57;
-    const ariane4_real_t t59 = t39 * parameters[MZ3] - t34 * parameters[MY3] + (t55 - t58 * parameters[XZ3]
-        - t45 * parameters[YZ3]);
-    const ariane4_real_t t60 = t46 * (parameters[YY4] - parameters[ZZ4]) - t49 * parameters[XX4]
-        + t58 * parameters[XY4];
-    const ariane4_real_t t61 = t50 * t50;
-    const ariane4_real_t t62 = t61 + t44;
-    const ariane4_real_t t63 = t39 + (ARIANE4_C(-0.1) * t58 + ARIANE4_C(-0.436) * t62);
-    const ariane4_real_t t64 = t49 - t46;
-    const ariane4_real_t t65 = ARIANE4_C(0.1) * t54 + ARIANE4_C(-0.436) * t64 - t34;
-    const ariane4_real_t t66 = t45 * parameters[YZ4] + (t60 + t54 * parameters[XZ4]) + (t65 * parameters[MZ4]
-        - t63 * parameters[MY4]);
-    const ariane4_real_t t67 = t61 + t42;
-    const ariane4_real_t t68 = t67 * parameters[MY4] + t54 * parameters[MX4] + t64 * parameters[MZ4]
-        - t65 * parameters[M4];
-    const ariane4_real_t t69 = t59 + (t66 + ARIANE4_C(-0.436) * t68);
-    const ariane4_real_t t70 = t33 * t37 - t35 * t38;
-    const ariane4_real_t t71 = t61 - t44;
-    const ariane4_real_t t72 = t51 * (parameters[XX3] - parameters[ZZ3]) - t53 * parameters[YY3]
-        + t64 * parameters[XY3];
-    const ariane4_real_t t73 = t56 + t57;
-    const ariane4_real_t t74 = t70 * parameters[MZ3] + t34 * parameters[MX3] + (t71 * parameters[XZ3] - (t72
-        + t73 * parameters[YZ3]));
-    const ariane4_real_t t75 = t51 * (parameters[XX4] - parameters[YY4]) - t53 * parameters[ZZ4]
-        - t73 * parameters[YZ4];
-    const ariane4_real_t t76 = t42 + t44;
-    const ariane4_real_t t77 = t70 - (ARIANE4_C(0.1) * t76 - ARIANE4_C(0.436) * t73);
-    const ariane4_real_t t78 = t71 * parameters[XY4] + (t75 + t64 * parameters[XZ4]) + (t65 * parameters[MX4]
-        + t77 * parameters[MY4]);
-    const ariane4_real_t t79 = t74 - (t78 - ARIANE4_C(-0.1) * t68);
-    const ariane4_real_t t80 = t21 * t21;
-    const ariane4_real_t t81 = t18 + t20;
-    const ariane4_real_t t82 = t22 * (parameters[ZZ2] - parameters[XX2]) + t24 * parameters[YY2]
-        - t81 * parameters[XY2];
-    const ariane4_real_t t83 = (t80 - t17) * parameters[XZ2] + (t82 + (t27 - ddq[1]) * parameters[YZ2]);
-    const ariane4_real_t t84 = t34 * parameters[M3] + (t54 * parameters[MX3] + t64 * parameters[MY3]
-        - t67 * parameters[MZ3]);
-    const ariane4_real_t t85 = t84 + t68;
-    const ariane4_real_t t86 = t83 + (t36 * parameters[MZ2] + t31 * parameters[MX2]) + (t35 * t69 + t33 * t79
-        + ARIANE4_C(0.443) * t85);
-    const ariane4_real_t t87 = t13 * (t32 + (t33 * t69 - t35 * t79)) + t14 * t86;
-    const ariane4_real_t t88 = t25 * parameters[MX2] + t81 * parameters[MY2] - (t80 + t16) * parameters[MZ2];
-    const ariane4_real_t t89 = t87 + ARIANE4_C(0.116) * (t31 * parameters[M2] + t88 + t85)
-        - ddq[0] * parameters[ZZ1];
-    out[0] = ARIANE4_C(-250.0) * t11 + t12 * t89;
-    const ariane4_real_t t90 = ARIANE4_C(0.8305958991958126) * t13 + ARIANE4_C(0.5568756164881881) * t14;
-    const ariane4_real_t t91 = ARIANE4_C(0.8305958991958126) * t14 - ARIANE4_C(0.5568756164881881) * t13;
-    const ariane4_real_t t92 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t91 + ARIANE4_C(0.293698));
-    const ariane4_real_t t93 = ARIANE4_C(1.0) / t92;
-    const ariane4_real_t t94 = t90 * (ARIANE4_C(2656.3065671641784) * t93);
-    const ariane4_real_t t95 = t94 * dq[1];
-    const ariane4_real_t t96 = ariane4_sign(t95);
-    const ariane4_real_t t97 = ARIANE4_C(2656.3065671641784) * t91
-        + ARIANE4_C(-104.12987373940295) * (t93 * t93) * (t90 * t90);
-    const ariane4_real_t t98 = t95 * parameters[FV2] + t96 * parameters[FC2] + (t94 * ddq[1]
-        + t93 * t97 * t17) * parameters[IA2];
-    const ariane4_real_t t99 = ARIANE4_C(0.03137188092799786) * t92 / t90;
-    const ariane4_real_t t100 = t27 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t23 * parameters[YZ2];
-    const ariane4_real_t t101 = t30 * parameters[MX2] + t36 * parameters[MY2] + ((t80 - t16) * parameters[XY2]
-        + (t100 + t19 * parameters[XZ2]));
-    const ariane4_real_t t102 = t61 - t42;
-    const ariane4_real_t t103 = t57 * (parameters[XX3] - parameters[YY3]) + t56 * parameters[ZZ3]
-        - t52 * parameters[YZ3];
-    const ariane4_real_t t104 = t39 * parameters[MX3] + t70 * parameters[MY3] + (t102 * parameters[XY3]
-        + (t103 + t48 * parameters[XZ3]));
-    const ariane4_real_t t105 = t57 * (parameters[XX4] - parameters[ZZ4]) + t56 * parameters[YY4]
-        - t48 * parameters[XY4];
-    const ariane4_real_t t106 = t102 * parameters[XZ4] + (t105 + t52 * parameters[YZ4])
-        + (t77 * parameters[MZ4] + t63 * parameters[MX4]);
-    const ariane4_real_t t107 = t63 * parameters[M4] + (t58 * parameters[MX4] + t48 * parameters[MY4]
-        - t62 * parameters[MZ4]);
-    const ariane4_real_t t108 = t52 * parameters[MY4] - t76 * parameters[MX4] - t73 * parameters[MZ4]
-        - t77 * parameters[M4];
-    const ariane4_real_t t109 = t104 + (t106 + (ARIANE4_C(-0.1) * t107 + ARIANE4_C(-0.436) * t108));
-    const ariane4_real_t t110 = t70 * parameters[M3] + (t76 * parameters[MX3] + t73 * parameters[MY3]
-        + t52 * parameters[MZ3]);
-    const ariane4_real_t t111 = t39 * parameters[M3] + (t58 * parameters[MX3] - t62 * parameters[MY3]
+    ariane4_real_t t79, t78;
+    ARIANE4_SINCOS(q[0], &t79, &t78);
+    ariane4_real_t t3, t2;
+    ARIANE4_SINCOS(q[1], &t3, &t2);
+    ariane4_real_t t9, t15;
+    ARIANE4_SINCOS(q[2], &t9, &t15);
+    const ariane4_real_t t0 = dq[0] * dq[0];
+    const ariane4_real_t t1 = ARIANE4_C(0.116) * t0;
+    const ariane4_real_t t4 = t2 * t1 + ARIANE4_C(-9.81) * t3;
+    const ariane4_real_t t5 = t2 * dq[0];
+    const ariane4_real_t t6 = t5 * t5;
+    const ariane4_real_t t7 = dq[1] * dq[1];
+    const ariane4_real_t t8 = t4 + ARIANE4_C(0.443) * (t6 + t7);
+    const ariane4_real_t t10 = t3 * t1 + ARIANE4_C(9.81) * t2;
+    const ariane4_real_t t11 = t3 * dq[0];
+    const ariane4_real_t t12 = t11 * t5;
+    const ariane4_real_t t13 = ddq[1] + t12;
+    const ariane4_real_t t14 = t10 + ARIANE4_C(0.443) * t13;
+    const ariane4_real_t t16 = t9 * t8 + t15 * t14;
+    const ariane4_real_t t17 = t3 * t15 + t2 * t9;
+    const ariane4_real_t t18 = dq[0] * t17;
+    const ariane4_real_t t19 = t3 * t9 - t2 * t15;
+    const ariane4_real_t t20 = dq[0] * t19;
+    const ariane4_real_t t21 = t18 * t20;
+    const ariane4_real_t t22 = ddq[1] + ddq[2];
+    const ariane4_real_t t23 = t22 - t21;
+    const ariane4_real_t t24 = t18 * t18;
+    const ariane4_real_t t25 = dq[1] + dq[2];
+    const ariane4_real_t t26 = t25 * t25;
+    const ariane4_real_t t27 = t24 + t26;
+    const ariane4_real_t t28 = t16 + (ARIANE4_C(-0.1) * t23 + ARIANE4_C(-0.436) * t27);
+    const ariane4_real_t t29 = ddq[0] * t19;
+    const ariane4_real_t t30 = t18 * t25;
+    const ariane4_real_t t31 = t29 + t30;
+    const ariane4_real_t t32 = t30 + t31;
+    const ariane4_real_t t33 = ddq[0] * t17;
+    const ariane4_real_t t34 = t20 * t25;
+    const ariane4_real_t t35 = t33 - t34;
+    const ariane4_real_t t36 = t35 - t34;
+    const ariane4_real_t t37 = t2 * ddq[0];
+    const ariane4_real_t t38 = dq[1] * t11;
+    const ariane4_real_t t39 = t38 - t37;
+    const ariane4_real_t t40 = t38 + t39;
+    const ariane4_real_t t41 = ARIANE4_C(-0.116) * ddq[0];
+    const ariane4_real_t t42 = t41 + ARIANE4_C(0.443) * t40;
+    const ariane4_real_t t43 = ARIANE4_C(0.1) * t32 + ARIANE4_C(-0.436) * t36 - t42;
+    const ariane4_real_t t44 = t34 * (parameters[YY4] - parameters[ZZ4]) - t35 * parameters[XX4]
+        + t23 * parameters[XY4];
+    const ariane4_real_t t45 = t20 * t20;
+    const ariane4_real_t t46 = t45 - t26;
+    const ariane4_real_t t47 = t46 * parameters[YZ4] + (t44 + t32 * parameters[XZ4]) + (t43 * parameters[MZ4]
+        - t28 * parameters[MY4]);
+    const ariane4_real_t t48 = t24 + t45;
+    const ariane4_real_t t49 = t48 * parameters[MY4] + t32 * parameters[MX4] + t36 * parameters[MZ4]
+        - t43 * parameters[M4];
+    const ariane4_real_t t50 = t34 * (parameters[ZZ3] - parameters[YY3]) - t35 * parameters[XX3]
+        + t32 * parameters[XY3];
+    const ariane4_real_t t51 = t16 * parameters[MZ3] - t42 * parameters[MY3] + (t50 - t23 * parameters[XZ3]
+        - t46 * parameters[YZ3]);
+    const ariane4_real_t t52 = t51 + (t47 + ARIANE4_C(-0.436) * t49);
+    const ariane4_real_t t53 = t15 * t8 - t9 * t14;
+    const ariane4_real_t t54 = t45 + t26;
+    const ariane4_real_t t55 = t22 + t21;
+    const ariane4_real_t t56 = t53 - (ARIANE4_C(0.1) * t54 - ARIANE4_C(0.436) * t55);
+    const ariane4_real_t t57 = t30 * (parameters[XX4] - parameters[YY4]) - t31 * parameters[ZZ4]
+        - t55 * parameters[YZ4];
+    const ariane4_real_t t58 = t24 - t26;
+    const ariane4_real_t t59 = t58 * parameters[XY4] + (t57 + t36 * parameters[XZ4]) + (t43 * parameters[MX4]
+        + t56 * parameters[MY4]);
+    const ariane4_real_t t60 = t30 * (parameters[XX3] - parameters[ZZ3]) - t31 * parameters[YY3]
+        + t36 * parameters[XY3];
+    const ariane4_real_t t61 = t53 * parameters[MZ3] + t42 * parameters[MX3] + (t58 * parameters[XZ3] - (t60
+        + t55 * parameters[YZ3]));
+    const ariane4_real_t t62 = t61 - (t59 - ARIANE4_C(-0.1) * t49);
+    const ariane4_real_t t63 = dq[1] * t5;
+    const ariane4_real_t t64 = t3 * ddq[0];
+    const ariane4_real_t t65 = t64 + t63;
+    const ariane4_real_t t66 = t63 * (parameters[YY2] - parameters[ZZ2]) - t65 * parameters[XX2]
+        + t40 * parameters[XY2];
+    const ariane4_real_t t67 = (t7 - t6) * parameters[YZ2] + (t66 - t13 * parameters[XZ2])
+        + (t10 * parameters[MZ2] - t41 * parameters[MY2]);
+    const ariane4_real_t t68 = t42 * parameters[M3] + (t32 * parameters[MX3] + t36 * parameters[MY3]
         - t48 * parameters[MZ3]);
-    const ariane4_real_t t112 = ARIANE4_C(0.443) * (t35 * (t108 - t110) + t33 * (t111 + t107));
-    out[1] = ARIANE4_C(83.33333333333333) * t98 + t99 * (t101 + (t109 + t112));
-    const ariane4_real_t t113 = ARIANE4_C(-0.06366143813161289) * t35 + ARIANE4_C(-0.9979715533496006) * t33;
-    const ariane4_real_t t114 = ARIANE4_C(0.06366143813161289) * t33 - ARIANE4_C(0.9979715533496006) * t35;
-    const ariane4_real_t t115 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t114 + ARIANE4_C(0.242037));
-    const ariane4_real_t t116 = ARIANE4_C(-1.0) / t115;
-    const ariane4_real_t t117 = t113 * (ARIANE4_C(7124.375926654358) * t116);
-    const ariane4_real_t t118 = t117 * dq[2];
-    const ariane4_real_t t119 = ariane4_sign(t118);
-    const ariane4_real_t t120 = ARIANE4_C(-7124.375926654358) * t114
-        + ARIANE4_C(-188.12627071923498) * (t116 * t116) * (t113 * t113);
-    const ariane4_real_t t121 = (t117 * ddq[2] + t116 * t120 * (dq[2] * dq[2])) * parameters[IA3];
-    const ariane4_real_t t122 = ARIANE4_C(-0.046787723832235825) * t115 / t113;
-    const ariane4_real_t t123 = ARIANE4_C(-333.3333333333333) * (t118 * parameters[FV3]
-        + t119 * parameters[FC3] + t121) - t122 * t109;
+    const ariane4_real_t t69 = t68 + t49;
+    const ariane4_real_t t70 = t63 + t65;
+    const ariane4_real_t t71 = t38 * (parameters[ZZ2] - parameters[XX2]) + t39 * parameters[YY2]
+        - t70 * parameters[XY2];
+    const ariane4_real_t t72 = t11 * t11;
+    const ariane4_real_t t73 = (t72 - t7) * parameters[XZ2] + (t71 + (t12 - ddq[1]) * parameters[YZ2]);
+    const ariane4_real_t t74 = t73 + (t4 * parameters[MZ2] + t41 * parameters[MX2]) + (t9 * t52 + t15 * t62
+        + ARIANE4_C(0.443) * t69);
+    const ariane4_real_t t75 = t3 * (t67 + (t15 * t52 - t9 * t62)) + t2 * t74;
+    const ariane4_real_t t76 = t40 * parameters[MX2] + t70 * parameters[MY2] - (t72 + t6) * parameters[MZ2];
+    const ariane4_real_t t77 = t75 + ARIANE4_C(0.116) * (t41 * parameters[M2] + t76 + t69)
+        - ddq[0] * parameters[ZZ1];
+    const ariane4_real_t t80 = ARIANE4_C(0.28217402066925895) * t78 + ARIANE4_C(0.9593632378089879) * t79;
+    const ariane4_real_t t81 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t80 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t82 = ARIANE4_C(-0.28217402066925895) * t79 + ARIANE4_C(0.9593632378089879) * t78;
+    const ariane4_real_t t83 = ARIANE4_C(-0.06434139546481742) * t81 / t82;
+    const ariane4_real_t t84 = ARIANE4_C(-1.0) / t81;
+    const ariane4_real_t t85 = t82 * (ARIANE4_C(3885.523436256565) * t84);
+    const ariane4_real_t t86 = t85 * dq[0];
+    const ariane4_real_t t87 = ariane4_sign(t86);
+    const ariane4_real_t t88 = ARIANE4_C(-3885.523436256565) * t80
+        + ARIANE4_C(-72.7913960548305) * (t84 * t84) * (t82 * t82);
+    const ariane4_real_t t89 = t86 * parameters[FV1] + t87 * parameters[FC1] + (t85 * ddq[0]
+        + t84 * t88 * t0) * parameters[IA1];
+    out[0] = ARIANE4_C(-250.0) * t89 + t83 * t77;
+    const ariane4_real_t t90 = t24 - t45;
+    const ariane4_real_t t91 = t21 * (parameters[XX4] - parameters[ZZ4]) + t22 * parameters[YY4]
+        - t33 * parameters[XY4];
+    const ariane4_real_t t92 = t90 * parameters[XZ4] + (t91 + t29 * parameters[YZ4]) + (t56 * parameters[MZ4]
+        + t28 * parameters[MX4]);
+    const ariane4_real_t t93 = t28 * parameters[M4] + (t23 * parameters[MX4] + t33 * parameters[MY4]
+        - t27 * parameters[MZ4]);
+    const ariane4_real_t t94 = t29 * parameters[MY4] - t54 * parameters[MX4] - t55 * parameters[MZ4]
+        - t56 * parameters[M4];
+    const ariane4_real_t t95 = t21 * (parameters[XX3] - parameters[YY3]) + t22 * parameters[ZZ3]
+        - t29 * parameters[YZ3];
+    const ariane4_real_t t96 = t16 * parameters[MX3] + t53 * parameters[MY3] + (t90 * parameters[XY3] + (t95
+        + t33 * parameters[XZ3]));
+    const ariane4_real_t t97 = t96 + (t92 + (ARIANE4_C(-0.1) * t93 + ARIANE4_C(-0.436) * t94));
+    const ariane4_real_t t98 = t53 * parameters[M3] + (t54 * parameters[MX3] + t55 * parameters[MY3]
+        + t29 * parameters[MZ3]);
+    const ariane4_real_t t99 = t16 * parameters[M3] + (t23 * parameters[MX3] - t27 * parameters[MY3]
+        - t33 * parameters[MZ3]);
+    const ariane4_real_t t100 = ARIANE4_C(0.443) * (t9 * (t94 - t98) + t15 * (t99 + t93));
+    const ariane4_real_t t101 = t12 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t37 * parameters[YZ2];
+    const ariane4_real_t t102 = t10 * parameters[MX2] + t4 * parameters[MY2] + ((t72 - t6) * parameters[XY2]
+        + (t101 + t64 * parameters[XZ2]));
+    const ariane4_real_t t103 = ARIANE4_C(0.8305958991958126) * t2 - ARIANE4_C(0.5568756164881881) * t3;
+    const ariane4_real_t t104 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t103 + ARIANE4_C(0.293698));
+    const ariane4_real_t t105 = ARIANE4_C(0.8305958991958126) * t3 + ARIANE4_C(0.5568756164881881) * t2;
+    const ariane4_real_t t106 = ARIANE4_C(0.03137188092799786) * t104 / t105;
+    const ariane4_real_t t107 = ARIANE4_C(1.0) / t104;
+    const ariane4_real_t t108 = t105 * (ARIANE4_C(2656.3065671641784) * t107);
+    const ariane4_real_t t109 = t108 * dq[1];
+    const ariane4_real_t t110 = ariane4_sign(t109);
+    const ariane4_real_t t111 = ARIANE4_C(2656.3065671641784) * t103
+        + ARIANE4_C(-104.12987373940295) * (t107 * t107) * (t105 * t105);
+    const ariane4_real_t t112 = t109 * parameters[FV2] + t110 * parameters[FC2] + (t108 * ddq[1]
+        + t107 * t111 * t7) * parameters[IA2];
+    out[1] = ARIANE4_C(83.33333333333333) * t112 + t106 * (t102 + (t97 + t100));
+    const ariane4_real_t t113 = ARIANE4_C(0.06366143813161289) * t15 - ARIANE4_C(0.9979715533496006) * t9;
+    const ariane4_real_t t114 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t113 + ARIANE4_C(0.242037));
+    const ariane4_real_t t115 = ARIANE4_C(-0.06366143813161289) * t9 + ARIANE4_C(-0.9979715533496006) * t15;
+    const ariane4_real_t t116 = ARIANE4_C(-0.046787723832235825) * t114 / t115;
+    const ariane4_real_t t117 = ARIANE4_C(-1.0) / t114;
+    const ariane4_real_t t118 = t115 * (ARIANE4_C(7124.375926654358) * t117);
+    const ariane4_real_t t119 = t118 * dq[2];
+    const ariane4_real_t t120 = ariane4_sign(t119);
+    const ariane4_real_t t121 = ARIANE4_C(-7124.375926654358) * t113
+        + ARIANE4_C(-188.12627071923498) * (t117 * t117) * (t115 * t115);
+    const ariane4_real_t t122 = (t118 * ddq[2] + t117 * t121 * (dq[2] * dq[2])) * parameters[IA3];
+    const ariane4_real_t t123 = ARIANE4_C(-333.3333333333333) * (t119 * parameters[FV3]
+        + t120 * parameters[FC3] + t122) - t116 * t97;
     out[2] = t123;
     return ARIANE4_STATUS_OK;
 }

@@ -18,7 +18,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -36,37 +36,37 @@ int ariane4_jacobian(
         return status;
     }
 
-    ariane4_real_t t0, t10;
-    ARIANE4_SINCOS(q[0], &t0, &t10);
-    ariane4_real_t t6, t2;
-    ARIANE4_SINCOS(q[1], &t6, &t2);
-    ariane4_real_t t5, t4;
-    ARIANE4_SINCOS(q[2], &t5, &t4);
-    const ariane4_real_t t1 = ARIANE4_C(-0.116) * t0;
-    const ariane4_real_t t3 = t0 * t2;
-    const ariane4_real_t t7 = t0 * t6;
-    const ariane4_real_t t8 = ARIANE4_C(0.1) * (t4 * t3 - t5 * t7) + ARIANE4_C(0.436) * (t5 * t3 + t4 * t7);
-    const ariane4_real_t t9 = t1 + ARIANE4_C(-0.443) * t3 + t8;
+    ariane4_real_t t0, t12;
+    ARIANE4_SINCOS(q[0], &t0, &t12);
+    ariane4_real_t t4, t1;
+    ARIANE4_SINCOS(q[1], &t4, &t1);
+    ariane4_real_t t6, t3;
+    ARIANE4_SINCOS(q[2], &t6, &t3);
+    const ariane4_real_t t2 = t0 * t1;
+    const ariane4_real_t t5 = t0 * t4;
+    const ariane4_real_t t7 = ARIANE4_C(0.1) * (t3 * t2 - t6 * t5) + ARIANE4_C(0.436) * (t6 * t2 + t3 * t5);
+    const ariane4_real_t t8 = ARIANE4_C(-0.116) * t0;
+    const ariane4_real_t t9 = t8 + ARIANE4_C(-0.443) * t2 + t7;
     out[0] = t9;
-    const ariane4_real_t t11 = ARIANE4_C(0.1) * (t6 * t4 + t2 * t5) + ARIANE4_C(0.436) * (t6 * t5 - t2 * t4);
-    const ariane4_real_t t12 = ARIANE4_C(-0.443) * t6 + t11;
-    out[1] = t10 * t12;
-    out[2] = t10 * t11;
-    const ariane4_real_t t13 = ARIANE4_C(0.116) * t10;
-    const ariane4_real_t t14 = t10 * t2;
-    const ariane4_real_t t15 = t10 * t6;
-    const ariane4_real_t t16 = ARIANE4_C(0.1) * (t5 * t15 - t4 * t14) + ARIANE4_C(-0.436) * (t5 * t14
-        + t4 * t15);
-    const ariane4_real_t t17 = t13 + ARIANE4_C(0.443) * t14 + t16;
+    const ariane4_real_t t10 = ARIANE4_C(0.1) * (t4 * t3 + t1 * t6) + ARIANE4_C(0.436) * (t4 * t6 - t1 * t3);
+    const ariane4_real_t t11 = ARIANE4_C(-0.443) * t4 + t10;
+    out[1] = t12 * t11;
+    out[2] = t12 * t10;
+    const ariane4_real_t t13 = t12 * t1;
+    const ariane4_real_t t14 = t12 * t4;
+    const ariane4_real_t t15 = ARIANE4_C(0.1) * (t6 * t14 - t3 * t13) + ARIANE4_C(-0.436) * (t6 * t13
+        + t3 * t14);
+    const ariane4_real_t t16 = ARIANE4_C(0.116) * t12;
+    const ariane4_real_t t17 = t16 + ARIANE4_C(0.443) * t13 + t15;
     out[3] = t17;
-    out[4] = t0 * t12;
-    out[5] = t0 * t11;
-    out[7] = t0 * (t1 - t9) + t10 * (t17 - t13);
-    out[8] = t10 * t16 - t0 * t8;
+    out[4] = t0 * t11;
+    out[5] = t0 * t10;
+    out[7] = t0 * (t8 - t9) + t12 * (t17 - t16);
+    out[8] = t12 * t15 - t0 * t7;
     out[10] = t0;
     out[11] = t0;
-    out[13] = -t10;
-    out[14] = -t10;
+    out[13] = -t12;
+    out[14] = -t12;
     out[15] = ARIANE4_C(1.0);
     /* always zero */
     out[6] = ARIANE4_C(0.0);

@@ -47,7 +47,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -76,42 +76,42 @@ int ariane4_mass_matrix(
 
     ariane4_real_t t13, t14;
     ARIANE4_SINCOS(q[0], &t13, &t14);
-    ariane4_real_t t9, t5;
-    ARIANE4_SINCOS(q[1], &t9, &t5);
+    ariane4_real_t t9, t7;
+    ARIANE4_SINCOS(q[1], &t9, &t7);
     ariane4_real_t t1, t0;
     ARIANE4_SINCOS(q[2], &t1, &t0);
     const ariane4_real_t t2 = t0 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t1);
     const ariane4_real_t t3 = t0 * t2;
-    const ariane4_real_t t4 = parameters[XX2R] + t3;
-    const ariane4_real_t t6 = t0 * parameters[MX3R] - t1 * parameters[MY3R];
-    const ariane4_real_t t7 = ARIANE4_C(0.886) * t6;
+    const ariane4_real_t t4 = t0 * parameters[MX3R] - t1 * parameters[MY3R];
+    const ariane4_real_t t5 = ARIANE4_C(0.886) * t4;
+    const ariane4_real_t t6 = parameters[XX2R] + t3;
     const ariane4_real_t t8 = t0 * parameters[MY3R] + t1 * parameters[MX3R];
     const ariane4_real_t t10 = (parameters[XY2] + (parameters[XY3R] + t1 * t2
         + ARIANE4_C(-0.443) * t8)) * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t11 = t5 * (t5 * (parameters[XX3R] - t3 + t7 - t4) + t10);
-    const ariane4_real_t t12 = ARIANE4_C(0.232) * (t5 * (parameters[MX2R] + t6) - t9 * (parameters[MY2]
+    const ariane4_real_t t11 = t7 * (t7 * (parameters[XX3R] - t3 + t5 - t6) + t10);
+    const ariane4_real_t t12 = ARIANE4_C(0.232) * (t7 * (parameters[MX2R] + t4) - t9 * (parameters[MY2]
         + t8));
     const ariane4_real_t t15 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t14
         + ARIANE4_C(0.9593632378089879) * t13) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t16 = ARIANE4_C(1.0) / t15;
     const ariane4_real_t t17 = (ARIANE4_C(0.28217402066925895) * t13
         + ARIANE4_C(-0.9593632378089879) * t14) * (ARIANE4_C(3885.523436256565) * t16);
-    const ariane4_real_t t18 = parameters[ZZ1R] + (t4 + t11 + t12) + parameters[IA1] * (t17 * t17);
+    const ariane4_real_t t18 = parameters[ZZ1R] + (t6 + t11 + t12) + parameters[IA1] * (t17 * t17);
     out[0] = t18;
     const ariane4_real_t t19 = t0 * parameters[XZ3R] - t1 * parameters[YZ3R];
     const ariane4_real_t t20 = t1 * parameters[XZ3R] + t0 * parameters[YZ3R];
-    const ariane4_real_t t21 = t9 * (parameters[XZ2R] + t19) + t5 * (parameters[YZ2] + t20);
+    const ariane4_real_t t21 = t9 * (parameters[XZ2R] + t19) + t7 * (parameters[YZ2] + t20);
     out[1] = t21;
-    const ariane4_real_t t22 = t9 * t19 + t5 * t20;
+    const ariane4_real_t t22 = t9 * t19 + t7 * t20;
     out[2] = t22;
     out[3] = t21;
-    const ariane4_real_t t23 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t5
+    const ariane4_real_t t23 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t7
         + ARIANE4_C(0.5568756164881881) * t9) + ARIANE4_C(0.293698));
     const ariane4_real_t t24 = ARIANE4_C(1.0) / t23;
     const ariane4_real_t t25 = (ARIANE4_C(0.8305958991958126) * t9
-        + ARIANE4_C(0.5568756164881881) * t5) * (ARIANE4_C(2656.3065671641784) * t24);
-    out[4] = parameters[ZZ2R] + (parameters[ZZ3R] + t7) + parameters[IA2] * (t25 * t25);
-    const ariane4_real_t t26 = parameters[ZZ3R] + ARIANE4_C(0.443) * t6;
+        + ARIANE4_C(0.5568756164881881) * t7) * (ARIANE4_C(2656.3065671641784) * t24);
+    out[4] = parameters[ZZ2R] + (parameters[ZZ3R] + t5) + parameters[IA2] * (t25 * t25);
+    const ariane4_real_t t26 = parameters[ZZ3R] + ARIANE4_C(0.443) * t4;
     out[5] = t26;
     out[6] = t22;
     out[7] = t26;

@@ -71,7 +71,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -101,34 +101,34 @@ int ariane4_mass_matrix_standard(
 
     ariane4_real_t t26, t27;
     ARIANE4_SINCOS(q[0], &t26, &t27);
-    ariane4_real_t t21, t13;
-    ARIANE4_SINCOS(q[1], &t21, &t13);
-    ariane4_real_t t9, t3;
-    ARIANE4_SINCOS(q[2], &t9, &t3);
-    const ariane4_real_t t0 = ARIANE4_C(0.1) * parameters[M4];
-    const ariane4_real_t t1 = ARIANE4_C(0.1) * (t0 + ARIANE4_C(-2.0) * parameters[MX4]);
-    const ariane4_real_t t2 = parameters[YY3] + (parameters[ZZ4] + t1);
-    const ariane4_real_t t4 = ARIANE4_C(0.436) * parameters[M4];
-    const ariane4_real_t t5 = ARIANE4_C(0.436) * (t4 + ARIANE4_C(2.0) * parameters[MZ4]);
-    const ariane4_real_t t6 = parameters[XX3] + (parameters[XX4] + t5);
-    const ariane4_real_t t7 = t0 - parameters[MX4];
+    ariane4_real_t t21, t19;
+    ARIANE4_SINCOS(q[1], &t21, &t19);
+    ariane4_real_t t9, t6;
+    ARIANE4_SINCOS(q[2], &t9, &t6);
+    const ariane4_real_t t0 = ARIANE4_C(0.436) * parameters[M4];
+    const ariane4_real_t t1 = ARIANE4_C(0.436) * (t0 + ARIANE4_C(2.0) * parameters[MZ4]);
+    const ariane4_real_t t2 = parameters[XX3] + (parameters[XX4] + t1);
+    const ariane4_real_t t3 = ARIANE4_C(0.1) * parameters[M4];
+    const ariane4_real_t t4 = ARIANE4_C(0.1) * (t3 + ARIANE4_C(-2.0) * parameters[MX4]);
+    const ariane4_real_t t5 = parameters[YY3] + (parameters[ZZ4] + t4);
+    const ariane4_real_t t7 = t3 - parameters[MX4];
     const ariane4_real_t t8 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
         + ARIANE4_C(0.436) * t7));
-    const ariane4_real_t t10 = t3 * (t6 - t2) - t8 * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t11 = t3 * t10;
-    const ariane4_real_t t12 = parameters[XX2] + (t2 + t11);
-    const ariane4_real_t t14 = parameters[M3] + parameters[M4];
-    const ariane4_real_t t15 = ARIANE4_C(0.443) * t14;
-    const ariane4_real_t t16 = parameters[MY3] + (parameters[MZ4] + t4);
-    const ariane4_real_t t17 = parameters[MX3] - t7;
-    const ariane4_real_t t18 = t3 * t17 - t9 * t16;
-    const ariane4_real_t t19 = ARIANE4_C(0.443) * (t15 + ARIANE4_C(2.0) * t18);
-    const ariane4_real_t t20 = t3 * t16 + t9 * t17;
+    const ariane4_real_t t10 = t6 * (t2 - t5) - t8 * (ARIANE4_C(2.0) * t9);
+    const ariane4_real_t t11 = t6 * t10;
+    const ariane4_real_t t12 = parameters[XX2] + (t5 + t11);
+    const ariane4_real_t t13 = parameters[MY3] + (parameters[MZ4] + t0);
+    const ariane4_real_t t14 = parameters[MX3] - t7;
+    const ariane4_real_t t15 = t6 * t14 - t9 * t13;
+    const ariane4_real_t t16 = parameters[M3] + parameters[M4];
+    const ariane4_real_t t17 = ARIANE4_C(0.443) * t16;
+    const ariane4_real_t t18 = ARIANE4_C(0.443) * (t17 + ARIANE4_C(2.0) * t15);
+    const ariane4_real_t t20 = t6 * t13 + t9 * t14;
     const ariane4_real_t t22 = (parameters[XY2] + (t8 + t9 * t10
         + ARIANE4_C(-0.443) * t20)) * (ARIANE4_C(2.0) * t21);
-    const ariane4_real_t t23 = t13 * (parameters[YY2] + (t6 - t11 + t19) - t12) + t22;
-    const ariane4_real_t t24 = t13 * (parameters[MX2] + (t18 + t15)) - t21 * (parameters[MY2] + t20);
-    const ariane4_real_t t25 = t12 + t13 * t23 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t14)
+    const ariane4_real_t t23 = t19 * (parameters[YY2] + (t2 - t11 + t18) - t12) + t22;
+    const ariane4_real_t t24 = t19 * (parameters[MX2] + (t15 + t17)) - t21 * (parameters[MY2] + t20);
+    const ariane4_real_t t25 = t12 + t19 * t23 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t16)
         + ARIANE4_C(2.0) * t24);
     const ariane4_real_t t28 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t27
         + ARIANE4_C(0.9593632378089879) * t26) + ARIANE4_C(0.10769300000000001));
@@ -138,30 +138,30 @@ int ariane4_mass_matrix_standard(
     out[0] = parameters[ZZ1] + t25 + parameters[IA1] * (t30 * t30);
     const ariane4_real_t t31 = parameters[XZ3] + (ARIANE4_C(-0.1) * parameters[MY4] - parameters[XY4]);
     const ariane4_real_t t32 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
-    const ariane4_real_t t33 = t3 * t31 - t9 * t32;
-    const ariane4_real_t t34 = t9 * t31 + t3 * t32;
+    const ariane4_real_t t33 = t6 * t31 - t9 * t32;
+    const ariane4_real_t t34 = t9 * t31 + t6 * t32;
     const ariane4_real_t t35 = t21 * (parameters[XZ2] + (t33 + ARIANE4_C(0.443) * (parameters[MY4]
-        - parameters[MZ3]))) + t13 * (parameters[YZ2] + t34);
+        - parameters[MZ3]))) + t19 * (parameters[YZ2] + t34);
     out[1] = t35;
-    const ariane4_real_t t36 = t21 * t33 + t13 * t34;
+    const ariane4_real_t t36 = t21 * t33 + t19 * t34;
     out[2] = t36;
     out[3] = t35;
-    const ariane4_real_t t37 = parameters[ZZ3] + (parameters[YY4] + (t1 + t5));
-    const ariane4_real_t t38 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t13
+    const ariane4_real_t t37 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t19
         + ARIANE4_C(0.5568756164881881) * t21) + ARIANE4_C(0.293698));
-    const ariane4_real_t t39 = ARIANE4_C(1.0) / t38;
-    const ariane4_real_t t40 = (ARIANE4_C(0.8305958991958126) * t21
-        + ARIANE4_C(0.5568756164881881) * t13) * (ARIANE4_C(2656.3065671641784) * t39);
-    out[4] = parameters[ZZ2] + (t37 + t19) + parameters[IA2] * (t40 * t40);
-    const ariane4_real_t t41 = t37 + ARIANE4_C(0.443) * t18;
+    const ariane4_real_t t38 = ARIANE4_C(1.0) / t37;
+    const ariane4_real_t t39 = (ARIANE4_C(0.8305958991958126) * t21
+        + ARIANE4_C(0.5568756164881881) * t19) * (ARIANE4_C(2656.3065671641784) * t38);
+    const ariane4_real_t t40 = parameters[ZZ3] + (parameters[YY4] + (t4 + t1));
+    out[4] = parameters[ZZ2] + (t40 + t18) + parameters[IA2] * (t39 * t39);
+    const ariane4_real_t t41 = t40 + ARIANE4_C(0.443) * t15;
     out[5] = t41;
     out[6] = t36;
     out[7] = t41;
-    const ariane4_real_t t42 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t3
+    const ariane4_real_t t42 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t6
         + ARIANE4_C(-0.9979715533496006) * t9) + ARIANE4_C(0.242037));
     const ariane4_real_t t43 = ARIANE4_C(1.0) / t42;
     const ariane4_real_t t44 = (ARIANE4_C(0.06366143813161289) * t9
-        + ARIANE4_C(0.9979715533496006) * t3) * (ARIANE4_C(7124.375926654358) * t43);
-    out[8] = t37 + parameters[IA3] * (t44 * t44);
+        + ARIANE4_C(0.9979715533496006) * t6) * (ARIANE4_C(7124.375926654358) * t43);
+    out[8] = t40 + parameters[IA3] * (t44 * t44);
     return ARIANE4_STATUS_OK;
 }

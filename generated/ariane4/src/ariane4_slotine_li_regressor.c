@@ -27,7 +27,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xD63F8060UL
+#if ARIANE4_GENERATION != 0xB921FA20UL
 #error "ariane4.h and ariane4_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -58,8 +58,8 @@ int ariane4_slotine_li_regressor(
 
     ariane4_real_t t1, t0;
     ARIANE4_SINCOS(q[0], &t1, &t0);
-    ariane4_real_t t6, t9;
-    ARIANE4_SINCOS(q[1], &t6, &t9);
+    ariane4_real_t t6, t8;
+    ARIANE4_SINCOS(q[1], &t6, &t8);
     ariane4_real_t t38, t37;
     ARIANE4_SINCOS(q[2], &t38, &t37);
     const ariane4_real_t t2 = ARIANE4_C(0.28217402066925895) * t0 + ARIANE4_C(0.9593632378089879) * t1;
@@ -68,65 +68,65 @@ int ariane4_slotine_li_regressor(
     const ariane4_real_t t5 = ARIANE4_C(-0.06434139546481742) * t3 / t4;
     out[0] = -(t5 * ddq_r[0]);
     const ariane4_real_t t7 = t6 * t5;
-    const ariane4_real_t t8 = t6 * ddq_r[0];
-    const ariane4_real_t t10 = t9 * dq[0];
-    const ariane4_real_t t11 = t9 * dq_r[0];
-    const ariane4_real_t t12 = ARIANE4_C(-0.5) * (t10 * dq_r[1] + dq[1] * t11);
-    const ariane4_real_t t13 = t12 - t8;
-    const ariane4_real_t t14 = t9 * t5;
+    const ariane4_real_t t9 = t8 * dq[0];
+    const ariane4_real_t t10 = t8 * dq_r[0];
+    const ariane4_real_t t11 = ARIANE4_C(-0.5) * (t9 * dq_r[1] + dq[1] * t10);
+    const ariane4_real_t t12 = t6 * ddq_r[0];
+    const ariane4_real_t t13 = t11 - t12;
+    const ariane4_real_t t14 = t8 * t5;
     const ariane4_real_t t15 = t6 * dq[0];
     const ariane4_real_t t16 = t6 * dq_r[0];
     const ariane4_real_t t17 = ARIANE4_C(0.5) * (t15 * dq_r[1] + dq[1] * t16);
     const ariane4_real_t t18 = t14 * t17;
     out[1] = t7 * t13 - t18;
-    const ariane4_real_t t19 = ARIANE4_C(0.8305958991958126) * t9 - ARIANE4_C(0.5568756164881881) * t6;
+    const ariane4_real_t t19 = ARIANE4_C(0.8305958991958126) * t8 - ARIANE4_C(0.5568756164881881) * t6;
     const ariane4_real_t t20 = ARIANE4_SQRT(ARIANE4_C(-0.078402) * t19 + ARIANE4_C(0.293698));
-    const ariane4_real_t t21 = ARIANE4_C(0.8305958991958126) * t6 + ARIANE4_C(0.5568756164881881) * t9;
+    const ariane4_real_t t21 = ARIANE4_C(0.8305958991958126) * t6 + ARIANE4_C(0.5568756164881881) * t8;
     const ariane4_real_t t22 = ARIANE4_C(0.03137188092799786) * t20 / t21;
-    const ariane4_real_t t23 = ARIANE4_C(-0.5) * (t15 * t11 + t10 * t16);
+    const ariane4_real_t t23 = ARIANE4_C(-0.5) * (t15 * t10 + t9 * t16);
     out[25] = t22 * t23;
-    const ariane4_real_t t24 = t12 + t13;
-    const ariane4_real_t t25 = t9 * ddq_r[0];
+    const ariane4_real_t t24 = t11 + t13;
+    const ariane4_real_t t25 = t8 * ddq_r[0];
     const ariane4_real_t t26 = t17 + (t17 - t25);
     out[2] = t14 * t24 + t7 * t26;
     const ariane4_real_t t27 = t15 * t16;
-    const ariane4_real_t t28 = t10 * t11;
+    const ariane4_real_t t28 = t9 * t10;
     out[26] = t22 * (t27 - t28);
     const ariane4_real_t t29 = t23 - ddq_r[1];
     const ariane4_real_t t30 = dq[1] * dq_r[1];
     out[3] = t7 * t29 + t14 * (t27 - t30);
-    out[27] = t22 * t8;
+    out[27] = t22 * t12;
     out[4] = t7 * (t30 - t28) - t14 * (ddq_r[1] + t23);
     out[28] = t22 * t25;
-    out[5] = t18 + t7 * t12;
+    out[5] = t18 + t7 * t11;
     out[29] = t22 * ddq_r[1];
     const ariane4_real_t t31 = ARIANE4_C(0.116) * t5;
     const ariane4_real_t t32 = ARIANE4_C(0.116) * ddq_r[0];
     out[6] = t31 * t26 - t14 * t32;
     const ariane4_real_t t33 = dq[0] * dq_r[0];
     const ariane4_real_t t34 = ARIANE4_C(0.116) * t33;
-    const ariane4_real_t t35 = ARIANE4_C(9.81) * t9 + t6 * t34;
+    const ariane4_real_t t35 = ARIANE4_C(9.81) * t8 + t6 * t34;
     out[30] = t22 * t35;
     out[7] = t7 * t32 - t31 * t24;
-    const ariane4_real_t t36 = ARIANE4_C(-9.81) * t6 + t9 * t34;
+    const ariane4_real_t t36 = ARIANE4_C(-9.81) * t6 + t8 * t34;
     out[31] = t22 * t36;
-    const ariane4_real_t t39 = t6 * t37 + t9 * t38;
+    const ariane4_real_t t39 = t6 * t37 + t8 * t38;
     const ariane4_real_t t40 = t5 * t39;
-    const ariane4_real_t t41 = t39 * ddq_r[0];
-    const ariane4_real_t t42 = t9 * t37 - t6 * t38;
-    const ariane4_real_t t43 = dq[0] * t42;
-    const ariane4_real_t t44 = dq_r[1] + dq_r[2];
+    const ariane4_real_t t41 = t8 * t37 - t6 * t38;
+    const ariane4_real_t t42 = dq[0] * t41;
+    const ariane4_real_t t43 = dq_r[1] + dq_r[2];
+    const ariane4_real_t t44 = t41 * dq_r[0];
     const ariane4_real_t t45 = dq[1] + dq[2];
-    const ariane4_real_t t46 = t42 * dq_r[0];
-    const ariane4_real_t t47 = ARIANE4_C(0.5) * (t43 * t44 + t45 * t46);
-    const ariane4_real_t t48 = t41 + t47;
-    const ariane4_real_t t49 = t5 * t42;
+    const ariane4_real_t t46 = ARIANE4_C(0.5) * (t42 * t43 + t45 * t44);
+    const ariane4_real_t t47 = t39 * ddq_r[0];
+    const ariane4_real_t t48 = t47 + t46;
+    const ariane4_real_t t49 = t5 * t41;
     const ariane4_real_t t50 = dq[0] * t39;
     const ariane4_real_t t51 = t39 * dq_r[0];
-    const ariane4_real_t t52 = ARIANE4_C(0.5) * (t50 * t44 + t45 * t51);
+    const ariane4_real_t t52 = ARIANE4_C(0.5) * (t50 * t43 + t45 * t51);
     const ariane4_real_t t53 = t49 * t52;
     out[8] = -(t40 * t48 + t53);
-    const ariane4_real_t t54 = ARIANE4_C(-0.5) * (t50 * t46 + t43 * t51);
+    const ariane4_real_t t54 = ARIANE4_C(-0.5) * (t50 * t44 + t42 * t51);
     const ariane4_real_t t55 = t22 * t54;
     out[32] = t55;
     const ariane4_real_t t56 = ARIANE4_C(0.06366143813161289) * t37 - ARIANE4_C(0.9979715533496006) * t38;
@@ -137,20 +137,20 @@ int ariane4_slotine_li_regressor(
     const ariane4_real_t t61 = t21 * (ARIANE4_C(2656.3065671641784) * t60);
     const ariane4_real_t t62 = t59 * (ARIANE4_C(-0.012) * t61);
     out[56] = t62 * t55;
-    const ariane4_real_t t63 = t47 + t48;
-    const ariane4_real_t t64 = t42 * ddq_r[0];
+    const ariane4_real_t t63 = t46 + t48;
+    const ariane4_real_t t64 = t41 * ddq_r[0];
     const ariane4_real_t t65 = t52 + (t52 - t64);
     out[9] = t40 * t65 - t49 * t63;
     const ariane4_real_t t66 = t50 * t51;
-    const ariane4_real_t t67 = t43 * t46;
+    const ariane4_real_t t67 = t42 * t44;
     const ariane4_real_t t68 = t22 * (t66 - t67);
     out[33] = t68;
     out[57] = t62 * t68;
     const ariane4_real_t t69 = ddq_r[1] + ddq_r[2];
     const ariane4_real_t t70 = t54 - t69;
-    const ariane4_real_t t71 = t45 * t44;
+    const ariane4_real_t t71 = t45 * t43;
     out[10] = t40 * t70 - t49 * (t71 - t66);
-    const ariane4_real_t t72 = t22 * t41;
+    const ariane4_real_t t72 = t22 * t47;
     out[34] = t72;
     out[58] = t62 * t72;
     const ariane4_real_t t73 = t69 + t54;
@@ -158,7 +158,7 @@ int ariane4_slotine_li_regressor(
     const ariane4_real_t t74 = t22 * t64;
     out[35] = t74;
     out[59] = t62 * t74;
-    out[12] = t53 - t40 * t47;
+    out[12] = t53 - t40 * t46;
     const ariane4_real_t t75 = t22 * t69;
     out[36] = t75;
     out[60] = t62 * t75;

@@ -68,7 +68,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0xEE13FB90UL
+#define ARIANE4_FREE_GENERATION 0xC97ED926UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_FREE_REAL

@@ -58,7 +58,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -87,154 +87,153 @@ int ariane4_free_bias(
         return status;
     }
 
-    ariane4_free_real_t t1, t0;
-    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
-    ariane4_free_real_t t12, t13;
-    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
-    ariane4_free_real_t t24, t23;
-    ARIANE4_FREE_SINCOS(q[2], &t24, &t23);
-    ariane4_free_real_t t37, t36;
-    ARIANE4_FREE_SINCOS(q[3], &t37, &t36);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
+    ariane4_free_real_t t77, t76;
+    ARIANE4_FREE_SINCOS(q[0], &t77, &t76);
+    ariane4_free_real_t t0, t3;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t3);
+    ariane4_free_real_t t5, t2;
+    ARIANE4_FREE_SINCOS(q[2], &t5, &t2);
+    ariane4_free_real_t t9, t13;
+    ARIANE4_FREE_SINCOS(q[3], &t9, &t13);
+    const ariane4_free_real_t t1 = t0 * dq[0];
+    const ariane4_free_real_t t4 = t3 * dq[0];
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t7 = t2 * t4 - t5 * t1;
+    const ariane4_free_real_t t8 = t6 * t7;
+    const ariane4_free_real_t t10 = dq[1] + dq[2];
+    const ariane4_free_real_t t11 = t7 * t10;
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(2.0) * t11;
+    const ariane4_free_real_t t14 = t9 * t8 + t13 * t12;
+    const ariane4_free_real_t t15 = t9 * t6 + t13 * t10;
+    const ariane4_free_real_t t16 = dq[3] + t7;
+    const ariane4_free_real_t t17 = t15 * t16;
+    const ariane4_free_real_t t18 = t14 - t17;
+    const ariane4_free_real_t t19 = t9 * t12 - t13 * t8;
+    const ariane4_free_real_t t20 = t13 * t6 - t9 * t10;
+    const ariane4_free_real_t t21 = t20 * t16;
+    const ariane4_free_real_t t22 = t21 + (t19 + t21);
+    const ariane4_free_real_t t23 = t20 * t15;
+    const ariane4_free_real_t t24 = t6 * t10;
+    const ariane4_free_real_t t25 = t24 + t23;
+    const ariane4_free_real_t t26 = parameters[ZZ4] * t17 - parameters[XX4R] * t18 + parameters[XY4] * t22
+        + parameters[XZ4R] * t25;
+    const ariane4_free_real_t t27 = t15 * t15;
+    const ariane4_free_real_t t28 = t16 * t16;
+    const ariane4_free_real_t t29 = dq[0] * dq[0];
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.116) * t29;
+    const ariane4_free_real_t t31 = t3 * t30 + ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t32 = t4 * t4;
+    const ariane4_free_real_t t33 = dq[1] * dq[1];
+    const ariane4_free_real_t t34 = t31 + ARIANE4_FREE_C(0.443) * (t33 + t32);
+    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-9.81) * t3 - t0 * t30;
+    const ariane4_free_real_t t36 = t1 * t4;
+    const ariane4_free_real_t t37 = t35 + ARIANE4_FREE_C(-0.443) * t36;
+    const ariane4_free_real_t t38 = t2 * t37 - t5 * t34;
+    const ariane4_free_real_t t39 = t38 + ARIANE4_FREE_C(0.1) * t8;
+    const ariane4_free_real_t t40 = t26 + parameters[YZ4R] * (t28 - t27) + parameters[MY4] * t39;
+    const ariane4_free_real_t t41 = t18 - t17;
+    const ariane4_free_real_t t42 = t24 - t23;
+    const ariane4_free_real_t t43 = t21 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t41
+        - parameters[YZ4R] * t42;
+    const ariane4_free_real_t t44 = t20 * t20;
+    const ariane4_free_real_t t45 = t43 - parameters[XZ4R] * (t44 - t28) + parameters[MX4] * t39;
+    const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t24;
+    const ariane4_free_real_t t47 = parameters[XY3R] * t46 - (parameters[XX3R] * t11 + parameters[ZZ3R] * t11)
+        - parameters[XZ3] * t8;
+    const ariane4_free_real_t t48 = t7 * t7;
+    const ariane4_free_real_t t49 = t10 * t10;
+    const ariane4_free_real_t t50 = dq[1] * t1;
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(-0.886) * t50;
+    const ariane4_free_real_t t52 = t47 + parameters[YZ3] * (t49 - t48) + parameters[MY3R] * t51 + (t13 * t40
+        + t9 * t45);
+    const ariane4_free_real_t t53 = parameters[XX4R] * t23 - parameters[ZZ4] * t24 - parameters[YZ4R] * t19
+        + parameters[XZ4R] * t14;
+    const ariane4_free_real_t t54 = t2 * t34 + t5 * t37;
+    const ariane4_free_real_t t55 = t48 + t49;
+    const ariane4_free_real_t t56 = t54 + ARIANE4_FREE_C(-0.1) * t55;
+    const ariane4_free_real_t t57 = t51 + ARIANE4_FREE_C(0.2) * t24;
+    const ariane4_free_real_t t58 = parameters[MX4] * (t9 * t56 + t13 * t57) + parameters[MY4] * (t13 * t56
+        - t9 * t57);
+    const ariane4_free_real_t t59 = t53 + parameters[XY4] * (t44 - t27) + t58;
+    const ariane4_free_real_t t60 = parameters[MX4] * (t27 + t28) - parameters[MY4] * t42;
+    const ariane4_free_real_t t61 = parameters[MX4] * t25 + parameters[MY4] * (t44 + t28);
+    const ariane4_free_real_t t62 = t9 * t60 + t13 * t61;
+    const ariane4_free_real_t t63 = t24 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
+        - parameters[YZ3] * t8;
+    const ariane4_free_real_t t64 = t6 * t6;
+    const ariane4_free_real_t t65 = t63 - parameters[XZ3] * (t64 - t49) + parameters[MX3R] * t51 + (t59
+        + ARIANE4_FREE_C(0.1) * t62);
+    const ariane4_free_real_t t66 = dq[1] * t4;
+    const ariane4_free_real_t t67 = ARIANE4_FREE_C(2.0) * t50;
+    const ariane4_free_real_t t68 = parameters[XY2] * t67 - (parameters[XX2R] * t66 + parameters[ZZ2R] * t66)
+        - parameters[XZ2R] * t36;
+    const ariane4_free_real_t t69 = t68 + parameters[YZ2] * (t33 - t32) + (t2 * t52 + t5 * t65);
+    const ariane4_free_real_t t70 = parameters[MX3R] * t46 + parameters[MY3R] * t12 + t62;
+    const ariane4_free_real_t t71 = ARIANE4_FREE_C(2.0) * t66;
+    const ariane4_free_real_t t72 = t50 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t71
+        + parameters[YZ2] * t36;
+    const ariane4_free_real_t t73 = t1 * t1;
+    const ariane4_free_real_t t74 = t72 + parameters[XZ2R] * (t73 - t33) + (t5 * t52 - t2 * t65
+        + ARIANE4_FREE_C(0.443) * t70);
+    const ariane4_free_real_t t75 = t0 * t69 + t3 * t74 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t67
+        + parameters[MY2] * t71 + t70);
+    const ariane4_free_real_t t78 = ARIANE4_FREE_C(0.28217402066925895) * t76
+        + ARIANE4_FREE_C(0.9593632378089879) * t77;
+    const ariane4_free_real_t t79 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t78
         + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t4 = ARIANE4_FREE_C(-1.0) / t3;
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t6 = ARIANE4_FREE_C(-3885.523436256565) * t2
-        + ARIANE4_FREE_C(-72.7913960548305) * (t4 * t4) * (t5 * t5);
-    const ariane4_free_real_t t7 = dq[0] * dq[0];
-    const ariane4_free_real_t t8 = t5 * (ARIANE4_FREE_C(3885.523436256565) * t4) * dq[0];
-    const ariane4_free_real_t t9 = ariane4_free_sign(t8);
-    const ariane4_free_real_t t10 = parameters[IA1] * (t4 * t6 * t7) + (parameters[FV1] * t8
-        + parameters[FC1] * t9);
-    const ariane4_free_real_t t11 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_free_real_t t14 = t13 * dq[0];
-    const ariane4_free_real_t t15 = dq[1] * t14;
-    const ariane4_free_real_t t16 = t12 * dq[0];
-    const ariane4_free_real_t t17 = dq[1] * t16;
-    const ariane4_free_real_t t18 = ARIANE4_FREE_C(2.0) * t17;
-    const ariane4_free_real_t t19 = t16 * t14;
-    const ariane4_free_real_t t20 = parameters[XY2] * t18 - (parameters[XX2R] * t15 + parameters[ZZ2R] * t15)
-        - parameters[XZ2R] * t19;
-    const ariane4_free_real_t t21 = dq[1] * dq[1];
-    const ariane4_free_real_t t22 = t14 * t14;
-    const ariane4_free_real_t t25 = t23 * t14 - t24 * t16;
-    const ariane4_free_real_t t26 = dq[1] + dq[2];
-    const ariane4_free_real_t t27 = t25 * t26;
-    const ariane4_free_real_t t28 = t23 * t16 + t24 * t14;
-    const ariane4_free_real_t t29 = t28 * t26;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(2.0) * t29;
-    const ariane4_free_real_t t31 = t28 * t25;
-    const ariane4_free_real_t t32 = parameters[XY3R] * t30 - (parameters[XX3R] * t27 + parameters[ZZ3R] * t27)
-        - parameters[XZ3] * t31;
-    const ariane4_free_real_t t33 = t25 * t25;
-    const ariane4_free_real_t t34 = t26 * t26;
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.886) * t17;
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(2.0) * t27;
-    const ariane4_free_real_t t39 = t37 * t31 + t36 * t38;
-    const ariane4_free_real_t t40 = t37 * t28 + t36 * t26;
-    const ariane4_free_real_t t41 = dq[3] + t25;
-    const ariane4_free_real_t t42 = t40 * t41;
-    const ariane4_free_real_t t43 = t39 - t42;
-    const ariane4_free_real_t t44 = t36 * t28 - t37 * t26;
-    const ariane4_free_real_t t45 = t44 * t41;
-    const ariane4_free_real_t t46 = t37 * t38 - t36 * t31;
-    const ariane4_free_real_t t47 = t45 + (t46 + t45);
-    const ariane4_free_real_t t48 = t44 * t40;
-    const ariane4_free_real_t t49 = t29 + t48;
-    const ariane4_free_real_t t50 = parameters[ZZ4] * t42 - parameters[XX4R] * t43 + parameters[XY4] * t47
-        + parameters[XZ4R] * t49;
-    const ariane4_free_real_t t51 = t40 * t40;
-    const ariane4_free_real_t t52 = t41 * t41;
-    const ariane4_free_real_t t53 = ARIANE4_FREE_C(0.116) * t7;
-    const ariane4_free_real_t t54 = t13 * t53 + ARIANE4_FREE_C(-9.81) * t12;
-    const ariane4_free_real_t t55 = t54 + ARIANE4_FREE_C(0.443) * (t21 + t22);
-    const ariane4_free_real_t t56 = ARIANE4_FREE_C(-9.81) * t13 - t12 * t53;
-    const ariane4_free_real_t t57 = t56 + ARIANE4_FREE_C(-0.443) * t19;
-    const ariane4_free_real_t t58 = t23 * t57 - t24 * t55;
-    const ariane4_free_real_t t59 = t58 + ARIANE4_FREE_C(0.1) * t31;
-    const ariane4_free_real_t t60 = t50 + parameters[YZ4R] * (t52 - t51) + parameters[MY4] * t59;
-    const ariane4_free_real_t t61 = t43 - t42;
-    const ariane4_free_real_t t62 = t29 - t48;
-    const ariane4_free_real_t t63 = t45 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t61
-        - parameters[YZ4R] * t62;
-    const ariane4_free_real_t t64 = t44 * t44;
-    const ariane4_free_real_t t65 = t63 - parameters[XZ4R] * (t64 - t52) + parameters[MX4] * t59;
-    const ariane4_free_real_t t66 = t32 + parameters[YZ3] * (t34 - t33) + parameters[MY3R] * t35 + (t36 * t60
-        + t37 * t65);
-    const ariane4_free_real_t t67 = t29 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t38
-        - parameters[YZ3] * t31;
-    const ariane4_free_real_t t68 = t28 * t28;
-    const ariane4_free_real_t t69 = parameters[XX4R] * t48 - parameters[ZZ4] * t29 - parameters[YZ4R] * t46
-        + parameters[XZ4R] * t39;
-    const ariane4_free_real_t t70 = t23 * t55 + t24 * t57;
-    const ariane4_free_real_t t71 = t33 + t34;
-    const ariane4_free_real_t t72 = t70 + ARIANE4_FREE_C(-0.1) * t71;
-    const ariane4_free_real_t t73 = t35 + ARIANE4_FREE_C(0.2) * t29;
-    const ariane4_free_real_t t74 = parameters[MX4] * (t37 * t72 + t36 * t73) + parameters[MY4] * (t36 * t72
-        - t37 * t73);
-    const ariane4_free_real_t t75 = t69 + parameters[XY4] * (t64 - t51) + t74;
-    const ariane4_free_real_t t76 = parameters[MX4] * (t51 + t52) - parameters[MY4] * t62;
-    const ariane4_free_real_t t77 = parameters[MX4] * t49 + parameters[MY4] * (t64 + t52);
-    const ariane4_free_real_t t78 = t37 * t76 + t36 * t77;
-    const ariane4_free_real_t t79 = t67 - parameters[XZ3] * (t68 - t34) + parameters[MX3R] * t35 + (t75
-        + ARIANE4_FREE_C(0.1) * t78);
-    const ariane4_free_real_t t80 = t20 + parameters[YZ2] * (t21 - t22) + (t23 * t66 + t24 * t79);
-    const ariane4_free_real_t t81 = ARIANE4_FREE_C(2.0) * t15;
-    const ariane4_free_real_t t82 = t17 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t81
-        + parameters[YZ2] * t19;
-    const ariane4_free_real_t t83 = t16 * t16;
-    const ariane4_free_real_t t84 = parameters[MX3R] * t30 + parameters[MY3R] * t38 + t78;
-    const ariane4_free_real_t t85 = t82 + parameters[XZ2R] * (t83 - t21) + (t24 * t66 - t23 * t79
-        + ARIANE4_FREE_C(0.443) * t84);
-    const ariane4_free_real_t t86 = t12 * t80 + t13 * t85 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t18
-        + parameters[MY2] * t81 + t84);
-    out[0] = ARIANE4_FREE_C(-250.0) * t10 + t11 * t86;
-    const ariane4_free_real_t t87 = ARIANE4_FREE_C(0.8305958991958126) * t13
-        - ARIANE4_FREE_C(0.5568756164881881) * t12;
-    const ariane4_free_real_t t88 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t87
+    const ariane4_free_real_t t80 = ARIANE4_FREE_C(-0.28217402066925895) * t77
+        + ARIANE4_FREE_C(0.9593632378089879) * t76;
+    const ariane4_free_real_t t81 = ARIANE4_FREE_C(-0.06434139546481742) * t79 / t80;
+    const ariane4_free_real_t t82 = ARIANE4_FREE_C(-1.0) / t79;
+    const ariane4_free_real_t t83 = ARIANE4_FREE_C(-3885.523436256565) * t78
+        + ARIANE4_FREE_C(-72.7913960548305) * (t82 * t82) * (t80 * t80);
+    const ariane4_free_real_t t84 = t80 * (ARIANE4_FREE_C(3885.523436256565) * t82) * dq[0];
+    const ariane4_free_real_t t85 = ariane4_free_sign(t84);
+    const ariane4_free_real_t t86 = parameters[IA1] * (t82 * t83 * t29) + (parameters[FV1] * t84
+        + parameters[FC1] * t85);
+    out[0] = ARIANE4_FREE_C(-250.0) * t86 + t81 * t75;
+    const ariane4_free_real_t t87 = parameters[MX4] * t22 + parameters[MY4] * t41;
+    const ariane4_free_real_t t88 = parameters[XY3R] * (t64 - t48) - parameters[XX3R] * t8
+        + (parameters[MY3R] * t54 - parameters[MX3R] * t38);
+    const ariane4_free_real_t t89 = t88 + (t9 * t40 - t13 * t45 + ARIANE4_FREE_C(-0.1) * t87);
+    const ariane4_free_real_t t90 = parameters[MY3R] * t8 - parameters[MX3R] * t55 + (t9 * t61 - t13 * t60);
+    const ariane4_free_real_t t91 = t2 * (parameters[MX3R] * t8 - parameters[MY3R] * (t64 + t49) + t87);
+    const ariane4_free_real_t t92 = parameters[XY2] * (t73 - t32) - parameters[XX2R] * t36
+        + (parameters[MY2] * t31 - parameters[MX2R] * t35);
+    const ariane4_free_real_t t93 = ARIANE4_FREE_C(0.8305958991958126) * t3
+        - ARIANE4_FREE_C(0.5568756164881881) * t0;
+    const ariane4_free_real_t t94 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t93
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t89 = ARIANE4_FREE_C(1.0) / t88;
-    const ariane4_free_real_t t90 = ARIANE4_FREE_C(-0.8305958991958126) * t12
-        + ARIANE4_FREE_C(-0.5568756164881881) * t13;
-    const ariane4_free_real_t t91 = ARIANE4_FREE_C(2656.3065671641784) * t87
-        + ARIANE4_FREE_C(-104.12987373940295) * (t89 * t89) * (t90 * t90);
-    const ariane4_free_real_t t92 = t90 * (ARIANE4_FREE_C(2656.3065671641784) * t89) * dq[1];
-    const ariane4_free_real_t t93 = ariane4_free_sign(t92);
-    const ariane4_free_real_t t94 = parameters[IA2] * (t89 * t91 * t21) - (parameters[FV2] * t92
-        + parameters[FC2] * t93);
-    const ariane4_free_real_t t95 = ARIANE4_FREE_C(-0.03137188092799786) * t88 / t90;
-    const ariane4_free_real_t t96 = parameters[XY2] * (t83 - t22) - parameters[XX2R] * t19
-        + (parameters[MY2] * t54 - parameters[MX2R] * t56);
-    const ariane4_free_real_t t97 = parameters[XY3R] * (t68 - t33) - parameters[XX3R] * t31
-        + (parameters[MY3R] * t70 - parameters[MX3R] * t58);
-    const ariane4_free_real_t t98 = parameters[MX4] * t47 + parameters[MY4] * t61;
-    const ariane4_free_real_t t99 = t97 + (t37 * t60 - t36 * t65 + ARIANE4_FREE_C(-0.1) * t98);
-    const ariane4_free_real_t t100 = parameters[MY3R] * t31 - parameters[MX3R] * t71 + (t37 * t77
-        - t36 * t76);
-    const ariane4_free_real_t t101 = t23 * (parameters[MX3R] * t31 - parameters[MY3R] * (t68 + t34) + t98);
-    const ariane4_free_real_t t102 = t95 * (t96 + (t99 + ARIANE4_FREE_C(0.443) * (t24 * t100 + t101)));
-    out[1] = ARIANE4_FREE_C(83.33333333333333) * t94 + t102;
-    const ariane4_free_real_t t103 = ARIANE4_FREE_C(0.06366143813161289) * t23
-        - ARIANE4_FREE_C(0.9979715533496006) * t24;
+    const ariane4_free_real_t t95 = ARIANE4_FREE_C(-0.8305958991958126) * t0
+        + ARIANE4_FREE_C(-0.5568756164881881) * t3;
+    const ariane4_free_real_t t96 = ARIANE4_FREE_C(-0.03137188092799786) * t94 / t95;
+    const ariane4_free_real_t t97 = t96 * (t92 + (t89 + ARIANE4_FREE_C(0.443) * (t5 * t90 + t91)));
+    const ariane4_free_real_t t98 = ARIANE4_FREE_C(1.0) / t94;
+    const ariane4_free_real_t t99 = ARIANE4_FREE_C(2656.3065671641784) * t93
+        + ARIANE4_FREE_C(-104.12987373940295) * (t98 * t98) * (t95 * t95);
+    const ariane4_free_real_t t100 = t95 * (ARIANE4_FREE_C(2656.3065671641784) * t98) * dq[1];
+    const ariane4_free_real_t t101 = ariane4_free_sign(t100);
+    const ariane4_free_real_t t102 = parameters[IA2] * (t98 * t99 * t33) - (parameters[FV2] * t100
+        + parameters[FC2] * t101);
+    out[1] = ARIANE4_FREE_C(83.33333333333333) * t102 + t97;
+    const ariane4_free_real_t t103 = ARIANE4_FREE_C(0.06366143813161289) * t2
+        - ARIANE4_FREE_C(0.9979715533496006) * t5;
     const ariane4_free_real_t t104 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t103
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t105 = ARIANE4_FREE_C(-1.0) / t104;
-    const ariane4_free_real_t t106 = ARIANE4_FREE_C(-0.06366143813161289) * t24
-        + ARIANE4_FREE_C(-0.9979715533496006) * t23;
-    const ariane4_free_real_t t107 = ARIANE4_FREE_C(-7124.375926654358) * t103
-        + ARIANE4_FREE_C(-188.12627071923498) * (t105 * t105) * (t106 * t106);
-    const ariane4_free_real_t t108 = t106 * (ARIANE4_FREE_C(7124.375926654358) * t105) * dq[2];
-    const ariane4_free_real_t t109 = ariane4_free_sign(t108);
-    const ariane4_free_real_t t110 = parameters[IA3] * (t105 * t107 * (dq[2] * dq[2]))
-        + (parameters[FV3] * t108 + parameters[FC3] * t109);
-    const ariane4_free_real_t t111 = ARIANE4_FREE_C(-0.046787723832235825) * t104 / t106;
-    out[2] = ARIANE4_FREE_C(-333.3333333333333) * t110 - t111 * t99;
+    const ariane4_free_real_t t105 = ARIANE4_FREE_C(-0.06366143813161289) * t5
+        + ARIANE4_FREE_C(-0.9979715533496006) * t2;
+    const ariane4_free_real_t t106 = ARIANE4_FREE_C(-0.046787723832235825) * t104 / t105;
+    const ariane4_free_real_t t107 = ARIANE4_FREE_C(-1.0) / t104;
+    const ariane4_free_real_t t108 = ARIANE4_FREE_C(-7124.375926654358) * t103
+        + ARIANE4_FREE_C(-188.12627071923498) * (t107 * t107) * (t105 * t105);
+    const ariane4_free_real_t t109 = t105 * (ARIANE4_FREE_C(7124.375926654358) * t107) * dq[2];
+    const ariane4_free_real_t t110 = ariane4_free_sign(t109);
+    const ariane4_free_real_t t111 = parameters[IA3] * (t107 * t108 * (dq[2] * dq[2]))
+        + (parameters[FV3] * t109 + parameters[FC3] * t110);
+    out[2] = ARIANE4_FREE_C(-333.3333333333333) * t111 - t106 * t89;
     const ariane4_free_real_t t112 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t113 = ARIANE4_FREE_C(20.0) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
-        + parameters[FC4] * t112) + ARIANE4_FREE_C(0.2) * t75;
+        + parameters[FC4] * t112) + ARIANE4_FREE_C(0.2) * t59;
     out[3] = t113;
     return ARIANE4_FREE_STATUS_OK;
 }

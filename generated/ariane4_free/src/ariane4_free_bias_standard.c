@@ -76,7 +76,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -106,178 +106,178 @@ int ariane4_free_bias_standard(
         return status;
     }
 
-    ariane4_free_real_t t1, t0;
-    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
-    ariane4_free_real_t t12, t13;
-    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
-    ariane4_free_real_t t28, t26;
-    ARIANE4_FREE_SINCOS(q[2], &t28, &t26);
-    ariane4_free_real_t t45, t44;
-    ARIANE4_FREE_SINCOS(q[3], &t45, &t44);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
-        + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t4 = ARIANE4_FREE_C(-1.0) / t3;
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t6 = ARIANE4_FREE_C(-3885.523436256565) * t2
-        + ARIANE4_FREE_C(-72.7913960548305) * (t4 * t4) * (t5 * t5);
-    const ariane4_free_real_t t7 = dq[0] * dq[0];
-    const ariane4_free_real_t t8 = t5 * (ARIANE4_FREE_C(3885.523436256565) * t4) * dq[0];
-    const ariane4_free_real_t t9 = ariane4_free_sign(t8);
-    const ariane4_free_real_t t10 = t4 * t6 * t7 * parameters[IA1] + (t8 * parameters[FV1]
-        + t9 * parameters[FC1]);
-    const ariane4_free_real_t t11 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t5;
-    const ariane4_free_real_t t14 = t13 * dq[0];
-    const ariane4_free_real_t t15 = dq[1] * t14;
-    const ariane4_free_real_t t16 = t12 * dq[0];
-    const ariane4_free_real_t t17 = dq[1] * t16;
-    const ariane4_free_real_t t18 = ARIANE4_FREE_C(2.0) * t17;
-    const ariane4_free_real_t t19 = t15 * (parameters[YY2] - parameters[ZZ2]) - t15 * parameters[XX2]
-        + t18 * parameters[XY2];
-    const ariane4_free_real_t t20 = t16 * t14;
-    const ariane4_free_real_t t21 = t14 * t14;
-    const ariane4_free_real_t t22 = dq[1] * dq[1];
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.116) * t7;
-    const ariane4_free_real_t t24 = t12 * t23 + ARIANE4_FREE_C(9.81) * t13;
-    const ariane4_free_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
-        + t24 * parameters[MZ2];
-    const ariane4_free_real_t t27 = dq[1] + dq[2];
-    const ariane4_free_real_t t29 = t26 * t14 - t28 * t16;
-    const ariane4_free_real_t t30 = t27 * t29;
-    const ariane4_free_real_t t31 = t26 * t16 + t28 * t14;
-    const ariane4_free_real_t t32 = t27 * t31;
-    const ariane4_free_real_t t33 = ARIANE4_FREE_C(2.0) * t32;
-    const ariane4_free_real_t t34 = parameters[XY3] * t33 - (parameters[XX3] * t30 + t30 * (parameters[ZZ3]
+    ariane4_free_real_t t87, t86;
+    ARIANE4_FREE_SINCOS(q[0], &t87, &t86);
+    ariane4_free_real_t t3, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t3, &t2);
+    ariane4_free_real_t t9, t14;
+    ARIANE4_FREE_SINCOS(q[2], &t9, &t14);
+    ariane4_free_real_t t28, t34;
+    ARIANE4_FREE_SINCOS(q[3], &t28, &t34);
+    const ariane4_free_real_t t0 = dq[0] * dq[0];
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0;
+    const ariane4_free_real_t t4 = t2 * t1 + ARIANE4_FREE_C(-9.81) * t3;
+    const ariane4_free_real_t t5 = t2 * dq[0];
+    const ariane4_free_real_t t6 = t5 * t5;
+    const ariane4_free_real_t t7 = dq[1] * dq[1];
+    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7);
+    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2;
+    const ariane4_free_real_t t11 = t3 * dq[0];
+    const ariane4_free_real_t t12 = t11 * t5;
+    const ariane4_free_real_t t13 = t10 + ARIANE4_FREE_C(0.443) * t12;
+    const ariane4_free_real_t t15 = t9 * t8 + t14 * t13;
+    const ariane4_free_real_t t16 = t14 * t11 + t9 * t5;
+    const ariane4_free_real_t t17 = t14 * t5 - t9 * t11;
+    const ariane4_free_real_t t18 = t16 * t17;
+    const ariane4_free_real_t t19 = t16 * t16;
+    const ariane4_free_real_t t20 = dq[1] + dq[2];
+    const ariane4_free_real_t t21 = t20 * t20;
+    const ariane4_free_real_t t22 = t21 + t19;
+    const ariane4_free_real_t t23 = t15 + (ARIANE4_FREE_C(-0.1) * t18 - ARIANE4_FREE_C(0.436) * t22);
+    const ariane4_free_real_t t24 = t14 * t8 - t9 * t13;
+    const ariane4_free_real_t t25 = t17 * t17;
+    const ariane4_free_real_t t26 = t21 + t25;
+    const ariane4_free_real_t t27 = t24 + (ARIANE4_FREE_C(-0.1) * t26 + ARIANE4_FREE_C(-0.436) * t18);
+    const ariane4_free_real_t t29 = t20 * t16;
+    const ariane4_free_real_t t30 = t20 * t17;
+    const ariane4_free_real_t t31 = dq[1] * t11;
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31;
+    const ariane4_free_real_t t33 = t32 - (ARIANE4_FREE_C(0.2) * t29 + ARIANE4_FREE_C(-0.872) * t30);
+    const ariane4_free_real_t t35 = t28 * t27 - t34 * t33;
+    const ariane4_free_real_t t36 = ARIANE4_FREE_C(2.0) * t30;
+    const ariane4_free_real_t t37 = t28 * t18 + t34 * t36;
+    const ariane4_free_real_t t38 = t34 * t20 + t28 * t16;
+    const ariane4_free_real_t t39 = dq[3] + t17;
+    const ariane4_free_real_t t40 = t38 * t39;
+    const ariane4_free_real_t t41 = t37 - t40;
+    const ariane4_free_real_t t42 = t28 * t36 - t34 * t18;
+    const ariane4_free_real_t t43 = t28 * t20 - t34 * t16;
+    const ariane4_free_real_t t44 = t43 * t39;
+    const ariane4_free_real_t t45 = t42 - t44;
+    const ariane4_free_real_t t46 = t45 - t44;
+    const ariane4_free_real_t t47 = t40 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t41
+        + parameters[XY4] * t46;
+    const ariane4_free_real_t t48 = t43 * t38;
+    const ariane4_free_real_t t49 = t29 - t48;
+    const ariane4_free_real_t t50 = t38 * t38;
+    const ariane4_free_real_t t51 = t39 * t39;
+    const ariane4_free_real_t t52 = t47 + parameters[XZ4] * t49 + parameters[YZ4] * (t51 - t50)
+        + (parameters[MZ4] * t35 - parameters[MY4] * t23);
+    const ariane4_free_real_t t53 = t34 * t27 + t28 * t33;
+    const ariane4_free_real_t t54 = t41 - t40;
+    const ariane4_free_real_t t55 = parameters[YY4] * t45 + t44 * (parameters[XX4] - parameters[ZZ4])
+        - parameters[XY4] * t54;
+    const ariane4_free_real_t t56 = t29 + t48;
+    const ariane4_free_real_t t57 = t43 * t43;
+    const ariane4_free_real_t t58 = t55 + parameters[YZ4] * t56 + parameters[XZ4] * (t57 - t51)
+        + (parameters[MZ4] * t53 + parameters[MX4] * t23);
+    const ariane4_free_real_t t59 = parameters[MX4] * (t50 + t51) - parameters[MY4] * t56
+        + parameters[MZ4] * t42;
+    const ariane4_free_real_t t60 = parameters[M4] * t53 + t59;
+    const ariane4_free_real_t t61 = parameters[MX4] * t49 + parameters[MY4] * (t57 + t51)
+        + parameters[MZ4] * t37;
+    const ariane4_free_real_t t62 = t61 - parameters[M4] * t35;
+    const ariane4_free_real_t t63 = t28 * t60 + t34 * t62;
+    const ariane4_free_real_t t64 = ARIANE4_FREE_C(2.0) * t29;
+    const ariane4_free_real_t t65 = parameters[XY3] * t64 - (parameters[XX3] * t30 + t30 * (parameters[ZZ3]
         - parameters[YY3]));
-    const ariane4_free_real_t t35 = t31 * t29;
-    const ariane4_free_real_t t36 = t27 * t27;
-    const ariane4_free_real_t t37 = t29 * t29;
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.886) * t17;
-    const ariane4_free_real_t t39 = t13 * t23 + ARIANE4_FREE_C(-9.81) * t12;
-    const ariane4_free_real_t t40 = t39 + ARIANE4_FREE_C(0.443) * (t21 + t22);
-    const ariane4_free_real_t t41 = t24 + ARIANE4_FREE_C(0.443) * t20;
-    const ariane4_free_real_t t42 = t28 * t40 + t26 * t41;
-    const ariane4_free_real_t t43 = t34 - parameters[XZ3] * t35 + parameters[YZ3] * (t36 - t37)
-        + (parameters[MZ3] * t42 - parameters[MY3] * t38);
-    const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t30;
-    const ariane4_free_real_t t47 = t45 * t35 + t44 * t46;
-    const ariane4_free_real_t t48 = t44 * t27 + t45 * t31;
-    const ariane4_free_real_t t49 = dq[3] + t29;
-    const ariane4_free_real_t t50 = t48 * t49;
-    const ariane4_free_real_t t51 = t47 - t50;
-    const ariane4_free_real_t t52 = t45 * t27 - t44 * t31;
-    const ariane4_free_real_t t53 = t52 * t49;
-    const ariane4_free_real_t t54 = t45 * t46 - t44 * t35;
-    const ariane4_free_real_t t55 = t54 - t53;
-    const ariane4_free_real_t t56 = t55 - t53;
-    const ariane4_free_real_t t57 = t50 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t51
-        + parameters[XY4] * t56;
-    const ariane4_free_real_t t58 = t52 * t48;
-    const ariane4_free_real_t t59 = t32 - t58;
-    const ariane4_free_real_t t60 = t48 * t48;
-    const ariane4_free_real_t t61 = t49 * t49;
-    const ariane4_free_real_t t62 = t31 * t31;
-    const ariane4_free_real_t t63 = t36 + t62;
-    const ariane4_free_real_t t64 = t42 + (ARIANE4_FREE_C(-0.1) * t35 - ARIANE4_FREE_C(0.436) * t63);
-    const ariane4_free_real_t t65 = t26 * t40 - t28 * t41;
-    const ariane4_free_real_t t66 = t36 + t37;
-    const ariane4_free_real_t t67 = t65 + (ARIANE4_FREE_C(-0.1) * t66 + ARIANE4_FREE_C(-0.436) * t35);
-    const ariane4_free_real_t t68 = t38 - (ARIANE4_FREE_C(0.2) * t32 + ARIANE4_FREE_C(-0.872) * t30);
-    const ariane4_free_real_t t69 = t45 * t67 - t44 * t68;
-    const ariane4_free_real_t t70 = t57 + parameters[XZ4] * t59 + parameters[YZ4] * (t61 - t60)
-        + (parameters[MZ4] * t69 - parameters[MY4] * t64);
-    const ariane4_free_real_t t71 = t51 - t50;
-    const ariane4_free_real_t t72 = parameters[YY4] * t55 + t53 * (parameters[XX4] - parameters[ZZ4])
-        - parameters[XY4] * t71;
-    const ariane4_free_real_t t73 = t32 + t58;
-    const ariane4_free_real_t t74 = t52 * t52;
-    const ariane4_free_real_t t75 = t44 * t67 + t45 * t68;
-    const ariane4_free_real_t t76 = t72 + parameters[YZ4] * t73 + parameters[XZ4] * (t74 - t61)
-        + (parameters[MZ4] * t75 + parameters[MX4] * t64);
-    const ariane4_free_real_t t77 = parameters[MX4] * (t60 + t61) - parameters[MY4] * t73
-        + parameters[MZ4] * t54;
-    const ariane4_free_real_t t78 = parameters[M4] * t75 + t77;
-    const ariane4_free_real_t t79 = parameters[MX4] * t59 + parameters[MY4] * (t74 + t61)
-        + parameters[MZ4] * t47;
-    const ariane4_free_real_t t80 = t79 - parameters[M4] * t69;
-    const ariane4_free_real_t t81 = t45 * t78 + t44 * t80;
-    const ariane4_free_real_t t82 = t43 + (t44 * t70 - t45 * t76 + ARIANE4_FREE_C(-0.436) * t81);
-    const ariane4_free_real_t t83 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t46;
-    const ariane4_free_real_t t84 = t83 + parameters[YZ3] * t35 - parameters[XZ3] * (t36 - t62)
-        + (parameters[MZ3] * t65 + parameters[MX3] * t38);
-    const ariane4_free_real_t t85 = (parameters[YY4] - parameters[XX4]) * t58 - parameters[ZZ4] * t32
-        - parameters[YZ4] * t54;
-    const ariane4_free_real_t t86 = t85 + parameters[XZ4] * t47 + parameters[XY4] * (t74 - t60)
-        + (parameters[MX4] * t69 + parameters[MY4] * t75);
-    const ariane4_free_real_t t87 = t84 - (t86 + ARIANE4_FREE_C(0.1) * t81);
-    const ariane4_free_real_t t88 = ARIANE4_FREE_C(2.0) * t15;
-    const ariane4_free_real_t t89 = t17 * parameters[YY2] + t17 * (parameters[ZZ2] - parameters[XX2])
-        - t88 * parameters[XY2];
-    const ariane4_free_real_t t90 = t16 * t16;
-    const ariane4_free_real_t t91 = t89 + t20 * parameters[YZ2] + (t90 - t22) * parameters[XZ2]
-        + t39 * parameters[MZ2];
-    const ariane4_free_real_t t92 = parameters[MX3] * t33 + parameters[MY3] * t46 - parameters[MZ3] * (t62
-        + t37);
-    const ariane4_free_real_t t93 = parameters[M3] * t38 + t92 + t81;
-    const ariane4_free_real_t t94 = t91 + (t28 * t82 + t26 * t87 + ARIANE4_FREE_C(0.443) * t93);
-    const ariane4_free_real_t t95 = t12 * (t25 + (t26 * t82 - t28 * t87)) + t13 * t94;
-    const ariane4_free_real_t t96 = t18 * parameters[MX2] + t88 * parameters[MY2] - (t90
-        + t21) * parameters[MZ2];
-    const ariane4_free_real_t t97 = ARIANE4_FREE_C(-250.0) * t10 + t11 * (t95 + ARIANE4_FREE_C(0.116) * (t96
-        + t93));
+    const ariane4_free_real_t t66 = t65 - parameters[XZ3] * t18 + parameters[YZ3] * (t21 - t25)
+        + (parameters[MZ3] * t15 - parameters[MY3] * t32);
+    const ariane4_free_real_t t67 = t66 + (t34 * t52 - t28 * t58 + ARIANE4_FREE_C(-0.436) * t63);
+    const ariane4_free_real_t t68 = (parameters[YY4] - parameters[XX4]) * t48 - parameters[ZZ4] * t29
+        - parameters[YZ4] * t42;
+    const ariane4_free_real_t t69 = t68 + parameters[XZ4] * t37 + parameters[XY4] * (t57 - t50)
+        + (parameters[MX4] * t35 + parameters[MY4] * t53);
+    const ariane4_free_real_t t70 = parameters[YY3] * t29 - t29 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t36;
+    const ariane4_free_real_t t71 = t70 + parameters[YZ3] * t18 - parameters[XZ3] * (t21 - t19)
+        + (parameters[MZ3] * t24 + parameters[MX3] * t32);
+    const ariane4_free_real_t t72 = t71 - (t69 + ARIANE4_FREE_C(0.1) * t63);
+    const ariane4_free_real_t t73 = dq[1] * t5;
+    const ariane4_free_real_t t74 = ARIANE4_FREE_C(2.0) * t31;
+    const ariane4_free_real_t t75 = t73 * (parameters[YY2] - parameters[ZZ2]) - t73 * parameters[XX2]
+        + t74 * parameters[XY2];
+    const ariane4_free_real_t t76 = t75 - t12 * parameters[XZ2] + (t7 - t6) * parameters[YZ2]
+        + t10 * parameters[MZ2];
+    const ariane4_free_real_t t77 = parameters[MX3] * t64 + parameters[MY3] * t36 - parameters[MZ3] * (t19
+        + t25);
+    const ariane4_free_real_t t78 = parameters[M3] * t32 + t77 + t63;
+    const ariane4_free_real_t t79 = ARIANE4_FREE_C(2.0) * t73;
+    const ariane4_free_real_t t80 = t31 * parameters[YY2] + t31 * (parameters[ZZ2] - parameters[XX2])
+        - t79 * parameters[XY2];
+    const ariane4_free_real_t t81 = t11 * t11;
+    const ariane4_free_real_t t82 = t80 + t12 * parameters[YZ2] + (t81 - t7) * parameters[XZ2]
+        + t4 * parameters[MZ2];
+    const ariane4_free_real_t t83 = t82 + (t9 * t67 + t14 * t72 + ARIANE4_FREE_C(0.443) * t78);
+    const ariane4_free_real_t t84 = t3 * (t76 + (t14 * t67 - t9 * t72)) + t2 * t83;
+    const ariane4_free_real_t t85 = t74 * parameters[MX2] + t79 * parameters[MY2] - (t81
+        + t6) * parameters[MZ2];
+    const ariane4_free_real_t t88 = ARIANE4_FREE_C(0.28217402066925895) * t86
+        + ARIANE4_FREE_C(0.9593632378089879) * t87;
+    const ariane4_free_real_t t89 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t88
+        + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t90 = ARIANE4_FREE_C(-0.28217402066925895) * t87
+        + ARIANE4_FREE_C(0.9593632378089879) * t86;
+    const ariane4_free_real_t t91 = ARIANE4_FREE_C(-0.06434139546481742) * t89 / t90;
+    const ariane4_free_real_t t92 = ARIANE4_FREE_C(-1.0) / t89;
+    const ariane4_free_real_t t93 = ARIANE4_FREE_C(-3885.523436256565) * t88
+        + ARIANE4_FREE_C(-72.7913960548305) * (t92 * t92) * (t90 * t90);
+    const ariane4_free_real_t t94 = t90 * (ARIANE4_FREE_C(3885.523436256565) * t92) * dq[0];
+    const ariane4_free_real_t t95 = ariane4_free_sign(t94);
+    const ariane4_free_real_t t96 = t92 * t93 * t0 * parameters[IA1] + (t94 * parameters[FV1]
+        + t95 * parameters[FC1]);
+    const ariane4_free_real_t t97 = ARIANE4_FREE_C(-250.0) * t96 + t91 * (t84 + ARIANE4_FREE_C(0.116) * (t85
+        + t78));
     out[0] = t97;
-    const ariane4_free_real_t t98 = ARIANE4_FREE_C(0.8305958991958126) * t13
-        - ARIANE4_FREE_C(0.5568756164881881) * t12;
-    const ariane4_free_real_t t99 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t98
+    const ariane4_free_real_t t98 = parameters[MX4] * t46 + parameters[MY4] * t54 - parameters[MZ4] * (t57
+        + t50);
+    const ariane4_free_real_t t99 = parameters[M4] * t23 + t98;
+    const ariane4_free_real_t t100 = t28 * t62 - t34 * t60;
+    const ariane4_free_real_t t101 = t28 * t52 + t34 * t58 + (ARIANE4_FREE_C(-0.1) * t99
+        + ARIANE4_FREE_C(-0.436) * t100);
+    const ariane4_free_real_t t102 = parameters[XY3] * (t19 - t25) - t18 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MX3] * t15 + parameters[MY3] * t24);
+    const ariane4_free_real_t t103 = t102 + t101;
+    const ariane4_free_real_t t104 = parameters[MY3] * t18 - parameters[MX3] * t26 - parameters[M3] * t24
+        + t100;
+    const ariane4_free_real_t t105 = parameters[M3] * t15 + (parameters[MX3] * t18 - parameters[MY3] * t22)
+        + t99;
+    const ariane4_free_real_t t106 = t12 * (parameters[YY2] - parameters[XX2]) + (t81 - t6) * parameters[XY2]
+        + (t10 * parameters[MX2] + t4 * parameters[MY2]);
+    const ariane4_free_real_t t107 = t106 + (t103 + ARIANE4_FREE_C(0.443) * (t9 * t104 + t14 * t105));
+    const ariane4_free_real_t t108 = ARIANE4_FREE_C(0.8305958991958126) * t2
+        - ARIANE4_FREE_C(0.5568756164881881) * t3;
+    const ariane4_free_real_t t109 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t108
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t100 = ARIANE4_FREE_C(1.0) / t99;
-    const ariane4_free_real_t t101 = ARIANE4_FREE_C(-0.8305958991958126) * t12
-        + ARIANE4_FREE_C(-0.5568756164881881) * t13;
-    const ariane4_free_real_t t102 = ARIANE4_FREE_C(2656.3065671641784) * t98
-        + ARIANE4_FREE_C(-104.12987373940295) * (t100 * t100) * (t101 * t101);
-    const ariane4_free_real_t t103 = t101 * (ARIANE4_FREE_C(2656.3065671641784) * t100) * dq[1];
-    const ariane4_free_real_t t104 = ariane4_free_sign(t103);
-    const ariane4_free_real_t t105 = t100 * t102 * t22 * parameters[IA2] - (t103 * parameters[FV2]
-        + t104 * parameters[FC2]);
-    const ariane4_free_real_t t106 = ARIANE4_FREE_C(-0.03137188092799786) * t99 / t101;
-    const ariane4_free_real_t t107 = t20 * (parameters[YY2] - parameters[XX2]) + (t90 - t21) * parameters[XY2]
-        + (t24 * parameters[MX2] + t39 * parameters[MY2]);
-    const ariane4_free_real_t t108 = parameters[XY3] * (t62 - t37) - t35 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MX3] * t42 + parameters[MY3] * t65);
-    const ariane4_free_real_t t109 = parameters[MX4] * t56 + parameters[MY4] * t71 - parameters[MZ4] * (t74
-        + t60);
-    const ariane4_free_real_t t110 = parameters[M4] * t64 + t109;
-    const ariane4_free_real_t t111 = t45 * t80 - t44 * t78;
-    const ariane4_free_real_t t112 = t45 * t70 + t44 * t76 + (ARIANE4_FREE_C(-0.1) * t110
-        + ARIANE4_FREE_C(-0.436) * t111);
-    const ariane4_free_real_t t113 = t108 + t112;
-    const ariane4_free_real_t t114 = parameters[MY3] * t35 - parameters[MX3] * t66 - parameters[M3] * t65
-        + t111;
-    const ariane4_free_real_t t115 = parameters[M3] * t42 + (parameters[MX3] * t35 - parameters[MY3] * t63)
-        + t110;
-    const ariane4_free_real_t t116 = t107 + (t113 + ARIANE4_FREE_C(0.443) * (t28 * t114 + t26 * t115));
-    out[1] = ARIANE4_FREE_C(83.33333333333333) * t105 + t106 * t116;
-    const ariane4_free_real_t t117 = ARIANE4_FREE_C(0.06366143813161289) * t26
-        - ARIANE4_FREE_C(0.9979715533496006) * t28;
+    const ariane4_free_real_t t110 = ARIANE4_FREE_C(-0.8305958991958126) * t3
+        + ARIANE4_FREE_C(-0.5568756164881881) * t2;
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(-0.03137188092799786) * t109 / t110;
+    const ariane4_free_real_t t112 = ARIANE4_FREE_C(1.0) / t109;
+    const ariane4_free_real_t t113 = ARIANE4_FREE_C(2656.3065671641784) * t108
+        + ARIANE4_FREE_C(-104.12987373940295) * (t112 * t112) * (t110 * t110);
+    const ariane4_free_real_t t114 = t110 * (ARIANE4_FREE_C(2656.3065671641784) * t112) * dq[1];
+    const ariane4_free_real_t t115 = ariane4_free_sign(t114);
+    const ariane4_free_real_t t116 = t112 * t113 * t7 * parameters[IA2] - (t114 * parameters[FV2]
+        + t115 * parameters[FC2]);
+    out[1] = ARIANE4_FREE_C(83.33333333333333) * t116 + t111 * t107;
+    const ariane4_free_real_t t117 = ARIANE4_FREE_C(0.06366143813161289) * t14
+        - ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t118 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t117
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t119 = ARIANE4_FREE_C(-1.0) / t118;
-    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.06366143813161289) * t28
-        + ARIANE4_FREE_C(-0.9979715533496006) * t26;
-    const ariane4_free_real_t t121 = ARIANE4_FREE_C(-7124.375926654358) * t117
-        + ARIANE4_FREE_C(-188.12627071923498) * (t119 * t119) * (t120 * t120);
-    const ariane4_free_real_t t122 = t120 * (ARIANE4_FREE_C(7124.375926654358) * t119) * dq[2];
-    const ariane4_free_real_t t123 = ariane4_free_sign(t122);
-    const ariane4_free_real_t t124 = t119 * t121 * (dq[2] * dq[2]) * parameters[IA3] + (t122 * parameters[FV3]
-        + t123 * parameters[FC3]);
-    const ariane4_free_real_t t125 = ARIANE4_FREE_C(-0.046787723832235825) * t118 / t120;
-    out[2] = ARIANE4_FREE_C(-333.3333333333333) * t124 - t125 * t113;
+    const ariane4_free_real_t t119 = ARIANE4_FREE_C(-0.06366143813161289) * t9
+        + ARIANE4_FREE_C(-0.9979715533496006) * t14;
+    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.046787723832235825) * t118 / t119;
+    const ariane4_free_real_t t121 = ARIANE4_FREE_C(-1.0) / t118;
+    const ariane4_free_real_t t122 = ARIANE4_FREE_C(-7124.375926654358) * t117
+        + ARIANE4_FREE_C(-188.12627071923498) * (t121 * t121) * (t119 * t119);
+    const ariane4_free_real_t t123 = t119 * (ARIANE4_FREE_C(7124.375926654358) * t121) * dq[2];
+    const ariane4_free_real_t t124 = ariane4_free_sign(t123);
+    const ariane4_free_real_t t125 = t121 * t122 * (dq[2] * dq[2]) * parameters[IA3] + (t123 * parameters[FV3]
+        + t124 * parameters[FC3]);
+    out[2] = ARIANE4_FREE_C(-333.3333333333333) * t125 - t120 * t103;
     const ariane4_free_real_t t126 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t127 = ARIANE4_FREE_C(20.0) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
-        + t126 * parameters[FC4]) + ARIANE4_FREE_C(0.2) * t86;
+        + t126 * parameters[FC4]) + ARIANE4_FREE_C(0.2) * t69;
     out[3] = t127;
     return ARIANE4_FREE_STATUS_OK;
 }

@@ -59,7 +59,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -116,11 +116,11 @@ int ariane4_free_energy(
     const ariane4_free_real_t t15 = t13 * (parameters[XZ3] * t11 + parameters[YZ3] * t12
         + parameters[ZZ3R] * t13);
     const ariane4_free_real_t t16 = t14 + t12 * (parameters[XY3R] * t11 + parameters[YZ3] * t13) + t15;
-    const ariane4_free_real_t t17 = ARIANE4_FREE_C(0.443) * dq[1];
-    const ariane4_free_real_t t18 = t9 * t17;
-    const ariane4_free_real_t t19 = t7 + ARIANE4_FREE_C(-0.443) * t3;
-    const ariane4_free_real_t t20 = t10 * t17;
-    const ariane4_free_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3R] * (t11 * t19
+    const ariane4_free_real_t t17 = t7 + ARIANE4_FREE_C(-0.443) * t3;
+    const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.443) * dq[1];
+    const ariane4_free_real_t t19 = t9 * t18;
+    const ariane4_free_real_t t20 = t10 * t18;
+    const ariane4_free_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3R] * (t11 * t17
         - t13 * t20);
     const ariane4_free_real_t t24 = t22 * t11 - t23 * t13;
     const ariane4_free_real_t t25 = t23 * t11 + t22 * t13;
@@ -130,8 +130,8 @@ int ariane4_free_energy(
     const ariane4_free_real_t t28 = t26 * (parameters[XZ4R] * t24 - parameters[YZ4R] * t25
         + parameters[ZZ4] * t26);
     const ariane4_free_real_t t29 = t27 - t25 * (parameters[XY4] * t24 + parameters[YZ4R] * t26) + t28;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.1) * t12 - t19;
-    const ariane4_free_real_t t31 = t18 + ARIANE4_FREE_C(-0.1) * t13;
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.1) * t12 - t17;
+    const ariane4_free_real_t t31 = t19 + ARIANE4_FREE_C(-0.1) * t13;
     const ariane4_free_real_t t32 = t26 * (t22 * t30 - t23 * t20) + t25 * t31;
     const ariane4_free_real_t t33 = t24 * t31 - t26 * (t22 * t20 + t23 * t30);
     const ariane4_free_real_t t34 = t8 + ARIANE4_FREE_C(0.5) * t16 + t21 + ARIANE4_FREE_C(0.5) * t29

@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,61 +111,58 @@ int ariane4_free_energy_standard(
 
     ariane4_free_real_t t41, t42;
     ARIANE4_FREE_SINCOS(q[0], &t41, &t42);
-    ariane4_free_real_t t0, t2;
-    ARIANE4_FREE_SINCOS(q[1], &t0, &t2);
-    ariane4_free_real_t t11, t10;
-    ARIANE4_FREE_SINCOS(q[2], &t11, &t10);
-    ariane4_free_real_t t25, t26;
-    ARIANE4_FREE_SINCOS(q[3], &t25, &t26);
+    ariane4_free_real_t t0, t3;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t3);
+    ariane4_free_real_t t5, t2;
+    ARIANE4_FREE_SINCOS(q[2], &t5, &t2);
+    ariane4_free_real_t t26, t28;
+    ARIANE4_FREE_SINCOS(q[3], &t26, &t28);
     const ariane4_free_real_t t1 = t0 * dq[0];
-    const ariane4_free_real_t t3 = t2 * dq[0];
-    const ariane4_free_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2]
+    const ariane4_free_real_t t4 = t3 * dq[0];
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t7 = t2 * t4 - t5 * t1;
+    const ariane4_free_real_t t8 = dq[1] + dq[2];
+    const ariane4_free_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
+    const ariane4_free_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
+    const ariane4_free_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.443) * dq[1];
+    const ariane4_free_real_t t13 = t5 * t12;
+    const ariane4_free_real_t t14 = t2 * t12;
+    const ariane4_free_real_t t15 = ARIANE4_FREE_C(0.116) * dq[0];
+    const ariane4_free_real_t t16 = t15 + ARIANE4_FREE_C(0.443) * t4;
+    const ariane4_free_real_t t17 = parameters[M3] * (t13 * t13 + t14 * t14 + t16 * t16);
+    const ariane4_free_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2]
         + dq[1] * parameters[XZ2]);
-    const ariane4_free_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2]
+    const ariane4_free_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2]
         + dq[1] * parameters[YZ2]);
-    const ariane4_free_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2]
+    const ariane4_free_real_t t20 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2]
         + dq[1] * parameters[ZZ2]);
-    const ariane4_free_real_t t7 = ARIANE4_FREE_C(0.116) * dq[0];
-    const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
-        + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane4_free_real_t t12 = t10 * t1 + t11 * t3;
-    const ariane4_free_real_t t13 = t10 * t3 - t11 * t1;
-    const ariane4_free_real_t t14 = dq[1] + dq[2];
-    const ariane4_free_real_t t15 = t12 * (parameters[XX3] * t12 + parameters[XY3] * t13
-        + t14 * parameters[XZ3]);
-    const ariane4_free_real_t t16 = t13 * (parameters[XY3] * t12 + parameters[YY3] * t13
-        + t14 * parameters[YZ3]);
-    const ariane4_free_real_t t17 = t14 * (parameters[XZ3] * t12 + parameters[YZ3] * t13
-        + t14 * parameters[ZZ3]);
-    const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.443) * dq[1];
-    const ariane4_free_real_t t19 = t11 * t18;
-    const ariane4_free_real_t t20 = t10 * t18;
-    const ariane4_free_real_t t21 = t7 + ARIANE4_FREE_C(0.443) * t3;
-    const ariane4_free_real_t t22 = parameters[M3] * (t19 * t19 + t20 * t20 + t21 * t21);
-    const ariane4_free_real_t t23 = parameters[MX3] * (t14 * t20 + t13 * t21) - parameters[MY3] * (t12 * t21
-        + t14 * t19);
-    const ariane4_free_real_t t24 = t9 + ARIANE4_FREE_C(0.5) * (t15 + t16 + t17 + t22) + (t23
-        + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const ariane4_free_real_t t27 = t25 * t14 - t26 * t12;
-    const ariane4_free_real_t t28 = t26 * t14 + t25 * t12;
-    const ariane4_free_real_t t29 = dq[3] + t13;
-    const ariane4_free_real_t t30 = t27 * (parameters[XX4] * t27 + parameters[XY4] * t28
-        - parameters[XZ4] * t29);
-    const ariane4_free_real_t t31 = t28 * (parameters[XY4] * t27 + parameters[YY4] * t28
-        - parameters[YZ4] * t29);
-    const ariane4_free_real_t t32 = t29 * (parameters[ZZ4] * t29 - (parameters[XZ4] * t27
-        + parameters[YZ4] * t28));
-    const ariane4_free_real_t t33 = t19 - ARIANE4_FREE_C(0.436) * t14;
-    const ariane4_free_real_t t34 = t21 - (ARIANE4_FREE_C(0.436) * t12 - ARIANE4_FREE_C(-0.1) * t13);
-    const ariane4_free_real_t t35 = t26 * t33 + t25 * t34;
-    const ariane4_free_real_t t36 = t25 * t33 - t26 * t34;
-    const ariane4_free_real_t t37 = t20 + ARIANE4_FREE_C(-0.1) * t14;
-    const ariane4_free_real_t t38 = parameters[M4] * (t35 * t35 + t36 * t36 + t37 * t37);
-    const ariane4_free_real_t t39 = parameters[MX4] * (t28 * t37 - t29 * t36) - parameters[MY4] * (t27 * t37
-        + t29 * t35);
-    const ariane4_free_real_t t40 = t24 + ARIANE4_FREE_C(0.5) * (t30 + t31 + t32 + t38) + (t39
-        - parameters[MZ4] * (t28 * t35 + t27 * t36));
+    const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.5) * (t18 + t19 + t20 + parameters[M2] * (t15 * t15));
+    const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t21
+        + (parameters[MX2] * (t4 * t15) - parameters[MY2] * (t1 * t15));
+    const ariane4_free_real_t t23 = parameters[MX3] * (t8 * t14 + t7 * t16) - parameters[MY3] * (t6 * t16
+        + t8 * t13);
+    const ariane4_free_real_t t24 = t22 + ARIANE4_FREE_C(0.5) * (t9 + t10 + t11 + t17) + (t23
+        + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    const ariane4_free_real_t t25 = t16 - (ARIANE4_FREE_C(0.436) * t6 - ARIANE4_FREE_C(-0.1) * t7);
+    const ariane4_free_real_t t27 = t13 - ARIANE4_FREE_C(0.436) * t8;
+    const ariane4_free_real_t t29 = t28 * t27 + t26 * t25;
+    const ariane4_free_real_t t30 = t26 * t27 - t28 * t25;
+    const ariane4_free_real_t t31 = t14 + ARIANE4_FREE_C(-0.1) * t8;
+    const ariane4_free_real_t t32 = parameters[M4] * (t29 * t29 + t30 * t30 + t31 * t31);
+    const ariane4_free_real_t t33 = t26 * t8 - t28 * t6;
+    const ariane4_free_real_t t34 = t28 * t8 + t26 * t6;
+    const ariane4_free_real_t t35 = dq[3] + t7;
+    const ariane4_free_real_t t36 = t33 * (parameters[XX4] * t33 + parameters[XY4] * t34
+        - parameters[XZ4] * t35);
+    const ariane4_free_real_t t37 = t34 * (parameters[XY4] * t33 + parameters[YY4] * t34
+        - parameters[YZ4] * t35);
+    const ariane4_free_real_t t38 = t35 * (parameters[ZZ4] * t35 - (parameters[XZ4] * t33
+        + parameters[YZ4] * t34));
+    const ariane4_free_real_t t39 = parameters[MX4] * (t34 * t31 - t35 * t30) - parameters[MY4] * (t33 * t31
+        + t35 * t29);
+    const ariane4_free_real_t t40 = t24 + ARIANE4_FREE_C(0.5) * (t36 + t37 + t38 + t32) + (t39
+        - parameters[MZ4] * (t34 * t29 + t33 * t30));
     const ariane4_free_real_t
         t43 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t42
         + ARIANE4_FREE_C(0.9593632378089879) * t41) + ARIANE4_FREE_C(0.10769300000000001));
@@ -175,33 +172,33 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t46 = t40
         + ARIANE4_FREE_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t45 * t45)));
     const ariane4_free_real_t
-        t47 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t2
+        t47 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t t48 = ARIANE4_FREE_C(1.0) / t47;
     const ariane4_free_real_t t49 = (ARIANE4_FREE_C(0.8305958991958126) * t0
-        + ARIANE4_FREE_C(0.5568756164881881) * t2) * (ARIANE4_FREE_C(2656.3065671641784) * t48);
+        + ARIANE4_FREE_C(0.5568756164881881) * t3) * (ARIANE4_FREE_C(2656.3065671641784) * t48);
     const ariane4_free_real_t t50 = t46
         + ARIANE4_FREE_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t49 * t49)));
     const ariane4_free_real_t
-        t51 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t10
-        + ARIANE4_FREE_C(-0.9979715533496006) * t11) + ARIANE4_FREE_C(0.242037));
+        t51 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t2
+        + ARIANE4_FREE_C(-0.9979715533496006) * t5) + ARIANE4_FREE_C(0.242037));
     const ariane4_free_real_t t52 = ARIANE4_FREE_C(1.0) / t51;
-    const ariane4_free_real_t t53 = (ARIANE4_FREE_C(0.06366143813161289) * t11
-        + ARIANE4_FREE_C(0.9979715533496006) * t10) * (ARIANE4_FREE_C(7124.375926654358) * t52);
+    const ariane4_free_real_t t53 = (ARIANE4_FREE_C(0.06366143813161289) * t5
+        + ARIANE4_FREE_C(0.9979715533496006) * t2) * (ARIANE4_FREE_C(7124.375926654358) * t52);
     const ariane4_free_real_t t54 = t50
         + ARIANE4_FREE_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t53 * t53)));
     kinetic[0] = t54 + ARIANE4_FREE_C(0.5) * (dq[3] * dq[3] * (ARIANE4_FREE_C(1.0e4) * parameters[IA4]));
     const ariane4_free_real_t t55 = ARIANE4_FREE_C(9.81) * t0;
-    const ariane4_free_real_t t56 = ARIANE4_FREE_C(9.81) * t2;
-    const ariane4_free_real_t t57 = t10 * t55 + t11 * t56;
-    const ariane4_free_real_t t58 = t10 * t56 - t11 * t55;
-    const ariane4_free_real_t t59 = ARIANE4_FREE_C(4.34583) * t0;
-    const ariane4_free_real_t t60 = ARIANE4_FREE_C(9.81) * parameters[MZ1] + (t55 * parameters[MX2]
-        + t56 * parameters[MY2]) + (t57 * parameters[MX3] + t58 * parameters[MY3] + parameters[M3] * t59);
-    const ariane4_free_real_t t61 = t26 * t57 * parameters[MX4] - t25 * t57 * parameters[MY4]
+    const ariane4_free_real_t t56 = ARIANE4_FREE_C(9.81) * t3;
+    const ariane4_free_real_t t57 = t2 * t55 + t5 * t56;
+    const ariane4_free_real_t t58 = t2 * t56 - t5 * t55;
+    const ariane4_free_real_t t59 = t28 * t57 * parameters[MX4] - t26 * t57 * parameters[MY4]
         + t58 * parameters[MZ4];
-    const ariane4_free_real_t t62 = t61 + parameters[M4] * (t59 + (ARIANE4_FREE_C(-0.1) * t57
+    const ariane4_free_real_t t60 = ARIANE4_FREE_C(4.34583) * t0;
+    const ariane4_free_real_t t61 = t59 + parameters[M4] * (t60 + (ARIANE4_FREE_C(-0.1) * t57
         + ARIANE4_FREE_C(0.436) * t58));
-    potential[0] = t60 + t62;
+    const ariane4_free_real_t t62 = ARIANE4_FREE_C(9.81) * parameters[MZ1] + (t55 * parameters[MX2]
+        + t56 * parameters[MY2]) + (t57 * parameters[MX3] + t58 * parameters[MY3] + parameters[M3] * t60);
+    potential[0] = t62 + t61;
     return ARIANE4_FREE_STATUS_OK;
 }

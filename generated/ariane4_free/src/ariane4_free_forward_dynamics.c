@@ -60,7 +60,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -91,246 +91,245 @@ int ariane4_free_forward_dynamics(
         return status;
     }
 
-    ariane4_free_real_t t0, t1;
-    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
-    ariane4_free_real_t t12, t13;
-    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
-    ariane4_free_real_t t24, t23;
-    ARIANE4_FREE_SINCOS(q[2], &t24, &t23);
-    ariane4_free_real_t t37, t36;
-    ARIANE4_FREE_SINCOS(q[3], &t37, &t36);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t3
-        + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-1.0) / t4;
-    const ariane4_free_real_t t6 = t2 * (ARIANE4_FREE_C(3885.523436256565) * t5);
-    const ariane4_free_real_t t7 = t6 * dq[0];
-    const ariane4_free_real_t t8 = ariane4_free_sign(t7);
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-3885.523436256565) * t3
-        + ARIANE4_FREE_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_free_real_t t10 = dq[0] * dq[0];
-    const ariane4_free_real_t t11 = t6 * (parameters[FV1] * t7) + t6 * (parameters[FC1] * t8)
-        + t6 * (parameters[IA1] * (t5 * t9 * t10));
-    const ariane4_free_real_t t14 = t13 * dq[0];
-    const ariane4_free_real_t t15 = dq[1] * t14;
-    const ariane4_free_real_t t16 = t12 * dq[0];
-    const ariane4_free_real_t t17 = dq[1] * t16;
-    const ariane4_free_real_t t18 = ARIANE4_FREE_C(2.0) * t17;
-    const ariane4_free_real_t t19 = t16 * t14;
-    const ariane4_free_real_t t20 = parameters[XY2] * t18 - (parameters[XX2R] * t15 + parameters[ZZ2R] * t15)
-        - parameters[XZ2R] * t19;
-    const ariane4_free_real_t t21 = dq[1] * dq[1];
-    const ariane4_free_real_t t22 = t14 * t14;
-    const ariane4_free_real_t t25 = t23 * t14 - t24 * t16;
-    const ariane4_free_real_t t26 = dq[1] + dq[2];
-    const ariane4_free_real_t t27 = t25 * t26;
-    const ariane4_free_real_t t28 = t23 * t16 + t24 * t14;
-    const ariane4_free_real_t t29 = t28 * t26;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(2.0) * t29;
-    const ariane4_free_real_t t31 = t28 * t25;
-    const ariane4_free_real_t t32 = parameters[XY3R] * t30 - (parameters[XX3R] * t27 + parameters[ZZ3R] * t27)
-        - parameters[XZ3] * t31;
-    const ariane4_free_real_t t33 = t25 * t25;
-    const ariane4_free_real_t t34 = t26 * t26;
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.886) * t17;
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(2.0) * t27;
-    const ariane4_free_real_t t39 = t37 * t31 + t36 * t38;
-    const ariane4_free_real_t t40 = t37 * t28 + t36 * t26;
-    const ariane4_free_real_t t41 = dq[3] + t25;
-    const ariane4_free_real_t t42 = t40 * t41;
-    const ariane4_free_real_t t43 = t39 - t42;
-    const ariane4_free_real_t t44 = t36 * t28 - t37 * t26;
-    const ariane4_free_real_t t45 = t44 * t41;
-    const ariane4_free_real_t t46 = t37 * t38 - t36 * t31;
-    const ariane4_free_real_t t47 = t45 + (t46 + t45);
-    const ariane4_free_real_t t48 = t44 * t40;
-    const ariane4_free_real_t t49 = t29 + t48;
-    const ariane4_free_real_t t50 = parameters[ZZ4] * t42 - parameters[XX4R] * t43 + parameters[XY4] * t47
-        + parameters[XZ4R] * t49;
-    const ariane4_free_real_t t51 = t40 * t40;
-    const ariane4_free_real_t t52 = t41 * t41;
-    const ariane4_free_real_t t53 = ARIANE4_FREE_C(-0.116) * t10;
-    const ariane4_free_real_t t54 = t13 * t53 + ARIANE4_FREE_C(9.81) * t12;
-    const ariane4_free_real_t t55 = t54 + ARIANE4_FREE_C(-0.443) * (t21 + t22);
-    const ariane4_free_real_t t56 = t12 * t53 + ARIANE4_FREE_C(-9.81) * t13;
-    const ariane4_free_real_t t57 = t56 + ARIANE4_FREE_C(-0.443) * t19;
-    const ariane4_free_real_t t58 = t24 * t55 + t23 * t57;
-    const ariane4_free_real_t t59 = t58 + ARIANE4_FREE_C(0.1) * t31;
-    const ariane4_free_real_t t60 = t50 + parameters[YZ4R] * (t52 - t51) + parameters[MY4] * t59;
-    const ariane4_free_real_t t61 = t43 - t42;
-    const ariane4_free_real_t t62 = t48 - t29;
-    const ariane4_free_real_t t63 = t45 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t61
-        + parameters[YZ4R] * t62;
-    const ariane4_free_real_t t64 = t44 * t44;
-    const ariane4_free_real_t t65 = t63 + parameters[XZ4R] * (t52 - t64) + parameters[MX4] * t59;
-    const ariane4_free_real_t t66 = t32 + parameters[YZ3] * (t34 - t33) + parameters[MY3R] * t35 + (t36 * t60
-        + t37 * t65);
-    const ariane4_free_real_t t67 = t29 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t38
-        - parameters[YZ3] * t31;
-    const ariane4_free_real_t t68 = t28 * t28;
-    const ariane4_free_real_t t69 = parameters[ZZ4] * t29 - parameters[XX4R] * t48 + parameters[YZ4R] * t46
-        - parameters[XZ4R] * t39;
-    const ariane4_free_real_t t70 = t24 * t57 - t23 * t55;
-    const ariane4_free_real_t t71 = t33 + t34;
-    const ariane4_free_real_t t72 = t70 - ARIANE4_FREE_C(0.1) * t71;
-    const ariane4_free_real_t t73 = t35 + ARIANE4_FREE_C(0.2) * t29;
-    const ariane4_free_real_t t74 = parameters[MX4] * (t37 * t72 + t36 * t73) + parameters[MY4] * (t36 * t72
-        - t37 * t73);
-    const ariane4_free_real_t t75 = t69 - parameters[XY4] * (t64 - t51) - t74;
-    const ariane4_free_real_t t76 = parameters[MX4] * (t51 + t52) + parameters[MY4] * t62;
-    const ariane4_free_real_t t77 = parameters[MX4] * t49 + parameters[MY4] * (t64 + t52);
-    const ariane4_free_real_t t78 = t37 * t76 + t36 * t77;
-    const ariane4_free_real_t t79 = t67 - parameters[XZ3] * (t68 - t34) + parameters[MX3R] * t35 - (t75
-        - ARIANE4_FREE_C(0.1) * t78);
-    const ariane4_free_real_t t80 = t20 + parameters[YZ2] * (t21 - t22) + (t23 * t66 + t24 * t79);
-    const ariane4_free_real_t t81 = ARIANE4_FREE_C(2.0) * t15;
-    const ariane4_free_real_t t82 = t17 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t81
-        + parameters[YZ2] * t19;
-    const ariane4_free_real_t t83 = t16 * t16;
-    const ariane4_free_real_t t84 = parameters[MX3R] * t30 + parameters[MY3R] * t38 + t78;
-    const ariane4_free_real_t t85 = t82 + parameters[XZ2R] * (t83 - t21) + (t24 * t66 - t23 * t79
-        + ARIANE4_FREE_C(0.443) * t84);
-    const ariane4_free_real_t t86 = t12 * t80 + t13 * t85 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t18
-        + parameters[MY2] * t81 + t84);
-    const ariane4_free_real_t t87 = ariane4_free_sign(dq[3]);
-    const ariane4_free_real_t
-        t88 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3]))
-        + ARIANE4_FREE_C(1.0e2) * (parameters[FC4] * t87);
-    const ariane4_free_real_t t89 = ARIANE4_FREE_C(5.0) * input[3] - (t88 - t75);
-    const ariane4_free_real_t t90 = t36 * parameters[XZ4R] - t37 * parameters[YZ4R];
-    const ariane4_free_real_t t91 = t37 * parameters[MY4] - t36 * parameters[MX4];
-    const ariane4_free_real_t t92 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t91;
-    const ariane4_free_real_t t93 = t13 * (ARIANE4_FREE_C(0.443) * t91 - (t24 * t90 + t23 * t92));
-    const ariane4_free_real_t t94 = t12 * (t24 * t92 - t23 * t90) + t93 + ARIANE4_FREE_C(0.116) * t91;
-    const ariane4_free_real_t t95 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
-    if (!(t95 > ARIANE4_FREE_C(1.0e-9))) {
+    ariane4_free_real_t t48, t49;
+    ARIANE4_FREE_SINCOS(q[0], &t48, &t49);
+    ariane4_free_real_t t19, t20;
+    ARIANE4_FREE_SINCOS(q[1], &t19, &t20);
+    ariane4_free_real_t t1, t2;
+    ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
+    ariane4_free_real_t t9, t8;
+    ARIANE4_FREE_SINCOS(q[3], &t9, &t8);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    if (!(t0 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t96 = ARIANE4_FREE_C(-1.0) / t95;
-    const ariane4_free_real_t t97 = t94 * t96;
-    const ariane4_free_real_t t98 = input[0] * (ARIANE4_FREE_C(-0.004) * t6) + (t86 - t11) - t89 * t97;
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(0.06366143813161289) * t24
-        + ARIANE4_FREE_C(0.9979715533496006) * t23;
-    const ariane4_free_real_t t100 = ARIANE4_FREE_C(0.06366143813161289) * t23
-        + ARIANE4_FREE_C(-0.9979715533496006) * t24;
-    const ariane4_free_real_t t101 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t100
+    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
+        + ARIANE4_FREE_C(0.9979715533496006) * t2;
+    const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
+        + ARIANE4_FREE_C(-0.9979715533496006) * t1;
+    const ariane4_free_real_t t5 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t4
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t102 = ARIANE4_FREE_C(1.0) / t101;
-    const ariane4_free_real_t t103 = t99 * (ARIANE4_FREE_C(7124.375926654358) * t102);
-    const ariane4_free_real_t t104 = t103 * dq[2];
-    const ariane4_free_real_t t105 = ariane4_free_sign(t104);
-    const ariane4_free_real_t t106 = ARIANE4_FREE_C(7124.375926654358) * t100
-        + ARIANE4_FREE_C(188.12627071923498) * (t102 * t102) * (t99 * t99);
-    const ariane4_free_real_t t107 = t103 * (parameters[FV3] * t104) + t103 * (parameters[FC3] * t105)
-        + t103 * (parameters[IA3] * (t102 * t106 * (dq[2] * dq[2])));
-    const ariane4_free_real_t t108 = parameters[XY3R] * (t68 - t33) - parameters[XX3R] * t31
-        + (parameters[MY3R] * t70 - parameters[MX3R] * t58);
-    const ariane4_free_real_t t109 = parameters[MX4] * t47 + parameters[MY4] * t61;
-    const ariane4_free_real_t t110 = t108 + (t37 * t60 - t36 * t65 - ARIANE4_FREE_C(0.1) * t109);
-    const ariane4_free_real_t t111 = t37 * parameters[XZ4R] + t36 * parameters[YZ4R];
-    const ariane4_free_real_t t112 = t111 * t96;
-    const ariane4_free_real_t t113 = input[2] * (ARIANE4_FREE_C(0.003) * t103) + (t107 + t110) + t89 * t112;
-    const ariane4_free_real_t t114 = t36 * parameters[XX4R] + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t37);
-    const ariane4_free_real_t t115 = t36 * parameters[MY4] + t37 * parameters[MX4];
-    const ariane4_free_real_t t116 = parameters[XY4] + t37 * t114 + ARIANE4_FREE_C(0.1) * t115
-        - parameters[XZ3];
-    const ariane4_free_real_t t117 = parameters[YZ3] - t111;
-    const ariane4_free_real_t t118 = t23 * t116 + t24 * t117;
-    const ariane4_free_real_t t119 = t24 * t116 - t23 * t117;
-    const ariane4_free_real_t t120 = t94 * t112 - (t12 * t118 + t13 * t119);
-    const ariane4_free_real_t t121 = t36 * t114;
-    const ariane4_free_real_t t122 = ARIANE4_FREE_C(0.2) * t91;
-    const ariane4_free_real_t t123 = parameters[ZZ3R] + (parameters[XX4R] - t121 + t122);
-    const ariane4_free_real_t t124 = t123 + parameters[IA3] * (t103 * t103) + t111 * t112;
-    if (!(t124 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
+    const ariane4_free_real_t t7 = t3 * (ARIANE4_FREE_C(7124.375926654358) * t6);
+    const ariane4_free_real_t t10 = t8 * parameters[XX4R] + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t9);
+    const ariane4_free_real_t t11 = t8 * t10;
+    const ariane4_free_real_t t12 = t9 * parameters[MY4] - t8 * parameters[MX4];
+    const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.2) * t12;
+    const ariane4_free_real_t t14 = parameters[ZZ3R] + (parameters[XX4R] - t11 + t13);
+    const ariane4_free_real_t t15 = t9 * parameters[XZ4R] + t8 * parameters[YZ4R];
+    const ariane4_free_real_t t16 = ARIANE4_FREE_C(-1.0) / t0;
+    const ariane4_free_real_t t17 = t15 * t16;
+    const ariane4_free_real_t t18 = t14 + parameters[IA3] * (t7 * t7) + t15 * t17;
+    if (!(t18 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t125 = ARIANE4_FREE_C(-1.0) / t124;
-    const ariane4_free_real_t t126 = t120 * t125;
-    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.8305958991958126) * t12
-        + ARIANE4_FREE_C(0.5568756164881881) * t13;
-    const ariane4_free_real_t t128 = ARIANE4_FREE_C(-0.8305958991958126) * t13
-        + ARIANE4_FREE_C(0.5568756164881881) * t12;
-    const ariane4_free_real_t t129 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t128
+    const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.8305958991958126) * t19
+        + ARIANE4_FREE_C(0.5568756164881881) * t20;
+    const ariane4_free_real_t t22 = ARIANE4_FREE_C(-0.8305958991958126) * t20
+        + ARIANE4_FREE_C(0.5568756164881881) * t19;
+    const ariane4_free_real_t t23 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t22
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t130 = ARIANE4_FREE_C(1.0) / t129;
-    const ariane4_free_real_t t131 = t127 * (ARIANE4_FREE_C(2656.3065671641784) * t130);
-    const ariane4_free_real_t t132 = t131 * dq[1];
-    const ariane4_free_real_t t133 = ariane4_free_sign(t132);
-    const ariane4_free_real_t t134 = ARIANE4_FREE_C(-2656.3065671641784) * t128
-        - ARIANE4_FREE_C(104.12987373940295) * (t130 * t130) * (t127 * t127);
-    const ariane4_free_real_t t135 = t131 * (parameters[FV2] * t132) + t131 * (parameters[FC2] * t133)
-        + t131 * (parameters[IA2] * (t130 * t134 * t21));
-    const ariane4_free_real_t t136 = parameters[XX2R] * t19 - parameters[XY2] * (t83 - t22)
-        + (parameters[MX2R] * t56 + parameters[MY2] * t54);
-    const ariane4_free_real_t t137 = parameters[MX3R] * t71 - parameters[MY3R] * t31 + (t36 * t76
-        - t37 * t77);
-    const ariane4_free_real_t t138 = t23 * (parameters[MY3R] * (t68 + t34) - parameters[MX3R] * t31 - t109);
-    const ariane4_free_real_t t139 = t135 - (t136 - (t110 - ARIANE4_FREE_C(0.443) * (t24 * t137 + t138)));
-    const ariane4_free_real_t t140 = ARIANE4_FREE_C(-0.443) * (t24 * t115) - t111;
-    const ariane4_free_real_t t141 = t140 * t96;
-    const ariane4_free_real_t t142 = parameters[MX3R] - t91;
-    const ariane4_free_real_t t143 = t23 * t142 - t24 * parameters[MY3R];
-    const ariane4_free_real_t t144 = ARIANE4_FREE_C(-0.443) * t143 - t123 + t140 * t112;
-    const ariane4_free_real_t t145 = t144 * t125;
-    const ariane4_free_real_t t146 = input[1] * (ARIANE4_FREE_C(0.012) * t131) - t139 + t89 * t141
-        + t113 * t145;
-    const ariane4_free_real_t t147 = t12 * (t118 + ARIANE4_FREE_C(-0.443) * t115 - parameters[XZ2R])
-        + t13 * (t119 - parameters[YZ2]);
-    const ariane4_free_real_t t148 = t147 + t94 * t141 + t120 * t145;
-    const ariane4_free_real_t t149 = ARIANE4_FREE_C(0.886) * t143;
-    const ariane4_free_real_t t150 = parameters[ZZ2R] + (t123 + t149) + parameters[IA2] * (t131 * t131)
-        + t140 * t141;
-    const ariane4_free_real_t t151 = t150 + t144 * t145;
-    if (!(t151 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t24 = ARIANE4_FREE_C(1.0) / t23;
+    const ariane4_free_real_t t25 = t21 * (ARIANE4_FREE_C(2656.3065671641784) * t24);
+    const ariane4_free_real_t t26 = parameters[MX3R] - t12;
+    const ariane4_free_real_t t27 = t2 * t26 - t1 * parameters[MY3R];
+    const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.886) * t27;
+    const ariane4_free_real_t t29 = t8 * parameters[MY4] + t9 * parameters[MX4];
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.443) * (t1 * t29) - t15;
+    const ariane4_free_real_t t31 = t30 * t16;
+    const ariane4_free_real_t t32 = parameters[ZZ2R] + (t14 + t28) + parameters[IA2] * (t25 * t25)
+        + t30 * t31;
+    const ariane4_free_real_t t33 = ARIANE4_FREE_C(-0.443) * t27 - t14 + t30 * t17;
+    const ariane4_free_real_t t34 = ARIANE4_FREE_C(-1.0) / t18;
+    const ariane4_free_real_t t35 = t33 * t34;
+    const ariane4_free_real_t t36 = t32 + t33 * t35;
+    if (!(t36 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t152 = ARIANE4_FREE_C(1.0) / t151;
-    const ariane4_free_real_t t153 = t148 * t152;
-    const ariane4_free_real_t t154 = parameters[ZZ4] + t122;
-    const ariane4_free_real_t t155 = parameters[XX3R] + t121;
-    const ariane4_free_real_t t156 = parameters[XY3R] + t90;
-    const ariane4_free_real_t t157 = t23 * (t154 - t155) + t156 * (ARIANE4_FREE_C(2.0) * t24);
-    const ariane4_free_real_t t158 = t23 * t157;
-    const ariane4_free_real_t t159 = parameters[XX2R] + (t154 - t158);
-    const ariane4_free_real_t t160 = t23 * parameters[MY3R] + t24 * t142;
-    const ariane4_free_real_t t161 = (parameters[XY2] + (t156 - t24 * t157
-        + ARIANE4_FREE_C(-0.443) * t160)) * (ARIANE4_FREE_C(2.0) * t12);
-    const ariane4_free_real_t t162 = t13 * (t13 * (t155 + t158 + t149 - t159) + t161);
-    const ariane4_free_real_t t163 = ARIANE4_FREE_C(0.232) * (t13 * (parameters[MX2R] + t143)
-        - t12 * (parameters[MY2] + t160));
-    const ariane4_free_real_t t164 = parameters[ZZ1R] + (t159 + t162 + t163) + parameters[IA1] * (t6 * t6);
-    const ariane4_free_real_t t165 = t164 + t94 * t97 + t120 * t126 - t148 * t153;
-    if (!(t165 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t37 = parameters[ZZ4] + t13;
+    const ariane4_free_real_t t38 = parameters[XX3R] + t11;
+    const ariane4_free_real_t t39 = t8 * parameters[XZ4R] - t9 * parameters[YZ4R];
+    const ariane4_free_real_t t40 = parameters[XY3R] + t39;
+    const ariane4_free_real_t t41 = t2 * (t37 - t38) + t40 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t42 = t2 * t41;
+    const ariane4_free_real_t t43 = parameters[XX2R] + (t37 - t42);
+    const ariane4_free_real_t t44 = t2 * parameters[MY3R] + t1 * t26;
+    const ariane4_free_real_t t45 = (parameters[XY2] + (t40 - t1 * t41
+        + ARIANE4_FREE_C(-0.443) * t44)) * (ARIANE4_FREE_C(2.0) * t19);
+    const ariane4_free_real_t t46 = t20 * (t20 * (t38 + t42 + t28 - t43) + t45);
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(0.232) * (t20 * (parameters[MX2R] + t27)
+        - t19 * (parameters[MY2] + t44));
+    const ariane4_free_real_t t50 = ARIANE4_FREE_C(-0.28217402066925895) * t48
+        + ARIANE4_FREE_C(0.9593632378089879) * t49;
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.28217402066925895) * t49
+        + ARIANE4_FREE_C(0.9593632378089879) * t48;
+    const ariane4_free_real_t t52 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t51
+        + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t53 = ARIANE4_FREE_C(-1.0) / t52;
+    const ariane4_free_real_t t54 = t50 * (ARIANE4_FREE_C(3885.523436256565) * t53);
+    const ariane4_free_real_t t55 = parameters[ZZ1R] + (t43 + t46 + t47) + parameters[IA1] * (t54 * t54);
+    const ariane4_free_real_t t56 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t12;
+    const ariane4_free_real_t t57 = t20 * (ARIANE4_FREE_C(0.443) * t12 - (t1 * t39 + t2 * t56));
+    const ariane4_free_real_t t58 = t19 * (t1 * t56 - t2 * t39) + t57 + ARIANE4_FREE_C(0.116) * t12;
+    const ariane4_free_real_t t59 = t58 * t16;
+    const ariane4_free_real_t t60 = parameters[XY4] + t9 * t10 + ARIANE4_FREE_C(0.1) * t29 - parameters[XZ3];
+    const ariane4_free_real_t t61 = parameters[YZ3] - t15;
+    const ariane4_free_real_t t62 = t2 * t60 + t1 * t61;
+    const ariane4_free_real_t t63 = t1 * t60 - t2 * t61;
+    const ariane4_free_real_t t64 = t58 * t17 - (t19 * t62 + t20 * t63);
+    const ariane4_free_real_t t65 = t64 * t34;
+    const ariane4_free_real_t t66 = t19 * (t62 + ARIANE4_FREE_C(-0.443) * t29 - parameters[XZ2R]) + t20 * (t63
+        - parameters[YZ2]);
+    const ariane4_free_real_t t67 = t66 + t58 * t31 + t64 * t35;
+    const ariane4_free_real_t t68 = ARIANE4_FREE_C(1.0) / t36;
+    const ariane4_free_real_t t69 = t67 * t68;
+    const ariane4_free_real_t t70 = t55 + t58 * t59 + t64 * t65 - t67 * t69;
+    if (!(t70 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t166 = ARIANE4_FREE_C(1.0) / t165;
-    const ariane4_free_real_t t167 = (t98 - t113 * t126 + t146 * t153) * t166;
+    const ariane4_free_real_t t71 = t19 * dq[0];
+    const ariane4_free_real_t t72 = t20 * dq[0];
+    const ariane4_free_real_t t73 = t2 * t71 + t1 * t72;
+    const ariane4_free_real_t t74 = t2 * t72 - t1 * t71;
+    const ariane4_free_real_t t75 = t73 * t74;
+    const ariane4_free_real_t t76 = dq[1] + dq[2];
+    const ariane4_free_real_t t77 = t74 * t76;
+    const ariane4_free_real_t t78 = ARIANE4_FREE_C(2.0) * t77;
+    const ariane4_free_real_t t79 = t9 * t75 + t8 * t78;
+    const ariane4_free_real_t t80 = t9 * t73 + t8 * t76;
+    const ariane4_free_real_t t81 = dq[3] + t74;
+    const ariane4_free_real_t t82 = t80 * t81;
+    const ariane4_free_real_t t83 = t79 - t82;
+    const ariane4_free_real_t t84 = t9 * t78 - t8 * t75;
+    const ariane4_free_real_t t85 = t8 * t73 - t9 * t76;
+    const ariane4_free_real_t t86 = t85 * t81;
+    const ariane4_free_real_t t87 = t86 + (t84 + t86);
+    const ariane4_free_real_t t88 = t85 * t80;
+    const ariane4_free_real_t t89 = t73 * t76;
+    const ariane4_free_real_t t90 = t89 + t88;
+    const ariane4_free_real_t t91 = parameters[ZZ4] * t82 - parameters[XX4R] * t83 + parameters[XY4] * t87
+        + parameters[XZ4R] * t90;
+    const ariane4_free_real_t t92 = t80 * t80;
+    const ariane4_free_real_t t93 = t81 * t81;
+    const ariane4_free_real_t t94 = dq[0] * dq[0];
+    const ariane4_free_real_t t95 = ARIANE4_FREE_C(-0.116) * t94;
+    const ariane4_free_real_t t96 = t20 * t95 + ARIANE4_FREE_C(9.81) * t19;
+    const ariane4_free_real_t t97 = t72 * t72;
+    const ariane4_free_real_t t98 = dq[1] * dq[1];
+    const ariane4_free_real_t t99 = t96 + ARIANE4_FREE_C(-0.443) * (t98 + t97);
+    const ariane4_free_real_t t100 = t19 * t95 + ARIANE4_FREE_C(-9.81) * t20;
+    const ariane4_free_real_t t101 = t71 * t72;
+    const ariane4_free_real_t t102 = t100 + ARIANE4_FREE_C(-0.443) * t101;
+    const ariane4_free_real_t t103 = t1 * t99 + t2 * t102;
+    const ariane4_free_real_t t104 = t103 + ARIANE4_FREE_C(0.1) * t75;
+    const ariane4_free_real_t t105 = t91 + parameters[YZ4R] * (t93 - t92) + parameters[MY4] * t104;
+    const ariane4_free_real_t t106 = t83 - t82;
+    const ariane4_free_real_t t107 = t88 - t89;
+    const ariane4_free_real_t t108 = t86 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t106
+        + parameters[YZ4R] * t107;
+    const ariane4_free_real_t t109 = t85 * t85;
+    const ariane4_free_real_t t110 = t108 + parameters[XZ4R] * (t93 - t109) + parameters[MX4] * t104;
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(2.0) * t89;
+    const ariane4_free_real_t t112 = parameters[XY3R] * t111 - (parameters[XX3R] * t77
+        + parameters[ZZ3R] * t77) - parameters[XZ3] * t75;
+    const ariane4_free_real_t t113 = t74 * t74;
+    const ariane4_free_real_t t114 = t76 * t76;
+    const ariane4_free_real_t t115 = dq[1] * t71;
+    const ariane4_free_real_t t116 = ARIANE4_FREE_C(-0.886) * t115;
+    const ariane4_free_real_t t117 = t112 + parameters[YZ3] * (t114 - t113) + parameters[MY3R] * t116
+        + (t8 * t105 + t9 * t110);
+    const ariane4_free_real_t t118 = parameters[ZZ4] * t89 - parameters[XX4R] * t88 + parameters[YZ4R] * t84
+        - parameters[XZ4R] * t79;
+    const ariane4_free_real_t t119 = t1 * t102 - t2 * t99;
+    const ariane4_free_real_t t120 = t113 + t114;
+    const ariane4_free_real_t t121 = t119 - ARIANE4_FREE_C(0.1) * t120;
+    const ariane4_free_real_t t122 = t116 + ARIANE4_FREE_C(0.2) * t89;
+    const ariane4_free_real_t t123 = parameters[MX4] * (t9 * t121 + t8 * t122) + parameters[MY4] * (t8 * t121
+        - t9 * t122);
+    const ariane4_free_real_t t124 = t118 - parameters[XY4] * (t109 - t92) - t123;
+    const ariane4_free_real_t t125 = parameters[MX4] * (t92 + t93) + parameters[MY4] * t107;
+    const ariane4_free_real_t t126 = parameters[MX4] * t90 + parameters[MY4] * (t109 + t93);
+    const ariane4_free_real_t t127 = t9 * t125 + t8 * t126;
+    const ariane4_free_real_t t128 = t89 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t78
+        - parameters[YZ3] * t75;
+    const ariane4_free_real_t t129 = t73 * t73;
+    const ariane4_free_real_t t130 = t128 - parameters[XZ3] * (t129 - t114) + parameters[MX3R] * t116 - (t124
+        - ARIANE4_FREE_C(0.1) * t127);
+    const ariane4_free_real_t t131 = dq[1] * t72;
+    const ariane4_free_real_t t132 = ARIANE4_FREE_C(2.0) * t115;
+    const ariane4_free_real_t t133 = parameters[XY2] * t132 - (parameters[XX2R] * t131
+        + parameters[ZZ2R] * t131) - parameters[XZ2R] * t101;
+    const ariane4_free_real_t t134 = t133 + parameters[YZ2] * (t98 - t97) + (t2 * t117 + t1 * t130);
+    const ariane4_free_real_t t135 = parameters[MX3R] * t111 + parameters[MY3R] * t78 + t127;
+    const ariane4_free_real_t t136 = ARIANE4_FREE_C(2.0) * t131;
+    const ariane4_free_real_t t137 = t115 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t136
+        + parameters[YZ2] * t101;
+    const ariane4_free_real_t t138 = t71 * t71;
+    const ariane4_free_real_t t139 = t137 + parameters[XZ2R] * (t138 - t98) + (t1 * t117 - t2 * t130
+        + ARIANE4_FREE_C(0.443) * t135);
+    const ariane4_free_real_t t140 = t19 * t134 + t20 * t139
+        + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t132 + parameters[MY2] * t136 + t135);
+    const ariane4_free_real_t t141 = t54 * dq[0];
+    const ariane4_free_real_t t142 = ariane4_free_sign(t141);
+    const ariane4_free_real_t t143 = ARIANE4_FREE_C(-3885.523436256565) * t51
+        + ARIANE4_FREE_C(-72.7913960548305) * (t53 * t53) * (t50 * t50);
+    const ariane4_free_real_t t144 = t54 * (parameters[FV1] * t141) + t54 * (parameters[FC1] * t142)
+        + t54 * (parameters[IA1] * (t53 * t143 * t94));
+    const ariane4_free_real_t t145 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t
+        t146 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3]))
+        + ARIANE4_FREE_C(1.0e2) * (parameters[FC4] * t145);
+    const ariane4_free_real_t t147 = ARIANE4_FREE_C(5.0) * input[3] - (t146 - t124);
+    const ariane4_free_real_t t148 = input[0] * (ARIANE4_FREE_C(-0.004) * t54) + (t140 - t144) - t147 * t59;
+    const ariane4_free_real_t t149 = parameters[MX4] * t87 + parameters[MY4] * t106;
+    const ariane4_free_real_t t150 = parameters[XY3R] * (t129 - t113) - parameters[XX3R] * t75
+        + (parameters[MY3R] * t119 - parameters[MX3R] * t103);
+    const ariane4_free_real_t t151 = t150 + (t9 * t105 - t8 * t110 - ARIANE4_FREE_C(0.1) * t149);
+    const ariane4_free_real_t t152 = t7 * dq[2];
+    const ariane4_free_real_t t153 = ariane4_free_sign(t152);
+    const ariane4_free_real_t t154 = ARIANE4_FREE_C(7124.375926654358) * t4
+        + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
+    const ariane4_free_real_t t155 = t7 * (parameters[FV3] * t152) + t7 * (parameters[FC3] * t153)
+        + t7 * (parameters[IA3] * (t6 * t154 * (dq[2] * dq[2])));
+    const ariane4_free_real_t t156 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t155 + t151) + t147 * t17;
+    const ariane4_free_real_t t157 = parameters[MX3R] * t120 - parameters[MY3R] * t75 + (t8 * t125
+        - t9 * t126);
+    const ariane4_free_real_t t158 = t2 * (parameters[MY3R] * (t129 + t114) - parameters[MX3R] * t75 - t149);
+    const ariane4_free_real_t t159 = parameters[XX2R] * t101 - parameters[XY2] * (t138 - t97)
+        + (parameters[MX2R] * t100 + parameters[MY2] * t96);
+    const ariane4_free_real_t t160 = t25 * dq[1];
+    const ariane4_free_real_t t161 = ariane4_free_sign(t160);
+    const ariane4_free_real_t t162 = ARIANE4_FREE_C(-2656.3065671641784) * t22
+        - ARIANE4_FREE_C(104.12987373940295) * (t24 * t24) * (t21 * t21);
+    const ariane4_free_real_t t163 = t25 * (parameters[FV2] * t160) + t25 * (parameters[FC2] * t161)
+        + t25 * (parameters[IA2] * (t24 * t162 * t98));
+    const ariane4_free_real_t t164 = t163 - (t159 - (t151 - ARIANE4_FREE_C(0.443) * (t1 * t157 + t158)));
+    const ariane4_free_real_t t165 = input[1] * (ARIANE4_FREE_C(0.012) * t25) - t164 + t147 * t31
+        + t156 * t35;
+    const ariane4_free_real_t t166 = ARIANE4_FREE_C(1.0) / t70;
+    const ariane4_free_real_t t167 = (t148 - t156 * t65 + t165 * t69) * t166;
     out[0] = t167;
     if (!(t167 >= ARIANE4_FREE_C(-1.0e15) && t167 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t168 = t146 * t152 + t153 * t167;
+    const ariane4_free_real_t t168 = t165 * t68 + t69 * t167;
     out[1] = t168;
     if (!(t168 >= ARIANE4_FREE_C(-1.0e15) && t168 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t169 = t113 * t125 + t126 * t167 - t145 * t168;
+    const ariane4_free_real_t t169 = t156 * t34 + t65 * t167 - t35 * t168;
     out[2] = t169;
     if (!(t169 >= ARIANE4_FREE_C(-1.0e15) && t169 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t170 = t141 * t168 - (t89 * t96 + t97 * t167) - t112 * t169;
+    const ariane4_free_real_t t170 = t31 * t168 - (t147 * t16 + t59 * t167) - t17 * t169;
     out[3] = t170;
     if (!(t170 >= ARIANE4_FREE_C(-1.0e15) && t170 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);

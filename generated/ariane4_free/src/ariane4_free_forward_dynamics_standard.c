@@ -78,7 +78,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -110,282 +110,280 @@ int ariane4_free_forward_dynamics_standard(
         return status;
     }
 
-    ariane4_free_real_t t0, t1;
-    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
-    ariane4_free_real_t t12, t13;
-    ARIANE4_FREE_SINCOS(q[1], &t12, &t13);
-    ariane4_free_real_t t28, t26;
-    ARIANE4_FREE_SINCOS(q[2], &t28, &t26);
-    ariane4_free_real_t t45, t44;
-    ARIANE4_FREE_SINCOS(q[3], &t45, &t44);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t3
-        + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-1.0) / t4;
-    const ariane4_free_real_t t6 = t2 * (ARIANE4_FREE_C(3885.523436256565) * t5);
-    const ariane4_free_real_t t7 = t6 * dq[0];
-    const ariane4_free_real_t t8 = ariane4_free_sign(t7);
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-3885.523436256565) * t3
-        + ARIANE4_FREE_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_free_real_t t10 = dq[0] * dq[0];
-    const ariane4_free_real_t t11 = t6 * (t7 * parameters[FV1]) + t6 * (t8 * parameters[FC1])
-        + t6 * (t5 * t9 * t10 * parameters[IA1]);
-    const ariane4_free_real_t t14 = t13 * dq[0];
-    const ariane4_free_real_t t15 = dq[1] * t14;
-    const ariane4_free_real_t t16 = t12 * dq[0];
-    const ariane4_free_real_t t17 = dq[1] * t16;
-    const ariane4_free_real_t t18 = ARIANE4_FREE_C(2.0) * t17;
-    const ariane4_free_real_t t19 = t15 * (parameters[YY2] - parameters[ZZ2]) - t15 * parameters[XX2]
-        + t18 * parameters[XY2];
-    const ariane4_free_real_t t20 = t16 * t14;
-    const ariane4_free_real_t t21 = t14 * t14;
-    const ariane4_free_real_t t22 = dq[1] * dq[1];
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(-0.116) * t10;
-    const ariane4_free_real_t t24 = t12 * t23 + ARIANE4_FREE_C(-9.81) * t13;
-    const ariane4_free_real_t t25 = t19 - t20 * parameters[XZ2] + (t22 - t21) * parameters[YZ2]
-        - t24 * parameters[MZ2];
-    const ariane4_free_real_t t27 = dq[1] + dq[2];
-    const ariane4_free_real_t t29 = t26 * t14 - t28 * t16;
-    const ariane4_free_real_t t30 = t27 * t29;
-    const ariane4_free_real_t t31 = t26 * t16 + t28 * t14;
-    const ariane4_free_real_t t32 = t27 * t31;
-    const ariane4_free_real_t t33 = ARIANE4_FREE_C(2.0) * t32;
-    const ariane4_free_real_t t34 = parameters[XY3] * t33 - (parameters[XX3] * t30 + t30 * (parameters[ZZ3]
-        - parameters[YY3]));
-    const ariane4_free_real_t t35 = t31 * t29;
-    const ariane4_free_real_t t36 = t27 * t27;
-    const ariane4_free_real_t t37 = t29 * t29;
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.886) * t17;
-    const ariane4_free_real_t t39 = t13 * t23 + ARIANE4_FREE_C(9.81) * t12;
-    const ariane4_free_real_t t40 = t39 + ARIANE4_FREE_C(-0.443) * (t21 + t22);
-    const ariane4_free_real_t t41 = t24 + ARIANE4_FREE_C(-0.443) * t20;
-    const ariane4_free_real_t t42 = t28 * t40 + t26 * t41;
-    const ariane4_free_real_t t43 = t34 - parameters[XZ3] * t35 + parameters[YZ3] * (t36 - t37)
-        - (parameters[MY3] * t38 + parameters[MZ3] * t42);
-    const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t30;
-    const ariane4_free_real_t t47 = t45 * t35 + t44 * t46;
-    const ariane4_free_real_t t48 = t44 * t27 + t45 * t31;
-    const ariane4_free_real_t t49 = dq[3] + t29;
-    const ariane4_free_real_t t50 = t48 * t49;
-    const ariane4_free_real_t t51 = t47 - t50;
-    const ariane4_free_real_t t52 = t44 * t31 - t45 * t27;
-    const ariane4_free_real_t t53 = t52 * t49;
-    const ariane4_free_real_t t54 = t45 * t46 - t44 * t35;
-    const ariane4_free_real_t t55 = t54 + t53;
-    const ariane4_free_real_t t56 = t53 + t55;
-    const ariane4_free_real_t t57 = t50 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t51
-        + parameters[XY4] * t56;
-    const ariane4_free_real_t t58 = t52 * t48;
-    const ariane4_free_real_t t59 = t32 + t58;
-    const ariane4_free_real_t t60 = t48 * t48;
-    const ariane4_free_real_t t61 = t49 * t49;
-    const ariane4_free_real_t t62 = t31 * t31;
-    const ariane4_free_real_t t63 = t36 + t62;
-    const ariane4_free_real_t t64 = t42 + (ARIANE4_FREE_C(0.1) * t35 + ARIANE4_FREE_C(0.436) * t63);
-    const ariane4_free_real_t t65 = t28 * t41 - t26 * t40;
-    const ariane4_free_real_t t66 = t36 + t37;
-    const ariane4_free_real_t t67 = t65 - (ARIANE4_FREE_C(0.1) * t66 - ARIANE4_FREE_C(-0.436) * t35);
-    const ariane4_free_real_t t68 = t38 - (ARIANE4_FREE_C(0.2) * t32 + ARIANE4_FREE_C(-0.872) * t30);
-    const ariane4_free_real_t t69 = t45 * t67 - t44 * t68;
-    const ariane4_free_real_t t70 = t57 + parameters[XZ4] * t59 + parameters[YZ4] * (t61 - t60)
-        + (parameters[MY4] * t64 + parameters[MZ4] * t69);
-    const ariane4_free_real_t t71 = t51 - t50;
-    const ariane4_free_real_t t72 = parameters[XY4] * t71 - (parameters[YY4] * t55 + t53 * (parameters[ZZ4]
-        - parameters[XX4]));
-    const ariane4_free_real_t t73 = t58 - t32;
-    const ariane4_free_real_t t74 = t52 * t52;
-    const ariane4_free_real_t t75 = t44 * t67 + t45 * t68;
-    const ariane4_free_real_t t76 = t72 + parameters[YZ4] * t73 + parameters[XZ4] * (t61 - t74)
-        + (parameters[MX4] * t64 - parameters[MZ4] * t75);
-    const ariane4_free_real_t t77 = parameters[MX4] * (t60 + t61) + parameters[MY4] * t73
-        + parameters[MZ4] * t54;
-    const ariane4_free_real_t t78 = parameters[M4] * t75 + t77;
-    const ariane4_free_real_t t79 = parameters[MX4] * t59 + parameters[MY4] * (t74 + t61)
-        + parameters[MZ4] * t47;
-    const ariane4_free_real_t t80 = t79 - parameters[M4] * t69;
-    const ariane4_free_real_t t81 = t45 * t78 + t44 * t80;
-    const ariane4_free_real_t t82 = t43 + (t44 * t70 + t45 * t76 + ARIANE4_FREE_C(-0.436) * t81);
-    const ariane4_free_real_t t83 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t46;
-    const ariane4_free_real_t t84 = t83 + parameters[YZ3] * t35 - parameters[XZ3] * (t36 - t62)
-        + (parameters[MZ3] * t65 + parameters[MX3] * t38);
-    const ariane4_free_real_t t85 = parameters[XX4] - parameters[YY4];
-    const ariane4_free_real_t t86 = parameters[ZZ4] * t32 - t85 * t58 + parameters[YZ4] * t54
-        - parameters[XZ4] * t47;
-    const ariane4_free_real_t t87 = t86 - parameters[XY4] * (t74 - t60) - (parameters[MX4] * t69
-        + parameters[MY4] * t75);
-    const ariane4_free_real_t t88 = t84 + (t87 - ARIANE4_FREE_C(0.1) * t81);
-    const ariane4_free_real_t t89 = ARIANE4_FREE_C(2.0) * t15;
-    const ariane4_free_real_t t90 = t17 * parameters[YY2] + t17 * (parameters[ZZ2] - parameters[XX2])
-        - t89 * parameters[XY2];
-    const ariane4_free_real_t t91 = t16 * t16;
-    const ariane4_free_real_t t92 = t90 + t20 * parameters[YZ2] + (t91 - t22) * parameters[XZ2]
-        - t39 * parameters[MZ2];
-    const ariane4_free_real_t t93 = parameters[MX3] * t33 + parameters[MY3] * t46 - parameters[MZ3] * (t62
-        + t37);
-    const ariane4_free_real_t t94 = parameters[M3] * t38 + t93 + t81;
-    const ariane4_free_real_t t95 = t92 + (t28 * t82 + t26 * t88 + ARIANE4_FREE_C(0.443) * t94);
-    const ariane4_free_real_t t96 = t12 * (t25 + (t26 * t82 - t28 * t88)) + t13 * t95;
-    const ariane4_free_real_t t97 = t18 * parameters[MX2] + t89 * parameters[MY2] - (t91
-        + t21) * parameters[MZ2];
-    const ariane4_free_real_t t98 = input[0] * (ARIANE4_FREE_C(-0.004) * t6) + (t96
-        + ARIANE4_FREE_C(0.116) * (t97 + t94) - t11);
-    const ariane4_free_real_t t99 = ariane4_free_sign(dq[3]);
-    const ariane4_free_real_t t100 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4])
-        + ARIANE4_FREE_C(1.0e2) * (t99 * parameters[FC4]);
-    const ariane4_free_real_t t101 = ARIANE4_FREE_C(5.0) * input[3] - (t100 - t87);
-    const ariane4_free_real_t t102 = t44 * parameters[XZ4] - t45 * parameters[YZ4];
-    const ariane4_free_real_t t103 = t45 * parameters[MY4] - t44 * parameters[MX4];
-    const ariane4_free_real_t t104 = ARIANE4_FREE_C(-0.436) * t103 - t102;
-    const ariane4_free_real_t t105 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t103;
-    const ariane4_free_real_t t106 = t13 * (t28 * t104 - t26 * t105 + ARIANE4_FREE_C(0.443) * t103);
-    const ariane4_free_real_t t107 = t12 * (t26 * t104 + t28 * t105) + t106 + ARIANE4_FREE_C(0.116) * t103;
-    const ariane4_free_real_t t108 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
-    if (!(t108 > ARIANE4_FREE_C(1.0e-9))) {
+    ariane4_free_real_t t57, t58;
+    ARIANE4_FREE_SINCOS(q[0], &t57, &t58);
+    ariane4_free_real_t t24, t25;
+    ARIANE4_FREE_SINCOS(q[1], &t24, &t25);
+    ariane4_free_real_t t1, t2;
+    ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
+    ariane4_free_real_t t8, t9;
+    ARIANE4_FREE_SINCOS(q[3], &t8, &t9);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    if (!(t0 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t109 = ARIANE4_FREE_C(-1.0) / t108;
-    const ariane4_free_real_t t110 = t107 * t109;
-    const ariane4_free_real_t t111 = ARIANE4_FREE_C(0.06366143813161289) * t28
-        + ARIANE4_FREE_C(0.9979715533496006) * t26;
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.06366143813161289) * t26
-        + ARIANE4_FREE_C(-0.9979715533496006) * t28;
-    const ariane4_free_real_t t113 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t112
+    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
+        + ARIANE4_FREE_C(0.9979715533496006) * t2;
+    const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
+        + ARIANE4_FREE_C(-0.9979715533496006) * t1;
+    const ariane4_free_real_t t5 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t4
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t114 = ARIANE4_FREE_C(1.0) / t113;
-    const ariane4_free_real_t t115 = t111 * (ARIANE4_FREE_C(7124.375926654358) * t114);
-    const ariane4_free_real_t t116 = t115 * dq[2];
-    const ariane4_free_real_t t117 = ariane4_free_sign(t116);
-    const ariane4_free_real_t t118 = ARIANE4_FREE_C(7124.375926654358) * t112
-        + ARIANE4_FREE_C(188.12627071923498) * (t114 * t114) * (t111 * t111);
-    const ariane4_free_real_t t119 = t115 * (t116 * parameters[FV3]) + t115 * (t117 * parameters[FC3])
-        + t115 * (t114 * t118 * (dq[2] * dq[2]) * parameters[IA3]);
-    const ariane4_free_real_t t120 = parameters[XY3] * (t62 - t37) - t35 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MY3] * t65 - parameters[MX3] * t42);
-    const ariane4_free_real_t t121 = parameters[MZ4] * (t74 + t60) - (parameters[MX4] * t56
-        + parameters[MY4] * t71);
-    const ariane4_free_real_t t122 = parameters[M4] * t64 + t121;
-    const ariane4_free_real_t t123 = t44 * t78 - t45 * t80;
-    const ariane4_free_real_t t124 = t45 * t70 - t44 * t76 - (ARIANE4_FREE_C(-0.1) * t122
-        - ARIANE4_FREE_C(0.436) * t123);
-    const ariane4_free_real_t t125 = t120 + t124;
-    const ariane4_free_real_t t126 = t44 * parameters[MY4] + t45 * parameters[MX4];
-    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.436) * t126 - (t45 * parameters[XZ4]
-        + t44 * parameters[YZ4]);
-    const ariane4_free_real_t t128 = t127 * t109;
-    const ariane4_free_real_t t129 = input[2] * (ARIANE4_FREE_C(0.003) * t115) + (t119 + t125) - t101 * t128;
-    const ariane4_free_real_t t130 = t44 * t85 + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t45);
-    const ariane4_free_real_t t131 = parameters[XY4] + t45 * t130 + ARIANE4_FREE_C(0.1) * t126
-        - parameters[XZ3];
-    const ariane4_free_real_t t132 = parameters[YZ3] + t127;
-    const ariane4_free_real_t t133 = t26 * t131 + t28 * t132;
-    const ariane4_free_real_t t134 = t28 * t131 - t26 * t132;
-    const ariane4_free_real_t t135 = t12 * t133 + t13 * t134 + t107 * t128;
-    const ariane4_free_real_t t136 = t44 * t130;
-    const ariane4_free_real_t t137 = ARIANE4_FREE_C(0.1) * parameters[M4];
-    const ariane4_free_real_t t138 = ARIANE4_FREE_C(0.1) * (t137 + ARIANE4_FREE_C(2.0) * t103);
-    const ariane4_free_real_t t139 = ARIANE4_FREE_C(0.436) * parameters[M4];
-    const ariane4_free_real_t t140 = ARIANE4_FREE_C(0.436) * (t139 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
-    const ariane4_free_real_t t141 = parameters[ZZ3] + (parameters[XX4] - t136 + (t138 + t140));
-    const ariane4_free_real_t t142 = t141 + parameters[IA3] * (t115 * t115) + t127 * t128;
-    if (!(t142 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
+    const ariane4_free_real_t t7 = t3 * (ARIANE4_FREE_C(7124.375926654358) * t6);
+    const ariane4_free_real_t t10 = t8 * parameters[MY4] - t9 * parameters[MX4];
+    const ariane4_free_real_t t11 = ARIANE4_FREE_C(0.1) * parameters[M4];
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.1) * (t11 + ARIANE4_FREE_C(2.0) * t10);
+    const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.436) * parameters[M4];
+    const ariane4_free_real_t t14 = ARIANE4_FREE_C(0.436) * (t13 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
+    const ariane4_free_real_t t15 = parameters[XX4] - parameters[YY4];
+    const ariane4_free_real_t t16 = t9 * t15 + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t8);
+    const ariane4_free_real_t t17 = t9 * t16;
+    const ariane4_free_real_t t18 = parameters[ZZ3] + (parameters[XX4] - t17 + (t12 + t14));
+    const ariane4_free_real_t t19 = t9 * parameters[MY4] + t8 * parameters[MX4];
+    const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.436) * t19 - (t8 * parameters[XZ4]
+        + t9 * parameters[YZ4]);
+    const ariane4_free_real_t t21 = ARIANE4_FREE_C(-1.0) / t0;
+    const ariane4_free_real_t t22 = t20 * t21;
+    const ariane4_free_real_t t23 = t18 + parameters[IA3] * (t7 * t7) + t20 * t22;
+    if (!(t23 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t143 = ARIANE4_FREE_C(-1.0) / t142;
-    const ariane4_free_real_t t144 = t135 * t143;
-    const ariane4_free_real_t t145 = ARIANE4_FREE_C(0.8305958991958126) * t12
-        + ARIANE4_FREE_C(0.5568756164881881) * t13;
-    const ariane4_free_real_t t146 = ARIANE4_FREE_C(-0.8305958991958126) * t13
-        + ARIANE4_FREE_C(0.5568756164881881) * t12;
-    const ariane4_free_real_t t147 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t146
+    const ariane4_free_real_t t26 = ARIANE4_FREE_C(0.8305958991958126) * t24
+        + ARIANE4_FREE_C(0.5568756164881881) * t25;
+    const ariane4_free_real_t t27 = ARIANE4_FREE_C(-0.8305958991958126) * t25
+        + ARIANE4_FREE_C(0.5568756164881881) * t24;
+    const ariane4_free_real_t t28 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t27
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t148 = ARIANE4_FREE_C(1.0) / t147;
-    const ariane4_free_real_t t149 = t145 * (ARIANE4_FREE_C(2656.3065671641784) * t148);
-    const ariane4_free_real_t t150 = t149 * dq[1];
-    const ariane4_free_real_t t151 = ariane4_free_sign(t150);
-    const ariane4_free_real_t t152 = ARIANE4_FREE_C(-2656.3065671641784) * t146
-        - ARIANE4_FREE_C(104.12987373940295) * (t148 * t148) * (t145 * t145);
-    const ariane4_free_real_t t153 = t149 * (t150 * parameters[FV2]) + t149 * (t151 * parameters[FC2])
-        + t149 * (t148 * t152 * t22 * parameters[IA2]);
-    const ariane4_free_real_t t154 = t20 * (parameters[XX2] - parameters[YY2]) - (t91 - t21) * parameters[XY2]
-        + (t24 * parameters[MX2] + t39 * parameters[MY2]);
-    const ariane4_free_real_t t155 = parameters[M3] * t65 + (parameters[MX3] * t66 - parameters[MY3] * t35)
-        + t123;
-    const ariane4_free_real_t t156 = parameters[M3] * t42 + (parameters[MY3] * t63 - parameters[MX3] * t35)
-        + t122;
-    const ariane4_free_real_t t157 = t154 - (t125 - ARIANE4_FREE_C(0.443) * (t28 * t155 + t26 * t156));
-    const ariane4_free_real_t t158 = t127 + ARIANE4_FREE_C(-0.443) * (t28 * t126);
-    const ariane4_free_real_t t159 = t158 * t109;
-    const ariane4_free_real_t t160 = ARIANE4_FREE_C(0.012) * t149 * input[1] - (t153 - t157) + t101 * t159;
-    const ariane4_free_real_t t161 = parameters[MY3] + (parameters[MZ4] + t139);
-    const ariane4_free_real_t t162 = t103 + t137;
-    const ariane4_free_real_t t163 = parameters[MX3] - t162;
-    const ariane4_free_real_t t164 = t26 * t163 - t28 * t161;
-    const ariane4_free_real_t t165 = ARIANE4_FREE_C(-0.443) * t164 - t141 - t158 * t128;
-    const ariane4_free_real_t t166 = t165 * t143;
-    const ariane4_free_real_t t167 = t160 + t129 * t166;
-    const ariane4_free_real_t t168 = t12 * (t133 + ARIANE4_FREE_C(0.443) * (parameters[MZ3] - t126)
-        - parameters[XZ2]) + t13 * (t134 - parameters[YZ2]);
-    const ariane4_free_real_t t169 = t168 + t107 * t159 - t135 * t166;
-    const ariane4_free_real_t t170 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t171 = ARIANE4_FREE_C(0.443) * t170;
-    const ariane4_free_real_t t172 = ARIANE4_FREE_C(0.443) * (t171 + ARIANE4_FREE_C(2.0) * t164);
-    const ariane4_free_real_t t173 = parameters[ZZ2] + (t141 + t172) + parameters[IA2] * (t149 * t149)
-        + t158 * t159;
-    const ariane4_free_real_t t174 = t173 + t165 * t166;
-    if (!(t174 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t29 = ARIANE4_FREE_C(1.0) / t28;
+    const ariane4_free_real_t t30 = t26 * (ARIANE4_FREE_C(2656.3065671641784) * t29);
+    const ariane4_free_real_t t31 = t10 + t11;
+    const ariane4_free_real_t t32 = parameters[MX3] - t31;
+    const ariane4_free_real_t t33 = parameters[MY3] + (parameters[MZ4] + t13);
+    const ariane4_free_real_t t34 = t2 * t32 - t1 * t33;
+    const ariane4_free_real_t t35 = parameters[M3] + parameters[M4];
+    const ariane4_free_real_t t36 = ARIANE4_FREE_C(0.443) * t35;
+    const ariane4_free_real_t t37 = ARIANE4_FREE_C(0.443) * (t36 + ARIANE4_FREE_C(2.0) * t34);
+    const ariane4_free_real_t t38 = t20 + ARIANE4_FREE_C(-0.443) * (t1 * t19);
+    const ariane4_free_real_t t39 = t38 * t21;
+    const ariane4_free_real_t t40 = parameters[ZZ2] + (t18 + t37) + parameters[IA2] * (t30 * t30) + t38 * t39;
+    const ariane4_free_real_t t41 = ARIANE4_FREE_C(-1.0) / t23;
+    const ariane4_free_real_t t42 = ARIANE4_FREE_C(-0.443) * t34 - t18 - t38 * t22;
+    const ariane4_free_real_t t43 = t42 * t41;
+    const ariane4_free_real_t t44 = t40 + t42 * t43;
+    if (!(t44 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(1.0) / t174;
-    const ariane4_free_real_t t176 = t169 * t175;
-    const ariane4_free_real_t t177 = t98 - t101 * t110 + t129 * t144 + t167 * t176;
-    const ariane4_free_real_t t178 = parameters[YY3] + (parameters[ZZ4] + t138);
-    const ariane4_free_real_t t179 = parameters[XX3] + (parameters[YY4] + t136 + t140);
-    const ariane4_free_real_t t180 = parameters[XY3] + (t102 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
-        + ARIANE4_FREE_C(0.436) * t162));
-    const ariane4_free_real_t t181 = t26 * (t179 - t178) - t180 * (ARIANE4_FREE_C(2.0) * t28);
-    const ariane4_free_real_t t182 = t26 * t181;
-    const ariane4_free_real_t t183 = parameters[XX2] + (t178 + t182);
-    const ariane4_free_real_t t184 = t26 * t161 + t28 * t163;
-    const ariane4_free_real_t t185 = (parameters[XY2] + (t180 + t28 * t181
-        + ARIANE4_FREE_C(-0.443) * t184)) * (ARIANE4_FREE_C(2.0) * t12);
-    const ariane4_free_real_t t186 = t13 * (parameters[YY2] + (t179 - t182 + t172) - t183) + t185;
-    const ariane4_free_real_t t187 = t13 * (parameters[MX2] + (t164 + t171)) - t12 * (parameters[MY2] + t184);
-    const ariane4_free_real_t t188 = t183 + t13 * t186
-        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t170)
-        + ARIANE4_FREE_C(2.0) * t187);
-    const ariane4_free_real_t t189 = parameters[ZZ1] + t188 + parameters[IA1] * (t6 * t6) + t107 * t110;
-    const ariane4_free_real_t t190 = t189 + t135 * t144 - t169 * t176;
-    if (!(t190 > ARIANE4_FREE_C(1.0e-9))) {
+    const ariane4_free_real_t t45 = parameters[XX3] + (parameters[YY4] + t17 + t14);
+    const ariane4_free_real_t t46 = parameters[YY3] + (parameters[ZZ4] + t12);
+    const ariane4_free_real_t t47 = t9 * parameters[XZ4] - t8 * parameters[YZ4];
+    const ariane4_free_real_t t48 = parameters[XY3] + (t47 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
+        + ARIANE4_FREE_C(0.436) * t31));
+    const ariane4_free_real_t t49 = t2 * (t45 - t46) - t48 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t50 = t2 * t49;
+    const ariane4_free_real_t t51 = parameters[XX2] + (t46 + t50);
+    const ariane4_free_real_t t52 = t2 * t33 + t1 * t32;
+    const ariane4_free_real_t t53 = (parameters[XY2] + (t48 + t1 * t49
+        + ARIANE4_FREE_C(-0.443) * t52)) * (ARIANE4_FREE_C(2.0) * t24);
+    const ariane4_free_real_t t54 = t25 * (parameters[YY2] + (t45 - t50 + t37) - t51) + t53;
+    const ariane4_free_real_t t55 = t25 * (parameters[MX2] + (t34 + t36)) - t24 * (parameters[MY2] + t52);
+    const ariane4_free_real_t t56 = t51 + t25 * t54
+        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t35)
+        + ARIANE4_FREE_C(2.0) * t55);
+    const ariane4_free_real_t t59 = ARIANE4_FREE_C(-0.28217402066925895) * t57
+        + ARIANE4_FREE_C(0.9593632378089879) * t58;
+    const ariane4_free_real_t t60 = ARIANE4_FREE_C(0.28217402066925895) * t58
+        + ARIANE4_FREE_C(0.9593632378089879) * t57;
+    const ariane4_free_real_t t61 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t60
+        + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t62 = ARIANE4_FREE_C(-1.0) / t61;
+    const ariane4_free_real_t t63 = t59 * (ARIANE4_FREE_C(3885.523436256565) * t62);
+    const ariane4_free_real_t t64 = ARIANE4_FREE_C(-0.436) * t10 - t47;
+    const ariane4_free_real_t t65 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t10;
+    const ariane4_free_real_t t66 = t25 * (t1 * t64 - t2 * t65 + ARIANE4_FREE_C(0.443) * t10);
+    const ariane4_free_real_t t67 = t24 * (t2 * t64 + t1 * t65) + t66 + ARIANE4_FREE_C(0.116) * t10;
+    const ariane4_free_real_t t68 = t67 * t21;
+    const ariane4_free_real_t t69 = parameters[ZZ1] + t56 + parameters[IA1] * (t63 * t63) + t67 * t68;
+    const ariane4_free_real_t t70 = parameters[XY4] + t8 * t16 + ARIANE4_FREE_C(0.1) * t19 - parameters[XZ3];
+    const ariane4_free_real_t t71 = parameters[YZ3] + t20;
+    const ariane4_free_real_t t72 = t2 * t70 + t1 * t71;
+    const ariane4_free_real_t t73 = t1 * t70 - t2 * t71;
+    const ariane4_free_real_t t74 = t24 * t72 + t25 * t73 + t67 * t22;
+    const ariane4_free_real_t t75 = t74 * t41;
+    const ariane4_free_real_t t76 = t24 * (t72 + ARIANE4_FREE_C(0.443) * (parameters[MZ3] - t19)
+        - parameters[XZ2]) + t25 * (t73 - parameters[YZ2]);
+    const ariane4_free_real_t t77 = t76 + t67 * t39 - t74 * t43;
+    const ariane4_free_real_t t78 = ARIANE4_FREE_C(1.0) / t44;
+    const ariane4_free_real_t t79 = t77 * t78;
+    const ariane4_free_real_t t80 = t69 + t74 * t75 - t77 * t79;
+    if (!(t80 > ARIANE4_FREE_C(1.0e-9))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t191 = ARIANE4_FREE_C(1.0) / t190;
-    const ariane4_free_real_t t192 = t177 * t191;
+    const ariane4_free_real_t t81 = dq[0] * dq[0];
+    const ariane4_free_real_t t82 = ARIANE4_FREE_C(-0.116) * t81;
+    const ariane4_free_real_t t83 = t25 * t82 + ARIANE4_FREE_C(9.81) * t24;
+    const ariane4_free_real_t t84 = t25 * dq[0];
+    const ariane4_free_real_t t85 = t84 * t84;
+    const ariane4_free_real_t t86 = dq[1] * dq[1];
+    const ariane4_free_real_t t87 = t83 + ARIANE4_FREE_C(-0.443) * (t85 + t86);
+    const ariane4_free_real_t t88 = t24 * t82 + ARIANE4_FREE_C(-9.81) * t25;
+    const ariane4_free_real_t t89 = t24 * dq[0];
+    const ariane4_free_real_t t90 = t89 * t84;
+    const ariane4_free_real_t t91 = t88 + ARIANE4_FREE_C(-0.443) * t90;
+    const ariane4_free_real_t t92 = t1 * t87 + t2 * t91;
+    const ariane4_free_real_t t93 = t2 * t89 + t1 * t84;
+    const ariane4_free_real_t t94 = t2 * t84 - t1 * t89;
+    const ariane4_free_real_t t95 = t93 * t94;
+    const ariane4_free_real_t t96 = t93 * t93;
+    const ariane4_free_real_t t97 = dq[1] + dq[2];
+    const ariane4_free_real_t t98 = t97 * t97;
+    const ariane4_free_real_t t99 = t98 + t96;
+    const ariane4_free_real_t t100 = t92 + (ARIANE4_FREE_C(0.1) * t95 + ARIANE4_FREE_C(0.436) * t99);
+    const ariane4_free_real_t t101 = t1 * t91 - t2 * t87;
+    const ariane4_free_real_t t102 = t94 * t94;
+    const ariane4_free_real_t t103 = t98 + t102;
+    const ariane4_free_real_t t104 = t101 - (ARIANE4_FREE_C(0.1) * t103 - ARIANE4_FREE_C(-0.436) * t95);
+    const ariane4_free_real_t t105 = t97 * t93;
+    const ariane4_free_real_t t106 = t97 * t94;
+    const ariane4_free_real_t t107 = dq[1] * t89;
+    const ariane4_free_real_t t108 = ARIANE4_FREE_C(0.886) * t107;
+    const ariane4_free_real_t t109 = t108 - (ARIANE4_FREE_C(0.2) * t105 + ARIANE4_FREE_C(-0.872) * t106);
+    const ariane4_free_real_t t110 = t8 * t104 - t9 * t109;
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(2.0) * t106;
+    const ariane4_free_real_t t112 = t8 * t95 + t9 * t111;
+    const ariane4_free_real_t t113 = t9 * t97 + t8 * t93;
+    const ariane4_free_real_t t114 = dq[3] + t94;
+    const ariane4_free_real_t t115 = t113 * t114;
+    const ariane4_free_real_t t116 = t112 - t115;
+    const ariane4_free_real_t t117 = t8 * t111 - t9 * t95;
+    const ariane4_free_real_t t118 = t9 * t93 - t8 * t97;
+    const ariane4_free_real_t t119 = t118 * t114;
+    const ariane4_free_real_t t120 = t117 + t119;
+    const ariane4_free_real_t t121 = t119 + t120;
+    const ariane4_free_real_t t122 = t115 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t116
+        + parameters[XY4] * t121;
+    const ariane4_free_real_t t123 = t118 * t113;
+    const ariane4_free_real_t t124 = t105 + t123;
+    const ariane4_free_real_t t125 = t113 * t113;
+    const ariane4_free_real_t t126 = t114 * t114;
+    const ariane4_free_real_t t127 = t122 + parameters[XZ4] * t124 + parameters[YZ4] * (t126 - t125)
+        + (parameters[MY4] * t100 + parameters[MZ4] * t110);
+    const ariane4_free_real_t t128 = t9 * t104 + t8 * t109;
+    const ariane4_free_real_t t129 = t116 - t115;
+    const ariane4_free_real_t t130 = parameters[XY4] * t129 - (parameters[YY4] * t120
+        + t119 * (parameters[ZZ4] - parameters[XX4]));
+    const ariane4_free_real_t t131 = t123 - t105;
+    const ariane4_free_real_t t132 = t118 * t118;
+    const ariane4_free_real_t t133 = t130 + parameters[YZ4] * t131 + parameters[XZ4] * (t126 - t132)
+        + (parameters[MX4] * t100 - parameters[MZ4] * t128);
+    const ariane4_free_real_t t134 = parameters[MX4] * (t125 + t126) + parameters[MY4] * t131
+        + parameters[MZ4] * t117;
+    const ariane4_free_real_t t135 = parameters[M4] * t128 + t134;
+    const ariane4_free_real_t t136 = parameters[MX4] * t124 + parameters[MY4] * (t132 + t126)
+        + parameters[MZ4] * t112;
+    const ariane4_free_real_t t137 = t136 - parameters[M4] * t110;
+    const ariane4_free_real_t t138 = t8 * t135 + t9 * t137;
+    const ariane4_free_real_t t139 = ARIANE4_FREE_C(2.0) * t105;
+    const ariane4_free_real_t t140 = parameters[XY3] * t139 - (parameters[XX3] * t106
+        + t106 * (parameters[ZZ3] - parameters[YY3]));
+    const ariane4_free_real_t t141 = t140 - parameters[XZ3] * t95 + parameters[YZ3] * (t98 - t102)
+        - (parameters[MY3] * t108 + parameters[MZ3] * t92);
+    const ariane4_free_real_t t142 = t141 + (t9 * t127 + t8 * t133 + ARIANE4_FREE_C(-0.436) * t138);
+    const ariane4_free_real_t t143 = parameters[ZZ4] * t105 - t15 * t123 + parameters[YZ4] * t117
+        - parameters[XZ4] * t112;
+    const ariane4_free_real_t t144 = t143 - parameters[XY4] * (t132 - t125) - (parameters[MX4] * t110
+        + parameters[MY4] * t128);
+    const ariane4_free_real_t t145 = parameters[YY3] * t105 - t105 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t111;
+    const ariane4_free_real_t t146 = t145 + parameters[YZ3] * t95 - parameters[XZ3] * (t98 - t96)
+        + (parameters[MZ3] * t101 + parameters[MX3] * t108);
+    const ariane4_free_real_t t147 = t146 + (t144 - ARIANE4_FREE_C(0.1) * t138);
+    const ariane4_free_real_t t148 = dq[1] * t84;
+    const ariane4_free_real_t t149 = ARIANE4_FREE_C(2.0) * t107;
+    const ariane4_free_real_t t150 = t148 * (parameters[YY2] - parameters[ZZ2]) - t148 * parameters[XX2]
+        + t149 * parameters[XY2];
+    const ariane4_free_real_t t151 = t150 - t90 * parameters[XZ2] + (t86 - t85) * parameters[YZ2]
+        - t88 * parameters[MZ2];
+    const ariane4_free_real_t t152 = parameters[MX3] * t139 + parameters[MY3] * t111 - parameters[MZ3] * (t96
+        + t102);
+    const ariane4_free_real_t t153 = parameters[M3] * t108 + t152 + t138;
+    const ariane4_free_real_t t154 = ARIANE4_FREE_C(2.0) * t148;
+    const ariane4_free_real_t t155 = t107 * parameters[YY2] + t107 * (parameters[ZZ2] - parameters[XX2])
+        - t154 * parameters[XY2];
+    const ariane4_free_real_t t156 = t89 * t89;
+    const ariane4_free_real_t t157 = t155 + t90 * parameters[YZ2] + (t156 - t86) * parameters[XZ2]
+        - t83 * parameters[MZ2];
+    const ariane4_free_real_t t158 = t157 + (t1 * t142 + t2 * t147 + ARIANE4_FREE_C(0.443) * t153);
+    const ariane4_free_real_t t159 = t24 * (t151 + (t2 * t142 - t1 * t147)) + t25 * t158;
+    const ariane4_free_real_t t160 = t149 * parameters[MX2] + t154 * parameters[MY2] - (t156
+        + t85) * parameters[MZ2];
+    const ariane4_free_real_t t161 = t63 * dq[0];
+    const ariane4_free_real_t t162 = ariane4_free_sign(t161);
+    const ariane4_free_real_t t163 = ARIANE4_FREE_C(-3885.523436256565) * t60
+        + ARIANE4_FREE_C(-72.7913960548305) * (t62 * t62) * (t59 * t59);
+    const ariane4_free_real_t t164 = t63 * (t161 * parameters[FV1]) + t63 * (t162 * parameters[FC1])
+        + t63 * (t62 * t163 * t81 * parameters[IA1]);
+    const ariane4_free_real_t t165 = input[0] * (ARIANE4_FREE_C(-0.004) * t63) + (t159
+        + ARIANE4_FREE_C(0.116) * (t160 + t153) - t164);
+    const ariane4_free_real_t t166 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t167 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4])
+        + ARIANE4_FREE_C(1.0e2) * (t166 * parameters[FC4]);
+    const ariane4_free_real_t t168 = ARIANE4_FREE_C(5.0) * input[3] - (t167 - t144);
+    const ariane4_free_real_t t169 = parameters[MZ4] * (t132 + t125) - (parameters[MX4] * t121
+        + parameters[MY4] * t129);
+    const ariane4_free_real_t t170 = parameters[M4] * t100 + t169;
+    const ariane4_free_real_t t171 = t9 * t135 - t8 * t137;
+    const ariane4_free_real_t t172 = t8 * t127 - t9 * t133 - (ARIANE4_FREE_C(-0.1) * t170
+        - ARIANE4_FREE_C(0.436) * t171);
+    const ariane4_free_real_t t173 = parameters[XY3] * (t96 - t102) - t95 * (parameters[XX3]
+        - parameters[YY3]) + (parameters[MY3] * t101 - parameters[MX3] * t92);
+    const ariane4_free_real_t t174 = t173 + t172;
+    const ariane4_free_real_t t175 = t7 * dq[2];
+    const ariane4_free_real_t t176 = ariane4_free_sign(t175);
+    const ariane4_free_real_t t177 = ARIANE4_FREE_C(7124.375926654358) * t4
+        + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
+    const ariane4_free_real_t t178 = t7 * (t175 * parameters[FV3]) + t7 * (t176 * parameters[FC3])
+        + t7 * (t6 * t177 * (dq[2] * dq[2]) * parameters[IA3]);
+    const ariane4_free_real_t t179 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t178 + t174) - t168 * t22;
+    const ariane4_free_real_t t180 = parameters[M3] * t101 + (parameters[MX3] * t103 - parameters[MY3] * t95)
+        + t171;
+    const ariane4_free_real_t t181 = parameters[M3] * t92 + (parameters[MY3] * t99 - parameters[MX3] * t95)
+        + t170;
+    const ariane4_free_real_t t182 = t90 * (parameters[XX2] - parameters[YY2]) - (t156
+        - t85) * parameters[XY2] + (t88 * parameters[MX2] + t83 * parameters[MY2]);
+    const ariane4_free_real_t t183 = t182 - (t174 - ARIANE4_FREE_C(0.443) * (t1 * t180 + t2 * t181));
+    const ariane4_free_real_t t184 = t30 * dq[1];
+    const ariane4_free_real_t t185 = ariane4_free_sign(t184);
+    const ariane4_free_real_t t186 = ARIANE4_FREE_C(-2656.3065671641784) * t27
+        - ARIANE4_FREE_C(104.12987373940295) * (t29 * t29) * (t26 * t26);
+    const ariane4_free_real_t t187 = t30 * (t184 * parameters[FV2]) + t30 * (t185 * parameters[FC2])
+        + t30 * (t29 * t186 * t86 * parameters[IA2]);
+    const ariane4_free_real_t t188 = ARIANE4_FREE_C(0.012) * t30 * input[1] - (t187 - t183) + t168 * t39;
+    const ariane4_free_real_t t189 = t188 + t179 * t43;
+    const ariane4_free_real_t t190 = t165 - t168 * t68 + t179 * t75 + t189 * t79;
+    const ariane4_free_real_t t191 = ARIANE4_FREE_C(1.0) / t80;
+    const ariane4_free_real_t t192 = t190 * t191;
     out[0] = t192;
     if (!(t192 >= ARIANE4_FREE_C(-1.0e15) && t192 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t193 = t167 * t175 + t176 * t192;
+    const ariane4_free_real_t t193 = t189 * t78 + t79 * t192;
     out[1] = t193;
     if (!(t193 >= ARIANE4_FREE_C(-1.0e15) && t193 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t194 = t129 * t143 - t144 * t192 - t166 * t193;
+    const ariane4_free_real_t t194 = t179 * t41 - t75 * t192 - t43 * t193;
     out[2] = t194;
     if (!(t194 >= ARIANE4_FREE_C(-1.0e15) && t194 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t195 = t159 * t193 - (t101 * t109 + t110 * t192) + t128 * t194;
+    const ariane4_free_real_t t195 = t39 * t193 - (t168 * t21 + t68 * t192) + t22 * t194;
     out[3] = t195;
     if (!(t195 >= ARIANE4_FREE_C(-1.0e15) && t195 <= ARIANE4_FREE_C(1.0e15))) {
         ariane4_free_zero(out, 4);

@@ -57,7 +57,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -84,45 +84,45 @@ int ariane4_free_gravity(
         return status;
     }
 
-    ariane4_free_real_t t1, t0;
-    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
-    ariane4_free_real_t t4, t9;
-    ARIANE4_FREE_SINCOS(q[1], &t4, &t9);
-    ariane4_free_real_t t7, t5;
-    ARIANE4_FREE_SINCOS(q[2], &t7, &t5);
-    ariane4_free_real_t t13, t6;
-    ARIANE4_FREE_SINCOS(q[3], &t13, &t6);
+    ariane4_free_real_t t16, t15;
+    ARIANE4_FREE_SINCOS(q[0], &t16, &t15);
+    ariane4_free_real_t t0, t3;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t3);
+    ariane4_free_real_t t2, t5;
+    ARIANE4_FREE_SINCOS(q[2], &t2, &t5);
+    ariane4_free_real_t t10, t8;
+    ARIANE4_FREE_SINCOS(q[3], &t10, &t8);
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t4 = ARIANE4_FREE_C(9.81) * t3;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t7 = parameters[MY4] * t6;
+    const ariane4_free_real_t t9 = parameters[MX4] * t6;
+    const ariane4_free_real_t t11 = t8 * t7 + t10 * t9;
+    const ariane4_free_real_t t12 = t5 * t1 - t2 * t4;
+    const ariane4_free_real_t t13 = parameters[MX4] * (t10 * t12) + parameters[MY4] * (t8 * t12);
+    const ariane4_free_real_t t14 = t0 * (t2 * t13 - t5 * t11) - t3 * (t2 * t11 + t5 * t13);
     const ariane4_free_real_t
-        t2 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1) + ARIANE4_FREE_C(0.10769300000000001));
+        t17 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t15
+        + ARIANE4_FREE_C(0.9593632378089879) * t16) + ARIANE4_FREE_C(0.10769300000000001));
     const ariane4_free_real_t
-        t3 = ARIANE4_FREE_C(0.06434139546481742) * t2 / (ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(-0.9593632378089879) * t0);
-    const ariane4_free_real_t t8 = ARIANE4_FREE_C(-9.81) * t4;
-    const ariane4_free_real_t t10 = ARIANE4_FREE_C(9.81) * t9;
-    const ariane4_free_real_t t11 = t7 * t8 + t5 * t10;
-    const ariane4_free_real_t t12 = parameters[MY4] * t11;
-    const ariane4_free_real_t t14 = parameters[MX4] * t11;
-    const ariane4_free_real_t t15 = t6 * t12 + t13 * t14;
-    const ariane4_free_real_t t16 = t5 * t8 - t7 * t10;
-    const ariane4_free_real_t t17 = parameters[MX4] * (t13 * t16) + parameters[MY4] * (t6 * t16);
-    const ariane4_free_real_t t18 = t4 * (t7 * t17 - t5 * t15) - t9 * (t7 * t15 + t5 * t17);
-    out[0] = t3 * t18;
+        t18 = ARIANE4_FREE_C(0.06434139546481742) * t17 / (ARIANE4_FREE_C(0.28217402066925895) * t16
+        + ARIANE4_FREE_C(-0.9593632378089879) * t15);
+    out[0] = t18 * t14;
+    const ariane4_free_real_t t19 = parameters[MX3R] * t6 + parameters[MY3R] * t12 + (t8 * t9 - t10 * t7);
     const ariane4_free_real_t
-        t19 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t9
-        + ARIANE4_FREE_C(0.5568756164881881) * t4) + ARIANE4_FREE_C(0.293698));
+        t20 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
+        + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t
-        t20 = ARIANE4_FREE_C(0.03137188092799786) * t19 / (ARIANE4_FREE_C(0.8305958991958126) * t4
-        + ARIANE4_FREE_C(0.5568756164881881) * t9);
-    const ariane4_free_real_t t21 = parameters[MX3R] * t11 + parameters[MY3R] * t16 + (t6 * t14 - t13 * t12);
-    out[1] = t20 * (parameters[MX2R] * t10 + parameters[MY2] * t8 + t21);
+        t21 = ARIANE4_FREE_C(0.03137188092799786) * t20 / (ARIANE4_FREE_C(0.8305958991958126) * t0
+        + ARIANE4_FREE_C(0.5568756164881881) * t3);
+    out[1] = t21 * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t19);
     const ariane4_free_real_t
         t22 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t5
-        + ARIANE4_FREE_C(-0.9979715533496006) * t7) + ARIANE4_FREE_C(0.242037));
+        + ARIANE4_FREE_C(-0.9979715533496006) * t2) + ARIANE4_FREE_C(0.242037));
     const ariane4_free_real_t
-        t23 = ARIANE4_FREE_C(-0.046787723832235825) * t22 / (ARIANE4_FREE_C(0.06366143813161289) * t7
+        t23 = ARIANE4_FREE_C(-0.046787723832235825) * t22 / (ARIANE4_FREE_C(0.06366143813161289) * t2
         + ARIANE4_FREE_C(0.9979715533496006) * t5);
-    out[2] = t23 * t21;
-    out[3] = ARIANE4_FREE_C(0.2) * t17;
+    out[2] = t23 * t19;
+    out[3] = ARIANE4_FREE_C(0.2) * t13;
     return ARIANE4_FREE_STATUS_OK;
 }

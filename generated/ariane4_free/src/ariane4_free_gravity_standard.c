@@ -75,7 +75,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -103,61 +103,61 @@ int ariane4_free_gravity_standard(
         return status;
     }
 
-    ariane4_free_real_t t1, t0;
-    ARIANE4_FREE_SINCOS(q[0], &t1, &t0);
-    ariane4_free_real_t t4, t5;
-    ARIANE4_FREE_SINCOS(q[1], &t4, &t5);
-    ariane4_free_real_t t8, t7;
-    ARIANE4_FREE_SINCOS(q[2], &t8, &t7);
-    ariane4_free_real_t t12, t11;
-    ARIANE4_FREE_SINCOS(q[3], &t12, &t11);
+    ariane4_free_real_t t23, t22;
+    ARIANE4_FREE_SINCOS(q[0], &t23, &t22);
+    ariane4_free_real_t t0, t3;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t3);
+    ariane4_free_real_t t2, t5;
+    ARIANE4_FREE_SINCOS(q[2], &t2, &t5);
+    ariane4_free_real_t t8, t11;
+    ARIANE4_FREE_SINCOS(q[3], &t8, &t11);
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t4 = ARIANE4_FREE_C(9.81) * t3;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t7 = t5 * t1 - t2 * t4;
+    const ariane4_free_real_t t9 = t8 * t7;
+    const ariane4_free_real_t t10 = t9 * parameters[MZ4] - t6 * parameters[MY4];
+    const ariane4_free_real_t t12 = t11 * t7;
+    const ariane4_free_real_t t13 = t12 * parameters[MZ4] + t6 * parameters[MX4];
+    const ariane4_free_real_t t14 = t12 * parameters[M4];
+    const ariane4_free_real_t t15 = t9 * parameters[M4];
+    const ariane4_free_real_t t16 = t8 * t14 - t11 * t15;
+    const ariane4_free_real_t t17 = t6 * parameters[MZ3] + (t11 * t10 - t8 * t13
+        + ARIANE4_FREE_C(-0.436) * t16);
+    const ariane4_free_real_t t18 = t9 * parameters[MX4] + t12 * parameters[MY4];
+    const ariane4_free_real_t t19 = t7 * parameters[MZ3] + (ARIANE4_FREE_C(-0.1) * t16 - t18);
+    const ariane4_free_real_t t20 = t0 * (t4 * parameters[MZ2] + (t5 * t17 - t2 * t19));
+    const ariane4_free_real_t t21 = t1 * parameters[MZ2] + (t2 * t17 + t5 * t19
+        + ARIANE4_FREE_C(0.443) * t16);
     const ariane4_free_real_t
-        t2 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1) + ARIANE4_FREE_C(0.10769300000000001));
+        t24 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t22
+        + ARIANE4_FREE_C(0.9593632378089879) * t23) + ARIANE4_FREE_C(0.10769300000000001));
     const ariane4_free_real_t
-        t3 = ARIANE4_FREE_C(0.06434139546481742) * t2 / (ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(-0.9593632378089879) * t0);
-    const ariane4_free_real_t t6 = ARIANE4_FREE_C(9.81) * t5;
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-9.81) * t4;
-    const ariane4_free_real_t t10 = t8 * t9 + t7 * t6;
-    const ariane4_free_real_t t13 = t7 * t9 - t8 * t6;
-    const ariane4_free_real_t t14 = t12 * t13;
-    const ariane4_free_real_t t15 = t14 * parameters[MZ4] - t10 * parameters[MY4];
-    const ariane4_free_real_t t16 = t11 * t13;
-    const ariane4_free_real_t t17 = t16 * parameters[MZ4] + t10 * parameters[MX4];
-    const ariane4_free_real_t t18 = t16 * parameters[M4];
-    const ariane4_free_real_t t19 = t14 * parameters[M4];
-    const ariane4_free_real_t t20 = t12 * t18 - t11 * t19;
-    const ariane4_free_real_t t21 = t10 * parameters[MZ3] + (t11 * t15 - t12 * t17
-        + ARIANE4_FREE_C(-0.436) * t20);
-    const ariane4_free_real_t t22 = t14 * parameters[MX4] + t16 * parameters[MY4];
-    const ariane4_free_real_t t23 = t13 * parameters[MZ3] + (ARIANE4_FREE_C(-0.1) * t20 - t22);
-    const ariane4_free_real_t t24 = t4 * (t6 * parameters[MZ2] + (t7 * t21 - t8 * t23));
-    const ariane4_free_real_t t25 = t9 * parameters[MZ2] + (t8 * t21 + t7 * t23
-        + ARIANE4_FREE_C(0.443) * t20);
-    out[0] = t3 * (t24 + t5 * t25 + ARIANE4_FREE_C(0.116) * t20);
+        t25 = ARIANE4_FREE_C(0.06434139546481742) * t24 / (ARIANE4_FREE_C(0.28217402066925895) * t23
+        + ARIANE4_FREE_C(-0.9593632378089879) * t22);
+    out[0] = t25 * (t20 + t3 * t21 + ARIANE4_FREE_C(0.116) * t16);
+    const ariane4_free_real_t t26 = t11 * t14 + t8 * t15;
+    const ariane4_free_real_t t27 = t6 * parameters[M4];
+    const ariane4_free_real_t t28 = t8 * t10 + t11 * t13 + (ARIANE4_FREE_C(-0.1) * t27
+        + ARIANE4_FREE_C(0.436) * t26);
+    const ariane4_free_real_t t29 = t6 * parameters[MX3] + t7 * parameters[MY3] + t28;
+    const ariane4_free_real_t t30 = t5 * (t6 * parameters[M3] + t27) - t2 * (t7 * parameters[M3] + t26);
+    const ariane4_free_real_t t31 = t4 * parameters[MX2] + t1 * parameters[MY2] + (t29
+        + ARIANE4_FREE_C(0.443) * t30);
     const ariane4_free_real_t
-        t26 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t5
-        + ARIANE4_FREE_C(0.5568756164881881) * t4) + ARIANE4_FREE_C(0.293698));
+        t32 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
+        + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t
-        t27 = ARIANE4_FREE_C(0.03137188092799786) * t26 / (ARIANE4_FREE_C(0.8305958991958126) * t4
-        + ARIANE4_FREE_C(0.5568756164881881) * t5);
-    const ariane4_free_real_t t28 = t10 * parameters[M4];
-    const ariane4_free_real_t t29 = t11 * t18 + t12 * t19;
-    const ariane4_free_real_t t30 = t12 * t15 + t11 * t17 + (ARIANE4_FREE_C(-0.1) * t28
-        + ARIANE4_FREE_C(0.436) * t29);
-    const ariane4_free_real_t t31 = t10 * parameters[MX3] + t13 * parameters[MY3] + t30;
-    const ariane4_free_real_t t32 = t7 * (t10 * parameters[M3] + t28) - t8 * (t13 * parameters[M3] + t29);
-    const ariane4_free_real_t t33 = t6 * parameters[MX2] + t9 * parameters[MY2] + (t31
-        + ARIANE4_FREE_C(0.443) * t32);
-    out[1] = t27 * t33;
+        t33 = ARIANE4_FREE_C(0.03137188092799786) * t32 / (ARIANE4_FREE_C(0.8305958991958126) * t0
+        + ARIANE4_FREE_C(0.5568756164881881) * t3);
+    out[1] = t33 * t31;
     const ariane4_free_real_t
-        t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t7
-        + ARIANE4_FREE_C(-0.9979715533496006) * t8) + ARIANE4_FREE_C(0.242037));
+        t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t5
+        + ARIANE4_FREE_C(-0.9979715533496006) * t2) + ARIANE4_FREE_C(0.242037));
     const ariane4_free_real_t
-        t35 = ARIANE4_FREE_C(-0.046787723832235825) * t34 / (ARIANE4_FREE_C(0.06366143813161289) * t8
-        + ARIANE4_FREE_C(0.9979715533496006) * t7);
-    out[2] = t35 * t31;
-    out[3] = ARIANE4_FREE_C(0.2) * t22;
+        t35 = ARIANE4_FREE_C(-0.046787723832235825) * t34 / (ARIANE4_FREE_C(0.06366143813161289) * t2
+        + ARIANE4_FREE_C(0.9979715533496006) * t5);
+    out[2] = t35 * t29;
+    out[3] = ARIANE4_FREE_C(0.2) * t18;
     return ARIANE4_FREE_STATUS_OK;
 }

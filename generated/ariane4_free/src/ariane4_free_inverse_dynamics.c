@@ -59,7 +59,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -90,178 +90,177 @@ int ariane4_free_inverse_dynamics(
         return status;
     }
 
-    ariane4_free_real_t t0, t1;
-    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
-    ariane4_free_real_t t13, t15;
-    ARIANE4_FREE_SINCOS(q[1], &t13, &t15);
-    ariane4_free_real_t t33, t29;
-    ARIANE4_FREE_SINCOS(q[2], &t33, &t29);
-    ariane4_free_real_t t51, t50;
-    ARIANE4_FREE_SINCOS(q[3], &t51, &t50);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t3
-        + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-1.0) / t4;
-    const ariane4_free_real_t t6 = t2 * (ARIANE4_FREE_C(3885.523436256565) * t5);
-    const ariane4_free_real_t t7 = t6 * dq[0];
-    const ariane4_free_real_t t8 = ariane4_free_sign(t7);
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-3885.523436256565) * t3
-        + ARIANE4_FREE_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_free_real_t t10 = dq[0] * dq[0];
-    const ariane4_free_real_t t11 = parameters[FV1] * t7 + parameters[FC1] * t8
-        + parameters[IA1] * (t5 * t9 * t10 + t6 * ddq[0]);
-    const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_free_real_t t14 = dq[1] * dq[1];
-    const ariane4_free_real_t t16 = t15 * dq[0];
-    const ariane4_free_real_t t17 = t16 * t16;
-    const ariane4_free_real_t t18 = dq[1] * t16;
-    const ariane4_free_real_t t19 = t13 * ddq[0];
+    ariane4_free_real_t t92, t91;
+    ARIANE4_FREE_SINCOS(q[0], &t92, &t91);
+    ariane4_free_real_t t0, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t0, &t2);
+    ariane4_free_real_t t3, t1;
+    ARIANE4_FREE_SINCOS(q[2], &t3, &t1);
+    ariane4_free_real_t t8, t6;
+    ARIANE4_FREE_SINCOS(q[3], &t8, &t6);
+    const ariane4_free_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane4_free_real_t t5 = dq[0] * t4;
+    const ariane4_free_real_t t7 = dq[1] + dq[2];
+    const ariane4_free_real_t t9 = t8 * t7 - t6 * t5;
+    const ariane4_free_real_t t10 = t6 * t7 + t8 * t5;
+    const ariane4_free_real_t t11 = t9 * t10;
+    const ariane4_free_real_t t12 = t7 * t5;
+    const ariane4_free_real_t t13 = t0 * t3 - t2 * t1;
+    const ariane4_free_real_t t14 = ddq[0] * t13;
+    const ariane4_free_real_t t15 = t12 + t14;
+    const ariane4_free_real_t t16 = t15 - ddq[3];
+    const ariane4_free_real_t t17 = dq[0] * t13;
+    const ariane4_free_real_t t18 = t5 * t17;
+    const ariane4_free_real_t t19 = ddq[1] + ddq[2];
     const ariane4_free_real_t t20 = t18 + t19;
-    const ariane4_free_real_t t21 = t13 * dq[0];
-    const ariane4_free_real_t t22 = dq[1] * t21;
-    const ariane4_free_real_t t23 = t15 * ddq[0];
-    const ariane4_free_real_t t24 = t22 + (t22 - t23);
-    const ariane4_free_real_t t25 = t21 * t16;
-    const ariane4_free_real_t t26 = ddq[1] + t25;
-    const ariane4_free_real_t t27 = parameters[XY2] * t24 - (parameters[ZZ2R] * t18 + parameters[XX2R] * t20)
-        - parameters[XZ2R] * t26;
-    const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.116) * ddq[0];
-    const ariane4_free_real_t t30 = t28 + ARIANE4_FREE_C(-0.443) * t24;
-    const ariane4_free_real_t t31 = dq[1] + dq[2];
-    const ariane4_free_real_t t32 = t31 * t31;
-    const ariane4_free_real_t t34 = t13 * t33 - t15 * t29;
-    const ariane4_free_real_t t35 = dq[0] * t34;
-    const ariane4_free_real_t t36 = t35 * t35;
-    const ariane4_free_real_t t37 = t31 * t35;
-    const ariane4_free_real_t t38 = t13 * t29 + t15 * t33;
-    const ariane4_free_real_t t39 = ddq[0] * t38;
-    const ariane4_free_real_t t40 = t39 - t37;
-    const ariane4_free_real_t t41 = dq[0] * t38;
-    const ariane4_free_real_t t42 = t31 * t41;
-    const ariane4_free_real_t t43 = ddq[0] * t34;
-    const ariane4_free_real_t t44 = t42 + t43;
-    const ariane4_free_real_t t45 = t42 + t44;
-    const ariane4_free_real_t t46 = t41 * t35;
-    const ariane4_free_real_t t47 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t48 = t47 - t46;
-    const ariane4_free_real_t t49 = parameters[ZZ3R] * t37 - parameters[XX3R] * t40 + parameters[XY3R] * t45
-        - parameters[XZ3] * t48;
-    const ariane4_free_real_t t52 = t50 * t31 + t51 * t41;
-    const ariane4_free_real_t t53 = t52 * t52;
-    const ariane4_free_real_t t54 = dq[3] - t35;
-    const ariane4_free_real_t t55 = t54 * t54;
-    const ariane4_free_real_t t56 = t52 * t54;
-    const ariane4_free_real_t t57 = t46 + t47;
-    const ariane4_free_real_t t58 = t40 - t37;
-    const ariane4_free_real_t t59 = t50 * t58 - t51 * t57;
-    const ariane4_free_real_t t60 = t59 - t56;
-    const ariane4_free_real_t t61 = t51 * t31 - t50 * t41;
-    const ariane4_free_real_t t62 = t61 * t54;
-    const ariane4_free_real_t t63 = t50 * t57 + t51 * t58;
-    const ariane4_free_real_t t64 = t63 - t62 - t62;
-    const ariane4_free_real_t t65 = t61 * t52;
-    const ariane4_free_real_t t66 = t44 - ddq[3];
-    const ariane4_free_real_t t67 = t66 - t65;
-    const ariane4_free_real_t t68 = parameters[ZZ4] * t56 - parameters[XX4R] * t60 + parameters[XY4] * t64
-        + parameters[XZ4R] * t67;
-    const ariane4_free_real_t t69 = ARIANE4_FREE_C(0.116) * t10;
-    const ariane4_free_real_t t70 = t15 * t69 + ARIANE4_FREE_C(-9.81) * t13;
-    const ariane4_free_real_t t71 = t70 + ARIANE4_FREE_C(0.443) * (t14 + t17);
-    const ariane4_free_real_t t72 = ARIANE4_FREE_C(-9.81) * t15 - t13 * t69;
-    const ariane4_free_real_t t73 = t72 + ARIANE4_FREE_C(-0.443) * t26;
-    const ariane4_free_real_t t74 = t29 * t73 - t33 * t71;
-    const ariane4_free_real_t t75 = t74 + ARIANE4_FREE_C(0.1) * t48;
-    const ariane4_free_real_t t76 = parameters[YZ4R] * (t55 - t53) + t68 + parameters[MY4] * t75;
-    const ariane4_free_real_t t77 = t61 * t61;
-    const ariane4_free_real_t t78 = t60 - t56;
-    const ariane4_free_real_t t79 = t65 + t66;
-    const ariane4_free_real_t t80 = (parameters[XX4R] - parameters[ZZ4]) * t62 - parameters[XY4] * t78
-        + parameters[YZ4R] * t79;
-    const ariane4_free_real_t t81 = parameters[XZ4R] * (t77 - t55) + t80 - parameters[MX4] * t75;
-    const ariane4_free_real_t t82 = parameters[MY3R] * t30 + (parameters[YZ3] * (t32 - t36) + t49)
-        + (t50 * t76 - t51 * t81);
-    const ariane4_free_real_t t83 = t41 * t41;
-    const ariane4_free_real_t t84 = (parameters[XX3R] - parameters[ZZ3R]) * t42 + parameters[XY3R] * t58
-        + parameters[YZ3] * t57;
-    const ariane4_free_real_t t85 = parameters[XZ4R] * t59 - (parameters[XX4R] * t65 + parameters[ZZ4] * t66
-        + parameters[YZ4R] * t63);
-    const ariane4_free_real_t t86 = t32 + t36;
-    const ariane4_free_real_t t87 = t29 * t71 + t33 * t73;
-    const ariane4_free_real_t t88 = ARIANE4_FREE_C(-0.1) * t86 + t87;
-    const ariane4_free_real_t t89 = t30 + ARIANE4_FREE_C(0.1) * t45;
-    const ariane4_free_real_t t90 = parameters[MX4] * (t51 * t88 + t50 * t89) + parameters[MY4] * (t50 * t88
-        - t51 * t89);
-    const ariane4_free_real_t t91 = parameters[XY4] * (t77 - t53) + t85 + t90;
-    const ariane4_free_real_t t92 = parameters[MX4] * (t53 + t55) - parameters[MY4] * t79;
-    const ariane4_free_real_t t93 = parameters[MY4] * (t77 + t55) + parameters[MX4] * t67;
-    const ariane4_free_real_t t94 = t51 * t92 + t50 * t93;
-    const ariane4_free_real_t t95 = parameters[MX3R] * t30 + (parameters[XZ3] * (t32 - t83) + t84) + (t91
-        + ARIANE4_FREE_C(0.1) * t94);
-    const ariane4_free_real_t t96 = parameters[YZ2] * (t14 - t17) + t27 + parameters[MY2] * t28 + (t29 * t82
-        + t33 * t95);
-    const ariane4_free_real_t t97 = t21 * t21;
-    const ariane4_free_real_t t98 = t18 + t20;
-    const ariane4_free_real_t t99 = t22 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t98
-        + parameters[YZ2] * (t25 - ddq[1]);
-    const ariane4_free_real_t t100 = parameters[MX3R] * t45 + parameters[MY3R] * t58 + t94;
-    const ariane4_free_real_t t101 = parameters[XZ2R] * (t97 - t14) + t99 - parameters[MX2R] * t28
-        + (t33 * t82 - t29 * t95 + ARIANE4_FREE_C(0.443) * t100);
-    const ariane4_free_real_t t102 = t13 * t96 + t15 * t101 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t24
-        + parameters[MY2] * t98 + t100);
-    out[0] = ARIANE4_FREE_C(-250.0) * t11 + t12 * (t102 - parameters[ZZ1R] * ddq[0]);
-    const ariane4_free_real_t t103 = ARIANE4_FREE_C(0.8305958991958126) * t13
-        + ARIANE4_FREE_C(0.5568756164881881) * t15;
-    const ariane4_free_real_t t104 = ARIANE4_FREE_C(0.8305958991958126) * t15
-        - ARIANE4_FREE_C(0.5568756164881881) * t13;
-    const ariane4_free_real_t t105 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t104
+    const ariane4_free_real_t t21 = t7 * t17;
+    const ariane4_free_real_t t22 = ddq[0] * t4;
+    const ariane4_free_real_t t23 = t22 - t21;
+    const ariane4_free_real_t t24 = t23 - t21;
+    const ariane4_free_real_t t25 = t6 * t20 + t8 * t24;
+    const ariane4_free_real_t t26 = t6 * t24 - t8 * t20;
+    const ariane4_free_real_t t27 = parameters[XZ4R] * t26 - (parameters[XX4R] * t11 + parameters[ZZ4] * t16
+        + parameters[YZ4R] * t25);
+    const ariane4_free_real_t t28 = t9 * t9;
+    const ariane4_free_real_t t29 = t10 * t10;
+    const ariane4_free_real_t t30 = dq[0] * dq[0];
+    const ariane4_free_real_t t31 = ARIANE4_FREE_C(0.116) * t30;
+    const ariane4_free_real_t t32 = t2 * t31 + ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t33 = t2 * dq[0];
+    const ariane4_free_real_t t34 = t33 * t33;
+    const ariane4_free_real_t t35 = dq[1] * dq[1];
+    const ariane4_free_real_t t36 = t32 + ARIANE4_FREE_C(0.443) * (t35 + t34);
+    const ariane4_free_real_t t37 = ARIANE4_FREE_C(-9.81) * t2 - t0 * t31;
+    const ariane4_free_real_t t38 = t0 * dq[0];
+    const ariane4_free_real_t t39 = t38 * t33;
+    const ariane4_free_real_t t40 = ddq[1] + t39;
+    const ariane4_free_real_t t41 = t37 + ARIANE4_FREE_C(-0.443) * t40;
+    const ariane4_free_real_t t42 = t1 * t36 + t3 * t41;
+    const ariane4_free_real_t t43 = t17 * t17;
+    const ariane4_free_real_t t44 = t7 * t7;
+    const ariane4_free_real_t t45 = t44 + t43;
+    const ariane4_free_real_t t46 = ARIANE4_FREE_C(-0.1) * t45 + t42;
+    const ariane4_free_real_t t47 = t12 + t15;
+    const ariane4_free_real_t t48 = dq[1] * t38;
+    const ariane4_free_real_t t49 = t2 * ddq[0];
+    const ariane4_free_real_t t50 = t48 + (t48 - t49);
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.116) * ddq[0];
+    const ariane4_free_real_t t52 = t51 + ARIANE4_FREE_C(-0.443) * t50;
+    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.1) * t47;
+    const ariane4_free_real_t t54 = parameters[MX4] * (t8 * t46 + t6 * t53) + parameters[MY4] * (t6 * t46
+        - t8 * t53);
+    const ariane4_free_real_t t55 = parameters[XY4] * (t28 - t29) + t27 + t54;
+    const ariane4_free_real_t t56 = dq[3] - t17;
+    const ariane4_free_real_t t57 = t56 * t56;
+    const ariane4_free_real_t t58 = t11 + t16;
+    const ariane4_free_real_t t59 = parameters[MX4] * (t29 + t57) - parameters[MY4] * t58;
+    const ariane4_free_real_t t60 = t16 - t11;
+    const ariane4_free_real_t t61 = parameters[MY4] * (t28 + t57) + parameters[MX4] * t60;
+    const ariane4_free_real_t t62 = t8 * t59 + t6 * t61;
+    const ariane4_free_real_t t63 = (parameters[XX3R] - parameters[ZZ3R]) * t12 + parameters[XY3R] * t24
+        + parameters[YZ3] * t20;
+    const ariane4_free_real_t t64 = t5 * t5;
+    const ariane4_free_real_t t65 = parameters[MX3R] * t52 + (parameters[XZ3] * (t44 - t64) + t63) + (t55
+        + ARIANE4_FREE_C(0.1) * t62);
+    const ariane4_free_real_t t66 = t10 * t56;
+    const ariane4_free_real_t t67 = t26 - t66;
+    const ariane4_free_real_t t68 = t9 * t56;
+    const ariane4_free_real_t t69 = t25 - t68 - t68;
+    const ariane4_free_real_t t70 = parameters[ZZ4] * t66 - parameters[XX4R] * t67 + parameters[XY4] * t69
+        + parameters[XZ4R] * t60;
+    const ariane4_free_real_t t71 = t1 * t41 - t3 * t36;
+    const ariane4_free_real_t t72 = t19 - t18;
+    const ariane4_free_real_t t73 = t71 + ARIANE4_FREE_C(0.1) * t72;
+    const ariane4_free_real_t t74 = parameters[YZ4R] * (t57 - t29) + t70 + parameters[MY4] * t73;
+    const ariane4_free_real_t t75 = t67 - t66;
+    const ariane4_free_real_t t76 = (parameters[XX4R] - parameters[ZZ4]) * t68 - parameters[XY4] * t75
+        + parameters[YZ4R] * t58;
+    const ariane4_free_real_t t77 = parameters[XZ4R] * (t28 - t57) + t76 - parameters[MX4] * t73;
+    const ariane4_free_real_t t78 = parameters[ZZ3R] * t21 - parameters[XX3R] * t23 + parameters[XY3R] * t47
+        - parameters[XZ3] * t72;
+    const ariane4_free_real_t t79 = parameters[MY3R] * t52 + (parameters[YZ3] * (t44 - t43) + t78) + (t6 * t74
+        - t8 * t77);
+    const ariane4_free_real_t t80 = dq[1] * t33;
+    const ariane4_free_real_t t81 = t0 * ddq[0];
+    const ariane4_free_real_t t82 = t80 + t81;
+    const ariane4_free_real_t t83 = parameters[XY2] * t50 - (parameters[ZZ2R] * t80 + parameters[XX2R] * t82)
+        - parameters[XZ2R] * t40;
+    const ariane4_free_real_t t84 = parameters[YZ2] * (t35 - t34) + t83 + parameters[MY2] * t51 + (t1 * t79
+        + t3 * t65);
+    const ariane4_free_real_t t85 = parameters[MX3R] * t47 + parameters[MY3R] * t24 + t62;
+    const ariane4_free_real_t t86 = t80 + t82;
+    const ariane4_free_real_t t87 = t48 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t86
+        + parameters[YZ2] * (t39 - ddq[1]);
+    const ariane4_free_real_t t88 = t38 * t38;
+    const ariane4_free_real_t t89 = parameters[XZ2R] * (t88 - t35) + t87 - parameters[MX2R] * t51 + (t3 * t79
+        - t1 * t65 + ARIANE4_FREE_C(0.443) * t85);
+    const ariane4_free_real_t t90 = t0 * t84 + t2 * t89 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t50
+        + parameters[MY2] * t86 + t85);
+    const ariane4_free_real_t t93 = ARIANE4_FREE_C(0.28217402066925895) * t91
+        + ARIANE4_FREE_C(0.9593632378089879) * t92;
+    const ariane4_free_real_t t94 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t93
+        + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t95 = ARIANE4_FREE_C(-0.28217402066925895) * t92
+        + ARIANE4_FREE_C(0.9593632378089879) * t91;
+    const ariane4_free_real_t t96 = ARIANE4_FREE_C(-0.06434139546481742) * t94 / t95;
+    const ariane4_free_real_t t97 = ARIANE4_FREE_C(-1.0) / t94;
+    const ariane4_free_real_t t98 = t95 * (ARIANE4_FREE_C(3885.523436256565) * t97);
+    const ariane4_free_real_t t99 = t98 * dq[0];
+    const ariane4_free_real_t t100 = ariane4_free_sign(t99);
+    const ariane4_free_real_t t101 = ARIANE4_FREE_C(-3885.523436256565) * t93
+        + ARIANE4_FREE_C(-72.7913960548305) * (t97 * t97) * (t95 * t95);
+    const ariane4_free_real_t t102 = parameters[FV1] * t99 + parameters[FC1] * t100
+        + parameters[IA1] * (t97 * t101 * t30 + t98 * ddq[0]);
+    out[0] = ARIANE4_FREE_C(-250.0) * t102 + t96 * (t90 - parameters[ZZ1R] * ddq[0]);
+    const ariane4_free_real_t t103 = parameters[MX4] * t69 + parameters[MY4] * t75;
+    const ariane4_free_real_t t104 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 - parameters[YZ3] * t14
+        + parameters[XZ3] * t22;
+    const ariane4_free_real_t t105 = parameters[MY3R] * t42 - parameters[MX3R] * t71
+        + (parameters[XY3R] * (t64 - t43) + t104);
+    const ariane4_free_real_t t106 = t105 + (t8 * t74 + t6 * t77 + ARIANE4_FREE_C(-0.1) * t103);
+    const ariane4_free_real_t t107 = t8 * t61 - t6 * t59 - (parameters[MX3R] * t45 + parameters[MY3R] * t20);
+    const ariane4_free_real_t t108 = t1 * (parameters[MX3R] * t72 - parameters[MY3R] * (t44 + t64) + t103);
+    const ariane4_free_real_t t109 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t39
+        + parameters[YZ2] * t49 + parameters[XZ2R] * t81;
+    const ariane4_free_real_t t110 = parameters[MY2] * t32 - parameters[MX2R] * t37 + (parameters[XY2] * (t88
+        - t34) + t109);
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(0.8305958991958126) * t2
+        - ARIANE4_FREE_C(0.5568756164881881) * t0;
+    const ariane4_free_real_t t112 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t111
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t106 = ARIANE4_FREE_C(1.0) / t105;
-    const ariane4_free_real_t t107 = t103 * (ARIANE4_FREE_C(2656.3065671641784) * t106);
-    const ariane4_free_real_t t108 = t107 * dq[1];
-    const ariane4_free_real_t t109 = ariane4_free_sign(t108);
-    const ariane4_free_real_t t110 = ARIANE4_FREE_C(2656.3065671641784) * t104
-        + ARIANE4_FREE_C(-104.12987373940295) * (t106 * t106) * (t103 * t103);
-    const ariane4_free_real_t t111 = parameters[FV2] * t108 + parameters[FC2] * t109
-        + parameters[IA2] * (t106 * t110 * t14 + t107 * ddq[1]);
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.03137188092799786) * t105 / t103;
-    const ariane4_free_real_t t113 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t25
-        + parameters[YZ2] * t23 + parameters[XZ2R] * t19;
-    const ariane4_free_real_t t114 = parameters[MY2] * t70 - parameters[MX2R] * t72 + (parameters[XY2] * (t97
-        - t17) + t113);
-    const ariane4_free_real_t t115 = parameters[XX3R] * t46 + parameters[ZZ3R] * t47 - parameters[YZ3] * t43
-        + parameters[XZ3] * t39;
-    const ariane4_free_real_t t116 = parameters[MY3R] * t87 - parameters[MX3R] * t74
-        + (parameters[XY3R] * (t83 - t36) + t115);
-    const ariane4_free_real_t t117 = parameters[MX4] * t64 + parameters[MY4] * t78;
-    const ariane4_free_real_t t118 = t116 + (t51 * t76 + t50 * t81 + ARIANE4_FREE_C(-0.1) * t117);
-    const ariane4_free_real_t t119 = t51 * t93 - t50 * t92 - (parameters[MX3R] * t86
-        + parameters[MY3R] * t57);
-    const ariane4_free_real_t t120 = t29 * (parameters[MX3R] * t48 - parameters[MY3R] * (t32 + t83) + t117);
-    const ariane4_free_real_t t121 = t112 * (t114 + (t118 + ARIANE4_FREE_C(0.443) * (t33 * t119 + t120)));
-    out[1] = ARIANE4_FREE_C(83.33333333333333) * t111 + t121;
-    const ariane4_free_real_t t122 = ARIANE4_FREE_C(-0.06366143813161289) * t33
-        + ARIANE4_FREE_C(-0.9979715533496006) * t29;
-    const ariane4_free_real_t t123 = ARIANE4_FREE_C(0.06366143813161289) * t29
-        - ARIANE4_FREE_C(0.9979715533496006) * t33;
-    const ariane4_free_real_t t124 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t123
+    const ariane4_free_real_t t113 = ARIANE4_FREE_C(0.8305958991958126) * t0
+        + ARIANE4_FREE_C(0.5568756164881881) * t2;
+    const ariane4_free_real_t t114 = ARIANE4_FREE_C(0.03137188092799786) * t112 / t113;
+    const ariane4_free_real_t t115 = t114 * (t110 + (t106 + ARIANE4_FREE_C(0.443) * (t3 * t107 + t108)));
+    const ariane4_free_real_t t116 = ARIANE4_FREE_C(1.0) / t112;
+    const ariane4_free_real_t t117 = t113 * (ARIANE4_FREE_C(2656.3065671641784) * t116);
+    const ariane4_free_real_t t118 = t117 * dq[1];
+    const ariane4_free_real_t t119 = ariane4_free_sign(t118);
+    const ariane4_free_real_t t120 = ARIANE4_FREE_C(2656.3065671641784) * t111
+        + ARIANE4_FREE_C(-104.12987373940295) * (t116 * t116) * (t113 * t113);
+    const ariane4_free_real_t t121 = parameters[FV2] * t118 + parameters[FC2] * t119
+        + parameters[IA2] * (t116 * t120 * t35 + t117 * ddq[1]);
+    out[1] = ARIANE4_FREE_C(83.33333333333333) * t121 + t115;
+    const ariane4_free_real_t t122 = ARIANE4_FREE_C(0.06366143813161289) * t1
+        - ARIANE4_FREE_C(0.9979715533496006) * t3;
+    const ariane4_free_real_t t123 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t122
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t125 = ARIANE4_FREE_C(-1.0) / t124;
-    const ariane4_free_real_t t126 = t122 * (ARIANE4_FREE_C(7124.375926654358) * t125);
-    const ariane4_free_real_t t127 = t126 * dq[2];
-    const ariane4_free_real_t t128 = ariane4_free_sign(t127);
-    const ariane4_free_real_t t129 = ARIANE4_FREE_C(-7124.375926654358) * t123
-        + ARIANE4_FREE_C(-188.12627071923498) * (t125 * t125) * (t122 * t122);
-    const ariane4_free_real_t t130 = parameters[IA3] * (t125 * t129 * (dq[2] * dq[2]) + t126 * ddq[2]);
-    const ariane4_free_real_t t131 = ARIANE4_FREE_C(-0.046787723832235825) * t124 / t122;
-    const ariane4_free_real_t t132 = ARIANE4_FREE_C(-333.3333333333333) * (parameters[FV3] * t127
-        + parameters[FC3] * t128 + t130) - t131 * t118;
+    const ariane4_free_real_t t124 = ARIANE4_FREE_C(-0.06366143813161289) * t3
+        + ARIANE4_FREE_C(-0.9979715533496006) * t1;
+    const ariane4_free_real_t t125 = ARIANE4_FREE_C(-0.046787723832235825) * t123 / t124;
+    const ariane4_free_real_t t126 = ARIANE4_FREE_C(-1.0) / t123;
+    const ariane4_free_real_t t127 = t124 * (ARIANE4_FREE_C(7124.375926654358) * t126);
+    const ariane4_free_real_t t128 = t127 * dq[2];
+    const ariane4_free_real_t t129 = ariane4_free_sign(t128);
+    const ariane4_free_real_t t130 = ARIANE4_FREE_C(-7124.375926654358) * t122
+        + ARIANE4_FREE_C(-188.12627071923498) * (t126 * t126) * (t124 * t124);
+    const ariane4_free_real_t t131 = parameters[IA3] * (t126 * t130 * (dq[2] * dq[2]) + t127 * ddq[2]);
+    const ariane4_free_real_t t132 = ARIANE4_FREE_C(-333.3333333333333) * (parameters[FV3] * t128
+        + parameters[FC3] * t129 + t131) - t125 * t106;
     out[2] = t132;
     const ariane4_free_real_t t133 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t134 = parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t133 + parameters[IA4] * (ARIANE4_FREE_C(1.0e2) * ddq[3]);
-    out[3] = ARIANE4_FREE_C(20.0) * t134 + ARIANE4_FREE_C(0.2) * t91;
+    out[3] = ARIANE4_FREE_C(20.0) * t134 + ARIANE4_FREE_C(0.2) * t55;
     return ARIANE4_FREE_STATUS_OK;
 }

@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -109,203 +109,202 @@ int ariane4_free_inverse_dynamics_standard(
         return status;
     }
 
-    ariane4_free_real_t t0, t1;
-    ARIANE4_FREE_SINCOS(q[0], &t0, &t1);
-    ariane4_free_real_t t13, t14;
-    ARIANE4_FREE_SINCOS(q[1], &t13, &t14);
-    ariane4_free_real_t t35, t33;
-    ARIANE4_FREE_SINCOS(q[2], &t35, &t33);
-    ariane4_free_real_t t60, t59;
-    ARIANE4_FREE_SINCOS(q[3], &t60, &t59);
-    const ariane4_free_real_t t2 = ARIANE4_FREE_C(-0.28217402066925895) * t0
-        + ARIANE4_FREE_C(0.9593632378089879) * t1;
-    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.28217402066925895) * t1
-        + ARIANE4_FREE_C(0.9593632378089879) * t0;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t3
-        + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-1.0) / t4;
-    const ariane4_free_real_t t6 = t2 * (ARIANE4_FREE_C(3885.523436256565) * t5);
-    const ariane4_free_real_t t7 = t6 * dq[0];
-    const ariane4_free_real_t t8 = ariane4_free_sign(t7);
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-3885.523436256565) * t3
-        + ARIANE4_FREE_C(-72.7913960548305) * (t5 * t5) * (t2 * t2);
-    const ariane4_free_real_t t10 = dq[0] * dq[0];
-    const ariane4_free_real_t t11 = t7 * parameters[FV1] + t8 * parameters[FC1] + (t6 * ddq[0]
-        + t5 * t9 * t10) * parameters[IA1];
-    const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.06434139546481742) * t4 / t2;
-    const ariane4_free_real_t t15 = t14 * dq[0];
-    const ariane4_free_real_t t16 = t15 * t15;
-    const ariane4_free_real_t t17 = dq[1] * dq[1];
-    const ariane4_free_real_t t18 = dq[1] * t15;
-    const ariane4_free_real_t t19 = t13 * ddq[0];
-    const ariane4_free_real_t t20 = t19 + t18;
-    const ariane4_free_real_t t21 = t13 * dq[0];
-    const ariane4_free_real_t t22 = dq[1] * t21;
-    const ariane4_free_real_t t23 = t14 * ddq[0];
-    const ariane4_free_real_t t24 = t22 - t23;
-    const ariane4_free_real_t t25 = t22 + t24;
-    const ariane4_free_real_t t26 = t18 * (parameters[YY2] - parameters[ZZ2]) - t20 * parameters[XX2]
-        + t25 * parameters[XY2];
-    const ariane4_free_real_t t27 = t21 * t15;
-    const ariane4_free_real_t t28 = ddq[1] + t27;
-    const ariane4_free_real_t t29 = ARIANE4_FREE_C(0.116) * t10;
-    const ariane4_free_real_t t30 = t13 * t29 + ARIANE4_FREE_C(9.81) * t14;
-    const ariane4_free_real_t t31 = ARIANE4_FREE_C(-0.116) * ddq[0];
-    const ariane4_free_real_t t32 = (t17 - t16) * parameters[YZ2] + (t26 - t28 * parameters[XZ2])
-        + (t30 * parameters[MZ2] - t31 * parameters[MY2]);
-    const ariane4_free_real_t t34 = t31 + ARIANE4_FREE_C(0.443) * t25;
-    const ariane4_free_real_t t36 = t14 * t29 + ARIANE4_FREE_C(-9.81) * t13;
-    const ariane4_free_real_t t37 = t36 + ARIANE4_FREE_C(0.443) * (t16 + t17);
-    const ariane4_free_real_t t38 = t30 + ARIANE4_FREE_C(0.443) * t28;
-    const ariane4_free_real_t t39 = t35 * t37 + t33 * t38;
-    const ariane4_free_real_t t40 = t14 * t33 - t13 * t35;
-    const ariane4_free_real_t t41 = dq[0] * t40;
-    const ariane4_free_real_t t42 = t41 * t41;
-    const ariane4_free_real_t t43 = dq[1] + dq[2];
-    const ariane4_free_real_t t44 = t43 * t43;
-    const ariane4_free_real_t t45 = t41 * t43;
-    const ariane4_free_real_t t46 = t13 * t33 + t14 * t35;
-    const ariane4_free_real_t t47 = ddq[0] * t46;
-    const ariane4_free_real_t t48 = t47 + t45;
-    const ariane4_free_real_t t49 = dq[0] * t46;
-    const ariane4_free_real_t t50 = t49 * t43;
-    const ariane4_free_real_t t51 = ddq[0] * t40;
-    const ariane4_free_real_t t52 = t50 - t51;
-    const ariane4_free_real_t t53 = t50 + t52;
-    const ariane4_free_real_t t54 = t53 * parameters[XY3] - (t45 * (parameters[ZZ3] - parameters[YY3])
-        + t48 * parameters[XX3]);
-    const ariane4_free_real_t t55 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t56 = t49 * t41;
-    const ariane4_free_real_t t57 = t55 + t56;
-    const ariane4_free_real_t t58 = t39 * parameters[MZ3] - t34 * parameters[MY3] + ((t44
-        - t42) * parameters[YZ3] + (t54 - t57 * parameters[XZ3]));
-    const ariane4_free_real_t t61 = t60 * t49 + t59 * t43;
-    const ariane4_free_real_t t62 = t61 * t61;
-    const ariane4_free_real_t t63 = dq[3] + t41;
-    const ariane4_free_real_t t64 = t63 * t63;
-    const ariane4_free_real_t t65 = t61 * t63;
-    const ariane4_free_real_t t66 = t55 - t56;
-    const ariane4_free_real_t t67 = t45 + t48;
-    const ariane4_free_real_t t68 = t59 * t67 - t60 * t66;
-    const ariane4_free_real_t t69 = t68 - t65;
-    const ariane4_free_real_t t70 = t59 * t49 - t60 * t43;
-    const ariane4_free_real_t t71 = t70 * t63;
-    const ariane4_free_real_t t72 = t59 * t66 + t60 * t67;
-    const ariane4_free_real_t t73 = t72 + t71;
-    const ariane4_free_real_t t74 = t71 + t73;
-    const ariane4_free_real_t t75 = t65 * (parameters[ZZ4] - parameters[YY4]) - t69 * parameters[XX4]
-        + t74 * parameters[XY4];
-    const ariane4_free_real_t t76 = t52 - ddq[3];
-    const ariane4_free_real_t t77 = t70 * t61;
-    const ariane4_free_real_t t78 = t76 + t77;
-    const ariane4_free_real_t t79 = t49 * t49;
-    const ariane4_free_real_t t80 = t79 + t44;
-    const ariane4_free_real_t t81 = t39 - (ARIANE4_FREE_C(0.1) * t57 + ARIANE4_FREE_C(0.436) * t80);
-    const ariane4_free_real_t t82 = t33 * t37 - t35 * t38;
-    const ariane4_free_real_t t83 = t42 + t44;
-    const ariane4_free_real_t t84 = t82 + (ARIANE4_FREE_C(-0.1) * t83 + ARIANE4_FREE_C(0.436) * t66);
-    const ariane4_free_real_t t85 = ARIANE4_FREE_C(0.1) * t53 + ARIANE4_FREE_C(-0.436) * t67 - t34;
-    const ariane4_free_real_t t86 = t60 * t84 + t59 * t85;
-    const ariane4_free_real_t t87 = (t64 - t62) * parameters[YZ4] + (t75 + t78 * parameters[XZ4])
-        + (t86 * parameters[MZ4] - t81 * parameters[MY4]);
-    const ariane4_free_real_t t88 = t70 * t70;
-    const ariane4_free_real_t t89 = t69 - t65;
-    const ariane4_free_real_t t90 = t71 * (parameters[XX4] - parameters[ZZ4]) - t73 * parameters[YY4]
-        + t89 * parameters[XY4];
-    const ariane4_free_real_t t91 = t77 - t76;
-    const ariane4_free_real_t t92 = t59 * t84 - t60 * t85;
-    const ariane4_free_real_t t93 = (t88 - t64) * parameters[XZ4] - (t90 + t91 * parameters[YZ4])
-        + (t92 * parameters[MZ4] + t81 * parameters[MX4]);
-    const ariane4_free_real_t t94 = (t62 + t64) * parameters[MX4] + t91 * parameters[MY4]
-        + t72 * parameters[MZ4];
-    const ariane4_free_real_t t95 = t92 * parameters[M4] + t94;
-    const ariane4_free_real_t t96 = (t88 + t64) * parameters[MY4] + t78 * parameters[MX4]
-        + t68 * parameters[MZ4];
-    const ariane4_free_real_t t97 = t96 - t86 * parameters[M4];
-    const ariane4_free_real_t t98 = t60 * t95 + t59 * t97;
-    const ariane4_free_real_t t99 = t58 + (t59 * t87 - t60 * t93 + ARIANE4_FREE_C(-0.436) * t98);
-    const ariane4_free_real_t t100 = t50 * (parameters[XX3] - parameters[ZZ3]) - t52 * parameters[YY3]
-        + t67 * parameters[XY3];
-    const ariane4_free_real_t t101 = t82 * parameters[MZ3] + t34 * parameters[MX3] + ((t79
-        - t44) * parameters[XZ3] - (t100 + t66 * parameters[YZ3]));
-    const ariane4_free_real_t t102 = t77 * (parameters[XX4] - parameters[YY4]) - t76 * parameters[ZZ4]
-        - t72 * parameters[YZ4];
-    const ariane4_free_real_t t103 = (t88 - t62) * parameters[XY4] + (t102 + t68 * parameters[XZ4])
-        + (t86 * parameters[MX4] + t92 * parameters[MY4]);
-    const ariane4_free_real_t t104 = t101 - (t103 + ARIANE4_FREE_C(0.1) * t98);
-    const ariane4_free_real_t t105 = t21 * t21;
-    const ariane4_free_real_t t106 = t18 + t20;
-    const ariane4_free_real_t t107 = t22 * (parameters[ZZ2] - parameters[XX2]) + t24 * parameters[YY2]
-        - t106 * parameters[XY2];
-    const ariane4_free_real_t t108 = (t105 - t17) * parameters[XZ2] + (t107 + (t27
-        - ddq[1]) * parameters[YZ2]);
-    const ariane4_free_real_t t109 = t53 * parameters[MX3] + t67 * parameters[MY3] - (t79
-        + t42) * parameters[MZ3];
-    const ariane4_free_real_t t110 = t34 * parameters[M3] + t109 + t98;
-    const ariane4_free_real_t t111 = t108 + (t36 * parameters[MZ2] + t31 * parameters[MX2]) + (t35 * t99
-        + t33 * t104 + ARIANE4_FREE_C(0.443) * t110);
-    const ariane4_free_real_t t112 = t13 * (t32 + (t33 * t99 - t35 * t104)) + t14 * t111;
-    const ariane4_free_real_t t113 = t25 * parameters[MX2] + t106 * parameters[MY2] - (t105
-        + t16) * parameters[MZ2];
-    const ariane4_free_real_t t114 = t112 + ARIANE4_FREE_C(0.116) * (t31 * parameters[M2] + t113 + t110)
+    ariane4_free_real_t t104, t103;
+    ARIANE4_FREE_SINCOS(q[0], &t104, &t103);
+    ariane4_free_real_t t3, t2;
+    ARIANE4_FREE_SINCOS(q[1], &t3, &t2);
+    ariane4_free_real_t t9, t15;
+    ARIANE4_FREE_SINCOS(q[2], &t9, &t15);
+    ariane4_free_real_t t34, t50;
+    ARIANE4_FREE_SINCOS(q[3], &t34, &t50);
+    const ariane4_free_real_t t0 = dq[0] * dq[0];
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0;
+    const ariane4_free_real_t t4 = t2 * t1 + ARIANE4_FREE_C(-9.81) * t3;
+    const ariane4_free_real_t t5 = t2 * dq[0];
+    const ariane4_free_real_t t6 = t5 * t5;
+    const ariane4_free_real_t t7 = dq[1] * dq[1];
+    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7);
+    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2;
+    const ariane4_free_real_t t11 = t3 * dq[0];
+    const ariane4_free_real_t t12 = t11 * t5;
+    const ariane4_free_real_t t13 = ddq[1] + t12;
+    const ariane4_free_real_t t14 = t10 + ARIANE4_FREE_C(0.443) * t13;
+    const ariane4_free_real_t t16 = t9 * t8 + t15 * t14;
+    const ariane4_free_real_t t17 = t3 * t15 + t2 * t9;
+    const ariane4_free_real_t t18 = dq[0] * t17;
+    const ariane4_free_real_t t19 = t2 * t15 - t3 * t9;
+    const ariane4_free_real_t t20 = dq[0] * t19;
+    const ariane4_free_real_t t21 = t18 * t20;
+    const ariane4_free_real_t t22 = ddq[1] + ddq[2];
+    const ariane4_free_real_t t23 = t22 + t21;
+    const ariane4_free_real_t t24 = t18 * t18;
+    const ariane4_free_real_t t25 = dq[1] + dq[2];
+    const ariane4_free_real_t t26 = t25 * t25;
+    const ariane4_free_real_t t27 = t24 + t26;
+    const ariane4_free_real_t t28 = t16 - (ARIANE4_FREE_C(0.1) * t23 + ARIANE4_FREE_C(0.436) * t27);
+    const ariane4_free_real_t t29 = t15 * t8 - t9 * t14;
+    const ariane4_free_real_t t30 = t20 * t20;
+    const ariane4_free_real_t t31 = t30 + t26;
+    const ariane4_free_real_t t32 = t22 - t21;
+    const ariane4_free_real_t t33 = t29 + (ARIANE4_FREE_C(-0.1) * t31 + ARIANE4_FREE_C(0.436) * t32);
+    const ariane4_free_real_t t35 = ddq[0] * t19;
+    const ariane4_free_real_t t36 = t18 * t25;
+    const ariane4_free_real_t t37 = t36 - t35;
+    const ariane4_free_real_t t38 = t36 + t37;
+    const ariane4_free_real_t t39 = ddq[0] * t17;
+    const ariane4_free_real_t t40 = t20 * t25;
+    const ariane4_free_real_t t41 = t39 + t40;
+    const ariane4_free_real_t t42 = t40 + t41;
+    const ariane4_free_real_t t43 = t2 * ddq[0];
+    const ariane4_free_real_t t44 = dq[1] * t11;
+    const ariane4_free_real_t t45 = t44 - t43;
+    const ariane4_free_real_t t46 = t44 + t45;
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(-0.116) * ddq[0];
+    const ariane4_free_real_t t48 = t47 + ARIANE4_FREE_C(0.443) * t46;
+    const ariane4_free_real_t t49 = ARIANE4_FREE_C(0.1) * t38 + ARIANE4_FREE_C(-0.436) * t42 - t48;
+    const ariane4_free_real_t t51 = t34 * t33 + t50 * t49;
+    const ariane4_free_real_t t52 = t50 * t42 - t34 * t32;
+    const ariane4_free_real_t t53 = t34 * t18 + t50 * t25;
+    const ariane4_free_real_t t54 = dq[3] + t20;
+    const ariane4_free_real_t t55 = t53 * t54;
+    const ariane4_free_real_t t56 = t52 - t55;
+    const ariane4_free_real_t t57 = t50 * t32 + t34 * t42;
+    const ariane4_free_real_t t58 = t50 * t18 - t34 * t25;
+    const ariane4_free_real_t t59 = t58 * t54;
+    const ariane4_free_real_t t60 = t57 + t59;
+    const ariane4_free_real_t t61 = t59 + t60;
+    const ariane4_free_real_t t62 = t55 * (parameters[ZZ4] - parameters[YY4]) - t56 * parameters[XX4]
+        + t61 * parameters[XY4];
+    const ariane4_free_real_t t63 = t37 - ddq[3];
+    const ariane4_free_real_t t64 = t58 * t53;
+    const ariane4_free_real_t t65 = t63 + t64;
+    const ariane4_free_real_t t66 = t53 * t53;
+    const ariane4_free_real_t t67 = t54 * t54;
+    const ariane4_free_real_t t68 = (t67 - t66) * parameters[YZ4] + (t62 + t65 * parameters[XZ4])
+        + (t51 * parameters[MZ4] - t28 * parameters[MY4]);
+    const ariane4_free_real_t t69 = t50 * t33 - t34 * t49;
+    const ariane4_free_real_t t70 = t56 - t55;
+    const ariane4_free_real_t t71 = t59 * (parameters[XX4] - parameters[ZZ4]) - t60 * parameters[YY4]
+        + t70 * parameters[XY4];
+    const ariane4_free_real_t t72 = t64 - t63;
+    const ariane4_free_real_t t73 = t58 * t58;
+    const ariane4_free_real_t t74 = (t73 - t67) * parameters[XZ4] - (t71 + t72 * parameters[YZ4])
+        + (t69 * parameters[MZ4] + t28 * parameters[MX4]);
+    const ariane4_free_real_t t75 = (t66 + t67) * parameters[MX4] + t72 * parameters[MY4]
+        + t57 * parameters[MZ4];
+    const ariane4_free_real_t t76 = t69 * parameters[M4] + t75;
+    const ariane4_free_real_t t77 = (t73 + t67) * parameters[MY4] + t65 * parameters[MX4]
+        + t52 * parameters[MZ4];
+    const ariane4_free_real_t t78 = t77 - t51 * parameters[M4];
+    const ariane4_free_real_t t79 = t34 * t76 + t50 * t78;
+    const ariane4_free_real_t t80 = t38 * parameters[XY3] - (t40 * (parameters[ZZ3] - parameters[YY3])
+        + t41 * parameters[XX3]);
+    const ariane4_free_real_t t81 = t16 * parameters[MZ3] - t48 * parameters[MY3] + ((t26
+        - t30) * parameters[YZ3] + (t80 - t23 * parameters[XZ3]));
+    const ariane4_free_real_t t82 = t81 + (t50 * t68 - t34 * t74 + ARIANE4_FREE_C(-0.436) * t79);
+    const ariane4_free_real_t t83 = t64 * (parameters[XX4] - parameters[YY4]) - t63 * parameters[ZZ4]
+        - t57 * parameters[YZ4];
+    const ariane4_free_real_t t84 = (t73 - t66) * parameters[XY4] + (t83 + t52 * parameters[XZ4])
+        + (t51 * parameters[MX4] + t69 * parameters[MY4]);
+    const ariane4_free_real_t t85 = t36 * (parameters[XX3] - parameters[ZZ3]) - t37 * parameters[YY3]
+        + t42 * parameters[XY3];
+    const ariane4_free_real_t t86 = t29 * parameters[MZ3] + t48 * parameters[MX3] + ((t24
+        - t26) * parameters[XZ3] - (t85 + t32 * parameters[YZ3]));
+    const ariane4_free_real_t t87 = t86 - (t84 + ARIANE4_FREE_C(0.1) * t79);
+    const ariane4_free_real_t t88 = dq[1] * t5;
+    const ariane4_free_real_t t89 = t3 * ddq[0];
+    const ariane4_free_real_t t90 = t89 + t88;
+    const ariane4_free_real_t t91 = t88 * (parameters[YY2] - parameters[ZZ2]) - t90 * parameters[XX2]
+        + t46 * parameters[XY2];
+    const ariane4_free_real_t t92 = (t7 - t6) * parameters[YZ2] + (t91 - t13 * parameters[XZ2])
+        + (t10 * parameters[MZ2] - t47 * parameters[MY2]);
+    const ariane4_free_real_t t93 = t38 * parameters[MX3] + t42 * parameters[MY3] - (t24
+        + t30) * parameters[MZ3];
+    const ariane4_free_real_t t94 = t48 * parameters[M3] + t93 + t79;
+    const ariane4_free_real_t t95 = t88 + t90;
+    const ariane4_free_real_t t96 = t44 * (parameters[ZZ2] - parameters[XX2]) + t45 * parameters[YY2]
+        - t95 * parameters[XY2];
+    const ariane4_free_real_t t97 = t11 * t11;
+    const ariane4_free_real_t t98 = (t97 - t7) * parameters[XZ2] + (t96 + (t12 - ddq[1]) * parameters[YZ2]);
+    const ariane4_free_real_t t99 = t98 + (t4 * parameters[MZ2] + t47 * parameters[MX2]) + (t9 * t82
+        + t15 * t87 + ARIANE4_FREE_C(0.443) * t94);
+    const ariane4_free_real_t t100 = t3 * (t92 + (t15 * t82 - t9 * t87)) + t2 * t99;
+    const ariane4_free_real_t t101 = t46 * parameters[MX2] + t95 * parameters[MY2] - (t97
+        + t6) * parameters[MZ2];
+    const ariane4_free_real_t t102 = t100 + ARIANE4_FREE_C(0.116) * (t47 * parameters[M2] + t101 + t94)
         - ddq[0] * parameters[ZZ1];
-    out[0] = ARIANE4_FREE_C(-250.0) * t11 + t12 * t114;
-    const ariane4_free_real_t t115 = ARIANE4_FREE_C(0.8305958991958126) * t13
-        + ARIANE4_FREE_C(0.5568756164881881) * t14;
-    const ariane4_free_real_t t116 = ARIANE4_FREE_C(0.8305958991958126) * t14
-        - ARIANE4_FREE_C(0.5568756164881881) * t13;
-    const ariane4_free_real_t t117 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t116
+    const ariane4_free_real_t t105 = ARIANE4_FREE_C(0.28217402066925895) * t103
+        + ARIANE4_FREE_C(0.9593632378089879) * t104;
+    const ariane4_free_real_t t106 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t105
+        + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t107 = ARIANE4_FREE_C(-0.28217402066925895) * t104
+        + ARIANE4_FREE_C(0.9593632378089879) * t103;
+    const ariane4_free_real_t t108 = ARIANE4_FREE_C(-0.06434139546481742) * t106 / t107;
+    const ariane4_free_real_t t109 = ARIANE4_FREE_C(-1.0) / t106;
+    const ariane4_free_real_t t110 = t107 * (ARIANE4_FREE_C(3885.523436256565) * t109);
+    const ariane4_free_real_t t111 = t110 * dq[0];
+    const ariane4_free_real_t t112 = ariane4_free_sign(t111);
+    const ariane4_free_real_t t113 = ARIANE4_FREE_C(-3885.523436256565) * t105
+        + ARIANE4_FREE_C(-72.7913960548305) * (t109 * t109) * (t107 * t107);
+    const ariane4_free_real_t t114 = t111 * parameters[FV1] + t112 * parameters[FC1] + (t110 * ddq[0]
+        + t109 * t113 * t0) * parameters[IA1];
+    out[0] = ARIANE4_FREE_C(-250.0) * t114 + t108 * t102;
+    const ariane4_free_real_t t115 = t34 * t78 - t50 * t76;
+    const ariane4_free_real_t t116 = t61 * parameters[MX4] + t70 * parameters[MY4] - (t73
+        + t66) * parameters[MZ4];
+    const ariane4_free_real_t t117 = t28 * parameters[M4] + t116;
+    const ariane4_free_real_t t118 = t34 * t68 + t50 * t74 + (ARIANE4_FREE_C(-0.1) * t117
+        + ARIANE4_FREE_C(-0.436) * t115);
+    const ariane4_free_real_t t119 = t22 * parameters[ZZ3] - t21 * (parameters[XX3] - parameters[YY3])
+        + t35 * parameters[YZ3];
+    const ariane4_free_real_t t120 = t16 * parameters[MX3] + t29 * parameters[MY3] + ((t24
+        - t30) * parameters[XY3] + (t119 + t39 * parameters[XZ3]));
+    const ariane4_free_real_t t121 = t120 + t118;
+    const ariane4_free_real_t t122 = t35 * parameters[MZ3] - (t31 * parameters[MX3] + t32 * parameters[MY3])
+        - t29 * parameters[M3];
+    const ariane4_free_real_t t123 = t16 * parameters[M3] + (t23 * parameters[MX3] - t27 * parameters[MY3]
+        - t39 * parameters[MZ3]);
+    const ariane4_free_real_t t124 = ARIANE4_FREE_C(0.443) * (t9 * (t122 + t115) + t15 * (t123 + t117));
+    const ariane4_free_real_t t125 = t12 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t43 * parameters[YZ2];
+    const ariane4_free_real_t t126 = t10 * parameters[MX2] + t4 * parameters[MY2] + ((t97
+        - t6) * parameters[XY2] + (t125 + t89 * parameters[XZ2]));
+    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.8305958991958126) * t2
+        - ARIANE4_FREE_C(0.5568756164881881) * t3;
+    const ariane4_free_real_t t128 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t127
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t118 = ARIANE4_FREE_C(1.0) / t117;
-    const ariane4_free_real_t t119 = t115 * (ARIANE4_FREE_C(2656.3065671641784) * t118);
-    const ariane4_free_real_t t120 = t119 * dq[1];
-    const ariane4_free_real_t t121 = ariane4_free_sign(t120);
-    const ariane4_free_real_t t122 = ARIANE4_FREE_C(2656.3065671641784) * t116
-        + ARIANE4_FREE_C(-104.12987373940295) * (t118 * t118) * (t115 * t115);
-    const ariane4_free_real_t t123 = t120 * parameters[FV2] + t121 * parameters[FC2] + (t119 * ddq[1]
-        + t118 * t122 * t17) * parameters[IA2];
-    const ariane4_free_real_t t124 = ARIANE4_FREE_C(0.03137188092799786) * t117 / t115;
-    const ariane4_free_real_t t125 = t27 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t23 * parameters[YZ2];
-    const ariane4_free_real_t t126 = t30 * parameters[MX2] + t36 * parameters[MY2] + ((t105
-        - t16) * parameters[XY2] + (t125 + t19 * parameters[XZ2]));
-    const ariane4_free_real_t t127 = t55 * parameters[ZZ3] - t56 * (parameters[XX3] - parameters[YY3])
-        + t51 * parameters[YZ3];
-    const ariane4_free_real_t t128 = t39 * parameters[MX3] + t82 * parameters[MY3] + ((t79
-        - t42) * parameters[XY3] + (t127 + t47 * parameters[XZ3]));
-    const ariane4_free_real_t t129 = t74 * parameters[MX4] + t89 * parameters[MY4] - (t88
-        + t62) * parameters[MZ4];
-    const ariane4_free_real_t t130 = t81 * parameters[M4] + t129;
-    const ariane4_free_real_t t131 = t60 * t97 - t59 * t95;
-    const ariane4_free_real_t t132 = t60 * t87 + t59 * t93 + (ARIANE4_FREE_C(-0.1) * t130
-        + ARIANE4_FREE_C(-0.436) * t131);
-    const ariane4_free_real_t t133 = t128 + t132;
-    const ariane4_free_real_t t134 = t51 * parameters[MZ3] - (t83 * parameters[MX3] + t66 * parameters[MY3])
-        - t82 * parameters[M3];
-    const ariane4_free_real_t t135 = t39 * parameters[M3] + (t57 * parameters[MX3] - t80 * parameters[MY3]
-        - t47 * parameters[MZ3]);
-    const ariane4_free_real_t t136 = ARIANE4_FREE_C(0.443) * (t35 * (t134 + t131) + t33 * (t135 + t130));
-    out[1] = ARIANE4_FREE_C(83.33333333333333) * t123 + t124 * (t126 + (t133 + t136));
-    const ariane4_free_real_t t137 = ARIANE4_FREE_C(-0.06366143813161289) * t35
-        + ARIANE4_FREE_C(-0.9979715533496006) * t33;
-    const ariane4_free_real_t t138 = ARIANE4_FREE_C(0.06366143813161289) * t33
-        - ARIANE4_FREE_C(0.9979715533496006) * t35;
-    const ariane4_free_real_t t139 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t138
+    const ariane4_free_real_t t129 = ARIANE4_FREE_C(0.8305958991958126) * t3
+        + ARIANE4_FREE_C(0.5568756164881881) * t2;
+    const ariane4_free_real_t t130 = ARIANE4_FREE_C(0.03137188092799786) * t128 / t129;
+    const ariane4_free_real_t t131 = ARIANE4_FREE_C(1.0) / t128;
+    const ariane4_free_real_t t132 = t129 * (ARIANE4_FREE_C(2656.3065671641784) * t131);
+    const ariane4_free_real_t t133 = t132 * dq[1];
+    const ariane4_free_real_t t134 = ariane4_free_sign(t133);
+    const ariane4_free_real_t t135 = ARIANE4_FREE_C(2656.3065671641784) * t127
+        + ARIANE4_FREE_C(-104.12987373940295) * (t131 * t131) * (t129 * t129);
+    const ariane4_free_real_t t136 = t133 * parameters[FV2] + t134 * parameters[FC2] + (t132 * ddq[1]
+        + t131 * t135 * t7) * parameters[IA2];
+    out[1] = ARIANE4_FREE_C(83.33333333333333) * t136 + t130 * (t126 + (t121 + t124));
+    const ariane4_free_real_t t137 = ARIANE4_FREE_C(0.06366143813161289) * t15
+        - ARIANE4_FREE_C(0.9979715533496006) * t9;
+    const ariane4_free_real_t t138 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t137
         + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t140 = ARIANE4_FREE_C(-1.0) / t139;
-    const ariane4_free_real_t t141 = t137 * (ARIANE4_FREE_C(7124.375926654358) * t140);
-    const ariane4_free_real_t t142 = t141 * dq[2];
-    const ariane4_free_real_t t143 = ariane4_free_sign(t142);
-    const ariane4_free_real_t t144 = ARIANE4_FREE_C(-7124.375926654358) * t138
-        + ARIANE4_FREE_C(-188.12627071923498) * (t140 * t140) * (t137 * t137);
-    const ariane4_free_real_t t145 = (t141 * ddq[2] + t140 * t144 * (dq[2] * dq[2])) * parameters[IA3];
-    const ariane4_free_real_t t146 = ARIANE4_FREE_C(-0.046787723832235825) * t139 / t137;
-    const ariane4_free_real_t t147 = ARIANE4_FREE_C(-333.3333333333333) * (t142 * parameters[FV3]
-        + t143 * parameters[FC3] + t145) - t146 * t133;
+    const ariane4_free_real_t t139 = ARIANE4_FREE_C(-0.06366143813161289) * t9
+        + ARIANE4_FREE_C(-0.9979715533496006) * t15;
+    const ariane4_free_real_t t140 = ARIANE4_FREE_C(-0.046787723832235825) * t138 / t139;
+    const ariane4_free_real_t t141 = ARIANE4_FREE_C(-1.0) / t138;
+    const ariane4_free_real_t t142 = t139 * (ARIANE4_FREE_C(7124.375926654358) * t141);
+    const ariane4_free_real_t t143 = t142 * dq[2];
+    const ariane4_free_real_t t144 = ariane4_free_sign(t143);
+    const ariane4_free_real_t t145 = ARIANE4_FREE_C(-7124.375926654358) * t137
+        + ARIANE4_FREE_C(-188.12627071923498) * (t141 * t141) * (t139 * t139);
+    const ariane4_free_real_t t146 = (t142 * ddq[2] + t141 * t145 * (dq[2] * dq[2])) * parameters[IA3];
+    const ariane4_free_real_t t147 = ARIANE4_FREE_C(-333.3333333333333) * (t143 * parameters[FV3]
+        + t144 * parameters[FC3] + t146) - t140 * t121;
     out[2] = t147;
     const ariane4_free_real_t t148 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t149 = ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4] + t148 * parameters[FC4]
         + ARIANE4_FREE_C(1.0e2) * ddq[3] * parameters[IA4];
-    out[3] = ARIANE4_FREE_C(20.0) * t149 + ARIANE4_FREE_C(0.2) * t103;
+    out[3] = ARIANE4_FREE_C(20.0) * t149 + ARIANE4_FREE_C(0.2) * t84;
     return ARIANE4_FREE_STATUS_OK;
 }

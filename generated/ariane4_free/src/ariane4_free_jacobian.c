@@ -19,7 +19,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -37,44 +37,44 @@ int ariane4_free_jacobian(
         return status;
     }
 
-    ariane4_free_real_t t0, t11;
-    ARIANE4_FREE_SINCOS(q[0], &t0, &t11);
-    ariane4_free_real_t t6, t2;
-    ARIANE4_FREE_SINCOS(q[1], &t6, &t2);
-    ariane4_free_real_t t5, t4;
-    ARIANE4_FREE_SINCOS(q[2], &t5, &t4);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-0.116) * t0;
-    const ariane4_free_real_t t3 = t0 * t2;
-    const ariane4_free_real_t t7 = t0 * t6;
-    const ariane4_free_real_t t8 = t5 * t3 + t4 * t7;
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.1) * (t4 * t3 - t5 * t7) + ARIANE4_FREE_C(0.436) * t8;
-    const ariane4_free_real_t t10 = t1 + ARIANE4_FREE_C(-0.443) * t3 + t9;
+    ariane4_free_real_t t0, t14;
+    ARIANE4_FREE_SINCOS(q[0], &t0, &t14);
+    ariane4_free_real_t t4, t1;
+    ARIANE4_FREE_SINCOS(q[1], &t4, &t1);
+    ariane4_free_real_t t6, t3;
+    ARIANE4_FREE_SINCOS(q[2], &t6, &t3);
+    const ariane4_free_real_t t2 = t0 * t1;
+    const ariane4_free_real_t t5 = t0 * t4;
+    const ariane4_free_real_t t7 = t6 * t2 + t3 * t5;
+    const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.1) * (t3 * t2 - t6 * t5) + ARIANE4_FREE_C(0.436) * t7;
+    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-0.116) * t0;
+    const ariane4_free_real_t t10 = t9 + ARIANE4_FREE_C(-0.443) * t2 + t8;
     out[0] = t10;
-    const ariane4_free_real_t t12 = t2 * t4 - t6 * t5;
-    const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.1) * (t6 * t4 + t2 * t5) + ARIANE4_FREE_C(-0.436) * t12;
-    const ariane4_free_real_t t14 = ARIANE4_FREE_C(-0.443) * t6 + t13;
-    out[1] = t11 * t14;
-    out[2] = t11 * t13;
-    const ariane4_free_real_t t15 = ARIANE4_FREE_C(0.116) * t11;
-    const ariane4_free_real_t t16 = t11 * t2;
-    const ariane4_free_real_t t17 = t11 * t6;
-    const ariane4_free_real_t t18 = t5 * t16 + t4 * t17;
-    const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.1) * (t5 * t17 - t4 * t16)
-        + ARIANE4_FREE_C(-0.436) * t18;
-    const ariane4_free_real_t t20 = t15 + ARIANE4_FREE_C(0.443) * t16 + t19;
+    const ariane4_free_real_t t11 = t1 * t3 - t4 * t6;
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.1) * (t4 * t3 + t1 * t6) + ARIANE4_FREE_C(-0.436) * t11;
+    const ariane4_free_real_t t13 = ARIANE4_FREE_C(-0.443) * t4 + t12;
+    out[1] = t14 * t13;
+    out[2] = t14 * t12;
+    const ariane4_free_real_t t15 = t14 * t1;
+    const ariane4_free_real_t t16 = t14 * t4;
+    const ariane4_free_real_t t17 = t6 * t15 + t3 * t16;
+    const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.1) * (t6 * t16 - t3 * t15)
+        + ARIANE4_FREE_C(-0.436) * t17;
+    const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.116) * t14;
+    const ariane4_free_real_t t20 = t19 + ARIANE4_FREE_C(0.443) * t15 + t18;
     out[4] = t20;
-    out[5] = t0 * t14;
-    out[6] = t0 * t13;
-    out[9] = t0 * (t1 - t10) + t11 * (t20 - t15);
-    out[10] = t11 * t19 - t0 * t9;
+    out[5] = t0 * t13;
+    out[6] = t0 * t12;
+    out[9] = t0 * (t9 - t10) + t14 * (t20 - t19);
+    out[10] = t14 * t18 - t0 * t8;
     out[13] = t0;
     out[14] = t0;
-    out[15] = -t18;
-    out[17] = -t11;
-    out[18] = -t11;
-    out[19] = -t8;
+    out[15] = -t17;
+    out[17] = -t14;
+    out[18] = -t14;
+    out[19] = -t7;
     out[20] = ARIANE4_FREE_C(1.0);
-    out[23] = t12;
+    out[23] = t11;
     /* always zero */
     out[3] = ARIANE4_FREE_C(0.0);
     out[7] = ARIANE4_FREE_C(0.0);

@@ -11,7 +11,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xEE13FB90UL
+#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
 #error "ariane4_free.h and ariane4_free_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 ariane4_free_pair_t ariane4_free_sincos(ariane4_free_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * ARIANE4_FREE_C(0.636619772) + ARIANE4_FREE_C(16384.5));
+    const ariane4_free_real_t turns = x * ARIANE4_FREE_C(0.636619772) + ARIANE4_FREE_C(16384.5);
+    const long quarter = (long)turns;
     const ariane4_free_real_t k = (ariane4_free_real_t)quarter - ARIANE4_FREE_C(16384.0);
     const ariane4_free_real_t r = x - k * ARIANE4_FREE_C(1.5703125) - k * ARIANE4_FREE_C(4.83826792e-4);
     const ariane4_free_real_t z = r * r;

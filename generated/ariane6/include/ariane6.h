@@ -85,7 +85,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0xFF706B1FUL
+#define ARIANE6_GENERATION 0xC9DD674DUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE6_REAL

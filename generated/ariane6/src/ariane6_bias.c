@@ -80,7 +80,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -111,233 +111,233 @@ int ariane6_bias(
         return status;
     }
 
+    ariane6_real_t t138, t140;
+    ARIANE6_SINCOS(q[0], &t138, &t140);
     ariane6_real_t t0, t3;
-    ARIANE6_SINCOS(q[0], &t0, &t3);
-    ariane6_real_t t10, t11;
-    ARIANE6_SINCOS(q[1], &t10, &t11);
-    ariane6_real_t t22, t21;
-    ARIANE6_SINCOS(q[2], &t22, &t21);
-    ariane6_real_t t35, t34;
-    ARIANE6_SINCOS(q[3], &t35, &t34);
-    ariane6_real_t t62, t61;
-    ARIANE6_SINCOS(q[4], &t62, &t61);
-    ariane6_real_t t86, t85;
-    ARIANE6_SINCOS(q[5], &t86, &t85);
-    const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t2 = ARIANE6_C(-1.0) / t1;
-    const ariane6_real_t t4 = ARIANE6_C(-4063.3400000000006) * t0
-        + ARIANE6_C(-82.55365977800001) * (t2 * t2) * (t3 * t3);
-    const ariane6_real_t t5 = dq[0] * dq[0];
-    const ariane6_real_t t6 = t3 * (ARIANE6_C(-4063.3400000000006) * t2) * dq[0];
-    const ariane6_real_t t7 = ariane6_sign(t6);
-    const ariane6_real_t t8 = parameters[FV1] * t6 + parameters[FC1] * t7 - parameters[IA1] * (t2 * t4 * t5);
-    const ariane6_real_t t9 = ARIANE6_C(0.061525739908548135) * t1 / t3;
-    const ariane6_real_t t12 = t11 * dq[0];
-    const ariane6_real_t t13 = dq[1] * t12;
-    const ariane6_real_t t14 = t10 * dq[0];
-    const ariane6_real_t t15 = dq[1] * t14;
-    const ariane6_real_t t16 = ARIANE6_C(-2.0) * t15;
-    const ariane6_real_t t17 = t14 * t12;
-    const ariane6_real_t t18 = parameters[XX2R] * t13 + parameters[ZZ2R] * t13 + parameters[XY2] * t16
-        + parameters[XZ2R] * t17;
-    const ariane6_real_t t19 = dq[1] * dq[1];
-    const ariane6_real_t t20 = t12 * t12;
-    const ariane6_real_t t23 = t21 * t12 - t22 * t14;
-    const ariane6_real_t t24 = dq[1] + dq[2];
-    const ariane6_real_t t25 = t23 * t24;
-    const ariane6_real_t t26 = t21 * t14 + t22 * t12;
-    const ariane6_real_t t27 = t26 * t24;
-    const ariane6_real_t t28 = ARIANE6_C(-2.0) * t27;
-    const ariane6_real_t t29 = t26 * t23;
-    const ariane6_real_t t30 = parameters[XX3R] * t25 + parameters[ZZ3R] * t25 + parameters[XY3R] * t28
-        + parameters[XZ3] * t29;
-    const ariane6_real_t t31 = t23 * t23;
-    const ariane6_real_t t32 = t24 * t24;
-    const ariane6_real_t t33 = ARIANE6_C(1.37) * t15;
-    const ariane6_real_t t36 = ARIANE6_C(2.0) * t25;
-    const ariane6_real_t t37 = t35 * t29 + t34 * t36;
-    const ariane6_real_t t38 = t35 * t26 + t34 * t24;
-    const ariane6_real_t t39 = dq[3] + t23;
-    const ariane6_real_t t40 = t38 * t39;
-    const ariane6_real_t t41 = t40 - t37;
-    const ariane6_real_t t42 = t34 * t26 - t35 * t24;
-    const ariane6_real_t t43 = t42 * t39;
-    const ariane6_real_t t44 = t35 * t36 - t34 * t29;
-    const ariane6_real_t t45 = t44 + t43;
-    const ariane6_real_t t46 = t43 + t45;
-    const ariane6_real_t t47 = t42 * t38;
-    const ariane6_real_t t48 = t27 + t47;
-    const ariane6_real_t t49 = parameters[XX4R] * t41 + parameters[ZZ4R] * t40 + parameters[XY4] * t46
-        + parameters[XZ4] * t48;
-    const ariane6_real_t t50 = t38 * t38;
-    const ariane6_real_t t51 = t39 * t39;
-    const ariane6_real_t t52 = ARIANE6_C(0.18) * t5;
-    const ariane6_real_t t53 = t11 * t52 + ARIANE6_C(-9.81) * t10;
-    const ariane6_real_t t54 = t53 + ARIANE6_C(0.685) * (t19 + t20);
-    const ariane6_real_t t55 = t10 * t52 + ARIANE6_C(9.81) * t11;
-    const ariane6_real_t t56 = t55 + ARIANE6_C(0.685) * t17;
-    const ariane6_real_t t57 = t22 * t54 + t21 * t56;
-    const ariane6_real_t t58 = t26 * t26;
-    const ariane6_real_t t59 = t58 + t32;
-    const ariane6_real_t t60 = t57 + (ARIANE6_C(-0.17) * t29 + ARIANE6_C(-0.488) * t59);
-    const ariane6_real_t t63 = t27 - t47;
-    const ariane6_real_t t64 = t40 + t41;
-    const ariane6_real_t t65 = t62 * t63 + t61 * t64;
-    const ariane6_real_t t66 = t62 * t42 - t61 * t39;
-    const ariane6_real_t t67 = dq[4] + t38;
-    const ariane6_real_t t68 = t66 * t67;
-    const ariane6_real_t t69 = t65 + t68;
-    const ariane6_real_t t70 = t61 * t42 + t62 * t39;
-    const ariane6_real_t t71 = t70 * t67;
-    const ariane6_real_t t72 = t61 * t63 - t62 * t64;
-    const ariane6_real_t t73 = t72 + t71;
-    const ariane6_real_t t74 = t71 + t73;
-    const ariane6_real_t t75 = t70 * t66;
-    const ariane6_real_t t76 = t45 - t75;
-    const ariane6_real_t t77 = parameters[XZ5] * t76 - (parameters[XX5R] * t69 + parameters[ZZ5R] * t68
-        + parameters[XY5] * t74);
-    const ariane6_real_t t78 = t66 * t66;
-    const ariane6_real_t t79 = t67 * t67;
-    const ariane6_real_t t80 = t21 * t54 - t22 * t56;
-    const ariane6_real_t t81 = t31 + t32;
-    const ariane6_real_t t82 = t80 + (ARIANE6_C(-0.17) * t81 + ARIANE6_C(-0.488) * t29);
-    const ariane6_real_t t83 = t33 - (ARIANE6_C(0.34) * t27 + ARIANE6_C(-0.976) * t25);
-    const ariane6_real_t t84 = t35 * t82 - t34 * t83;
-    const ariane6_real_t t87 = t45 + t75;
-    const ariane6_real_t t88 = t68 + t69;
-    const ariane6_real_t t89 = t86 * t87 + t85 * t88;
-    const ariane6_real_t t90 = t86 * t70 + t85 * t67;
-    const ariane6_real_t t91 = t66 - dq[5];
-    const ariane6_real_t t92 = t90 * t91;
-    const ariane6_real_t t93 = t89 - t92;
-    const ariane6_real_t t94 = t85 * t70 - t86 * t67;
-    const ariane6_real_t t95 = t94 * t91;
-    const ariane6_real_t t96 = t86 * t88 - t85 * t87;
-    const ariane6_real_t t97 = t95 + (t96 + t95);
-    const ariane6_real_t t98 = t94 * t90;
-    const ariane6_real_t t99 = t73 + t98;
-    const ariane6_real_t t100 = parameters[XX6R] * t93 - parameters[ZZ6] * t92 - parameters[XY6] * t97
-        + parameters[XZ6R] * t99;
-    const ariane6_real_t t101 = t90 * t90;
-    const ariane6_real_t t102 = t91 * t91;
-    const ariane6_real_t t103 = t34 * t82 + t35 * t83;
-    const ariane6_real_t t104 = t62 * t103 + t61 * t60;
-    const ariane6_real_t t105 = t100 - parameters[YZ6R] * (t101 - t102) - parameters[MY6] * t104;
-    const ariane6_real_t t106 = t93 - t92;
-    const ariane6_real_t t107 = t73 - t98;
-    const ariane6_real_t t108 = parameters[XY6] * t106 - t95 * (parameters[ZZ6] - parameters[XX6R])
-        + parameters[YZ6R] * t107;
-    const ariane6_real_t t109 = t94 * t94;
-    const ariane6_real_t t110 = t108 + parameters[XZ6R] * (t109 - t102) + parameters[MX6] * t104;
-    const ariane6_real_t t111 = t77 + parameters[YZ5] * (t78 - t79) - parameters[MY5R] * t84 + (t86 * t110
-        - t85 * t105);
-    const ariane6_real_t t112 = t71 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t88
-        + parameters[YZ5] * t87;
-    const ariane6_real_t t113 = t70 * t70;
-    const ariane6_real_t t114 = parameters[XX6R] * t98 - parameters[ZZ6] * t73 + parameters[YZ6R] * t96
-        - parameters[XZ6R] * t89;
-    const ariane6_real_t t115 = t61 * t103 - t62 * t60;
-    const ariane6_real_t t116 = parameters[MX6] * (t86 * t115 + t85 * t84) + parameters[MY6] * (t85 * t115
-        - t86 * t84);
-    const ariane6_real_t t117 = t114 + parameters[XY6] * (t109 - t101) + t116;
-    const ariane6_real_t t118 = t112 + parameters[XZ5] * (t79 - t113) + parameters[MX5] * t84 + t117;
-    const ariane6_real_t t119 = t49 - parameters[YZ4] * (t50 - t51) - parameters[MY4R] * t60 + (t62 * t118
-        - t61 * t111);
-    const ariane6_real_t t120 = t43 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t64
-        + parameters[YZ4] * t63;
-    const ariane6_real_t t121 = t42 * t42;
-    const ariane6_real_t t122 = parameters[ZZ5R] * t45 + parameters[XX5R] * t75 - parameters[YZ5] * t72
-        - parameters[XZ5] * t65;
-    const ariane6_real_t t123 = t122 + parameters[XY5] * (t113 - t78) + (parameters[MX5] * t104
-        + parameters[MY5R] * t115);
-    const ariane6_real_t t124 = t123 + (t86 * t105 + t85 * t110);
-    const ariane6_real_t t125 = t120 + parameters[XZ4] * (t121 - t51) + parameters[MX4] * t60 + t124;
-    const ariane6_real_t t126 = parameters[MY6] * t107 - parameters[MX6] * (t101 + t102);
-    const ariane6_real_t t127 = parameters[MX6] * t99 + parameters[MY6] * (t109 + t102);
-    const ariane6_real_t t128 = t85 * t126 + t86 * t127 - (parameters[MX5] * (t78 + t79)
-        + parameters[MY5R] * t87);
-    const ariane6_real_t t129 = parameters[MX5] * t76 - parameters[MY5R] * (t113 + t79)
-        - (parameters[MX6] * t97 + parameters[MY6] * t106);
-    const ariane6_real_t t130 = parameters[MY4R] * t63 - parameters[MX4] * (t50 + t51) + (t61 * t128
-        - t62 * t129);
-    const ariane6_real_t t131 = parameters[MX5] * t74 - parameters[MY5R] * t88 + (t85 * t127 - t86 * t126);
-    const ariane6_real_t t132 = parameters[MX4] * t48 + parameters[MY4R] * (t121 + t51) + t131;
-    const ariane6_real_t t133 = t35 * t130 - t34 * t132;
-    const ariane6_real_t t134 = t30 + parameters[YZ3] * (t31 - t32) + parameters[MY3R] * t33 + (t35 * t125
-        - t34 * t119 + ARIANE6_C(-0.488) * t133);
-    const ariane6_real_t t135 = t27 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t36
-        - parameters[YZ3] * t29;
-    const ariane6_real_t t136 = parameters[XX4R] * t47 - parameters[ZZ4R] * t27 - parameters[YZ4] * t44
-        + parameters[XZ4] * t37;
-    const ariane6_real_t t137 = t136 + parameters[XY4] * (t121 - t50) + (parameters[MX4] * t84
-        + parameters[MY4R] * t103);
-    const ariane6_real_t t138 = t137 + (t62 * t111 + t61 * t118);
-    const ariane6_real_t t139 = t135 - parameters[XZ3] * (t58 - t32) - parameters[MX3R] * t33 + (t138
-        + ARIANE6_C(-0.17) * t133);
-    const ariane6_real_t t140 = t18 + parameters[YZ2] * (t20 - t19) + (t21 * t134 - t22 * t139);
-    const ariane6_real_t t141 = ARIANE6_C(2.0) * t13;
-    const ariane6_real_t t142 = t15 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t141
-        - parameters[YZ2] * t17;
-    const ariane6_real_t t143 = t14 * t14;
-    const ariane6_real_t t144 = parameters[MX3R] * t28 - parameters[MY3R] * t36 + t133;
-    const ariane6_real_t t145 = t142 + parameters[XZ2R] * (t19 - t143) + (t22 * t134 + t21 * t139
-        + ARIANE6_C(0.685) * t144);
-    const ariane6_real_t t146 = t10 * t140 + t11 * t145 + ARIANE6_C(0.18) * (parameters[MX2R] * t16
-        - parameters[MY2] * t141 + t144);
-    out[0] = ARIANE6_C(250.0) * t8 + t9 * t146;
-    const ariane6_real_t t147 = ARIANE6_C(0.766044443118978) * t11 - ARIANE6_C(0.6427876096865393) * t10;
-    const ariane6_real_t t148 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t147 + ARIANE6_C(0.420682));
-    const ariane6_real_t t149 = ARIANE6_C(1.0) / t148;
-    const ariane6_real_t t150 = ARIANE6_C(-0.766044443118978) * t10 + ARIANE6_C(-0.6427876096865393) * t11;
-    const ariane6_real_t t151 = ARIANE6_C(12691.800000000003) * t147
-        + ARIANE6_C(-805.4089362000002) * (t149 * t149) * (t150 * t150);
-    const ariane6_real_t t152 = t150 * (ARIANE6_C(12691.800000000003) * t149) * dq[1];
-    const ariane6_real_t t153 = ariane6_sign(t152);
-    const ariane6_real_t t154 = parameters[IA2] * (t149 * t151 * t19) - (parameters[FV2] * t152
-        + parameters[FC2] * t153);
-    const ariane6_real_t t155 = ARIANE6_C(-0.019697757607273984) * t148 / t150;
-    const ariane6_real_t t156 = parameters[XY2] * (t143 - t20) - parameters[XX2R] * t17
-        + (parameters[MX2R] * t55 + parameters[MY2] * t53);
-    const ariane6_real_t t157 = parameters[XY3R] * (t58 - t31) - parameters[XX3R] * t29
-        + (parameters[MX3R] * t57 + parameters[MY3R] * t80);
-    const ariane6_real_t t158 = parameters[MX4] * t46 - parameters[MY4R] * t64 + (t62 * t128 + t61 * t129);
-    const ariane6_real_t t159 = t34 * t130 + t35 * t132;
-    const ariane6_real_t t160 = t35 * t119 + t34 * t125 + (ARIANE6_C(-0.17) * t158
-        + ARIANE6_C(-0.488) * t159);
-    const ariane6_real_t t161 = t157 + t160;
-    const ariane6_real_t t162 = t22 * (parameters[MY3R] * t29 - parameters[MX3R] * t81 + t159)
-        + t21 * (parameters[MX3R] * t29 - parameters[MY3R] * t59 + t158);
-    const ariane6_real_t t163 = ARIANE6_C(250.0) * t154 + t155 * (t156 + (t161 + ARIANE6_C(0.685) * t162));
+    ARIANE6_SINCOS(q[1], &t0, &t3);
+    ariane6_real_t t5, t2;
+    ARIANE6_SINCOS(q[2], &t5, &t2);
+    ariane6_real_t t13, t9;
+    ARIANE6_SINCOS(q[3], &t13, &t9);
+    ariane6_real_t t20, t19;
+    ARIANE6_SINCOS(q[4], &t20, &t19);
+    ariane6_real_t t25, t39;
+    ARIANE6_SINCOS(q[5], &t25, &t39);
+    const ariane6_real_t t1 = t0 * dq[0];
+    const ariane6_real_t t4 = t3 * dq[0];
+    const ariane6_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane6_real_t t7 = t2 * t4 - t5 * t1;
+    const ariane6_real_t t8 = t6 * t7;
+    const ariane6_real_t t10 = dq[1] + dq[2];
+    const ariane6_real_t t11 = t7 * t10;
+    const ariane6_real_t t12 = ARIANE6_C(2.0) * t11;
+    const ariane6_real_t t14 = t13 * t12 - t9 * t8;
+    const ariane6_real_t t15 = t9 * t6 - t13 * t10;
+    const ariane6_real_t t16 = dq[3] + t7;
+    const ariane6_real_t t17 = t15 * t16;
+    const ariane6_real_t t18 = t14 + t17;
+    const ariane6_real_t t21 = t19 * t15 + t20 * t16;
+    const ariane6_real_t t22 = t20 * t15 - t19 * t16;
+    const ariane6_real_t t23 = t21 * t22;
+    const ariane6_real_t t24 = t18 + t23;
+    const ariane6_real_t t26 = t13 * t8 + t9 * t12;
+    const ariane6_real_t t27 = t13 * t6 + t9 * t10;
+    const ariane6_real_t t28 = t27 * t16;
+    const ariane6_real_t t29 = t28 - t26;
+    const ariane6_real_t t30 = t28 + t29;
+    const ariane6_real_t t31 = t15 * t27;
+    const ariane6_real_t t32 = t6 * t10;
+    const ariane6_real_t t33 = t32 - t31;
+    const ariane6_real_t t34 = t20 * t33 + t19 * t30;
+    const ariane6_real_t t35 = dq[4] + t27;
+    const ariane6_real_t t36 = t22 * t35;
+    const ariane6_real_t t37 = t34 + t36;
+    const ariane6_real_t t38 = t36 + t37;
+    const ariane6_real_t t40 = t25 * t24 + t39 * t38;
+    const ariane6_real_t t41 = t25 * t21 + t39 * t35;
+    const ariane6_real_t t42 = t22 - dq[5];
+    const ariane6_real_t t43 = t41 * t42;
+    const ariane6_real_t t44 = t40 - t43;
+    const ariane6_real_t t45 = t25 * t38 - t39 * t24;
+    const ariane6_real_t t46 = t39 * t21 - t25 * t35;
+    const ariane6_real_t t47 = t46 * t42;
+    const ariane6_real_t t48 = t47 + (t45 + t47);
+    const ariane6_real_t t49 = t19 * t33 - t20 * t30;
+    const ariane6_real_t t50 = t21 * t35;
+    const ariane6_real_t t51 = t49 + t50;
+    const ariane6_real_t t52 = t46 * t41;
+    const ariane6_real_t t53 = t51 + t52;
+    const ariane6_real_t t54 = parameters[XX6R] * t44 - parameters[ZZ6] * t43 - parameters[XY6] * t48
+        + parameters[XZ6R] * t53;
+    const ariane6_real_t t55 = t41 * t41;
+    const ariane6_real_t t56 = t42 * t42;
+    const ariane6_real_t t57 = dq[0] * dq[0];
+    const ariane6_real_t t58 = ARIANE6_C(0.18) * t57;
+    const ariane6_real_t t59 = t3 * t58 + ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t60 = t4 * t4;
+    const ariane6_real_t t61 = dq[1] * dq[1];
+    const ariane6_real_t t62 = t59 + ARIANE6_C(0.685) * (t61 + t60);
+    const ariane6_real_t t63 = t0 * t58 + ARIANE6_C(9.81) * t3;
+    const ariane6_real_t t64 = t1 * t4;
+    const ariane6_real_t t65 = t63 + ARIANE6_C(0.685) * t64;
+    const ariane6_real_t t66 = t2 * t62 - t5 * t65;
+    const ariane6_real_t t67 = t7 * t7;
+    const ariane6_real_t t68 = t10 * t10;
+    const ariane6_real_t t69 = t67 + t68;
+    const ariane6_real_t t70 = t66 + (ARIANE6_C(-0.17) * t69 + ARIANE6_C(-0.488) * t8);
+    const ariane6_real_t t71 = dq[1] * t1;
+    const ariane6_real_t t72 = ARIANE6_C(1.37) * t71;
+    const ariane6_real_t t73 = t72 - (ARIANE6_C(0.34) * t32 + ARIANE6_C(-0.976) * t11);
+    const ariane6_real_t t74 = t9 * t70 + t13 * t73;
+    const ariane6_real_t t75 = t5 * t62 + t2 * t65;
+    const ariane6_real_t t76 = t6 * t6;
+    const ariane6_real_t t77 = t76 + t68;
+    const ariane6_real_t t78 = t75 + (ARIANE6_C(-0.17) * t8 + ARIANE6_C(-0.488) * t77);
+    const ariane6_real_t t79 = t20 * t74 + t19 * t78;
+    const ariane6_real_t t80 = t54 - parameters[YZ6R] * (t55 - t56) - parameters[MY6] * t79;
+    const ariane6_real_t t81 = t44 - t43;
+    const ariane6_real_t t82 = t51 - t52;
+    const ariane6_real_t t83 = parameters[XY6] * t81 - t47 * (parameters[ZZ6] - parameters[XX6R])
+        + parameters[YZ6R] * t82;
+    const ariane6_real_t t84 = t46 * t46;
+    const ariane6_real_t t85 = t83 + parameters[XZ6R] * (t84 - t56) + parameters[MX6] * t79;
+    const ariane6_real_t t86 = t50 + t51;
+    const ariane6_real_t t87 = t18 - t23;
+    const ariane6_real_t t88 = parameters[XZ5] * t87 - (parameters[XX5R] * t37 + parameters[ZZ5R] * t36
+        + parameters[XY5] * t86);
+    const ariane6_real_t t89 = t22 * t22;
+    const ariane6_real_t t90 = t35 * t35;
+    const ariane6_real_t t91 = t13 * t70 - t9 * t73;
+    const ariane6_real_t t92 = t88 + parameters[YZ5] * (t89 - t90) - parameters[MY5R] * t91 + (t25 * t85
+        - t39 * t80);
+    const ariane6_real_t t93 = t19 * t74 - t20 * t78;
+    const ariane6_real_t t94 = parameters[MX6] * (t25 * t93 + t39 * t91) + parameters[MY6] * (t39 * t93
+        - t25 * t91);
+    const ariane6_real_t t95 = parameters[XX6R] * t52 - parameters[ZZ6] * t51 + parameters[YZ6R] * t45
+        - parameters[XZ6R] * t40;
+    const ariane6_real_t t96 = t95 + parameters[XY6] * (t84 - t55) + t94;
+    const ariane6_real_t t97 = t50 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t38
+        + parameters[YZ5] * t24;
+    const ariane6_real_t t98 = t21 * t21;
+    const ariane6_real_t t99 = t97 + parameters[XZ5] * (t90 - t98) + parameters[MX5] * t91 + t96;
+    const ariane6_real_t t100 = t17 + t18;
+    const ariane6_real_t t101 = t32 + t31;
+    const ariane6_real_t t102 = parameters[XX4R] * t29 + parameters[ZZ4R] * t28 + parameters[XY4] * t100
+        + parameters[XZ4] * t101;
+    const ariane6_real_t t103 = t27 * t27;
+    const ariane6_real_t t104 = t16 * t16;
+    const ariane6_real_t t105 = t102 - parameters[YZ4] * (t103 - t104) - parameters[MY4R] * t78 + (t20 * t99
+        - t19 * t92);
+    const ariane6_real_t t106 = parameters[ZZ5R] * t18 + parameters[XX5R] * t23 - parameters[YZ5] * t49
+        - parameters[XZ5] * t34;
+    const ariane6_real_t t107 = t106 + parameters[XY5] * (t98 - t89) + (parameters[MX5] * t79
+        + parameters[MY5R] * t93);
+    const ariane6_real_t t108 = t107 + (t25 * t80 + t39 * t85);
+    const ariane6_real_t t109 = t17 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t30
+        + parameters[YZ4] * t33;
+    const ariane6_real_t t110 = t15 * t15;
+    const ariane6_real_t t111 = t109 + parameters[XZ4] * (t110 - t104) + parameters[MX4] * t78 + t108;
+    const ariane6_real_t t112 = parameters[MY6] * t82 - parameters[MX6] * (t55 + t56);
+    const ariane6_real_t t113 = parameters[MX6] * t53 + parameters[MY6] * (t84 + t56);
+    const ariane6_real_t t114 = t39 * t112 + t25 * t113 - (parameters[MX5] * (t89 + t90)
+        + parameters[MY5R] * t24);
+    const ariane6_real_t t115 = parameters[MX5] * t87 - parameters[MY5R] * (t98 + t90)
+        - (parameters[MX6] * t48 + parameters[MY6] * t81);
+    const ariane6_real_t t116 = parameters[MY4R] * t33 - parameters[MX4] * (t103 + t104) + (t19 * t114
+        - t20 * t115);
+    const ariane6_real_t t117 = parameters[MX5] * t86 - parameters[MY5R] * t38 + (t39 * t113 - t25 * t112);
+    const ariane6_real_t t118 = parameters[MX4] * t101 + parameters[MY4R] * (t110 + t104) + t117;
+    const ariane6_real_t t119 = t13 * t116 - t9 * t118;
+    const ariane6_real_t t120 = ARIANE6_C(-2.0) * t32;
+    const ariane6_real_t t121 = parameters[XX3R] * t11 + parameters[ZZ3R] * t11 + parameters[XY3R] * t120
+        + parameters[XZ3] * t8;
+    const ariane6_real_t t122 = t121 + parameters[YZ3] * (t67 - t68) + parameters[MY3R] * t72 + (t13 * t111
+        - t9 * t105 + ARIANE6_C(-0.488) * t119);
+    const ariane6_real_t t123 = parameters[XX4R] * t31 - parameters[ZZ4R] * t32 - parameters[YZ4] * t14
+        + parameters[XZ4] * t26;
+    const ariane6_real_t t124 = t123 + parameters[XY4] * (t110 - t103) + (parameters[MX4] * t91
+        + parameters[MY4R] * t74);
+    const ariane6_real_t t125 = t124 + (t20 * t92 + t19 * t99);
+    const ariane6_real_t t126 = t32 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
+        - parameters[YZ3] * t8;
+    const ariane6_real_t t127 = t126 - parameters[XZ3] * (t76 - t68) - parameters[MX3R] * t72 + (t125
+        + ARIANE6_C(-0.17) * t119);
+    const ariane6_real_t t128 = dq[1] * t4;
+    const ariane6_real_t t129 = ARIANE6_C(-2.0) * t71;
+    const ariane6_real_t t130 = parameters[XX2R] * t128 + parameters[ZZ2R] * t128 + parameters[XY2] * t129
+        + parameters[XZ2R] * t64;
+    const ariane6_real_t t131 = t130 + parameters[YZ2] * (t60 - t61) + (t2 * t122 - t5 * t127);
+    const ariane6_real_t t132 = parameters[MX3R] * t120 - parameters[MY3R] * t12 + t119;
+    const ariane6_real_t t133 = ARIANE6_C(2.0) * t128;
+    const ariane6_real_t t134 = t71 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t133
+        - parameters[YZ2] * t64;
+    const ariane6_real_t t135 = t1 * t1;
+    const ariane6_real_t t136 = t134 + parameters[XZ2R] * (t61 - t135) + (t5 * t122 + t2 * t127
+        + ARIANE6_C(0.685) * t132);
+    const ariane6_real_t t137 = t0 * t131 + t3 * t136 + ARIANE6_C(0.18) * (parameters[MX2R] * t129
+        - parameters[MY2] * t133 + t132);
+    const ariane6_real_t t139 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t138 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t141 = ARIANE6_C(0.061525739908548135) * t139 / t140;
+    const ariane6_real_t t142 = ARIANE6_C(-1.0) / t139;
+    const ariane6_real_t t143 = ARIANE6_C(-4063.3400000000006) * t138
+        + ARIANE6_C(-82.55365977800001) * (t142 * t142) * (t140 * t140);
+    const ariane6_real_t t144 = t140 * (ARIANE6_C(-4063.3400000000006) * t142) * dq[0];
+    const ariane6_real_t t145 = ariane6_sign(t144);
+    const ariane6_real_t t146 = parameters[FV1] * t144 + parameters[FC1] * t145
+        - parameters[IA1] * (t142 * t143 * t57);
+    out[0] = ARIANE6_C(250.0) * t146 + t141 * t137;
+    const ariane6_real_t t147 = t9 * t116 + t13 * t118;
+    const ariane6_real_t t148 = parameters[MX4] * t100 - parameters[MY4R] * t30 + (t20 * t114 + t19 * t115);
+    const ariane6_real_t t149 = t13 * t105 + t9 * t111 + (ARIANE6_C(-0.17) * t148 + ARIANE6_C(-0.488) * t147);
+    const ariane6_real_t t150 = parameters[XY3R] * (t76 - t67) - parameters[XX3R] * t8
+        + (parameters[MX3R] * t75 + parameters[MY3R] * t66);
+    const ariane6_real_t t151 = t150 + t149;
+    const ariane6_real_t t152 = t5 * (parameters[MY3R] * t8 - parameters[MX3R] * t69 + t147)
+        + t2 * (parameters[MX3R] * t8 - parameters[MY3R] * t77 + t148);
+    const ariane6_real_t t153 = parameters[XY2] * (t135 - t60) - parameters[XX2R] * t64
+        + (parameters[MX2R] * t63 + parameters[MY2] * t59);
+    const ariane6_real_t t154 = ARIANE6_C(0.766044443118978) * t3 - ARIANE6_C(0.6427876096865393) * t0;
+    const ariane6_real_t t155 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t154 + ARIANE6_C(0.420682));
+    const ariane6_real_t t156 = ARIANE6_C(-0.766044443118978) * t0 + ARIANE6_C(-0.6427876096865393) * t3;
+    const ariane6_real_t t157 = ARIANE6_C(-0.019697757607273984) * t155 / t156;
+    const ariane6_real_t t158 = ARIANE6_C(1.0) / t155;
+    const ariane6_real_t t159 = ARIANE6_C(12691.800000000003) * t154
+        + ARIANE6_C(-805.4089362000002) * (t158 * t158) * (t156 * t156);
+    const ariane6_real_t t160 = t156 * (ARIANE6_C(12691.800000000003) * t158) * dq[1];
+    const ariane6_real_t t161 = ariane6_sign(t160);
+    const ariane6_real_t t162 = parameters[IA2] * (t158 * t159 * t61) - (parameters[FV2] * t160
+        + parameters[FC2] * t161);
+    const ariane6_real_t t163 = ARIANE6_C(250.0) * t162 + t157 * (t153 + (t151 + ARIANE6_C(0.685) * t152));
     out[1] = t163;
-    const ariane6_real_t t164 = ARIANE6_C(0.052335956242943966) * t21 + ARIANE6_C(0.9986295347545738) * t22;
+    const ariane6_real_t t164 = ARIANE6_C(0.052335956242943966) * t2 + ARIANE6_C(0.9986295347545738) * t5;
     const ariane6_real_t t165 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t164 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t166 = ARIANE6_C(1.0) / t165;
-    const ariane6_real_t t167 = ARIANE6_C(0.052335956242943966) * t22 - ARIANE6_C(0.9986295347545738) * t21;
-    const ariane6_real_t t168 = ARIANE6_C(8377.600000000002) * t164
-        + ARIANE6_C(-350.9209088000001) * (t166 * t166) * (t167 * t167);
-    const ariane6_real_t t169 = t167 * (ARIANE6_C(8377.600000000002) * t166) * dq[2];
-    const ariane6_real_t t170 = ariane6_sign(t169);
-    const ariane6_real_t t171 = parameters[IA3] * (t166 * t168 * (dq[2] * dq[2])) + (parameters[FV3] * t169
-        + parameters[FC3] * t170);
-    const ariane6_real_t t172 = ARIANE6_C(0.029841482047364396) * t165 / t167;
-    out[2] = ARIANE6_C(250.0) * t171 + t172 * t161;
+    const ariane6_real_t t166 = ARIANE6_C(0.052335956242943966) * t5 - ARIANE6_C(0.9986295347545738) * t2;
+    const ariane6_real_t t167 = ARIANE6_C(0.029841482047364396) * t165 / t166;
+    const ariane6_real_t t168 = ARIANE6_C(1.0) / t165;
+    const ariane6_real_t t169 = ARIANE6_C(8377.600000000002) * t164
+        + ARIANE6_C(-350.9209088000001) * (t168 * t168) * (t166 * t166);
+    const ariane6_real_t t170 = t166 * (ARIANE6_C(8377.600000000002) * t168) * dq[2];
+    const ariane6_real_t t171 = ariane6_sign(t170);
+    const ariane6_real_t t172 = parameters[IA3] * (t168 * t169 * (dq[2] * dq[2])) + (parameters[FV3] * t170
+        + parameters[FC3] * t171);
+    out[2] = ARIANE6_C(250.0) * t172 + t167 * t151;
     const ariane6_real_t t173 = ariane6_sign(dq[3]);
     const ariane6_real_t t174 = ARIANE6_C(20.0) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
-        + parameters[FC4] * t173) + ARIANE6_C(0.2) * t138;
+        + parameters[FC4] * t173) + ARIANE6_C(0.2) * t125;
     out[3] = t174;
-    const ariane6_real_t t175 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t62 + ARIANE6_C(0.097));
-    const ariane6_real_t t176 = ARIANE6_C(-1.0) / t175;
-    const ariane6_real_t t177 = ARIANE6_C(-3549.6000000000004) * t62
-        + ARIANE6_C(-62.9983008) * (t176 * t176) * (t61 * t61);
-    const ariane6_real_t t178 = t61 * (ARIANE6_C(-3549.6000000000004) * t176) * dq[4];
-    const ariane6_real_t t179 = ariane6_sign(t178);
-    const ariane6_real_t t180 = parameters[FV5] * t178 + parameters[FC5] * t179
-        - parameters[IA5] * (t176 * t177 * (dq[4] * dq[4]));
-    const ariane6_real_t t181 = ARIANE6_C(0.07043047103899029) * t175 / t61;
-    out[4] = ARIANE6_C(250.0) * t180 + t181 * t124;
+    const ariane6_real_t t175 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t20 + ARIANE6_C(0.097));
+    const ariane6_real_t t176 = ARIANE6_C(0.07043047103899029) * t175 / t19;
+    const ariane6_real_t t177 = ARIANE6_C(-1.0) / t175;
+    const ariane6_real_t t178 = ARIANE6_C(-3549.6000000000004) * t20
+        + ARIANE6_C(-62.9983008) * (t177 * t177) * (t19 * t19);
+    const ariane6_real_t t179 = t19 * (ARIANE6_C(-3549.6000000000004) * t177) * dq[4];
+    const ariane6_real_t t180 = ariane6_sign(t179);
+    const ariane6_real_t t181 = parameters[FV5] * t179 + parameters[FC5] * t180
+        - parameters[IA5] * (t177 * t178 * (dq[4] * dq[4]));
+    out[4] = ARIANE6_C(250.0) * t181 + t176 * t108;
     const ariane6_real_t t182 = ariane6_sign(dq[5]);
     const ariane6_real_t t183 = ARIANE6_C(20.0) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
-        + parameters[FC6] * t182) + ARIANE6_C(0.2) * t117;
+        + parameters[FC6] * t182) + ARIANE6_C(0.2) * t96;
     out[5] = t183;
     return ARIANE6_STATUS_OK;
 }

@@ -21,7 +21,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_drive_gain.c are of different generations: generate the arm again"
 #endif
 
@@ -45,17 +45,17 @@ int ariane6_drive_gain(
         return status;
     }
 
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[0], &t1, &t0);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[0], &t0, &t3);
     ariane6_real_t t4, t5;
     ARIANE6_SINCOS(q[1], &t4, &t5);
     ariane6_real_t t9, t10;
     ARIANE6_SINCOS(q[2], &t9, &t10);
-    ariane6_real_t t15, t14;
-    ARIANE6_SINCOS(q[4], &t15, &t14);
-    const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(1.0) / t2;
-    out[0] = ARIANE6_C(0.004) * (t0 * (ARIANE6_C(4063.3400000000006) * t3));
+    ariane6_real_t t14, t17;
+    ARIANE6_SINCOS(q[4], &t14, &t17);
+    const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t2 = ARIANE6_C(1.0) / t1;
+    out[0] = ARIANE6_C(0.004) * (t3 * (ARIANE6_C(4063.3400000000006) * t2));
     const ariane6_real_t t6 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t5
         + ARIANE6_C(0.6427876096865393) * t4) + ARIANE6_C(0.420682));
     const ariane6_real_t t7 = ARIANE6_C(1.0) / t6;
@@ -69,9 +69,9 @@ int ariane6_drive_gain(
         + ARIANE6_C(-0.9986295347545738) * t10) * (ARIANE6_C(8377.600000000002) * t12));
     out[2] = t13;
     out[3] = ARIANE6_C(5.0);
-    const ariane6_real_t t16 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t15 + ARIANE6_C(0.097));
-    const ariane6_real_t t17 = ARIANE6_C(1.0) / t16;
-    out[4] = ARIANE6_C(0.004) * (t14 * (ARIANE6_C(3549.6000000000004) * t17));
+    const ariane6_real_t t15 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t14 + ARIANE6_C(0.097));
+    const ariane6_real_t t16 = ARIANE6_C(1.0) / t15;
+    out[4] = ARIANE6_C(0.004) * (t17 * (ARIANE6_C(3549.6000000000004) * t16));
     out[5] = ARIANE6_C(5.0);
     return ARIANE6_STATUS_OK;
 }

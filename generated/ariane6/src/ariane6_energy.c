@@ -81,7 +81,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -114,8 +114,8 @@ int ariane6_energy(
         return status;
     }
 
-    ariane6_real_t t60, t59;
-    ARIANE6_SINCOS(q[0], &t60, &t59);
+    ariane6_real_t t59, t62;
+    ARIANE6_SINCOS(q[0], &t59, &t62);
     ariane6_real_t t0, t2;
     ARIANE6_SINCOS(q[1], &t0, &t2);
     ariane6_real_t t10, t9;
@@ -142,11 +142,11 @@ int ariane6_energy(
         + parameters[XZ3] * t13);
     const ariane6_real_t t15 = t13 * (parameters[XZ3] * t11 + parameters[YZ3] * t12 + parameters[ZZ3R] * t13);
     const ariane6_real_t t16 = t14 + t12 * (parameters[XY3R] * t11 + parameters[YZ3] * t13) + t15;
-    const ariane6_real_t t17 = ARIANE6_C(0.685) * dq[1];
-    const ariane6_real_t t18 = t9 * t17;
-    const ariane6_real_t t19 = t7 + ARIANE6_C(-0.685) * t3;
-    const ariane6_real_t t20 = t10 * t17;
-    const ariane6_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3R] * (t11 * t19
+    const ariane6_real_t t17 = t7 + ARIANE6_C(-0.685) * t3;
+    const ariane6_real_t t18 = ARIANE6_C(0.685) * dq[1];
+    const ariane6_real_t t19 = t9 * t18;
+    const ariane6_real_t t20 = t10 * t18;
+    const ariane6_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3R] * (t11 * t17
         - t13 * t20);
     const ariane6_real_t t24 = t22 * t11 - t23 * t13;
     const ariane6_real_t t25 = t23 * t11 + t22 * t13;
@@ -154,11 +154,11 @@ int ariane6_energy(
     const ariane6_real_t t27 = t24 * (parameters[XX4R] * t24 - parameters[XY4] * t25 + parameters[XZ4] * t26);
     const ariane6_real_t t28 = t26 * (parameters[XZ4] * t24 - parameters[YZ4] * t25 + parameters[ZZ4R] * t26);
     const ariane6_real_t t29 = t27 - t25 * (parameters[XY4] * t24 + parameters[YZ4] * t26) + t28;
-    const ariane6_real_t t30 = t20 - ARIANE6_C(0.488) * t13;
-    const ariane6_real_t t31 = t19 + (ARIANE6_C(0.488) * t11 + ARIANE6_C(0.17) * t12);
-    const ariane6_real_t t32 = t23 * t30 + t22 * t31;
-    const ariane6_real_t t33 = t18 + ARIANE6_C(-0.17) * t13;
-    const ariane6_real_t t34 = t23 * t31 - t22 * t30;
+    const ariane6_real_t t30 = t17 + (ARIANE6_C(0.488) * t11 + ARIANE6_C(0.17) * t12);
+    const ariane6_real_t t31 = t20 - ARIANE6_C(0.488) * t13;
+    const ariane6_real_t t32 = t23 * t31 + t22 * t30;
+    const ariane6_real_t t33 = t19 + ARIANE6_C(-0.17) * t13;
+    const ariane6_real_t t34 = t23 * t30 - t22 * t31;
     const ariane6_real_t t35 = parameters[MX4] * (t25 * t33 - t26 * t32) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
     const ariane6_real_t t36 = t8 + ARIANE6_C(0.5) * t16 + t21 + ARIANE6_C(0.5) * t29 + t35;
@@ -184,9 +184,9 @@ int ariane6_energy(
     const ariane6_real_t t57 = t50 * t45 + t52 * (t48 * t46 + t49 * t32);
     const ariane6_real_t t58 = t36 + ARIANE6_C(0.5) * t44 + t47 + ARIANE6_C(0.5) * t55
         + (parameters[MX6] * t56 + parameters[MY6] * t57);
-    const ariane6_real_t t61 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t60 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t62 = ARIANE6_C(1.0) / t61;
-    const ariane6_real_t t63 = t59 * (ARIANE6_C(4063.3400000000006) * t62);
+    const ariane6_real_t t60 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t59 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t61 = ARIANE6_C(1.0) / t60;
+    const ariane6_real_t t63 = t62 * (ARIANE6_C(4063.3400000000006) * t61);
     const ariane6_real_t t64 = t58 + ARIANE6_C(0.5) * (parameters[IA1] * (t63 * t63) * (dq[0] * dq[0]));
     const ariane6_real_t t65 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t2
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));

@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -139,100 +139,101 @@ int ariane6_energy_standard(
         return status;
     }
 
-    ariane6_real_t t72, t71;
-    ARIANE6_SINCOS(q[0], &t72, &t71);
-    ariane6_real_t t0, t2;
-    ARIANE6_SINCOS(q[1], &t0, &t2);
-    ariane6_real_t t11, t10;
-    ARIANE6_SINCOS(q[2], &t11, &t10);
-    ariane6_real_t t25, t26;
-    ARIANE6_SINCOS(q[3], &t25, &t26);
+    ariane6_real_t t71, t74;
+    ARIANE6_SINCOS(q[0], &t71, &t74);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[1], &t0, &t3);
+    ariane6_real_t t5, t2;
+    ARIANE6_SINCOS(q[2], &t5, &t2);
+    ariane6_real_t t26, t28;
+    ARIANE6_SINCOS(q[3], &t26, &t28);
     ariane6_real_t t43, t42;
     ARIANE6_SINCOS(q[4], &t43, &t42);
-    ariane6_real_t t57, t56;
-    ARIANE6_SINCOS(q[5], &t57, &t56);
+    ariane6_real_t t57, t59;
+    ARIANE6_SINCOS(q[5], &t57, &t59);
     const ariane6_real_t t1 = t0 * dq[0];
-    const ariane6_real_t t3 = t2 * dq[0];
-    const ariane6_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
-    const ariane6_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
-    const ariane6_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
-    const ariane6_real_t t7 = ARIANE6_C(0.18) * dq[0];
-    const ariane6_real_t t8 = ARIANE6_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
-    const ariane6_real_t t9 = ARIANE6_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
-        + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const ariane6_real_t t12 = t10 * t1 + t11 * t3;
-    const ariane6_real_t t13 = t10 * t3 - t11 * t1;
-    const ariane6_real_t t14 = dq[1] + dq[2];
-    const ariane6_real_t t15 = t12 * (parameters[XX3] * t12 + parameters[XY3] * t13 + t14 * parameters[XZ3]);
-    const ariane6_real_t t16 = t13 * (parameters[XY3] * t12 + parameters[YY3] * t13 + t14 * parameters[YZ3]);
-    const ariane6_real_t t17 = t14 * (parameters[XZ3] * t12 + parameters[YZ3] * t13 + t14 * parameters[ZZ3]);
-    const ariane6_real_t t18 = ARIANE6_C(0.685) * dq[1];
-    const ariane6_real_t t19 = t11 * t18;
-    const ariane6_real_t t20 = t10 * t18;
-    const ariane6_real_t t21 = t7 + ARIANE6_C(0.685) * t3;
-    const ariane6_real_t t22 = parameters[M3] * (t19 * t19 + t20 * t20 + t21 * t21);
-    const ariane6_real_t t23 = parameters[MX3] * (t14 * t20 + t13 * t21) - parameters[MY3] * (t12 * t21
-        + t14 * t19);
-    const ariane6_real_t t24 = t9 + ARIANE6_C(0.5) * (t15 + t16 + t17 + t22) + (t23
-        + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const ariane6_real_t t27 = t26 * t12 - t25 * t14;
-    const ariane6_real_t t28 = t26 * t14 + t25 * t12;
-    const ariane6_real_t t29 = dq[3] + t13;
-    const ariane6_real_t t30 = t27 * (parameters[XY4] * t28 - parameters[XX4] * t27 - parameters[XZ4] * t29);
-    const ariane6_real_t t31 = t28 * (parameters[YY4] * t28 - parameters[XY4] * t27 - parameters[YZ4] * t29);
-    const ariane6_real_t t32 = t29 * (parameters[XZ4] * t27 - parameters[YZ4] * t28 + parameters[ZZ4] * t29);
-    const ariane6_real_t t33 = t19 - ARIANE6_C(0.488) * t14;
-    const ariane6_real_t t34 = t21 + (ARIANE6_C(-0.488) * t12 + ARIANE6_C(-0.17) * t13);
-    const ariane6_real_t t35 = t26 * t33 + t25 * t34;
-    const ariane6_real_t t36 = t26 * t34 - t25 * t33;
-    const ariane6_real_t t37 = t36 * t36;
-    const ariane6_real_t t38 = t20 + ARIANE6_C(-0.17) * t14;
-    const ariane6_real_t t39 = t31 - t30 + t32 + parameters[M4] * (t35 * t35 + t37 + t38 * t38);
-    const ariane6_real_t t40 = parameters[MX4] * (t29 * t36 + t28 * t38) + parameters[MY4] * (t27 * t38
-        - t29 * t35);
-    const ariane6_real_t t41 = t24 + ARIANE6_C(0.5) * t39 + (t40 - parameters[MZ4] * (t28 * t35 + t27 * t36));
-    const ariane6_real_t t44 = t42 * t27 + t43 * t29;
-    const ariane6_real_t t45 = t43 * t27 - t42 * t29;
-    const ariane6_real_t t46 = dq[4] + t28;
+    const ariane6_real_t t4 = t3 * dq[0];
+    const ariane6_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane6_real_t t7 = t2 * t4 - t5 * t1;
+    const ariane6_real_t t8 = dq[1] + dq[2];
+    const ariane6_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
+    const ariane6_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
+    const ariane6_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
+    const ariane6_real_t t12 = ARIANE6_C(0.685) * dq[1];
+    const ariane6_real_t t13 = t5 * t12;
+    const ariane6_real_t t14 = t2 * t12;
+    const ariane6_real_t t15 = ARIANE6_C(0.18) * dq[0];
+    const ariane6_real_t t16 = t15 + ARIANE6_C(0.685) * t4;
+    const ariane6_real_t t17 = parameters[M3] * (t13 * t13 + t14 * t14 + t16 * t16);
+    const ariane6_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
+    const ariane6_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
+    const ariane6_real_t t20 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2]
+        + dq[1] * parameters[ZZ2]);
+    const ariane6_real_t t21 = ARIANE6_C(0.5) * (t18 + t19 + t20 + parameters[M2] * (t15 * t15));
+    const ariane6_real_t t22 = ARIANE6_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t21
+        + (parameters[MX2] * (t4 * t15) - parameters[MY2] * (t1 * t15));
+    const ariane6_real_t t23 = parameters[MX3] * (t8 * t14 + t7 * t16) - parameters[MY3] * (t6 * t16
+        + t8 * t13);
+    const ariane6_real_t t24 = t22 + ARIANE6_C(0.5) * (t9 + t10 + t11 + t17) + (t23
+        + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    const ariane6_real_t t25 = t16 + (ARIANE6_C(-0.488) * t6 + ARIANE6_C(-0.17) * t7);
+    const ariane6_real_t t27 = t13 - ARIANE6_C(0.488) * t8;
+    const ariane6_real_t t29 = t28 * t27 + t26 * t25;
+    const ariane6_real_t t30 = t28 * t25 - t26 * t27;
+    const ariane6_real_t t31 = t30 * t30;
+    const ariane6_real_t t32 = t14 + ARIANE6_C(-0.17) * t8;
+    const ariane6_real_t t33 = t28 * t6 - t26 * t8;
+    const ariane6_real_t t34 = t28 * t8 + t26 * t6;
+    const ariane6_real_t t35 = dq[3] + t7;
+    const ariane6_real_t t36 = t33 * (parameters[XY4] * t34 - parameters[XX4] * t33 - parameters[XZ4] * t35);
+    const ariane6_real_t t37 = t34 * (parameters[YY4] * t34 - parameters[XY4] * t33 - parameters[YZ4] * t35);
+    const ariane6_real_t t38 = t35 * (parameters[XZ4] * t33 - parameters[YZ4] * t34 + parameters[ZZ4] * t35);
+    const ariane6_real_t t39 = t37 - t36 + t38 + parameters[M4] * (t29 * t29 + t31 + t32 * t32);
+    const ariane6_real_t t40 = parameters[MX4] * (t35 * t30 + t34 * t32) + parameters[MY4] * (t33 * t32
+        - t35 * t29);
+    const ariane6_real_t t41 = t24 + ARIANE6_C(0.5) * t39 + (t40 - parameters[MZ4] * (t34 * t29 + t33 * t30));
+    const ariane6_real_t t44 = t42 * t33 + t43 * t35;
+    const ariane6_real_t t45 = t43 * t33 - t42 * t35;
+    const ariane6_real_t t46 = dq[4] + t34;
     const ariane6_real_t t47 = t44 * (parameters[XY5] * t45 - parameters[XX5] * t44 - parameters[XZ5] * t46);
     const ariane6_real_t t48 = t45 * (parameters[XY5] * t44 - parameters[YY5] * t45 + parameters[YZ5] * t46);
     const ariane6_real_t t49 = t46 * (parameters[XZ5] * t44 - parameters[YZ5] * t45 + parameters[ZZ5] * t46);
-    const ariane6_real_t t50 = t42 * t35 + t43 * t38;
-    const ariane6_real_t t51 = t43 * t35 - t42 * t38;
+    const ariane6_real_t t50 = t42 * t29 + t43 * t32;
+    const ariane6_real_t t51 = t43 * t29 - t42 * t32;
     const ariane6_real_t t52 = t51 * t51;
-    const ariane6_real_t t53 = t49 - (t47 + t48) + parameters[M5] * (t37 + (t50 * t50 + t52));
-    const ariane6_real_t t54 = parameters[MX5] * (t46 * t51 + t45 * t36) + parameters[MY5] * (t44 * t36
+    const ariane6_real_t t53 = t49 - (t47 + t48) + parameters[M5] * (t31 + (t50 * t50 + t52));
+    const ariane6_real_t t54 = parameters[MX5] * (t46 * t51 + t45 * t30) + parameters[MY5] * (t44 * t30
         + t46 * t50);
     const ariane6_real_t t55 = t41 + ARIANE6_C(0.5) * t53 + (parameters[MZ5] * (t44 * t51 - t45 * t50) - t54);
-    const ariane6_real_t t58 = t57 * t46 - t56 * t44;
-    const ariane6_real_t t59 = t57 * t44 + t56 * t46;
-    const ariane6_real_t t60 = t45 - dq[5];
-    const ariane6_real_t t61 = t58 * (parameters[XX6] * t58 + parameters[XY6] * t59 + parameters[XZ6] * t60);
-    const ariane6_real_t t62 = t59 * (parameters[XY6] * t58 + parameters[YY6] * t59 + parameters[YZ6] * t60);
-    const ariane6_real_t t63 = t60 * (parameters[XZ6] * t58 + parameters[YZ6] * t59 + parameters[ZZ6] * t60);
-    const ariane6_real_t t64 = t50 + ARIANE6_C(-0.3) * t46;
-    const ariane6_real_t t65 = t36 + ARIANE6_C(-0.3) * t44;
-    const ariane6_real_t t66 = t56 * t64 + t57 * t65;
-    const ariane6_real_t t67 = t57 * t64 - t56 * t65;
-    const ariane6_real_t t68 = t61 + t62 + t63 + parameters[M6] * (t52 + (t66 * t66 + t67 * t67));
-    const ariane6_real_t t69 = parameters[MX6] * (t60 * t67 - t59 * t51) + parameters[MY6] * (t58 * t51
-        + t60 * t66);
-    const ariane6_real_t t70 = t55 + ARIANE6_C(0.5) * t68 + (t69 - parameters[MZ6] * (t59 * t66 + t58 * t67));
-    const ariane6_real_t t73 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t72 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t74 = ARIANE6_C(1.0) / t73;
-    const ariane6_real_t t75 = t71 * (ARIANE6_C(4063.3400000000006) * t74);
+    const ariane6_real_t t56 = t30 + ARIANE6_C(-0.3) * t44;
+    const ariane6_real_t t58 = t50 + ARIANE6_C(-0.3) * t46;
+    const ariane6_real_t t60 = t59 * t58 + t57 * t56;
+    const ariane6_real_t t61 = t57 * t58 - t59 * t56;
+    const ariane6_real_t t62 = t57 * t46 - t59 * t44;
+    const ariane6_real_t t63 = t57 * t44 + t59 * t46;
+    const ariane6_real_t t64 = t45 - dq[5];
+    const ariane6_real_t t65 = t62 * (parameters[XX6] * t62 + parameters[XY6] * t63 + parameters[XZ6] * t64);
+    const ariane6_real_t t66 = t63 * (parameters[XY6] * t62 + parameters[YY6] * t63 + parameters[YZ6] * t64);
+    const ariane6_real_t t67 = t64 * (parameters[XZ6] * t62 + parameters[YZ6] * t63 + parameters[ZZ6] * t64);
+    const ariane6_real_t t68 = t65 + t66 + t67 + parameters[M6] * (t52 + (t60 * t60 + t61 * t61));
+    const ariane6_real_t t69 = parameters[MX6] * (t64 * t61 - t63 * t51) + parameters[MY6] * (t62 * t51
+        + t64 * t60);
+    const ariane6_real_t t70 = t55 + ARIANE6_C(0.5) * t68 + (t69 - parameters[MZ6] * (t63 * t60 + t62 * t61));
+    const ariane6_real_t t72 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t71 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t73 = ARIANE6_C(1.0) / t72;
+    const ariane6_real_t t75 = t74 * (ARIANE6_C(4063.3400000000006) * t73);
     const ariane6_real_t t76 = t70 + ARIANE6_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t75 * t75)));
-    const ariane6_real_t t77 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t2
+    const ariane6_real_t t77 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t78 = ARIANE6_C(1.0) / t77;
     const ariane6_real_t t79 = (ARIANE6_C(0.766044443118978) * t0
-        + ARIANE6_C(0.6427876096865393) * t2) * (ARIANE6_C(12691.800000000003) * t78);
+        + ARIANE6_C(0.6427876096865393) * t3) * (ARIANE6_C(12691.800000000003) * t78);
     const ariane6_real_t t80 = t76 + ARIANE6_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t79 * t79)));
-    const ariane6_real_t t81 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t10
-        + ARIANE6_C(-0.9986295347545738) * t11) + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t81 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
+        + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t82 = ARIANE6_C(1.0) / t81;
-    const ariane6_real_t t83 = (ARIANE6_C(0.052335956242943966) * t11
-        + ARIANE6_C(-0.9986295347545738) * t10) * (ARIANE6_C(8377.600000000002) * t82);
+    const ariane6_real_t t83 = (ARIANE6_C(0.052335956242943966) * t5
+        + ARIANE6_C(-0.9986295347545738) * t2) * (ARIANE6_C(8377.600000000002) * t82);
     const ariane6_real_t t84 = t80 + ARIANE6_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t83 * t83)));
     const ariane6_real_t t85 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t43 + ARIANE6_C(0.097));
     const ariane6_real_t t86 = ARIANE6_C(1.0) / t85;
@@ -241,25 +242,25 @@ int ariane6_energy_standard(
         + ARIANE6_C(0.5) * (dq[4] * dq[4] * (parameters[IA5] * (t87 * t87)));
     kinetic[0] = t88 + ARIANE6_C(0.5) * (dq[5] * dq[5] * (ARIANE6_C(1.0e4) * parameters[IA6]));
     const ariane6_real_t t89 = ARIANE6_C(9.81) * t0;
-    const ariane6_real_t t90 = ARIANE6_C(9.81) * t2;
-    const ariane6_real_t t91 = t10 * t89 + t11 * t90;
-    const ariane6_real_t t92 = t10 * t90 - t11 * t89;
-    const ariane6_real_t t93 = ARIANE6_C(6.719850000000001) * t0;
-    const ariane6_real_t t94 = ARIANE6_C(9.81) * parameters[MZ1] + (t89 * parameters[MX2]
-        + t90 * parameters[MY2]) + (t91 * parameters[MX3] + t92 * parameters[MY3] + parameters[M3] * t93);
-    const ariane6_real_t t95 = t26 * t91;
-    const ariane6_real_t t96 = t25 * t91;
-    const ariane6_real_t t97 = t93 + (ARIANE6_C(-0.17) * t91 + ARIANE6_C(0.488) * t92);
-    const ariane6_real_t t98 = t95 * parameters[MX4] - t96 * parameters[MY4] + t92 * parameters[MZ4]
-        + parameters[M4] * t97;
-    const ariane6_real_t t99 = t42 * t95 + t43 * t92;
-    const ariane6_real_t t100 = t42 * t92 - t43 * t95;
-    const ariane6_real_t t101 = t99 * parameters[MX5] + t100 * parameters[MY5] + t96 * parameters[MZ5]
-        + parameters[M5] * t97;
-    const ariane6_real_t t102 = (t56 * t99 - t57 * t96) * parameters[MX6] - (t57 * t99
-        + t56 * t96) * parameters[MY6];
-    const ariane6_real_t t103 = t102 + t100 * parameters[MZ6] + parameters[M6] * (t97
+    const ariane6_real_t t90 = ARIANE6_C(9.81) * t3;
+    const ariane6_real_t t91 = t2 * t89 + t5 * t90;
+    const ariane6_real_t t92 = t28 * t91;
+    const ariane6_real_t t93 = t26 * t91;
+    const ariane6_real_t t94 = t2 * t90 - t5 * t89;
+    const ariane6_real_t t95 = ARIANE6_C(6.719850000000001) * t0;
+    const ariane6_real_t t96 = t95 + (ARIANE6_C(-0.17) * t91 + ARIANE6_C(0.488) * t94);
+    const ariane6_real_t t97 = t92 * parameters[MX4] - t93 * parameters[MY4] + t94 * parameters[MZ4]
+        + parameters[M4] * t96;
+    const ariane6_real_t t98 = ARIANE6_C(9.81) * parameters[MZ1] + (t89 * parameters[MX2]
+        + t90 * parameters[MY2]) + (t91 * parameters[MX3] + t94 * parameters[MY3] + parameters[M3] * t95);
+    const ariane6_real_t t99 = t42 * t92 + t43 * t94;
+    const ariane6_real_t t100 = t42 * t94 - t43 * t92;
+    const ariane6_real_t t101 = t99 * parameters[MX5] + t100 * parameters[MY5] + t93 * parameters[MZ5]
+        + parameters[M5] * t96;
+    const ariane6_real_t t102 = (t59 * t99 - t57 * t93) * parameters[MX6] - (t57 * t99
+        + t59 * t93) * parameters[MY6];
+    const ariane6_real_t t103 = t102 + t100 * parameters[MZ6] + parameters[M6] * (t96
         + ARIANE6_C(0.3) * t100);
-    potential[0] = t94 + t98 + t101 + t103;
+    potential[0] = t98 + t97 + t101 + t103;
     return ARIANE6_STATUS_OK;
 }

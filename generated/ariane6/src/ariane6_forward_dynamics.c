@@ -82,7 +82,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -115,420 +115,419 @@ int ariane6_forward_dynamics(
         return status;
     }
 
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[0], &t1, &t0);
-    ariane6_real_t t10, t11;
-    ARIANE6_SINCOS(q[1], &t10, &t11);
-    ariane6_real_t t22, t21;
-    ARIANE6_SINCOS(q[2], &t22, &t21);
-    ariane6_real_t t35, t34;
-    ARIANE6_SINCOS(q[3], &t35, &t34);
-    ariane6_real_t t62, t61;
-    ARIANE6_SINCOS(q[4], &t62, &t61);
-    ariane6_real_t t86, t85;
-    ARIANE6_SINCOS(q[5], &t86, &t85);
-    const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(1.0) / t2;
-    const ariane6_real_t t4 = t0 * (ARIANE6_C(4063.3400000000006) * t3);
-    const ariane6_real_t t5 = t4 * dq[0];
-    const ariane6_real_t t6 = ariane6_sign(t5);
-    const ariane6_real_t t7 = ARIANE6_C(4063.3400000000006) * t1
-        + ARIANE6_C(82.55365977800001) * (t3 * t3) * (t0 * t0);
-    const ariane6_real_t t8 = dq[0] * dq[0];
-    const ariane6_real_t t9 = t4 * (parameters[IA1] * (t3 * t7 * t8)) - (t4 * (parameters[FV1] * t5)
-        + t4 * (parameters[FC1] * t6));
-    const ariane6_real_t t12 = t11 * dq[0];
-    const ariane6_real_t t13 = dq[1] * t12;
-    const ariane6_real_t t14 = t10 * dq[0];
-    const ariane6_real_t t15 = dq[1] * t14;
-    const ariane6_real_t t16 = ARIANE6_C(2.0) * t15;
-    const ariane6_real_t t17 = t14 * t12;
-    const ariane6_real_t t18 = parameters[XY2] * t16 - (parameters[XX2R] * t13 + parameters[ZZ2R] * t13)
-        - parameters[XZ2R] * t17;
-    const ariane6_real_t t19 = dq[1] * dq[1];
-    const ariane6_real_t t20 = t12 * t12;
-    const ariane6_real_t t23 = t21 * t12 - t22 * t14;
-    const ariane6_real_t t24 = dq[1] + dq[2];
-    const ariane6_real_t t25 = t23 * t24;
-    const ariane6_real_t t26 = t21 * t14 + t22 * t12;
-    const ariane6_real_t t27 = t26 * t24;
-    const ariane6_real_t t28 = ARIANE6_C(2.0) * t27;
-    const ariane6_real_t t29 = t26 * t23;
-    const ariane6_real_t t30 = parameters[XY3R] * t28 - (parameters[XX3R] * t25 + parameters[ZZ3R] * t25)
-        - parameters[XZ3] * t29;
-    const ariane6_real_t t31 = t23 * t23;
-    const ariane6_real_t t32 = t24 * t24;
-    const ariane6_real_t t33 = ARIANE6_C(-1.37) * t15;
-    const ariane6_real_t t36 = ARIANE6_C(2.0) * t25;
-    const ariane6_real_t t37 = t35 * t29 + t34 * t36;
-    const ariane6_real_t t38 = t35 * t26 + t34 * t24;
-    const ariane6_real_t t39 = dq[3] + t23;
-    const ariane6_real_t t40 = t38 * t39;
-    const ariane6_real_t t41 = t37 - t40;
-    const ariane6_real_t t42 = t34 * t26 - t35 * t24;
-    const ariane6_real_t t43 = t42 * t39;
-    const ariane6_real_t t44 = t35 * t36 - t34 * t29;
-    const ariane6_real_t t45 = t44 + t43;
-    const ariane6_real_t t46 = t43 + t45;
-    const ariane6_real_t t47 = t42 * t38;
-    const ariane6_real_t t48 = t27 + t47;
-    const ariane6_real_t t49 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4] * t46
-        + parameters[XZ4] * t48;
-    const ariane6_real_t t50 = t38 * t38;
-    const ariane6_real_t t51 = t39 * t39;
-    const ariane6_real_t t52 = ARIANE6_C(-0.18) * t8;
-    const ariane6_real_t t53 = t11 * t52 + ARIANE6_C(9.81) * t10;
-    const ariane6_real_t t54 = ARIANE6_C(0.685) * (t19 + t20) - t53;
-    const ariane6_real_t t55 = t10 * t52 + ARIANE6_C(-9.81) * t11;
-    const ariane6_real_t t56 = t55 + ARIANE6_C(-0.685) * t17;
-    const ariane6_real_t t57 = t21 * t56 - t22 * t54;
-    const ariane6_real_t t58 = t26 * t26;
-    const ariane6_real_t t59 = t58 + t32;
-    const ariane6_real_t t60 = t57 + (ARIANE6_C(0.17) * t29 + ARIANE6_C(0.488) * t59);
-    const ariane6_real_t t63 = t47 - t27;
-    const ariane6_real_t t64 = t41 - t40;
-    const ariane6_real_t t65 = t62 * t63 + t61 * t64;
-    const ariane6_real_t t66 = t62 * t42 - t61 * t39;
-    const ariane6_real_t t67 = dq[4] + t38;
-    const ariane6_real_t t68 = t66 * t67;
-    const ariane6_real_t t69 = t65 - t68;
-    const ariane6_real_t t70 = t61 * t42 + t62 * t39;
-    const ariane6_real_t t71 = t70 * t67;
-    const ariane6_real_t t72 = t61 * t63 - t62 * t64;
-    const ariane6_real_t t73 = t72 - t71;
-    const ariane6_real_t t74 = t71 - t73;
-    const ariane6_real_t t75 = t70 * t66;
-    const ariane6_real_t t76 = t45 - t75;
-    const ariane6_real_t t77 = parameters[ZZ5R] * t68 - parameters[XX5R] * t69 + parameters[XY5] * t74
-        - parameters[XZ5] * t76;
-    const ariane6_real_t t78 = t66 * t66;
-    const ariane6_real_t t79 = t67 * t67;
-    const ariane6_real_t t80 = t21 * t54 + t22 * t56;
-    const ariane6_real_t t81 = t31 + t32;
-    const ariane6_real_t t82 = t80 + (ARIANE6_C(-0.17) * t81 + ARIANE6_C(-0.488) * t29);
-    const ariane6_real_t t83 = t33 + (ARIANE6_C(0.34) * t27 + ARIANE6_C(-0.976) * t25);
-    const ariane6_real_t t84 = t35 * t82 + t34 * t83;
-    const ariane6_real_t t87 = t45 + t75;
-    const ariane6_real_t t88 = t69 - t68;
-    const ariane6_real_t t89 = t85 * t88 - t86 * t87;
-    const ariane6_real_t t90 = t86 * t70 + t85 * t67;
-    const ariane6_real_t t91 = dq[5] - t66;
-    const ariane6_real_t t92 = t90 * t91;
-    const ariane6_real_t t93 = t89 - t92;
-    const ariane6_real_t t94 = t85 * t70 - t86 * t67;
-    const ariane6_real_t t95 = t94 * t91;
-    const ariane6_real_t t96 = t85 * t87 + t86 * t88;
-    const ariane6_real_t t97 = t95 + (t96 + t95);
-    const ariane6_real_t t98 = t94 * t90;
-    const ariane6_real_t t99 = t98 - t73;
-    const ariane6_real_t t100 = parameters[ZZ6] * t92 - parameters[XX6R] * t93 + parameters[XY6] * t97
-        + parameters[XZ6R] * t99;
-    const ariane6_real_t t101 = t90 * t90;
-    const ariane6_real_t t102 = t91 * t91;
-    const ariane6_real_t t103 = t34 * t82 - t35 * t83;
-    const ariane6_real_t t104 = t61 * t60 - t62 * t103;
-    const ariane6_real_t t105 = t100 - parameters[YZ6R] * (t101 - t102) + parameters[MY6] * t104;
-    const ariane6_real_t t106 = t93 - t92;
-    const ariane6_real_t t107 = t73 + t98;
-    const ariane6_real_t t108 = t95 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t106
-        + parameters[YZ6R] * t107;
-    const ariane6_real_t t109 = t94 * t94;
-    const ariane6_real_t t110 = t108 + parameters[XZ6R] * (t102 - t109) + parameters[MX6] * t104;
-    const ariane6_real_t t111 = t77 + parameters[YZ5] * (t79 - t78) + parameters[MY5R] * t84 + (t85 * t105
-        + t86 * t110);
-    const ariane6_real_t t112 = t71 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t88
-        + parameters[YZ5] * t87;
-    const ariane6_real_t t113 = t70 * t70;
-    const ariane6_real_t t114 = parameters[ZZ6] * t73 + parameters[XX6R] * t98 - parameters[YZ6R] * t96
-        + parameters[XZ6R] * t89;
-    const ariane6_real_t t115 = t61 * t103 + t62 * t60;
-    const ariane6_real_t t116 = parameters[MX6] * (t86 * t115 + t85 * t84) + parameters[MY6] * (t85 * t115
-        - t86 * t84);
-    const ariane6_real_t t117 = t114 + parameters[XY6] * (t109 - t101) + t116;
-    const ariane6_real_t t118 = t112 + parameters[XZ5] * (t79 - t113) + parameters[MX5] * t84 + t117;
-    const ariane6_real_t t119 = t49 + parameters[YZ4] * (t51 - t50) + parameters[MY4R] * t60 + (t61 * t111
-        + t62 * t118);
-    const ariane6_real_t t120 = t43 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t64
-        + parameters[YZ4] * t63;
-    const ariane6_real_t t121 = t42 * t42;
-    const ariane6_real_t t122 = parameters[ZZ5R] * t45 + parameters[XX5R] * t75 + parameters[YZ5] * t72
-        + parameters[XZ5] * t65;
-    const ariane6_real_t t123 = parameters[XY5] * (t78 - t113) - t122 + (parameters[MX5] * t104
-        - parameters[MY5R] * t115);
-    const ariane6_real_t t124 = t123 + (t85 * t110 - t86 * t105);
-    const ariane6_real_t t125 = t120 + parameters[XZ4] * (t51 - t121) + parameters[MX4] * t60 + t124;
-    const ariane6_real_t t126 = parameters[MX6] * (t101 + t102) + parameters[MY6] * t107;
-    const ariane6_real_t t127 = parameters[MX6] * t99 + parameters[MY6] * (t109 + t102);
-    const ariane6_real_t t128 = parameters[MX5] * (t78 + t79) + parameters[MY5R] * t87 + (t85 * t126
-        - t86 * t127);
-    const ariane6_real_t t129 = parameters[MX5] * t76 - parameters[MY5R] * (t113 + t79)
-        + (parameters[MX6] * t97 + parameters[MY6] * t106);
-    const ariane6_real_t t130 = parameters[MX4] * (t50 + t51) + parameters[MY4R] * t63 + (t61 * t128
-        + t62 * t129);
-    const ariane6_real_t t131 = parameters[MX5] * t74 + parameters[MY5R] * t88 + (t86 * t126 + t85 * t127);
-    const ariane6_real_t t132 = parameters[MX4] * t48 + parameters[MY4R] * (t121 + t51) + t131;
-    const ariane6_real_t t133 = t35 * t130 + t34 * t132;
-    const ariane6_real_t t134 = t30 + parameters[YZ3] * (t32 - t31) + parameters[MY3R] * t33 + (t34 * t119
-        + t35 * t125 + ARIANE6_C(-0.488) * t133);
-    const ariane6_real_t t135 = t27 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t36
-        - parameters[YZ3] * t29;
-    const ariane6_real_t t136 = parameters[ZZ4R] * t27 - parameters[XX4R] * t47 + parameters[YZ4] * t44
-        - parameters[XZ4] * t37;
-    const ariane6_real_t t137 = t136 - parameters[XY4] * (t121 - t50) - (parameters[MX4] * t84
-        + parameters[MY4R] * t103);
-    const ariane6_real_t t138 = t137 + (t62 * t111 - t61 * t118);
-    const ariane6_real_t t139 = t135 - parameters[XZ3] * (t58 - t32) + parameters[MX3R] * t33 - (t138
-        - ARIANE6_C(0.17) * t133);
-    const ariane6_real_t t140 = t18 + parameters[YZ2] * (t19 - t20) + (t21 * t134 + t22 * t139);
-    const ariane6_real_t t141 = ARIANE6_C(2.0) * t13;
-    const ariane6_real_t t142 = t15 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t141
-        + parameters[YZ2] * t17;
-    const ariane6_real_t t143 = t14 * t14;
-    const ariane6_real_t t144 = parameters[MX3R] * t28 + parameters[MY3R] * t36 + t133;
-    const ariane6_real_t t145 = t142 + parameters[XZ2R] * (t143 - t19) + (t22 * t134 - t21 * t139
-        + ARIANE6_C(0.685) * t144);
-    const ariane6_real_t t146 = t10 * t140 + t11 * t145 + ARIANE6_C(0.18) * (parameters[MX2R] * t16
-        + parameters[MY2] * t141 + t144);
-    const ariane6_real_t t147 = ariane6_sign(dq[5]);
-    const ariane6_real_t t148 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5]))
-        + ARIANE6_C(1.0e2) * (parameters[FC6] * t147);
-    const ariane6_real_t t149 = ARIANE6_C(5.0) * input[5] - (t148 + t117);
-    const ariane6_real_t t150 = t86 * parameters[YZ6R] - t85 * parameters[XZ6R];
-    const ariane6_real_t t151 = t61 * t150 + t62 * parameters[ZZ6];
-    const ariane6_real_t t152 = t86 * parameters[XZ6R] + t85 * parameters[YZ6R];
-    const ariane6_real_t t153 = t85 * parameters[MY6] + t86 * parameters[MX6];
-    const ariane6_real_t t154 = t61 * t153;
-    const ariane6_real_t t155 = t86 * parameters[MY6] - t85 * parameters[MX6];
-    const ariane6_real_t t156 = t35 * t154 + t34 * t155;
-    const ariane6_real_t t157 = t34 * t151 + t35 * t152 + ARIANE6_C(-0.488) * t156;
-    const ariane6_real_t t158 = t61 * parameters[ZZ6] - t62 * t150;
-    const ariane6_real_t t159 = t158 + ARIANE6_C(0.17) * t156;
-    const ariane6_real_t t160 = t11 * (t22 * t157 - t21 * t159 + ARIANE6_C(0.685) * t156);
-    const ariane6_real_t t161 = t10 * (t21 * t157 + t22 * t159) + t160 + ARIANE6_C(0.18) * t156;
-    const ariane6_real_t t162 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
-    if (!(t162 > ARIANE6_C(1.0e-9))) {
+    ariane6_real_t t109, t112;
+    ARIANE6_SINCOS(q[0], &t109, &t112);
+    ariane6_real_t t78, t79;
+    ARIANE6_SINCOS(q[1], &t78, &t79);
+    ariane6_real_t t48, t49;
+    ARIANE6_SINCOS(q[2], &t48, &t49);
+    ariane6_real_t t34, t31;
+    ARIANE6_SINCOS(q[3], &t34, &t31);
+    ariane6_real_t t6, t9;
+    ARIANE6_SINCOS(q[4], &t6, &t9);
+    ariane6_real_t t2, t1;
+    ARIANE6_SINCOS(q[5], &t2, &t1);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    if (!(t0 > ARIANE6_C(1.0e-9))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t163 = ARIANE6_C(-1.0) / t162;
-    const ariane6_real_t t164 = t161 * t163;
-    const ariane6_real_t t165 = input[0] * (ARIANE6_C(0.004) * t4) + (t9 + t146) - t149 * t164;
-    const ariane6_real_t t166 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t62 + ARIANE6_C(0.097));
-    const ariane6_real_t t167 = ARIANE6_C(1.0) / t166;
-    const ariane6_real_t t168 = t61 * (ARIANE6_C(3549.6000000000004) * t167);
-    const ariane6_real_t t169 = t168 * dq[4];
-    const ariane6_real_t t170 = ariane6_sign(t169);
-    const ariane6_real_t t171 = ARIANE6_C(3549.6000000000004) * t62
-        + ARIANE6_C(62.9983008) * (t167 * t167) * (t61 * t61);
-    const ariane6_real_t t172 = t168 * (parameters[FV5] * t169) + t168 * (parameters[FC5] * t170)
-        - t168 * (parameters[IA5] * (t167 * t171 * (dq[4] * dq[4])));
-    const ariane6_real_t t173 = t152 * t163;
-    const ariane6_real_t t174 = input[4] * (ARIANE6_C(0.004) * t168) - (t172 - t124) - t149 * t173;
-    const ariane6_real_t t175 = parameters[XY6] * (ARIANE6_C(2.0) * t86) - t85 * parameters[XX6R];
-    const ariane6_real_t t176 = parameters[XZ5] - (parameters[XY6] - t86 * t175);
-    const ariane6_real_t t177 = parameters[YZ5] - t152;
-    const ariane6_real_t t178 = t62 * t177 - t61 * t176;
-    const ariane6_real_t t179 = t85 * t175;
-    const ariane6_real_t t180 = parameters[ZZ5R] + (parameters[XX6R] + t179);
-    const ariane6_real_t t181 = parameters[MX5] - t155;
-    const ariane6_real_t t182 = t61 * parameters[MY5R] + t62 * t181;
-    const ariane6_real_t t183 = t35 * t182;
-    const ariane6_real_t t184 = t34 * t178 - t35 * t180 + ARIANE6_C(-0.488) * t183;
-    const ariane6_real_t t185 = t62 * t176 + t61 * t177;
-    const ariane6_real_t t186 = t185 + ARIANE6_C(0.17) * t183;
-    const ariane6_real_t t187 = t11 * (t22 * t184 - t21 * t186 + ARIANE6_C(0.685) * t183);
-    const ariane6_real_t t188 = t10 * (t21 * t184 + t22 * t186) + t187 + ARIANE6_C(0.18) * t183;
-    const ariane6_real_t t189 = t188 - t161 * t173;
-    const ariane6_real_t t190 = t180 + parameters[IA5] * (t168 * t168) + t152 * t173;
-    if (!(t190 > ARIANE6_C(1.0e-9))) {
+    const ariane6_real_t t3 = parameters[XY6] * (ARIANE6_C(2.0) * t2) - t1 * parameters[XX6R];
+    const ariane6_real_t t4 = t1 * t3;
+    const ariane6_real_t t5 = parameters[ZZ5R] + (parameters[XX6R] + t4);
+    const ariane6_real_t t7 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t6 + ARIANE6_C(0.097));
+    const ariane6_real_t t8 = ARIANE6_C(1.0) / t7;
+    const ariane6_real_t t10 = t9 * (ARIANE6_C(3549.6000000000004) * t8);
+    const ariane6_real_t t11 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
+    const ariane6_real_t t12 = ARIANE6_C(-1.0) / t0;
+    const ariane6_real_t t13 = t11 * t12;
+    const ariane6_real_t t14 = t5 + parameters[IA5] * (t10 * t10) + t11 * t13;
+    if (!(t14 > ARIANE6_C(1.0e-9))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t191 = ARIANE6_C(1.0) / t190;
-    const ariane6_real_t t192 = t189 * t191;
-    const ariane6_real_t t193 = ariane6_sign(dq[3]);
-    const ariane6_real_t t194 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3]))
-        + ARIANE6_C(1.0e2) * (parameters[FC4] * t193);
-    const ariane6_real_t t195 = t158 * t163;
-    const ariane6_real_t t196 = t185 - t158 * t173;
-    const ariane6_real_t t197 = t196 * t191;
-    const ariane6_real_t t198 = ARIANE6_C(5.0) * input[3] - (t194 - t138) + t149 * t195 - t174 * t197;
-    const ariane6_real_t t199 = t150 - parameters[XY5];
-    const ariane6_real_t t200 = parameters[XX5R] - t179;
-    const ariane6_real_t t201 = t61 * (parameters[ZZ6] - t200) - t199 * (ARIANE6_C(2.0) * t62);
-    const ariane6_real_t t202 = t199 + t62 * t201 - parameters[XZ4];
-    const ariane6_real_t t203 = t185 - parameters[YZ4];
-    const ariane6_real_t t204 = t35 * t203 - t34 * t202;
-    const ariane6_real_t t205 = parameters[MY4R] + t153;
-    const ariane6_real_t t206 = t62 * parameters[MY5R] - t61 * t181;
-    const ariane6_real_t t207 = t206 - parameters[MX4];
-    const ariane6_real_t t208 = t35 * t205 + t34 * t207;
-    const ariane6_real_t t209 = ARIANE6_C(0.488) * t208;
-    const ariane6_real_t t210 = t204 + t209;
-    const ariane6_real_t t211 = t61 * t201;
-    const ariane6_real_t t212 = parameters[ZZ4R] + (t200 + t211);
-    const ariane6_real_t t213 = t212 + ARIANE6_C(0.17) * t208;
-    const ariane6_real_t t214 = t11 * (ARIANE6_C(0.685) * t208 - (t22 * t210 + t21 * t213));
-    const ariane6_real_t t215 = t10 * (t22 * t213 - t21 * t210) + t214 + ARIANE6_C(0.18) * t208;
-    const ariane6_real_t t216 = t215 + t161 * t195 - t189 * t197;
-    const ariane6_real_t t217 = t212 + ARIANE6_C(1.0e4) * parameters[IA4] + t158 * t195 - t196 * t197;
-    if (!(t217 > ARIANE6_C(1.0e-9))) {
+    const ariane6_real_t t15 = parameters[XZ5] - (parameters[XY6] - t2 * t3);
+    const ariane6_real_t t16 = parameters[YZ5] - t11;
+    const ariane6_real_t t17 = t6 * t15 + t9 * t16;
+    const ariane6_real_t t18 = t2 * parameters[YZ6R] - t1 * parameters[XZ6R];
+    const ariane6_real_t t19 = t9 * parameters[ZZ6] - t6 * t18;
+    const ariane6_real_t t20 = t17 - t19 * t13;
+    const ariane6_real_t t21 = ARIANE6_C(1.0) / t14;
+    const ariane6_real_t t22 = t20 * t21;
+    const ariane6_real_t t23 = parameters[XX5R] - t4;
+    const ariane6_real_t t24 = t18 - parameters[XY5];
+    const ariane6_real_t t25 = t9 * (parameters[ZZ6] - t23) - t24 * (ARIANE6_C(2.0) * t6);
+    const ariane6_real_t t26 = t9 * t25;
+    const ariane6_real_t t27 = parameters[ZZ4R] + (t23 + t26);
+    const ariane6_real_t t28 = t19 * t12;
+    const ariane6_real_t t29 = t27 + ARIANE6_C(1.0e4) * parameters[IA4] + t19 * t28 - t20 * t22;
+    if (!(t29 > ARIANE6_C(1.0e-9))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t218 = ARIANE6_C(-1.0) / t217;
-    const ariane6_real_t t219 = t216 * t218;
-    const ariane6_real_t t220 = ARIANE6_C(0.052335956242943966) * t22 + ARIANE6_C(-0.9986295347545738) * t21;
-    const ariane6_real_t t221 = ARIANE6_C(-0.052335956242943966) * t21 + ARIANE6_C(-0.9986295347545738) * t22;
-    const ariane6_real_t t222 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t221 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t223 = ARIANE6_C(1.0) / t222;
-    const ariane6_real_t t224 = t220 * (ARIANE6_C(8377.600000000002) * t223);
-    const ariane6_real_t t225 = t224 * dq[2];
-    const ariane6_real_t t226 = ariane6_sign(t225);
-    const ariane6_real_t t227 = ARIANE6_C(-8377.600000000002) * t221
-        - ARIANE6_C(350.9209088000001) * (t223 * t223) * (t220 * t220);
-    const ariane6_real_t t228 = t224 * (parameters[FV3] * t225) + t224 * (parameters[FC3] * t226)
-        + t224 * (parameters[IA3] * (t223 * t227 * (dq[2] * dq[2])));
-    const ariane6_real_t t229 = parameters[XY3R] * (t58 - t31) - parameters[XX3R] * t29
-        + (parameters[MY3R] * t80 - parameters[MX3R] * t57);
-    const ariane6_real_t t230 = parameters[MX4] * t46 + parameters[MY4R] * t64 - (t62 * t128 - t61 * t129);
-    const ariane6_real_t t231 = t34 * t130 - t35 * t132;
-    const ariane6_real_t t232 = t35 * t119 - t34 * t125 - (ARIANE6_C(0.17) * t230 - ARIANE6_C(0.488) * t231);
-    const ariane6_real_t t233 = t229 + t232;
-    const ariane6_real_t t234 = t62 * t153;
-    const ariane6_real_t t235 = t34 * t154 - t35 * t155;
-    const ariane6_real_t t236 = t34 * t152 - t35 * t151 - (ARIANE6_C(0.17) * t234 + ARIANE6_C(0.488) * t235);
-    const ariane6_real_t t237 = t236 * t163;
-    const ariane6_real_t t238 = input[2] * (ARIANE6_C(0.004) * t224) - (t228 + t233) - t149 * t237;
-    const ariane6_real_t t239 = t34 * t182;
-    const ariane6_real_t t240 = t35 * t178 + t34 * t180 + (ARIANE6_C(0.17) * t206 + ARIANE6_C(0.488) * t239);
-    const ariane6_real_t t241 = t240 + t236 * t173;
-    const ariane6_real_t t242 = t241 * t191;
-    const ariane6_real_t t243 = t34 * t205 - t35 * t207;
-    const ariane6_real_t t244 = t35 * t202 + t34 * t203 + ARIANE6_C(0.488) * t243;
-    const ariane6_real_t t245 = t244 - t236 * t195 - t241 * t197;
-    const ariane6_real_t t246 = t245 * t218;
-    const ariane6_real_t t247 = t238 - t174 * t242 + t198 * t246;
-    const ariane6_real_t t248 = parameters[XY4] + t178;
-    const ariane6_real_t t249 = parameters[XX4R] + (parameters[ZZ6] - t211);
-    const ariane6_real_t t250 = t34 * (t249 - t180) + t248 * (ARIANE6_C(-2.0) * t35);
-    const ariane6_real_t t251 = t248 + t35 * t250 + ARIANE6_C(0.17) * t243 - parameters[XZ3];
-    const ariane6_real_t t252 = parameters[YZ3] + t244;
-    const ariane6_real_t t253 = t21 * t251 + t22 * t252;
-    const ariane6_real_t t254 = t22 * t251 - t21 * t252;
-    const ariane6_real_t t255 = t10 * t253 + t11 * t254 - t161 * t237 - t189 * t242;
-    const ariane6_real_t t256 = t255 + t216 * t246;
-    const ariane6_real_t t257 = t34 * t250;
-    const ariane6_real_t t258 = ARIANE6_C(0.34) * t208;
-    const ariane6_real_t t259 = ARIANE6_C(0.976) * t182;
-    const ariane6_real_t t260 = parameters[ZZ3R] + (t249 - t257 + (t258 + t259));
-    const ariane6_real_t t261 = t260 + parameters[IA3] * (t224 * t224) + t236 * t237 - t241 * t242;
-    const ariane6_real_t t262 = t261 + t245 * t246;
-    if (!(t262 > ARIANE6_C(1.0e-9))) {
+    const ariane6_real_t t30 = parameters[XX4R] + (parameters[ZZ6] - t26);
+    const ariane6_real_t t32 = t6 * t16 - t9 * t15;
+    const ariane6_real_t t33 = parameters[XY4] + t32;
+    const ariane6_real_t t35 = t31 * (t30 - t5) + t33 * (ARIANE6_C(-2.0) * t34);
+    const ariane6_real_t t36 = t31 * t35;
+    const ariane6_real_t t37 = t1 * parameters[MY6] + t2 * parameters[MX6];
+    const ariane6_real_t t38 = parameters[MY4R] + t37;
+    const ariane6_real_t t39 = t2 * parameters[MY6] - t1 * parameters[MX6];
+    const ariane6_real_t t40 = parameters[MX5] - t39;
+    const ariane6_real_t t41 = t6 * parameters[MY5R] - t9 * t40;
+    const ariane6_real_t t42 = t41 - parameters[MX4];
+    const ariane6_real_t t43 = t34 * t38 + t31 * t42;
+    const ariane6_real_t t44 = ARIANE6_C(0.34) * t43;
+    const ariane6_real_t t45 = t9 * parameters[MY5R] + t6 * t40;
+    const ariane6_real_t t46 = ARIANE6_C(0.976) * t45;
+    const ariane6_real_t t47 = parameters[ZZ3R] + (t30 - t36 + (t44 + t46));
+    const ariane6_real_t t50 = ARIANE6_C(0.052335956242943966) * t48 + ARIANE6_C(-0.9986295347545738) * t49;
+    const ariane6_real_t t51 = ARIANE6_C(-0.052335956242943966) * t49 + ARIANE6_C(-0.9986295347545738) * t48;
+    const ariane6_real_t t52 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t51 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t53 = ARIANE6_C(1.0) / t52;
+    const ariane6_real_t t54 = t50 * (ARIANE6_C(8377.600000000002) * t53);
+    const ariane6_real_t t55 = t9 * t18 + t6 * parameters[ZZ6];
+    const ariane6_real_t t56 = t9 * t37;
+    const ariane6_real_t t57 = t31 * t56 - t34 * t39;
+    const ariane6_real_t t58 = t6 * t37;
+    const ariane6_real_t t59 = t31 * t11 - t34 * t55 - (ARIANE6_C(0.17) * t58 + ARIANE6_C(0.488) * t57);
+    const ariane6_real_t t60 = t59 * t12;
+    const ariane6_real_t t61 = t31 * t45;
+    const ariane6_real_t t62 = t34 * t32 + t31 * t5 + (ARIANE6_C(0.17) * t41 + ARIANE6_C(0.488) * t61);
+    const ariane6_real_t t63 = t62 + t59 * t13;
+    const ariane6_real_t t64 = t63 * t21;
+    const ariane6_real_t t65 = t47 + parameters[IA3] * (t54 * t54) + t59 * t60 - t63 * t64;
+    const ariane6_real_t t66 = t24 + t6 * t25 - parameters[XZ4];
+    const ariane6_real_t t67 = t17 - parameters[YZ4];
+    const ariane6_real_t t68 = t31 * t38 - t34 * t42;
+    const ariane6_real_t t69 = t34 * t66 + t31 * t67 + ARIANE6_C(0.488) * t68;
+    const ariane6_real_t t70 = t69 - t59 * t28 - t63 * t22;
+    const ariane6_real_t t71 = ARIANE6_C(-1.0) / t29;
+    const ariane6_real_t t72 = t70 * t71;
+    const ariane6_real_t t73 = t65 + t70 * t72;
+    if (!(t73 > ARIANE6_C(1.0e-9))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t263 = ARIANE6_C(1.0) / t262;
-    const ariane6_real_t t264 = t256 * t263;
-    const ariane6_real_t t265 = t165 + t174 * t192 - t198 * t219 + t247 * t264;
-    const ariane6_real_t t266 = ARIANE6_C(0.766044443118978) * t10 + ARIANE6_C(0.6427876096865393) * t11;
-    const ariane6_real_t t267 = ARIANE6_C(-0.766044443118978) * t11 + ARIANE6_C(0.6427876096865393) * t10;
-    const ariane6_real_t t268 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t267 + ARIANE6_C(0.420682));
-    const ariane6_real_t t269 = ARIANE6_C(1.0) / t268;
-    const ariane6_real_t t270 = t266 * (ARIANE6_C(12691.800000000003) * t269);
-    const ariane6_real_t t271 = t270 * dq[1];
-    const ariane6_real_t t272 = ariane6_sign(t271);
-    const ariane6_real_t t273 = ARIANE6_C(-12691.800000000003) * t267
-        - ARIANE6_C(805.4089362000002) * (t269 * t269) * (t266 * t266);
-    const ariane6_real_t t274 = t270 * (parameters[FV2] * t271) + t270 * (parameters[FC2] * t272)
-        + t270 * (parameters[IA2] * (t269 * t273 * t19));
-    const ariane6_real_t t275 = parameters[XX2R] * t17 - parameters[XY2] * (t143 - t20)
-        + (parameters[MX2R] * t55 + parameters[MY2] * t53);
-    const ariane6_real_t t276 = t22 * (parameters[MX3R] * t81 - parameters[MY3R] * t29 + t231)
-        + t21 * (parameters[MY3R] * t59 - parameters[MX3R] * t29 - t230);
-    const ariane6_real_t t277 = input[1] * (ARIANE6_C(0.004) * t270) - (t274 - (t275 - (t233
-        - ARIANE6_C(0.685) * t276)));
-    const ariane6_real_t t278 = t236 + ARIANE6_C(0.685) * (t22 * t235 + t21 * t234);
-    const ariane6_real_t t279 = t278 * t163;
-    const ariane6_real_t t280 = ARIANE6_C(0.685) * (t22 * t239 + t21 * t206) - t240 - t278 * t173;
-    const ariane6_real_t t281 = t280 * t191;
-    const ariane6_real_t t282 = t244 + ARIANE6_C(-0.685) * (t22 * t243) - t278 * t195 + t280 * t197;
-    const ariane6_real_t t283 = t282 * t218;
-    const ariane6_real_t t284 = t277 - t149 * t279 + t174 * t281 + t198 * t283;
-    const ariane6_real_t t285 = parameters[MY3R] + t182;
-    const ariane6_real_t t286 = parameters[MX3R] - t208;
-    const ariane6_real_t t287 = t21 * t286 - t22 * t285;
-    const ariane6_real_t t288 = ARIANE6_C(-0.685) * t287 - t260 - t278 * t237 - t280 * t242;
-    const ariane6_real_t t289 = t288 - t282 * t246;
-    const ariane6_real_t t290 = t289 * t263;
-    const ariane6_real_t t291 = t284 + t247 * t290;
-    const ariane6_real_t t292 = t10 * (t253 + ARIANE6_C(-0.685) * t243 - parameters[XZ2R]) + t11 * (t254
+    const ariane6_real_t t74 = parameters[MX3R] - t43;
+    const ariane6_real_t t75 = parameters[MY3R] + t45;
+    const ariane6_real_t t76 = t49 * t74 - t48 * t75;
+    const ariane6_real_t t77 = ARIANE6_C(1.37) * t76;
+    const ariane6_real_t t80 = ARIANE6_C(0.766044443118978) * t78 + ARIANE6_C(0.6427876096865393) * t79;
+    const ariane6_real_t t81 = ARIANE6_C(-0.766044443118978) * t79 + ARIANE6_C(0.6427876096865393) * t78;
+    const ariane6_real_t t82 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t81 + ARIANE6_C(0.420682));
+    const ariane6_real_t t83 = ARIANE6_C(1.0) / t82;
+    const ariane6_real_t t84 = t80 * (ARIANE6_C(12691.800000000003) * t83);
+    const ariane6_real_t t85 = t59 + ARIANE6_C(0.685) * (t48 * t57 + t49 * t58);
+    const ariane6_real_t t86 = t85 * t12;
+    const ariane6_real_t t87 = parameters[ZZ2R] + (t47 + t77) + parameters[IA2] * (t84 * t84) + t85 * t86;
+    const ariane6_real_t t88 = ARIANE6_C(0.685) * (t48 * t61 + t49 * t41) - t62 - t85 * t13;
+    const ariane6_real_t t89 = t88 * t21;
+    const ariane6_real_t t90 = t69 + ARIANE6_C(-0.685) * (t48 * t68) - t85 * t28 + t88 * t22;
+    const ariane6_real_t t91 = t90 * t71;
+    const ariane6_real_t t92 = ARIANE6_C(1.0) / t73;
+    const ariane6_real_t t93 = ARIANE6_C(-0.685) * t76 - t47 - t85 * t60 - t88 * t64;
+    const ariane6_real_t t94 = t93 - t90 * t72;
+    const ariane6_real_t t95 = t94 * t92;
+    const ariane6_real_t t96 = t87 - t88 * t89 + t90 * t91 - t94 * t95;
+    if (!(t96 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t97 = t27 + t44;
+    const ariane6_real_t t98 = parameters[XX3R] + (t5 + t36 + t46);
+    const ariane6_real_t t99 = t34 * t67 - t31 * t66;
+    const ariane6_real_t t100 = ARIANE6_C(0.488) * t43;
+    const ariane6_real_t t101 = parameters[XY3R] + (t99 + (t100 + ARIANE6_C(0.17) * t45));
+    const ariane6_real_t t102 = t49 * (t97 - t98) + t101 * (ARIANE6_C(2.0) * t48);
+    const ariane6_real_t t103 = t49 * t102;
+    const ariane6_real_t t104 = parameters[XX2R] + (t97 - t103);
+    const ariane6_real_t t105 = t49 * t75 + t48 * t74;
+    const ariane6_real_t t106 = (parameters[XY2] + (t101 - t48 * t102
+        + ARIANE6_C(-0.685) * t105)) * (ARIANE6_C(2.0) * t78);
+    const ariane6_real_t t107 = t79 * (t79 * (t98 + t103 + t77 - t104) + t106);
+    const ariane6_real_t t108 = ARIANE6_C(0.36) * (t79 * (parameters[MX2R] + t76) - t78 * (parameters[MY2]
+        + t105));
+    const ariane6_real_t t110 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t109 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t111 = ARIANE6_C(1.0) / t110;
+    const ariane6_real_t t113 = t112 * (ARIANE6_C(4063.3400000000006) * t111);
+    const ariane6_real_t t114 = parameters[ZZ1R] + (t104 + t107 + t108) + parameters[IA1] * (t113 * t113);
+    const ariane6_real_t t115 = t34 * t56 + t31 * t39;
+    const ariane6_real_t t116 = t31 * t55 + t34 * t11 + ARIANE6_C(-0.488) * t115;
+    const ariane6_real_t t117 = t19 + ARIANE6_C(0.17) * t115;
+    const ariane6_real_t t118 = t79 * (t48 * t116 - t49 * t117 + ARIANE6_C(0.685) * t115);
+    const ariane6_real_t t119 = t78 * (t49 * t116 + t48 * t117) + t118 + ARIANE6_C(0.18) * t115;
+    const ariane6_real_t t120 = t119 * t12;
+    const ariane6_real_t t121 = t34 * t45;
+    const ariane6_real_t t122 = t31 * t32 - t34 * t5 + ARIANE6_C(-0.488) * t121;
+    const ariane6_real_t t123 = t17 + ARIANE6_C(0.17) * t121;
+    const ariane6_real_t t124 = t79 * (t48 * t122 - t49 * t123 + ARIANE6_C(0.685) * t121);
+    const ariane6_real_t t125 = t78 * (t49 * t122 + t48 * t123) + t124 + ARIANE6_C(0.18) * t121;
+    const ariane6_real_t t126 = t125 - t119 * t13;
+    const ariane6_real_t t127 = t126 * t21;
+    const ariane6_real_t t128 = t99 + t100;
+    const ariane6_real_t t129 = t27 + ARIANE6_C(0.17) * t43;
+    const ariane6_real_t t130 = t79 * (ARIANE6_C(0.685) * t43 - (t48 * t128 + t49 * t129));
+    const ariane6_real_t t131 = t78 * (t48 * t129 - t49 * t128) + t130 + ARIANE6_C(0.18) * t43;
+    const ariane6_real_t t132 = t131 + t119 * t28 - t126 * t22;
+    const ariane6_real_t t133 = t132 * t71;
+    const ariane6_real_t t134 = t114 + t119 * t120 - t126 * t127 + t132 * t133;
+    const ariane6_real_t t135 = t33 + t34 * t35 + ARIANE6_C(0.17) * t68 - parameters[XZ3];
+    const ariane6_real_t t136 = parameters[YZ3] + t69;
+    const ariane6_real_t t137 = t49 * t135 + t48 * t136;
+    const ariane6_real_t t138 = t48 * t135 - t49 * t136;
+    const ariane6_real_t t139 = t78 * t137 + t79 * t138 - t119 * t60 - t126 * t64;
+    const ariane6_real_t t140 = t139 + t132 * t72;
+    const ariane6_real_t t141 = t140 * t92;
+    const ariane6_real_t t142 = t78 * (t137 + ARIANE6_C(-0.685) * t68 - parameters[XZ2R]) + t79 * (t138
         - parameters[YZ2]);
-    const ariane6_real_t t293 = t292 - t161 * t279 + t189 * t281 + t216 * t283;
-    const ariane6_real_t t294 = t293 + t256 * t290;
-    const ariane6_real_t t295 = ARIANE6_C(1.37) * t287;
-    const ariane6_real_t t296 = parameters[ZZ2R] + (t260 + t295) + parameters[IA2] * (t270 * t270)
-        + t278 * t279;
-    const ariane6_real_t t297 = t296 - t280 * t281 + t282 * t283 - t289 * t290;
-    if (!(t297 > ARIANE6_C(1.0e-9))) {
+    const ariane6_real_t t143 = t142 - t119 * t86 + t126 * t89 + t132 * t91;
+    const ariane6_real_t t144 = t143 + t140 * t95;
+    const ariane6_real_t t145 = ARIANE6_C(1.0) / t96;
+    const ariane6_real_t t146 = t144 * t145;
+    const ariane6_real_t t147 = t134 - t140 * t141 - t144 * t146;
+    if (!(t147 > ARIANE6_C(1.0e-9))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t298 = ARIANE6_C(1.0) / t297;
-    const ariane6_real_t t299 = t294 * t298;
-    const ariane6_real_t t300 = t212 + t258;
-    const ariane6_real_t t301 = parameters[XX3R] + (t180 + t257 + t259);
-    const ariane6_real_t t302 = parameters[XY3R] + (t204 + (t209 + ARIANE6_C(0.17) * t182));
-    const ariane6_real_t t303 = t21 * (t300 - t301) + t302 * (ARIANE6_C(2.0) * t22);
-    const ariane6_real_t t304 = t21 * t303;
-    const ariane6_real_t t305 = parameters[XX2R] + (t300 - t304);
-    const ariane6_real_t t306 = t21 * t285 + t22 * t286;
-    const ariane6_real_t t307 = (parameters[XY2] + (t302 - t22 * t303
-        + ARIANE6_C(-0.685) * t306)) * (ARIANE6_C(2.0) * t10);
-    const ariane6_real_t t308 = t11 * (t11 * (t301 + t304 + t295 - t305) + t307);
-    const ariane6_real_t t309 = ARIANE6_C(0.36) * (t11 * (parameters[MX2R] + t287) - t10 * (parameters[MY2]
-        + t306));
-    const ariane6_real_t t310 = parameters[ZZ1R] + (t305 + t308 + t309) + parameters[IA1] * (t4 * t4);
-    const ariane6_real_t t311 = t310 + t161 * t164 - t189 * t192 + t216 * t219;
-    const ariane6_real_t t312 = t311 - t256 * t264 - t294 * t299;
-    if (!(t312 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t313 = ARIANE6_C(1.0) / t312;
-    const ariane6_real_t t314 = (t265 + t291 * t299) * t313;
+    const ariane6_real_t t148 = t78 * dq[0];
+    const ariane6_real_t t149 = t79 * dq[0];
+    const ariane6_real_t t150 = t49 * t148 + t48 * t149;
+    const ariane6_real_t t151 = t49 * t149 - t48 * t148;
+    const ariane6_real_t t152 = t150 * t151;
+    const ariane6_real_t t153 = dq[1] + dq[2];
+    const ariane6_real_t t154 = t151 * t153;
+    const ariane6_real_t t155 = ARIANE6_C(2.0) * t154;
+    const ariane6_real_t t156 = t34 * t155 - t31 * t152;
+    const ariane6_real_t t157 = t31 * t150 - t34 * t153;
+    const ariane6_real_t t158 = dq[3] + t151;
+    const ariane6_real_t t159 = t157 * t158;
+    const ariane6_real_t t160 = t156 + t159;
+    const ariane6_real_t t161 = t9 * t157 + t6 * t158;
+    const ariane6_real_t t162 = t6 * t157 - t9 * t158;
+    const ariane6_real_t t163 = t161 * t162;
+    const ariane6_real_t t164 = t160 + t163;
+    const ariane6_real_t t165 = t34 * t152 + t31 * t155;
+    const ariane6_real_t t166 = t34 * t150 + t31 * t153;
+    const ariane6_real_t t167 = t166 * t158;
+    const ariane6_real_t t168 = t165 - t167;
+    const ariane6_real_t t169 = t168 - t167;
+    const ariane6_real_t t170 = t157 * t166;
+    const ariane6_real_t t171 = t150 * t153;
+    const ariane6_real_t t172 = t170 - t171;
+    const ariane6_real_t t173 = t6 * t172 + t9 * t169;
+    const ariane6_real_t t174 = dq[4] + t166;
+    const ariane6_real_t t175 = t162 * t174;
+    const ariane6_real_t t176 = t173 - t175;
+    const ariane6_real_t t177 = t176 - t175;
+    const ariane6_real_t t178 = t1 * t177 - t2 * t164;
+    const ariane6_real_t t179 = t2 * t161 + t1 * t174;
+    const ariane6_real_t t180 = dq[5] - t162;
+    const ariane6_real_t t181 = t179 * t180;
+    const ariane6_real_t t182 = t178 - t181;
+    const ariane6_real_t t183 = t1 * t164 + t2 * t177;
+    const ariane6_real_t t184 = t1 * t161 - t2 * t174;
+    const ariane6_real_t t185 = t184 * t180;
+    const ariane6_real_t t186 = t185 + (t183 + t185);
+    const ariane6_real_t t187 = t9 * t172 - t6 * t169;
+    const ariane6_real_t t188 = t161 * t174;
+    const ariane6_real_t t189 = t187 - t188;
+    const ariane6_real_t t190 = t184 * t179;
+    const ariane6_real_t t191 = t190 - t189;
+    const ariane6_real_t t192 = parameters[ZZ6] * t181 - parameters[XX6R] * t182 + parameters[XY6] * t186
+        + parameters[XZ6R] * t191;
+    const ariane6_real_t t193 = t179 * t179;
+    const ariane6_real_t t194 = t180 * t180;
+    const ariane6_real_t t195 = dq[0] * dq[0];
+    const ariane6_real_t t196 = ARIANE6_C(-0.18) * t195;
+    const ariane6_real_t t197 = t79 * t196 + ARIANE6_C(9.81) * t78;
+    const ariane6_real_t t198 = t149 * t149;
+    const ariane6_real_t t199 = dq[1] * dq[1];
+    const ariane6_real_t t200 = ARIANE6_C(0.685) * (t199 + t198) - t197;
+    const ariane6_real_t t201 = t78 * t196 + ARIANE6_C(-9.81) * t79;
+    const ariane6_real_t t202 = t148 * t149;
+    const ariane6_real_t t203 = t201 + ARIANE6_C(-0.685) * t202;
+    const ariane6_real_t t204 = t49 * t200 + t48 * t203;
+    const ariane6_real_t t205 = t151 * t151;
+    const ariane6_real_t t206 = t153 * t153;
+    const ariane6_real_t t207 = t205 + t206;
+    const ariane6_real_t t208 = t204 + (ARIANE6_C(-0.17) * t207 + ARIANE6_C(-0.488) * t152);
+    const ariane6_real_t t209 = dq[1] * t148;
+    const ariane6_real_t t210 = ARIANE6_C(-1.37) * t209;
+    const ariane6_real_t t211 = t210 + (ARIANE6_C(0.34) * t171 + ARIANE6_C(-0.976) * t154);
+    const ariane6_real_t t212 = t31 * t208 - t34 * t211;
+    const ariane6_real_t t213 = t49 * t203 - t48 * t200;
+    const ariane6_real_t t214 = t150 * t150;
+    const ariane6_real_t t215 = t214 + t206;
+    const ariane6_real_t t216 = t213 + (ARIANE6_C(0.17) * t152 + ARIANE6_C(0.488) * t215);
+    const ariane6_real_t t217 = t9 * t216 - t6 * t212;
+    const ariane6_real_t t218 = t192 - parameters[YZ6R] * (t193 - t194) + parameters[MY6] * t217;
+    const ariane6_real_t t219 = t182 - t181;
+    const ariane6_real_t t220 = t189 + t190;
+    const ariane6_real_t t221 = t185 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t219
+        + parameters[YZ6R] * t220;
+    const ariane6_real_t t222 = t184 * t184;
+    const ariane6_real_t t223 = t221 + parameters[XZ6R] * (t194 - t222) + parameters[MX6] * t217;
+    const ariane6_real_t t224 = t188 - t189;
+    const ariane6_real_t t225 = t160 - t163;
+    const ariane6_real_t t226 = parameters[ZZ5R] * t175 - parameters[XX5R] * t176 + parameters[XY5] * t224
+        - parameters[XZ5] * t225;
+    const ariane6_real_t t227 = t162 * t162;
+    const ariane6_real_t t228 = t174 * t174;
+    const ariane6_real_t t229 = t34 * t208 + t31 * t211;
+    const ariane6_real_t t230 = t226 + parameters[YZ5] * (t228 - t227) + parameters[MY5R] * t229 + (t1 * t218
+        + t2 * t223);
+    const ariane6_real_t t231 = t9 * t212 + t6 * t216;
+    const ariane6_real_t t232 = parameters[MX6] * (t2 * t231 + t1 * t229) + parameters[MY6] * (t1 * t231
+        - t2 * t229);
+    const ariane6_real_t t233 = parameters[ZZ6] * t189 + parameters[XX6R] * t190 - parameters[YZ6R] * t183
+        + parameters[XZ6R] * t178;
+    const ariane6_real_t t234 = t233 + parameters[XY6] * (t222 - t193) + t232;
+    const ariane6_real_t t235 = t188 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t177
+        + parameters[YZ5] * t164;
+    const ariane6_real_t t236 = t161 * t161;
+    const ariane6_real_t t237 = t235 + parameters[XZ5] * (t228 - t236) + parameters[MX5] * t229 + t234;
+    const ariane6_real_t t238 = t159 + t160;
+    const ariane6_real_t t239 = t171 + t170;
+    const ariane6_real_t t240 = parameters[ZZ4R] * t167 - parameters[XX4R] * t168 + parameters[XY4] * t238
+        + parameters[XZ4] * t239;
+    const ariane6_real_t t241 = t166 * t166;
+    const ariane6_real_t t242 = t158 * t158;
+    const ariane6_real_t t243 = t240 + parameters[YZ4] * (t242 - t241) + parameters[MY4R] * t216 + (t9 * t230
+        + t6 * t237);
+    const ariane6_real_t t244 = parameters[ZZ5R] * t160 + parameters[XX5R] * t163 + parameters[YZ5] * t187
+        + parameters[XZ5] * t173;
+    const ariane6_real_t t245 = parameters[XY5] * (t227 - t236) - t244 + (parameters[MX5] * t217
+        - parameters[MY5R] * t231);
+    const ariane6_real_t t246 = t245 + (t1 * t223 - t2 * t218);
+    const ariane6_real_t t247 = t159 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t169
+        + parameters[YZ4] * t172;
+    const ariane6_real_t t248 = t157 * t157;
+    const ariane6_real_t t249 = t247 + parameters[XZ4] * (t242 - t248) + parameters[MX4] * t216 + t246;
+    const ariane6_real_t t250 = parameters[MX6] * (t193 + t194) + parameters[MY6] * t220;
+    const ariane6_real_t t251 = parameters[MX6] * t191 + parameters[MY6] * (t222 + t194);
+    const ariane6_real_t t252 = parameters[MX5] * (t227 + t228) + parameters[MY5R] * t164 + (t1 * t250
+        - t2 * t251);
+    const ariane6_real_t t253 = parameters[MX5] * t225 - parameters[MY5R] * (t236 + t228)
+        + (parameters[MX6] * t186 + parameters[MY6] * t219);
+    const ariane6_real_t t254 = parameters[MX4] * (t241 + t242) + parameters[MY4R] * t172 + (t9 * t252
+        + t6 * t253);
+    const ariane6_real_t t255 = parameters[MX5] * t224 + parameters[MY5R] * t177 + (t2 * t250 + t1 * t251);
+    const ariane6_real_t t256 = parameters[MX4] * t239 + parameters[MY4R] * (t248 + t242) + t255;
+    const ariane6_real_t t257 = t34 * t254 + t31 * t256;
+    const ariane6_real_t t258 = ARIANE6_C(2.0) * t171;
+    const ariane6_real_t t259 = parameters[XY3R] * t258 - (parameters[XX3R] * t154 + parameters[ZZ3R] * t154)
+        - parameters[XZ3] * t152;
+    const ariane6_real_t t260 = t259 + parameters[YZ3] * (t206 - t205) + parameters[MY3R] * t210 + (t31 * t243
+        + t34 * t249 + ARIANE6_C(-0.488) * t257);
+    const ariane6_real_t t261 = parameters[ZZ4R] * t171 - parameters[XX4R] * t170 + parameters[YZ4] * t156
+        - parameters[XZ4] * t165;
+    const ariane6_real_t t262 = t261 - parameters[XY4] * (t248 - t241) - (parameters[MX4] * t229
+        + parameters[MY4R] * t212);
+    const ariane6_real_t t263 = t262 + (t6 * t230 - t9 * t237);
+    const ariane6_real_t t264 = t171 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t155
+        - parameters[YZ3] * t152;
+    const ariane6_real_t t265 = t264 - parameters[XZ3] * (t214 - t206) + parameters[MX3R] * t210 - (t263
+        - ARIANE6_C(0.17) * t257);
+    const ariane6_real_t t266 = dq[1] * t149;
+    const ariane6_real_t t267 = ARIANE6_C(2.0) * t209;
+    const ariane6_real_t t268 = parameters[XY2] * t267 - (parameters[XX2R] * t266 + parameters[ZZ2R] * t266)
+        - parameters[XZ2R] * t202;
+    const ariane6_real_t t269 = t268 + parameters[YZ2] * (t199 - t198) + (t49 * t260 + t48 * t265);
+    const ariane6_real_t t270 = parameters[MX3R] * t258 + parameters[MY3R] * t155 + t257;
+    const ariane6_real_t t271 = ARIANE6_C(2.0) * t266;
+    const ariane6_real_t t272 = t209 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t271
+        + parameters[YZ2] * t202;
+    const ariane6_real_t t273 = t148 * t148;
+    const ariane6_real_t t274 = t272 + parameters[XZ2R] * (t273 - t199) + (t48 * t260 - t49 * t265
+        + ARIANE6_C(0.685) * t270);
+    const ariane6_real_t t275 = t78 * t269 + t79 * t274 + ARIANE6_C(0.18) * (parameters[MX2R] * t267
+        + parameters[MY2] * t271 + t270);
+    const ariane6_real_t t276 = t113 * dq[0];
+    const ariane6_real_t t277 = ariane6_sign(t276);
+    const ariane6_real_t t278 = ARIANE6_C(4063.3400000000006) * t109
+        + ARIANE6_C(82.55365977800001) * (t111 * t111) * (t112 * t112);
+    const ariane6_real_t t279 = t113 * (parameters[IA1] * (t111 * t278 * t195))
+        - (t113 * (parameters[FV1] * t276) + t113 * (parameters[FC1] * t277));
+    const ariane6_real_t t280 = ariane6_sign(dq[5]);
+    const ariane6_real_t t281 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5]))
+        + ARIANE6_C(1.0e2) * (parameters[FC6] * t280);
+    const ariane6_real_t t282 = ARIANE6_C(5.0) * input[5] - (t281 + t234);
+    const ariane6_real_t t283 = input[0] * (ARIANE6_C(0.004) * t113) + (t279 + t275) - t282 * t120;
+    const ariane6_real_t t284 = t10 * dq[4];
+    const ariane6_real_t t285 = ariane6_sign(t284);
+    const ariane6_real_t t286 = ARIANE6_C(3549.6000000000004) * t6
+        + ARIANE6_C(62.9983008) * (t8 * t8) * (t9 * t9);
+    const ariane6_real_t t287 = t10 * (parameters[FV5] * t284) + t10 * (parameters[FC5] * t285)
+        - t10 * (parameters[IA5] * (t8 * t286 * (dq[4] * dq[4])));
+    const ariane6_real_t t288 = input[4] * (ARIANE6_C(0.004) * t10) - (t287 - t246) - t282 * t13;
+    const ariane6_real_t t289 = ariane6_sign(dq[3]);
+    const ariane6_real_t t290 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3]))
+        + ARIANE6_C(1.0e2) * (parameters[FC4] * t289);
+    const ariane6_real_t t291 = ARIANE6_C(5.0) * input[3] - (t290 - t263) + t282 * t28 - t288 * t22;
+    const ariane6_real_t t292 = t31 * t254 - t34 * t256;
+    const ariane6_real_t t293 = parameters[MX4] * t238 + parameters[MY4R] * t169 - (t6 * t252 - t9 * t253);
+    const ariane6_real_t t294 = t34 * t243 - t31 * t249 - (ARIANE6_C(0.17) * t293 - ARIANE6_C(0.488) * t292);
+    const ariane6_real_t t295 = parameters[XY3R] * (t214 - t205) - parameters[XX3R] * t152
+        + (parameters[MY3R] * t204 - parameters[MX3R] * t213);
+    const ariane6_real_t t296 = t295 + t294;
+    const ariane6_real_t t297 = t54 * dq[2];
+    const ariane6_real_t t298 = ariane6_sign(t297);
+    const ariane6_real_t t299 = ARIANE6_C(-8377.600000000002) * t51
+        - ARIANE6_C(350.9209088000001) * (t53 * t53) * (t50 * t50);
+    const ariane6_real_t t300 = t54 * (parameters[FV3] * t297) + t54 * (parameters[FC3] * t298)
+        + t54 * (parameters[IA3] * (t53 * t299 * (dq[2] * dq[2])));
+    const ariane6_real_t t301 = input[2] * (ARIANE6_C(0.004) * t54) - (t300 + t296) - t282 * t60;
+    const ariane6_real_t t302 = t301 - t288 * t64 + t291 * t72;
+    const ariane6_real_t t303 = t283 + t288 * t127 - t291 * t133 + t302 * t141;
+    const ariane6_real_t t304 = t48 * (parameters[MX3R] * t207 - parameters[MY3R] * t152 + t292)
+        + t49 * (parameters[MY3R] * t215 - parameters[MX3R] * t152 - t293);
+    const ariane6_real_t t305 = parameters[XX2R] * t202 - parameters[XY2] * (t273 - t198)
+        + (parameters[MX2R] * t201 + parameters[MY2] * t197);
+    const ariane6_real_t t306 = t84 * dq[1];
+    const ariane6_real_t t307 = ariane6_sign(t306);
+    const ariane6_real_t t308 = ARIANE6_C(-12691.800000000003) * t81
+        - ARIANE6_C(805.4089362000002) * (t83 * t83) * (t80 * t80);
+    const ariane6_real_t t309 = t84 * (parameters[FV2] * t306) + t84 * (parameters[FC2] * t307)
+        + t84 * (parameters[IA2] * (t83 * t308 * t199));
+    const ariane6_real_t t310 = input[1] * (ARIANE6_C(0.004) * t84) - (t309 - (t305 - (t296
+        - ARIANE6_C(0.685) * t304)));
+    const ariane6_real_t t311 = t310 - t282 * t86 + t288 * t89 + t291 * t91;
+    const ariane6_real_t t312 = t311 + t302 * t95;
+    const ariane6_real_t t313 = ARIANE6_C(1.0) / t147;
+    const ariane6_real_t t314 = (t303 + t312 * t146) * t313;
     out[0] = t314;
     if (!(t314 >= ARIANE6_C(-1.0e15) && t314 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t315 = t291 * t298 + t299 * t314;
+    const ariane6_real_t t315 = t312 * t145 + t146 * t314;
     out[1] = t315;
     if (!(t315 >= ARIANE6_C(-1.0e15) && t315 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t316 = t247 * t263 + t264 * t314 + t290 * t315;
+    const ariane6_real_t t316 = t302 * t92 + t141 * t314 + t95 * t315;
     out[2] = t316;
     if (!(t316 >= ARIANE6_C(-1.0e15) && t316 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t317 = t283 * t315 - (t198 * t218 + t219 * t314) + t246 * t316;
+    const ariane6_real_t t317 = t91 * t315 - (t291 * t71 + t133 * t314) + t72 * t316;
     out[3] = t317;
     if (!(t317 >= ARIANE6_C(-1.0e15) && t317 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t318 = t174 * t191 + t192 * t314 + t281 * t315 - t242 * t316;
-    const ariane6_real_t t319 = t318 - t197 * t317;
+    const ariane6_real_t t318 = t288 * t21 + t127 * t314 + t89 * t315 - t64 * t316;
+    const ariane6_real_t t319 = t318 - t22 * t317;
     out[4] = t319;
     if (!(t319 >= ARIANE6_C(-1.0e15) && t319 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t320 = t149 * t163 + t164 * t314 + t279 * t315 + t237 * t316;
-    out[5] = t195 * t317 - t320 - t173 * t319;
+    const ariane6_real_t t320 = t282 * t12 + t120 * t314 + t86 * t315 + t60 * t316;
+    out[5] = t28 * t317 - t320 - t13 * t319;
     if (!(out[5] >= ARIANE6_C(-1.0e15) && out[5] <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;

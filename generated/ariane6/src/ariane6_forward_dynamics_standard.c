@@ -106,7 +106,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -140,467 +140,471 @@ int ariane6_forward_dynamics_standard(
         return status;
     }
 
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[0], &t1, &t0);
-    ariane6_real_t t10, t11;
-    ARIANE6_SINCOS(q[1], &t10, &t11);
-    ariane6_real_t t26, t24;
-    ARIANE6_SINCOS(q[2], &t26, &t24);
-    ariane6_real_t t43, t42;
-    ARIANE6_SINCOS(q[3], &t43, &t42);
-    ariane6_real_t t70, t69;
-    ARIANE6_SINCOS(q[4], &t70, &t69);
-    ariane6_real_t t92, t91;
-    ARIANE6_SINCOS(q[5], &t92, &t91);
-    const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(1.0) / t2;
-    const ariane6_real_t t4 = t0 * (ARIANE6_C(4063.3400000000006) * t3);
-    const ariane6_real_t t5 = t4 * dq[0];
-    const ariane6_real_t t6 = ariane6_sign(t5);
-    const ariane6_real_t t7 = ARIANE6_C(4063.3400000000006) * t1
-        + ARIANE6_C(82.55365977800001) * (t3 * t3) * (t0 * t0);
-    const ariane6_real_t t8 = dq[0] * dq[0];
-    const ariane6_real_t t9 = t4 * (t3 * t7 * t8 * parameters[IA1]) - (t4 * (t5 * parameters[FV1])
-        + t4 * (t6 * parameters[FC1]));
-    const ariane6_real_t t12 = t11 * dq[0];
-    const ariane6_real_t t13 = dq[1] * t12;
-    const ariane6_real_t t14 = t10 * dq[0];
-    const ariane6_real_t t15 = dq[1] * t14;
-    const ariane6_real_t t16 = ARIANE6_C(2.0) * t15;
-    const ariane6_real_t t17 = t13 * (parameters[YY2] - parameters[ZZ2]) - t13 * parameters[XX2]
-        + t16 * parameters[XY2];
-    const ariane6_real_t t18 = t14 * t12;
-    const ariane6_real_t t19 = t12 * t12;
-    const ariane6_real_t t20 = dq[1] * dq[1];
-    const ariane6_real_t t21 = ARIANE6_C(0.18) * t8;
-    const ariane6_real_t t22 = ARIANE6_C(-9.81) * t11 - t10 * t21;
-    const ariane6_real_t t23 = t17 - t18 * parameters[XZ2] + (t20 - t19) * parameters[YZ2]
-        - t22 * parameters[MZ2];
-    const ariane6_real_t t25 = dq[1] + dq[2];
-    const ariane6_real_t t27 = t24 * t12 - t26 * t14;
-    const ariane6_real_t t28 = t25 * t27;
-    const ariane6_real_t t29 = t24 * t14 + t26 * t12;
-    const ariane6_real_t t30 = t25 * t29;
-    const ariane6_real_t t31 = ARIANE6_C(2.0) * t30;
-    const ariane6_real_t t32 = parameters[XY3] * t31 - (parameters[XX3] * t28 + t28 * (parameters[ZZ3]
-        - parameters[YY3]));
-    const ariane6_real_t t33 = t29 * t27;
-    const ariane6_real_t t34 = t25 * t25;
-    const ariane6_real_t t35 = t27 * t27;
-    const ariane6_real_t t36 = ARIANE6_C(1.37) * t15;
-    const ariane6_real_t t37 = t11 * t21 + ARIANE6_C(-9.81) * t10;
-    const ariane6_real_t t38 = t37 + ARIANE6_C(0.685) * (t19 + t20);
-    const ariane6_real_t t39 = t22 + ARIANE6_C(-0.685) * t18;
-    const ariane6_real_t t40 = t24 * t39 - t26 * t38;
-    const ariane6_real_t t41 = t32 - parameters[XZ3] * t33 + parameters[YZ3] * (t34 - t35)
-        - (parameters[MY3] * t36 + parameters[MZ3] * t40);
-    const ariane6_real_t t44 = ARIANE6_C(2.0) * t28;
-    const ariane6_real_t t45 = t43 * t33 + t42 * t44;
-    const ariane6_real_t t46 = t42 * t25 + t43 * t29;
-    const ariane6_real_t t47 = dq[3] + t27;
-    const ariane6_real_t t48 = t46 * t47;
-    const ariane6_real_t t49 = t45 - t48;
-    const ariane6_real_t t50 = t42 * t29 - t43 * t25;
-    const ariane6_real_t t51 = t50 * t47;
-    const ariane6_real_t t52 = t43 * t44 - t42 * t33;
-    const ariane6_real_t t53 = t52 + t51;
-    const ariane6_real_t t54 = t51 + t53;
-    const ariane6_real_t t55 = t48 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t49
-        + parameters[XY4] * t54;
-    const ariane6_real_t t56 = t50 * t46;
-    const ariane6_real_t t57 = t30 + t56;
-    const ariane6_real_t t58 = t46 * t46;
-    const ariane6_real_t t59 = t47 * t47;
-    const ariane6_real_t t60 = t29 * t29;
-    const ariane6_real_t t61 = t34 + t60;
-    const ariane6_real_t t62 = t40 + (ARIANE6_C(0.17) * t33 + ARIANE6_C(0.488) * t61);
-    const ariane6_real_t t63 = t24 * t38 + t26 * t39;
-    const ariane6_real_t t64 = t34 + t35;
-    const ariane6_real_t t65 = t63 + (ARIANE6_C(-0.17) * t64 + ARIANE6_C(-0.488) * t33);
-    const ariane6_real_t t66 = t36 - (ARIANE6_C(0.34) * t30 + ARIANE6_C(-0.976) * t28);
-    const ariane6_real_t t67 = t43 * t65 - t42 * t66;
-    const ariane6_real_t t68 = t55 + parameters[XZ4] * t57 + parameters[YZ4] * (t59 - t58)
-        + (parameters[MY4] * t62 + parameters[MZ4] * t67);
-    const ariane6_real_t t71 = t56 - t30;
-    const ariane6_real_t t72 = t49 - t48;
-    const ariane6_real_t t73 = t70 * t71 + t69 * t72;
-    const ariane6_real_t t74 = t69 * t47 - t70 * t50;
-    const ariane6_real_t t75 = dq[4] + t46;
-    const ariane6_real_t t76 = t74 * t75;
-    const ariane6_real_t t77 = t73 + t76;
-    const ariane6_real_t t78 = t69 * t50 + t70 * t47;
-    const ariane6_real_t t79 = t78 * t75;
-    const ariane6_real_t t80 = t70 * t72 - t69 * t71;
-    const ariane6_real_t t81 = t80 + t79;
-    const ariane6_real_t t82 = t79 + t81;
-    const ariane6_real_t t83 = t76 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t77
-        + parameters[XY5] * t82;
-    const ariane6_real_t t84 = t78 * t74;
-    const ariane6_real_t t85 = t53 + t84;
-    const ariane6_real_t t86 = t74 * t74;
-    const ariane6_real_t t87 = t75 * t75;
-    const ariane6_real_t t88 = t42 * t65 + t43 * t66;
-    const ariane6_real_t t89 = t70 * t88 - t69 * t62;
-    const ariane6_real_t t90 = t83 - parameters[XZ5] * t85 + parameters[YZ5] * (t87 - t86)
-        + (parameters[MY5] * t67 + parameters[MZ5] * t89);
-    const ariane6_real_t t93 = t53 - t84;
-    const ariane6_real_t t94 = t76 + t77;
-    const ariane6_real_t t95 = t91 * t94 - t92 * t93;
-    const ariane6_real_t t96 = t92 * t78 + t91 * t75;
-    const ariane6_real_t t97 = dq[5] + t74;
-    const ariane6_real_t t98 = t96 * t97;
-    const ariane6_real_t t99 = t95 - t98;
-    const ariane6_real_t t100 = t91 * t78 - t92 * t75;
-    const ariane6_real_t t101 = t100 * t97;
-    const ariane6_real_t t102 = t91 * t93 + t92 * t94;
-    const ariane6_real_t t103 = t102 + t101;
-    const ariane6_real_t t104 = t101 + t103;
-    const ariane6_real_t t105 = parameters[XY6] * t104 - (parameters[XX6] * t99 + t98 * (parameters[YY6]
+    ariane6_real_t t128, t131;
+    ARIANE6_SINCOS(q[0], &t128, &t131);
+    ariane6_real_t t98, t99;
+    ARIANE6_SINCOS(q[1], &t98, &t99);
+    ariane6_real_t t58, t59;
+    ARIANE6_SINCOS(q[2], &t58, &t59);
+    ariane6_real_t t41, t38;
+    ARIANE6_SINCOS(q[3], &t41, &t38);
+    ariane6_real_t t13, t16;
+    ARIANE6_SINCOS(q[4], &t13, &t16);
+    ariane6_real_t t1, t2;
+    ARIANE6_SINCOS(q[5], &t1, &t2);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    if (!(t0 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const ariane6_real_t t4 = ARIANE6_C(0.3) * t3 - (t1 * parameters[XZ6] + t2 * parameters[YZ6]);
+    const ariane6_real_t t5 = ARIANE6_C(-1.0) / t0;
+    const ariane6_real_t t6 = t4 * t5;
+    const ariane6_real_t t7 = parameters[XX6] - parameters[YY6];
+    const ariane6_real_t t8 = parameters[XY6] * (ARIANE6_C(2.0) * t1) - t2 * t7;
+    const ariane6_real_t t9 = t2 * t8;
+    const ariane6_real_t t10 = ARIANE6_C(0.3) * parameters[M6];
+    const ariane6_real_t t11 = ARIANE6_C(0.3) * (t10 + ARIANE6_C(2.0) * parameters[MZ6]);
+    const ariane6_real_t t12 = parameters[ZZ5] + (parameters[XX6] + t9 + t11);
+    const ariane6_real_t t14 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t13 + ARIANE6_C(0.097));
+    const ariane6_real_t t15 = ARIANE6_C(1.0) / t14;
+    const ariane6_real_t t17 = t16 * (ARIANE6_C(3549.6000000000004) * t15);
+    const ariane6_real_t t18 = t12 + parameters[IA5] * (t17 * t17) + t4 * t6;
+    if (!(t18 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t19 = parameters[XX5] + (parameters[YY6] - t9 + t11);
+    const ariane6_real_t t20 = parameters[YY5] + parameters[ZZ6];
+    const ariane6_real_t t21 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const ariane6_real_t t22 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t21;
+    const ariane6_real_t t23 = t22 - parameters[XY5];
+    const ariane6_real_t t24 = t16 * (t20 - t19) - t23 * (ARIANE6_C(2.0) * t13);
+    const ariane6_real_t t25 = t16 * t24;
+    const ariane6_real_t t26 = parameters[ZZ4] + (t19 + t25);
+    const ariane6_real_t t27 = t16 * parameters[ZZ6] - t13 * t22;
+    const ariane6_real_t t28 = t27 * t5;
+    const ariane6_real_t t29 = parameters[YZ5] + t4;
+    const ariane6_real_t t30 = parameters[XZ5] - (parameters[XY6] - t1 * t8);
+    const ariane6_real_t t31 = t13 * t30 + t16 * t29;
+    const ariane6_real_t t32 = t31 + t27 * t6;
+    const ariane6_real_t t33 = ARIANE6_C(1.0) / t18;
+    const ariane6_real_t t34 = t32 * t33;
+    const ariane6_real_t t35 = t26 + ARIANE6_C(1.0e4) * parameters[IA4] + t27 * t28 - t32 * t34;
+    if (!(t35 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t36 = parameters[XX4] + (t20 - t25);
+    const ariane6_real_t t37 = parameters[YY4] + t12;
+    const ariane6_real_t t39 = t13 * t29 - t16 * t30;
+    const ariane6_real_t t40 = parameters[XY4] + t39;
+    const ariane6_real_t t42 = t38 * (t36 - t37) + t40 * (ARIANE6_C(-2.0) * t41);
+    const ariane6_real_t t43 = t38 * t42;
+    const ariane6_real_t t44 = parameters[MY4] - (parameters[MZ5] - t3);
+    const ariane6_real_t t45 = parameters[MX5] - t21;
+    const ariane6_real_t t46 = parameters[MY5] + (parameters[MZ6] + t10);
+    const ariane6_real_t t47 = t13 * t46 - t16 * t45;
+    const ariane6_real_t t48 = t47 - parameters[MX4];
+    const ariane6_real_t t49 = t41 * t44 + t38 * t48;
+    const ariane6_real_t t50 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const ariane6_real_t t51 = ARIANE6_C(0.17) * t50;
+    const ariane6_real_t t52 = ARIANE6_C(0.17) * (t51 + ARIANE6_C(2.0) * t49);
+    const ariane6_real_t t53 = t16 * t46 + t13 * t45;
+    const ariane6_real_t t54 = parameters[MZ4] + t53;
+    const ariane6_real_t t55 = ARIANE6_C(0.488) * t50;
+    const ariane6_real_t t56 = ARIANE6_C(0.488) * (t55 + ARIANE6_C(2.0) * t54);
+    const ariane6_real_t t57 = parameters[ZZ3] + (t36 - t43 + (t52 + t56));
+    const ariane6_real_t t60 = ARIANE6_C(0.052335956242943966) * t58 + ARIANE6_C(-0.9986295347545738) * t59;
+    const ariane6_real_t t61 = ARIANE6_C(-0.052335956242943966) * t59 + ARIANE6_C(-0.9986295347545738) * t58;
+    const ariane6_real_t t62 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t61 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t63 = ARIANE6_C(1.0) / t62;
+    const ariane6_real_t t64 = t60 * (ARIANE6_C(8377.600000000002) * t63);
+    const ariane6_real_t t65 = t16 * t22 + t13 * parameters[ZZ6];
+    const ariane6_real_t t66 = t16 * t3;
+    const ariane6_real_t t67 = t38 * t66 - t41 * t21;
+    const ariane6_real_t t68 = t13 * t3;
+    const ariane6_real_t t69 = t41 * t65 + t38 * t4 + (ARIANE6_C(0.17) * t68 + ARIANE6_C(0.488) * t67);
+    const ariane6_real_t t70 = t69 * t5;
+    const ariane6_real_t t71 = t38 * t53;
+    const ariane6_real_t t72 = t41 * t39 + t38 * t12 + (ARIANE6_C(0.17) * t47 + ARIANE6_C(0.488) * t71);
+    const ariane6_real_t t73 = t72 + t69 * t6;
+    const ariane6_real_t t74 = t73 * t33;
+    const ariane6_real_t t75 = t57 + parameters[IA3] * (t64 * t64) + t69 * t70 - t73 * t74;
+    const ariane6_real_t t76 = t23 + t13 * t24 - parameters[XZ4];
+    const ariane6_real_t t77 = t31 - parameters[YZ4];
+    const ariane6_real_t t78 = t41 * t48 - t38 * t44;
+    const ariane6_real_t t79 = t41 * t76 + t38 * t77 + ARIANE6_C(-0.488) * t78;
+    const ariane6_real_t t80 = t79 + t69 * t28 - t73 * t34;
+    const ariane6_real_t t81 = ARIANE6_C(-1.0) / t35;
+    const ariane6_real_t t82 = t80 * t81;
+    const ariane6_real_t t83 = t75 + t80 * t82;
+    if (!(t83 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t84 = t49 + t51;
+    const ariane6_real_t t85 = parameters[MX3] - t84;
+    const ariane6_real_t t86 = parameters[MY3] + (t54 + t55);
+    const ariane6_real_t t87 = t59 * t85 - t58 * t86;
+    const ariane6_real_t t88 = ARIANE6_C(0.685) * (t58 * t67 + t59 * t68) - t69;
+    const ariane6_real_t t89 = ARIANE6_C(0.685) * (t58 * t71 + t59 * t47) - t72 + t88 * t6;
+    const ariane6_real_t t90 = ARIANE6_C(-0.685) * t87 - t57 + t88 * t70 - t89 * t74;
+    const ariane6_real_t t91 = t79 + ARIANE6_C(0.685) * (t58 * t78) - t88 * t28 + t89 * t34;
+    const ariane6_real_t t92 = t90 - t91 * t82;
+    const ariane6_real_t t93 = ARIANE6_C(1.0) / t83;
+    const ariane6_real_t t94 = t92 * t93;
+    const ariane6_real_t t95 = parameters[M3] + t50;
+    const ariane6_real_t t96 = ARIANE6_C(0.685) * t95;
+    const ariane6_real_t t97 = ARIANE6_C(0.685) * (t96 + ARIANE6_C(2.0) * t87);
+    const ariane6_real_t t100 = ARIANE6_C(0.766044443118978) * t98 + ARIANE6_C(0.6427876096865393) * t99;
+    const ariane6_real_t t101 = ARIANE6_C(-0.766044443118978) * t99 + ARIANE6_C(0.6427876096865393) * t98;
+    const ariane6_real_t t102 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t101 + ARIANE6_C(0.420682));
+    const ariane6_real_t t103 = ARIANE6_C(1.0) / t102;
+    const ariane6_real_t t104 = t100 * (ARIANE6_C(12691.800000000003) * t103);
+    const ariane6_real_t t105 = t88 * t5;
+    const ariane6_real_t t106 = parameters[ZZ2] + (t57 + t97) + parameters[IA2] * (t104 * t104) + t88 * t105;
+    const ariane6_real_t t107 = t89 * t33;
+    const ariane6_real_t t108 = t91 * t81;
+    const ariane6_real_t t109 = t106 - t89 * t107 + t91 * t108 - t92 * t94;
+    if (!(t109 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t110 = t41 * t66 + t38 * t21;
+    const ariane6_real_t t111 = t38 * t65 - t41 * t4 + ARIANE6_C(-0.488) * t110;
+    const ariane6_real_t t112 = t27 + ARIANE6_C(0.17) * t110;
+    const ariane6_real_t t113 = t99 * (t58 * t111 - t59 * t112 + ARIANE6_C(0.685) * t110);
+    const ariane6_real_t t114 = t98 * (t59 * t111 + t58 * t112) + t113 + ARIANE6_C(0.18) * t110;
+    const ariane6_real_t t115 = t114 * t5;
+    const ariane6_real_t t116 = parameters[XX3] + (t37 + t43 + t56);
+    const ariane6_real_t t117 = parameters[YY3] + (t26 + t52);
+    const ariane6_real_t t118 = t41 * t77 - t38 * t76;
+    const ariane6_real_t t119 = parameters[XY3] + (t118 + (ARIANE6_C(0.17) * t54 + ARIANE6_C(0.488) * t84));
+    const ariane6_real_t t120 = t59 * (t116 - t117) - t119 * (ARIANE6_C(2.0) * t58);
+    const ariane6_real_t t121 = t59 * t120;
+    const ariane6_real_t t122 = parameters[XX2] + (t117 + t121);
+    const ariane6_real_t t123 = t59 * t86 + t58 * t85;
+    const ariane6_real_t t124 = (parameters[XY2] + (t119 + t58 * t120
+        + ARIANE6_C(-0.685) * t123)) * (ARIANE6_C(2.0) * t98);
+    const ariane6_real_t t125 = t99 * (parameters[YY2] + (t116 - t121 + t97) - t122) + t124;
+    const ariane6_real_t t126 = t99 * (parameters[MX2] + (t87 + t96)) - t98 * (parameters[MY2] + t123);
+    const ariane6_real_t t127 = t122 + t99 * t125 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
+        + t95) + ARIANE6_C(2.0) * t126);
+    const ariane6_real_t t129 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t128 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t130 = ARIANE6_C(1.0) / t129;
+    const ariane6_real_t t132 = t131 * (ARIANE6_C(4063.3400000000006) * t130);
+    const ariane6_real_t t133 = parameters[ZZ1] + t127 + parameters[IA1] * (t132 * t132) + t114 * t115;
+    const ariane6_real_t t134 = t41 * t53;
+    const ariane6_real_t t135 = t38 * t39 - t41 * t12 + ARIANE6_C(-0.488) * t134;
+    const ariane6_real_t t136 = t31 + ARIANE6_C(0.17) * t134;
+    const ariane6_real_t t137 = t99 * (t58 * t135 - t59 * t136 + ARIANE6_C(0.685) * t134);
+    const ariane6_real_t t138 = t98 * (t59 * t135 + t58 * t136) + t137 + ARIANE6_C(0.18) * t134;
+    const ariane6_real_t t139 = t138 + t114 * t6;
+    const ariane6_real_t t140 = t139 * t33;
+    const ariane6_real_t t141 = ARIANE6_C(-0.488) * t49 - t118;
+    const ariane6_real_t t142 = t26 + ARIANE6_C(0.17) * t49;
+    const ariane6_real_t t143 = t99 * (t58 * t141 - t59 * t142 + ARIANE6_C(0.685) * t49);
+    const ariane6_real_t t144 = t98 * (t59 * t141 + t58 * t142) + t143 + ARIANE6_C(0.18) * t49;
+    const ariane6_real_t t145 = t144 + t114 * t28 - t139 * t34;
+    const ariane6_real_t t146 = t145 * t81;
+    const ariane6_real_t t147 = t40 + t41 * t42 + ARIANE6_C(-0.17) * t78 - parameters[XZ3];
+    const ariane6_real_t t148 = parameters[YZ3] + t79;
+    const ariane6_real_t t149 = t59 * t147 + t58 * t148;
+    const ariane6_real_t t150 = t58 * t147 - t59 * t148;
+    const ariane6_real_t t151 = t98 * t149 + t99 * t150 + t114 * t70 - t139 * t74;
+    const ariane6_real_t t152 = t151 + t145 * t82;
+    const ariane6_real_t t153 = t152 * t93;
+    const ariane6_real_t t154 = t133 - t139 * t140 + t145 * t146 - t152 * t153;
+    const ariane6_real_t t155 = t98 * (t149 + ARIANE6_C(0.685) * (parameters[MZ3] + t78) - parameters[XZ2])
+        + t99 * (t150 - parameters[YZ2]);
+    const ariane6_real_t t156 = t155 - t114 * t105 + t139 * t107 + t145 * t108;
+    const ariane6_real_t t157 = t156 + t152 * t94;
+    const ariane6_real_t t158 = ARIANE6_C(1.0) / t109;
+    const ariane6_real_t t159 = t157 * t158;
+    const ariane6_real_t t160 = t154 - t157 * t159;
+    if (!(t160 > ARIANE6_C(1.0e-9))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t161 = dq[0] * dq[0];
+    const ariane6_real_t t162 = ARIANE6_C(0.18) * t161;
+    const ariane6_real_t t163 = t99 * t162 + ARIANE6_C(-9.81) * t98;
+    const ariane6_real_t t164 = t99 * dq[0];
+    const ariane6_real_t t165 = t164 * t164;
+    const ariane6_real_t t166 = dq[1] * dq[1];
+    const ariane6_real_t t167 = t163 + ARIANE6_C(0.685) * (t165 + t166);
+    const ariane6_real_t t168 = ARIANE6_C(-9.81) * t99 - t98 * t162;
+    const ariane6_real_t t169 = t98 * dq[0];
+    const ariane6_real_t t170 = t169 * t164;
+    const ariane6_real_t t171 = t168 + ARIANE6_C(-0.685) * t170;
+    const ariane6_real_t t172 = t59 * t167 + t58 * t171;
+    const ariane6_real_t t173 = t59 * t164 - t58 * t169;
+    const ariane6_real_t t174 = t173 * t173;
+    const ariane6_real_t t175 = dq[1] + dq[2];
+    const ariane6_real_t t176 = t175 * t175;
+    const ariane6_real_t t177 = t176 + t174;
+    const ariane6_real_t t178 = t59 * t169 + t58 * t164;
+    const ariane6_real_t t179 = t178 * t173;
+    const ariane6_real_t t180 = t172 + (ARIANE6_C(-0.17) * t177 + ARIANE6_C(-0.488) * t179);
+    const ariane6_real_t t181 = t175 * t178;
+    const ariane6_real_t t182 = t175 * t173;
+    const ariane6_real_t t183 = dq[1] * t169;
+    const ariane6_real_t t184 = ARIANE6_C(1.37) * t183;
+    const ariane6_real_t t185 = t184 - (ARIANE6_C(0.34) * t181 + ARIANE6_C(-0.976) * t182);
+    const ariane6_real_t t186 = t38 * t180 + t41 * t185;
+    const ariane6_real_t t187 = t59 * t171 - t58 * t167;
+    const ariane6_real_t t188 = t178 * t178;
+    const ariane6_real_t t189 = t176 + t188;
+    const ariane6_real_t t190 = t187 + (ARIANE6_C(0.17) * t179 + ARIANE6_C(0.488) * t189);
+    const ariane6_real_t t191 = t13 * t186 - t16 * t190;
+    const ariane6_real_t t192 = t38 * t178 - t41 * t175;
+    const ariane6_real_t t193 = dq[3] + t173;
+    const ariane6_real_t t194 = t16 * t192 + t13 * t193;
+    const ariane6_real_t t195 = t194 * t194;
+    const ariane6_real_t t196 = t38 * t175 + t41 * t178;
+    const ariane6_real_t t197 = dq[4] + t196;
+    const ariane6_real_t t198 = t197 * t197;
+    const ariane6_real_t t199 = t195 + t198;
+    const ariane6_real_t t200 = t191 - ARIANE6_C(0.3) * t199;
+    const ariane6_real_t t201 = t16 * t186 + t13 * t190;
+    const ariane6_real_t t202 = ARIANE6_C(2.0) * t182;
+    const ariane6_real_t t203 = t41 * t202 - t38 * t179;
+    const ariane6_real_t t204 = t192 * t193;
+    const ariane6_real_t t205 = t203 + t204;
+    const ariane6_real_t t206 = t16 * t193 - t13 * t192;
+    const ariane6_real_t t207 = t194 * t206;
+    const ariane6_real_t t208 = t205 - t207;
+    const ariane6_real_t t209 = t201 + ARIANE6_C(0.3) * t208;
+    const ariane6_real_t t210 = t41 * t180 - t38 * t185;
+    const ariane6_real_t t211 = t41 * t179 + t38 * t202;
+    const ariane6_real_t t212 = t196 * t193;
+    const ariane6_real_t t213 = t211 - t212;
+    const ariane6_real_t t214 = t213 - t212;
+    const ariane6_real_t t215 = t192 * t196;
+    const ariane6_real_t t216 = t215 - t181;
+    const ariane6_real_t t217 = t13 * t216 + t16 * t214;
+    const ariane6_real_t t218 = t206 * t197;
+    const ariane6_real_t t219 = t217 + t218;
+    const ariane6_real_t t220 = t218 + t219;
+    const ariane6_real_t t221 = t210 - ARIANE6_C(0.3) * t220;
+    const ariane6_real_t t222 = t1 * t209 + t2 * t221;
+    const ariane6_real_t t223 = t2 * t220 - t1 * t208;
+    const ariane6_real_t t224 = t1 * t194 + t2 * t197;
+    const ariane6_real_t t225 = dq[5] + t206;
+    const ariane6_real_t t226 = t224 * t225;
+    const ariane6_real_t t227 = t223 - t226;
+    const ariane6_real_t t228 = t2 * t208 + t1 * t220;
+    const ariane6_real_t t229 = t2 * t194 - t1 * t197;
+    const ariane6_real_t t230 = t229 * t225;
+    const ariane6_real_t t231 = t228 + t230;
+    const ariane6_real_t t232 = t230 + t231;
+    const ariane6_real_t t233 = parameters[XY6] * t232 - (parameters[XX6] * t227 + t226 * (parameters[YY6]
         - parameters[ZZ6]));
-    const ariane6_real_t t106 = t100 * t96;
-    const ariane6_real_t t107 = t81 + t106;
-    const ariane6_real_t t108 = t96 * t96;
-    const ariane6_real_t t109 = t97 * t97;
-    const ariane6_real_t t110 = t78 * t78;
-    const ariane6_real_t t111 = t110 + t87;
-    const ariane6_real_t t112 = t89 - ARIANE6_C(0.3) * t111;
-    const ariane6_real_t t113 = t69 * t88 + t70 * t62;
-    const ariane6_real_t t114 = t113 + ARIANE6_C(0.3) * t93;
-    const ariane6_real_t t115 = t67 - ARIANE6_C(0.3) * t94;
-    const ariane6_real_t t116 = t92 * t114 + t91 * t115;
-    const ariane6_real_t t117 = t105 + parameters[XZ6] * t107 - parameters[YZ6] * (t108 - t109)
-        - (parameters[MY6] * t112 - parameters[MZ6] * t116);
-    const ariane6_real_t t118 = t99 - t98;
-    const ariane6_real_t t119 = parameters[XY6] * t118 - (parameters[YY6] * t103 + t101 * (parameters[ZZ6]
+    const ariane6_real_t t234 = t13 * t214 - t16 * t216;
+    const ariane6_real_t t235 = t194 * t197;
+    const ariane6_real_t t236 = t234 + t235;
+    const ariane6_real_t t237 = t229 * t224;
+    const ariane6_real_t t238 = t236 + t237;
+    const ariane6_real_t t239 = t224 * t224;
+    const ariane6_real_t t240 = t225 * t225;
+    const ariane6_real_t t241 = t233 + parameters[XZ6] * t238 - parameters[YZ6] * (t239 - t240)
+        - (parameters[MY6] * t200 - parameters[MZ6] * t222);
+    const ariane6_real_t t242 = t2 * t209 - t1 * t221;
+    const ariane6_real_t t243 = t227 - t226;
+    const ariane6_real_t t244 = parameters[XY6] * t243 - (parameters[YY6] * t231 + t230 * (parameters[ZZ6]
         - parameters[XX6]));
-    const ariane6_real_t t120 = t106 - t81;
-    const ariane6_real_t t121 = t100 * t100;
-    const ariane6_real_t t122 = t91 * t114 - t92 * t115;
-    const ariane6_real_t t123 = t119 + parameters[YZ6] * t120 + parameters[XZ6] * (t109 - t121)
-        - (parameters[MZ6] * t122 + parameters[MX6] * t112);
-    const ariane6_real_t t124 = parameters[MX6] * (t108 + t109) + parameters[MY6] * t120
-        + parameters[MZ6] * t102;
-    const ariane6_real_t t125 = parameters[M6] * t122 + t124;
-    const ariane6_real_t t126 = parameters[MX6] * t107 + parameters[MY6] * (t121 + t109)
-        + parameters[MZ6] * t95;
-    const ariane6_real_t t127 = parameters[M6] * t116 - t126;
-    const ariane6_real_t t128 = t92 * t125 - t91 * t127;
-    const ariane6_real_t t129 = t90 + (t91 * t117 + t92 * t123 + ARIANE6_C(-0.3) * t128);
-    const ariane6_real_t t130 = parameters[XY5] * t94 - (parameters[YY5] * t81 + t79 * (parameters[ZZ5]
+    const ariane6_real_t t245 = t237 - t236;
+    const ariane6_real_t t246 = t229 * t229;
+    const ariane6_real_t t247 = t244 + parameters[YZ6] * t245 + parameters[XZ6] * (t240 - t246)
+        - (parameters[MZ6] * t242 + parameters[MX6] * t200);
+    const ariane6_real_t t248 = parameters[MX6] * (t239 + t240) + parameters[MY6] * t245
+        + parameters[MZ6] * t228;
+    const ariane6_real_t t249 = parameters[M6] * t242 + t248;
+    const ariane6_real_t t250 = parameters[MX6] * t238 + parameters[MY6] * (t246 + t240)
+        + parameters[MZ6] * t223;
+    const ariane6_real_t t251 = parameters[M6] * t222 - t250;
+    const ariane6_real_t t252 = t1 * t249 - t2 * t251;
+    const ariane6_real_t t253 = t235 + t236;
+    const ariane6_real_t t254 = t218 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t219
+        + parameters[XY5] * t253;
+    const ariane6_real_t t255 = t205 + t207;
+    const ariane6_real_t t256 = t206 * t206;
+    const ariane6_real_t t257 = t254 - parameters[XZ5] * t255 + parameters[YZ5] * (t198 - t256)
+        + (parameters[MY5] * t210 + parameters[MZ5] * t191);
+    const ariane6_real_t t258 = t257 + (t2 * t241 + t1 * t247 + ARIANE6_C(-0.3) * t252);
+    const ariane6_real_t t259 = parameters[XY5] * t220 - (parameters[YY5] * t236 + t235 * (parameters[ZZ5]
         - parameters[XX5]));
-    const ariane6_real_t t131 = t130 + parameters[YZ5] * t93 + parameters[XZ5] * (t87 - t110)
-        + (parameters[MX5] * t67 - parameters[MZ5] * t113);
-    const ariane6_real_t t132 = parameters[XX6] - parameters[YY6];
-    const ariane6_real_t t133 = t132 * t106 - parameters[ZZ6] * t81 - parameters[YZ6] * t102
-        + parameters[XZ6] * t95;
-    const ariane6_real_t t134 = t133 + parameters[XY6] * (t121 - t108) + (parameters[MX6] * t116
-        + parameters[MY6] * t122);
-    const ariane6_real_t t135 = t131 + t134;
-    const ariane6_real_t t136 = t68 + (t69 * t129 + t70 * t135);
-    const ariane6_real_t t137 = parameters[XY4] * t72 - (parameters[YY4] * t53 + t51 * (parameters[ZZ4]
+    const ariane6_real_t t260 = t259 + parameters[YZ5] * t208 + parameters[XZ5] * (t198 - t195)
+        + (parameters[MX5] * t210 - parameters[MZ5] * t201);
+    const ariane6_real_t t261 = t7 * t237 - parameters[ZZ6] * t236 - parameters[YZ6] * t228
+        + parameters[XZ6] * t223;
+    const ariane6_real_t t262 = t261 + parameters[XY6] * (t246 - t239) + (parameters[MX6] * t222
+        + parameters[MY6] * t242);
+    const ariane6_real_t t263 = t260 + t262;
+    const ariane6_real_t t264 = t204 + t205;
+    const ariane6_real_t t265 = t212 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t213
+        + parameters[XY4] * t264;
+    const ariane6_real_t t266 = t181 + t215;
+    const ariane6_real_t t267 = t196 * t196;
+    const ariane6_real_t t268 = t193 * t193;
+    const ariane6_real_t t269 = t265 + parameters[XZ4] * t266 + parameters[YZ4] * (t268 - t267)
+        + (parameters[MY4] * t190 + parameters[MZ4] * t210);
+    const ariane6_real_t t270 = t269 + (t16 * t258 + t13 * t263);
+    const ariane6_real_t t271 = t2 * t249 + t1 * t251;
+    const ariane6_real_t t272 = parameters[YZ5] * t234 - (parameters[ZZ5] * t205 + t207 * (parameters[YY5]
+        - parameters[XX5]));
+    const ariane6_real_t t273 = t272 - parameters[XZ5] * t217 + parameters[XY5] * (t256 - t195)
+        - (parameters[MX5] * t191 + parameters[MY5] * t201);
+    const ariane6_real_t t274 = t273 + (t2 * t247 - t1 * t241 + ARIANE6_C(-0.3) * t271);
+    const ariane6_real_t t275 = parameters[XY4] * t214 - (parameters[YY4] * t205 + t204 * (parameters[ZZ4]
         - parameters[XX4]));
-    const ariane6_real_t t138 = t50 * t50;
-    const ariane6_real_t t139 = t137 + parameters[YZ4] * t71 + parameters[XZ4] * (t59 - t138)
-        + (parameters[MX4] * t62 - parameters[MZ4] * t88);
-    const ariane6_real_t t140 = parameters[YZ5] * t80 - (parameters[ZZ5] * t53 + t84 * (parameters[YY5]
-        - parameters[XX5]));
-    const ariane6_real_t t141 = t140 - parameters[XZ5] * t73 + parameters[XY5] * (t86 - t110)
-        - (parameters[MX5] * t89 + parameters[MY5] * t113);
-    const ariane6_real_t t142 = t91 * t125 + t92 * t127;
-    const ariane6_real_t t143 = t141 + (t91 * t123 - t92 * t117 + ARIANE6_C(-0.3) * t142);
-    const ariane6_real_t t144 = t139 + t143;
-    const ariane6_real_t t145 = parameters[MX4] * (t58 + t59) + parameters[MY4] * t71 + parameters[MZ4] * t52;
-    const ariane6_real_t t146 = parameters[MX5] * (t86 + t87) + parameters[MY5] * t93 + parameters[MZ5] * t80;
-    const ariane6_real_t t147 = parameters[M5] * t113 + t146 + t142;
-    const ariane6_real_t t148 = parameters[M5] * t89 + (parameters[MX5] * t85 - parameters[MY5] * t111
-        - parameters[MZ5] * t73);
-    const ariane6_real_t t149 = parameters[MX6] * t104 + parameters[MY6] * t118 - parameters[MZ6] * (t121
-        + t108);
-    const ariane6_real_t t150 = t148 + (parameters[M6] * t112 + t149);
-    const ariane6_real_t t151 = parameters[M4] * t88 + t145 + (t69 * t147 + t70 * t150);
-    const ariane6_real_t t152 = parameters[MX4] * t57 + parameters[MY4] * (t138 + t59)
-        + parameters[MZ4] * t45;
-    const ariane6_real_t t153 = parameters[MX5] * t82 + parameters[MY5] * t94 - parameters[MZ5] * (t110
-        + t86);
-    const ariane6_real_t t154 = t152 - parameters[M4] * t67 + (t153 - parameters[M5] * t67 + t128);
-    const ariane6_real_t t155 = t43 * t151 + t42 * t154;
-    const ariane6_real_t t156 = t41 + (t42 * t136 + t43 * t144 + ARIANE6_C(-0.488) * t155);
-    const ariane6_real_t t157 = parameters[YY3] * t30 - t30 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t44;
-    const ariane6_real_t t158 = t157 + parameters[YZ3] * t33 - parameters[XZ3] * (t34 - t60)
-        + (parameters[MZ3] * t63 + parameters[MX3] * t36);
-    const ariane6_real_t t159 = parameters[ZZ4] * t30 - t56 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t52;
-    const ariane6_real_t t160 = t159 - parameters[XZ4] * t45 - parameters[XY4] * (t138 - t58)
-        - (parameters[MX4] * t67 + parameters[MY4] * t88);
-    const ariane6_real_t t161 = t160 + (t70 * t129 - t69 * t135);
-    const ariane6_real_t t162 = t158 + (t161 - ARIANE6_C(0.17) * t155);
-    const ariane6_real_t t163 = ARIANE6_C(2.0) * t13;
-    const ariane6_real_t t164 = t15 * parameters[YY2] + t15 * (parameters[ZZ2] - parameters[XX2])
-        - t163 * parameters[XY2];
-    const ariane6_real_t t165 = t14 * t14;
-    const ariane6_real_t t166 = t164 + t18 * parameters[YZ2] + (t165 - t20) * parameters[XZ2]
-        + t37 * parameters[MZ2];
-    const ariane6_real_t t167 = parameters[MX3] * t31 + parameters[MY3] * t44 - parameters[MZ3] * (t60 + t35);
-    const ariane6_real_t t168 = parameters[M3] * t36 + t167 + t155;
-    const ariane6_real_t t169 = t166 + (t26 * t156 + t24 * t162 + ARIANE6_C(0.685) * t168);
-    const ariane6_real_t t170 = t10 * (t23 + (t24 * t156 - t26 * t162)) + t11 * t169;
-    const ariane6_real_t t171 = t16 * parameters[MX2] + t163 * parameters[MY2] - (t165
-        + t19) * parameters[MZ2];
-    const ariane6_real_t t172 = input[0] * (ARIANE6_C(0.004) * t4) + (t9 + (t170 + ARIANE6_C(0.18) * (t171
-        + t168)));
-    const ariane6_real_t t173 = ariane6_sign(dq[5]);
-    const ariane6_real_t t174 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6])
-        + ARIANE6_C(1.0e2) * (t173 * parameters[FC6]);
-    const ariane6_real_t t175 = ARIANE6_C(5.0) * input[5] - (t174 + t134);
-    const ariane6_real_t t176 = t92 * parameters[MY6] - t91 * parameters[MX6];
-    const ariane6_real_t t177 = t92 * parameters[YZ6] - t91 * parameters[XZ6] + ARIANE6_C(-0.3) * t176;
-    const ariane6_real_t t178 = t69 * t177 + t70 * parameters[ZZ6];
-    const ariane6_real_t t179 = t91 * parameters[MY6] + t92 * parameters[MX6];
-    const ariane6_real_t t180 = ARIANE6_C(0.3) * t179 - (t92 * parameters[XZ6] + t91 * parameters[YZ6]);
-    const ariane6_real_t t181 = t69 * t179;
-    const ariane6_real_t t182 = t43 * t181 + t42 * t176;
-    const ariane6_real_t t183 = t42 * t178 - t43 * t180 + ARIANE6_C(-0.488) * t182;
-    const ariane6_real_t t184 = t69 * parameters[ZZ6] - t70 * t177;
-    const ariane6_real_t t185 = t184 + ARIANE6_C(0.17) * t182;
-    const ariane6_real_t t186 = t11 * (t26 * t183 - t24 * t185 + ARIANE6_C(0.685) * t182);
-    const ariane6_real_t t187 = t10 * (t24 * t183 + t26 * t185) + t186 + ARIANE6_C(0.18) * t182;
-    const ariane6_real_t t188 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
-    if (!(t188 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t189 = ARIANE6_C(-1.0) / t188;
-    const ariane6_real_t t190 = t187 * t189;
-    const ariane6_real_t t191 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t70 + ARIANE6_C(0.097));
-    const ariane6_real_t t192 = ARIANE6_C(1.0) / t191;
-    const ariane6_real_t t193 = t69 * (ARIANE6_C(3549.6000000000004) * t192);
-    const ariane6_real_t t194 = t193 * dq[4];
-    const ariane6_real_t t195 = ariane6_sign(t194);
-    const ariane6_real_t t196 = ARIANE6_C(3549.6000000000004) * t70
-        + ARIANE6_C(62.9983008) * (t192 * t192) * (t69 * t69);
-    const ariane6_real_t t197 = t193 * (t194 * parameters[FV5]) + t193 * (t195 * parameters[FC5])
-        - t193 * (t192 * t196 * (dq[4] * dq[4]) * parameters[IA5]);
-    const ariane6_real_t t198 = t180 * t189;
-    const ariane6_real_t t199 = input[4] * (ARIANE6_C(0.004) * t193) - (t197 - t143) + t175 * t198;
-    const ariane6_real_t t200 = parameters[XY6] * (ARIANE6_C(2.0) * t92) - t91 * t132;
-    const ariane6_real_t t201 = parameters[XZ5] - (parameters[XY6] - t92 * t200);
-    const ariane6_real_t t202 = parameters[YZ5] + t180;
-    const ariane6_real_t t203 = t70 * t202 - t69 * t201;
-    const ariane6_real_t t204 = t91 * t200;
-    const ariane6_real_t t205 = ARIANE6_C(0.3) * parameters[M6];
-    const ariane6_real_t t206 = ARIANE6_C(0.3) * (t205 + ARIANE6_C(2.0) * parameters[MZ6]);
-    const ariane6_real_t t207 = parameters[ZZ5] + (parameters[XX6] + t204 + t206);
-    const ariane6_real_t t208 = parameters[MY5] + (parameters[MZ6] + t205);
-    const ariane6_real_t t209 = parameters[MX5] - t176;
-    const ariane6_real_t t210 = t69 * t208 + t70 * t209;
-    const ariane6_real_t t211 = t43 * t210;
-    const ariane6_real_t t212 = t42 * t203 - t43 * t207 + ARIANE6_C(-0.488) * t211;
-    const ariane6_real_t t213 = t70 * t201 + t69 * t202;
-    const ariane6_real_t t214 = t213 + ARIANE6_C(0.17) * t211;
-    const ariane6_real_t t215 = t11 * (t26 * t212 - t24 * t214 + ARIANE6_C(0.685) * t211);
-    const ariane6_real_t t216 = t10 * (t24 * t212 + t26 * t214) + t215 + ARIANE6_C(0.18) * t211;
-    const ariane6_real_t t217 = t216 + t187 * t198;
-    const ariane6_real_t t218 = t207 + parameters[IA5] * (t193 * t193) + t180 * t198;
-    if (!(t218 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t219 = ARIANE6_C(1.0) / t218;
-    const ariane6_real_t t220 = t217 * t219;
-    const ariane6_real_t t221 = ariane6_sign(dq[3]);
-    const ariane6_real_t t222 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4])
-        + ARIANE6_C(1.0e2) * (t221 * parameters[FC4]);
-    const ariane6_real_t t223 = t184 * t189;
-    const ariane6_real_t t224 = t213 + t184 * t198;
-    const ariane6_real_t t225 = t224 * t219;
-    const ariane6_real_t t226 = ARIANE6_C(5.0) * input[3] - (t222 - t161) + t175 * t223 - t199 * t225;
-    const ariane6_real_t t227 = t177 - parameters[XY5];
-    const ariane6_real_t t228 = parameters[XX5] + (parameters[YY6] - t204 + t206);
-    const ariane6_real_t t229 = parameters[YY5] + parameters[ZZ6];
-    const ariane6_real_t t230 = t69 * (t229 - t228) - t227 * (ARIANE6_C(2.0) * t70);
-    const ariane6_real_t t231 = t227 + t70 * t230 - parameters[XZ4];
-    const ariane6_real_t t232 = t213 - parameters[YZ4];
-    const ariane6_real_t t233 = t43 * t232 - t42 * t231;
-    const ariane6_real_t t234 = parameters[MY4] - (parameters[MZ5] - t179);
-    const ariane6_real_t t235 = t70 * t208 - t69 * t209;
-    const ariane6_real_t t236 = t235 - parameters[MX4];
-    const ariane6_real_t t237 = t43 * t234 + t42 * t236;
-    const ariane6_real_t t238 = ARIANE6_C(-0.488) * t237 - t233;
-    const ariane6_real_t t239 = t69 * t230;
-    const ariane6_real_t t240 = parameters[ZZ4] + (t228 + t239);
-    const ariane6_real_t t241 = t240 + ARIANE6_C(0.17) * t237;
-    const ariane6_real_t t242 = t11 * (t26 * t238 - t24 * t241 + ARIANE6_C(0.685) * t237);
-    const ariane6_real_t t243 = t10 * (t24 * t238 + t26 * t241) + t242 + ARIANE6_C(0.18) * t237;
-    const ariane6_real_t t244 = t243 + t187 * t223 - t217 * t225;
-    const ariane6_real_t t245 = t240 + ARIANE6_C(1.0e4) * parameters[IA4] + t184 * t223 - t224 * t225;
-    if (!(t245 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t246 = ARIANE6_C(-1.0) / t245;
-    const ariane6_real_t t247 = t244 * t246;
-    const ariane6_real_t t248 = t172 - t175 * t190 + t199 * t220 - t226 * t247;
-    const ariane6_real_t t249 = ARIANE6_C(0.052335956242943966) * t26 + ARIANE6_C(-0.9986295347545738) * t24;
-    const ariane6_real_t t250 = ARIANE6_C(-0.052335956242943966) * t24 + ARIANE6_C(-0.9986295347545738) * t26;
-    const ariane6_real_t t251 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t250 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t252 = ARIANE6_C(1.0) / t251;
-    const ariane6_real_t t253 = t249 * (ARIANE6_C(8377.600000000002) * t252);
-    const ariane6_real_t t254 = t253 * dq[2];
-    const ariane6_real_t t255 = ariane6_sign(t254);
-    const ariane6_real_t t256 = ARIANE6_C(-8377.600000000002) * t250
-        - ARIANE6_C(350.9209088000001) * (t252 * t252) * (t249 * t249);
-    const ariane6_real_t t257 = t253 * (t254 * parameters[FV3]) + t253 * (t255 * parameters[FC3])
-        + t253 * (t252 * t256 * (dq[2] * dq[2]) * parameters[IA3]);
-    const ariane6_real_t t258 = parameters[XY3] * (t60 - t35) - t33 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MY3] * t63 - parameters[MX3] * t40);
-    const ariane6_real_t t259 = parameters[MZ4] * (t138 + t58) - (parameters[MX4] * t54
-        + parameters[MY4] * t72);
-    const ariane6_real_t t260 = parameters[M4] * t62 + t259 + (t70 * t147 - t69 * t150);
-    const ariane6_real_t t261 = t42 * t151 - t43 * t154;
-    const ariane6_real_t t262 = t43 * t136 - t42 * t144 - (ARIANE6_C(-0.17) * t260 - ARIANE6_C(0.488) * t261);
-    const ariane6_real_t t263 = t258 + t262;
-    const ariane6_real_t t264 = t70 * t179;
-    const ariane6_real_t t265 = t42 * t181 - t43 * t176;
-    const ariane6_real_t t266 = t43 * t178 + t42 * t180 + (ARIANE6_C(0.17) * t264 + ARIANE6_C(0.488) * t265);
-    const ariane6_real_t t267 = t266 * t189;
-    const ariane6_real_t t268 = input[2] * (ARIANE6_C(0.004) * t253) - (t257 + t263) + t175 * t267;
-    const ariane6_real_t t269 = t42 * t210;
-    const ariane6_real_t t270 = t43 * t203 + t42 * t207 + (ARIANE6_C(0.17) * t235 + ARIANE6_C(0.488) * t269);
-    const ariane6_real_t t271 = t270 + t266 * t198;
-    const ariane6_real_t t272 = t271 * t219;
-    const ariane6_real_t t273 = t43 * t236 - t42 * t234;
-    const ariane6_real_t t274 = t43 * t231 + t42 * t232 + ARIANE6_C(-0.488) * t273;
-    const ariane6_real_t t275 = t274 + t266 * t223 - t271 * t225;
-    const ariane6_real_t t276 = t275 * t246;
-    const ariane6_real_t t277 = t268 - t199 * t272 + t226 * t276;
-    const ariane6_real_t t278 = parameters[XY4] + t203;
-    const ariane6_real_t t279 = parameters[XX4] + (t229 - t239);
-    const ariane6_real_t t280 = parameters[YY4] + t207;
-    const ariane6_real_t t281 = t42 * (t279 - t280) + t278 * (ARIANE6_C(-2.0) * t43);
-    const ariane6_real_t t282 = t278 + t43 * t281 + ARIANE6_C(-0.17) * t273 - parameters[XZ3];
-    const ariane6_real_t t283 = parameters[YZ3] + t274;
-    const ariane6_real_t t284 = t24 * t282 + t26 * t283;
-    const ariane6_real_t t285 = t26 * t282 - t24 * t283;
-    const ariane6_real_t t286 = t10 * t284 + t11 * t285 + t187 * t267 - t217 * t272;
-    const ariane6_real_t t287 = t286 + t244 * t276;
-    const ariane6_real_t t288 = t42 * t281;
-    const ariane6_real_t t289 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t290 = ARIANE6_C(0.17) * t289;
-    const ariane6_real_t t291 = ARIANE6_C(0.17) * (t290 + ARIANE6_C(2.0) * t237);
-    const ariane6_real_t t292 = ARIANE6_C(0.488) * t289;
-    const ariane6_real_t t293 = parameters[MZ4] + t210;
-    const ariane6_real_t t294 = ARIANE6_C(0.488) * (t292 + ARIANE6_C(2.0) * t293);
-    const ariane6_real_t t295 = parameters[ZZ3] + (t279 - t288 + (t291 + t294));
-    const ariane6_real_t t296 = t295 + parameters[IA3] * (t253 * t253) + t266 * t267 - t271 * t272;
-    const ariane6_real_t t297 = t296 + t275 * t276;
-    if (!(t297 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t298 = ARIANE6_C(1.0) / t297;
-    const ariane6_real_t t299 = t287 * t298;
-    const ariane6_real_t t300 = ARIANE6_C(0.766044443118978) * t10 + ARIANE6_C(0.6427876096865393) * t11;
-    const ariane6_real_t t301 = ARIANE6_C(-0.766044443118978) * t11 + ARIANE6_C(0.6427876096865393) * t10;
-    const ariane6_real_t t302 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t301 + ARIANE6_C(0.420682));
-    const ariane6_real_t t303 = ARIANE6_C(1.0) / t302;
-    const ariane6_real_t t304 = t300 * (ARIANE6_C(12691.800000000003) * t303);
-    const ariane6_real_t t305 = t304 * dq[1];
-    const ariane6_real_t t306 = ariane6_sign(t305);
-    const ariane6_real_t t307 = ARIANE6_C(-12691.800000000003) * t301
-        - ARIANE6_C(805.4089362000002) * (t303 * t303) * (t300 * t300);
-    const ariane6_real_t t308 = t304 * (t305 * parameters[FV2]) + t304 * (t306 * parameters[FC2])
-        + t304 * (t303 * t307 * t20 * parameters[IA2]);
-    const ariane6_real_t t309 = t18 * (parameters[XX2] - parameters[YY2]) - (t165 - t19) * parameters[XY2]
-        - (t37 * parameters[MY2] - t22 * parameters[MX2]);
-    const ariane6_real_t t310 = parameters[M3] * t63 + (parameters[MX3] * t64 - parameters[MY3] * t33) + t261;
-    const ariane6_real_t t311 = parameters[M3] * t40 + (parameters[MY3] * t61 - parameters[MX3] * t33) + t260;
-    const ariane6_real_t t312 = t309 - (t263 - ARIANE6_C(0.685) * (t26 * t310 + t24 * t311));
-    const ariane6_real_t t313 = ARIANE6_C(0.685) * (t26 * t265 + t24 * t264) - t266;
-    const ariane6_real_t t314 = t313 * t189;
-    const ariane6_real_t t315 = ARIANE6_C(0.004) * t304 * input[1] - (t308 - t312) - t175 * t314;
-    const ariane6_real_t t316 = ARIANE6_C(0.685) * (t26 * t269 + t24 * t235) - t270 + t313 * t198;
-    const ariane6_real_t t317 = t316 * t219;
-    const ariane6_real_t t318 = t274 + ARIANE6_C(0.685) * (t26 * t273) - t313 * t223 + t316 * t225;
-    const ariane6_real_t t319 = t318 * t246;
-    const ariane6_real_t t320 = parameters[MY3] + (t293 + t292);
-    const ariane6_real_t t321 = t237 + t290;
-    const ariane6_real_t t322 = parameters[MX3] - t321;
-    const ariane6_real_t t323 = t24 * t322 - t26 * t320;
-    const ariane6_real_t t324 = ARIANE6_C(-0.685) * t323 - t295 + t313 * t267 - t316 * t272;
-    const ariane6_real_t t325 = t324 - t318 * t276;
-    const ariane6_real_t t326 = t325 * t298;
-    const ariane6_real_t t327 = t315 + t199 * t317 + t226 * t319 + t277 * t326;
-    const ariane6_real_t t328 = t10 * (t284 + ARIANE6_C(0.685) * (parameters[MZ3] + t273) - parameters[XZ2])
-        + t11 * (t285 - parameters[YZ2]);
-    const ariane6_real_t t329 = t328 - t187 * t314 + t217 * t317 + t244 * t319;
-    const ariane6_real_t t330 = t329 + t287 * t326;
-    const ariane6_real_t t331 = parameters[M3] + t289;
-    const ariane6_real_t t332 = ARIANE6_C(0.685) * t331;
-    const ariane6_real_t t333 = ARIANE6_C(0.685) * (t332 + ARIANE6_C(2.0) * t323);
-    const ariane6_real_t t334 = parameters[ZZ2] + (t295 + t333) + parameters[IA2] * (t304 * t304)
-        + t313 * t314;
-    const ariane6_real_t t335 = t334 - t316 * t317 + t318 * t319 - t325 * t326;
-    if (!(t335 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t336 = ARIANE6_C(1.0) / t335;
-    const ariane6_real_t t337 = t330 * t336;
-    const ariane6_real_t t338 = parameters[YY3] + (t240 + t291);
-    const ariane6_real_t t339 = parameters[XX3] + (t280 + t288 + t294);
-    const ariane6_real_t t340 = parameters[XY3] + (t233 + (ARIANE6_C(0.17) * t293 + ARIANE6_C(0.488) * t321));
-    const ariane6_real_t t341 = t24 * (t339 - t338) - t340 * (ARIANE6_C(2.0) * t26);
-    const ariane6_real_t t342 = t24 * t341;
-    const ariane6_real_t t343 = parameters[XX2] + (t338 + t342);
-    const ariane6_real_t t344 = t24 * t320 + t26 * t322;
-    const ariane6_real_t t345 = (parameters[XY2] + (t340 + t26 * t341
-        + ARIANE6_C(-0.685) * t344)) * (ARIANE6_C(2.0) * t10);
-    const ariane6_real_t t346 = t11 * (parameters[YY2] + (t339 - t342 + t333) - t343) + t345;
-    const ariane6_real_t t347 = t11 * (parameters[MX2] + (t323 + t332)) - t10 * (parameters[MY2] + t344);
-    const ariane6_real_t t348 = t343 + t11 * t346 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
-        + t331) + ARIANE6_C(2.0) * t347);
-    const ariane6_real_t t349 = parameters[ZZ1] + t348 + parameters[IA1] * (t4 * t4) + t187 * t190;
-    const ariane6_real_t t350 = t349 - t217 * t220 + t244 * t247 - t287 * t299;
-    const ariane6_real_t t351 = t350 - t330 * t337;
-    if (!(t351 > ARIANE6_C(1.0e-9))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t352 = ARIANE6_C(1.0) / t351;
-    const ariane6_real_t t353 = (t248 + t277 * t299 + t327 * t337) * t352;
+    const ariane6_real_t t276 = t192 * t192;
+    const ariane6_real_t t277 = t275 + parameters[YZ4] * t216 + parameters[XZ4] * (t268 - t276)
+        + (parameters[MX4] * t190 - parameters[MZ4] * t186);
+    const ariane6_real_t t278 = t277 + t274;
+    const ariane6_real_t t279 = parameters[MX5] * (t256 + t198) + parameters[MY5] * t208
+        + parameters[MZ5] * t234;
+    const ariane6_real_t t280 = parameters[M5] * t201 + t279 + t271;
+    const ariane6_real_t t281 = parameters[MX6] * t232 + parameters[MY6] * t243 - parameters[MZ6] * (t246
+        + t239);
+    const ariane6_real_t t282 = parameters[M5] * t191 + (parameters[MX5] * t255 - parameters[MY5] * t199
+        - parameters[MZ5] * t217);
+    const ariane6_real_t t283 = t282 + (parameters[M6] * t200 + t281);
+    const ariane6_real_t t284 = parameters[MX4] * (t267 + t268) + parameters[MY4] * t216
+        + parameters[MZ4] * t203;
+    const ariane6_real_t t285 = parameters[M4] * t186 + t284 + (t16 * t280 + t13 * t283);
+    const ariane6_real_t t286 = parameters[MX5] * t253 + parameters[MY5] * t220 - parameters[MZ5] * (t195
+        + t256);
+    const ariane6_real_t t287 = parameters[MX4] * t266 + parameters[MY4] * (t276 + t268)
+        + parameters[MZ4] * t211;
+    const ariane6_real_t t288 = t287 - parameters[M4] * t210 + (t286 - parameters[M5] * t210 + t252);
+    const ariane6_real_t t289 = t41 * t285 + t38 * t288;
+    const ariane6_real_t t290 = ARIANE6_C(2.0) * t181;
+    const ariane6_real_t t291 = parameters[XY3] * t290 - (parameters[XX3] * t182 + t182 * (parameters[ZZ3]
+        - parameters[YY3]));
+    const ariane6_real_t t292 = t291 - parameters[XZ3] * t179 + parameters[YZ3] * (t176 - t174)
+        - (parameters[MY3] * t184 + parameters[MZ3] * t187);
+    const ariane6_real_t t293 = t292 + (t38 * t270 + t41 * t278 + ARIANE6_C(-0.488) * t289);
+    const ariane6_real_t t294 = parameters[ZZ4] * t181 - t215 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t203;
+    const ariane6_real_t t295 = t294 - parameters[XZ4] * t211 - parameters[XY4] * (t276 - t267)
+        - (parameters[MX4] * t210 + parameters[MY4] * t186);
+    const ariane6_real_t t296 = t295 + (t13 * t258 - t16 * t263);
+    const ariane6_real_t t297 = parameters[YY3] * t181 - t181 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t202;
+    const ariane6_real_t t298 = t297 + parameters[YZ3] * t179 - parameters[XZ3] * (t176 - t188)
+        + (parameters[MZ3] * t172 + parameters[MX3] * t184);
+    const ariane6_real_t t299 = t298 + (t296 - ARIANE6_C(0.17) * t289);
+    const ariane6_real_t t300 = dq[1] * t164;
+    const ariane6_real_t t301 = ARIANE6_C(2.0) * t183;
+    const ariane6_real_t t302 = t300 * (parameters[YY2] - parameters[ZZ2]) - t300 * parameters[XX2]
+        + t301 * parameters[XY2];
+    const ariane6_real_t t303 = t302 - t170 * parameters[XZ2] + (t166 - t165) * parameters[YZ2]
+        - t168 * parameters[MZ2];
+    const ariane6_real_t t304 = parameters[MX3] * t290 + parameters[MY3] * t202 - parameters[MZ3] * (t188
+        + t174);
+    const ariane6_real_t t305 = parameters[M3] * t184 + t304 + t289;
+    const ariane6_real_t t306 = ARIANE6_C(2.0) * t300;
+    const ariane6_real_t t307 = t183 * parameters[YY2] + t183 * (parameters[ZZ2] - parameters[XX2])
+        - t306 * parameters[XY2];
+    const ariane6_real_t t308 = t169 * t169;
+    const ariane6_real_t t309 = t307 + t170 * parameters[YZ2] + (t308 - t166) * parameters[XZ2]
+        + t163 * parameters[MZ2];
+    const ariane6_real_t t310 = t309 + (t58 * t293 + t59 * t299 + ARIANE6_C(0.685) * t305);
+    const ariane6_real_t t311 = t98 * (t303 + (t59 * t293 - t58 * t299)) + t99 * t310;
+    const ariane6_real_t t312 = t301 * parameters[MX2] + t306 * parameters[MY2] - (t308
+        + t165) * parameters[MZ2];
+    const ariane6_real_t t313 = t132 * dq[0];
+    const ariane6_real_t t314 = ariane6_sign(t313);
+    const ariane6_real_t t315 = ARIANE6_C(4063.3400000000006) * t128
+        + ARIANE6_C(82.55365977800001) * (t130 * t130) * (t131 * t131);
+    const ariane6_real_t t316 = t132 * (t130 * t315 * t161 * parameters[IA1])
+        - (t132 * (t313 * parameters[FV1]) + t132 * (t314 * parameters[FC1]));
+    const ariane6_real_t t317 = input[0] * (ARIANE6_C(0.004) * t132) + (t316 + (t311 + ARIANE6_C(0.18) * (t312
+        + t305)));
+    const ariane6_real_t t318 = ariane6_sign(dq[5]);
+    const ariane6_real_t t319 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6])
+        + ARIANE6_C(1.0e2) * (t318 * parameters[FC6]);
+    const ariane6_real_t t320 = ARIANE6_C(5.0) * input[5] - (t319 + t262);
+    const ariane6_real_t t321 = t17 * dq[4];
+    const ariane6_real_t t322 = ariane6_sign(t321);
+    const ariane6_real_t t323 = ARIANE6_C(3549.6000000000004) * t13
+        + ARIANE6_C(62.9983008) * (t15 * t15) * (t16 * t16);
+    const ariane6_real_t t324 = t17 * (t321 * parameters[FV5]) + t17 * (t322 * parameters[FC5])
+        - t17 * (t15 * t323 * (dq[4] * dq[4]) * parameters[IA5]);
+    const ariane6_real_t t325 = input[4] * (ARIANE6_C(0.004) * t17) - (t324 - t274) + t320 * t6;
+    const ariane6_real_t t326 = ariane6_sign(dq[3]);
+    const ariane6_real_t t327 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4])
+        + ARIANE6_C(1.0e2) * (t326 * parameters[FC4]);
+    const ariane6_real_t t328 = ARIANE6_C(5.0) * input[3] - (t327 - t296) + t320 * t28 - t325 * t34;
+    const ariane6_real_t t329 = t317 - t320 * t115 + t325 * t140 - t328 * t146;
+    const ariane6_real_t t330 = t38 * t285 - t41 * t288;
+    const ariane6_real_t t331 = parameters[MZ4] * (t276 + t267) - (parameters[MX4] * t264
+        + parameters[MY4] * t214);
+    const ariane6_real_t t332 = parameters[M4] * t190 + t331 + (t13 * t280 - t16 * t283);
+    const ariane6_real_t t333 = t41 * t270 - t38 * t278 - (ARIANE6_C(-0.17) * t332 - ARIANE6_C(0.488) * t330);
+    const ariane6_real_t t334 = parameters[XY3] * (t188 - t174) - t179 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MY3] * t172 - parameters[MX3] * t187);
+    const ariane6_real_t t335 = t334 + t333;
+    const ariane6_real_t t336 = t64 * dq[2];
+    const ariane6_real_t t337 = ariane6_sign(t336);
+    const ariane6_real_t t338 = ARIANE6_C(-8377.600000000002) * t61
+        - ARIANE6_C(350.9209088000001) * (t63 * t63) * (t60 * t60);
+    const ariane6_real_t t339 = t64 * (t336 * parameters[FV3]) + t64 * (t337 * parameters[FC3])
+        + t64 * (t63 * t338 * (dq[2] * dq[2]) * parameters[IA3]);
+    const ariane6_real_t t340 = input[2] * (ARIANE6_C(0.004) * t64) - (t339 + t335) + t320 * t70;
+    const ariane6_real_t t341 = t340 - t325 * t74 + t328 * t82;
+    const ariane6_real_t t342 = parameters[M3] * t172 + (parameters[MX3] * t177 - parameters[MY3] * t179)
+        + t330;
+    const ariane6_real_t t343 = parameters[M3] * t187 + (parameters[MY3] * t189 - parameters[MX3] * t179)
+        + t332;
+    const ariane6_real_t t344 = t170 * (parameters[XX2] - parameters[YY2]) - (t308 - t165) * parameters[XY2]
+        - (t163 * parameters[MY2] - t168 * parameters[MX2]);
+    const ariane6_real_t t345 = t344 - (t335 - ARIANE6_C(0.685) * (t58 * t342 + t59 * t343));
+    const ariane6_real_t t346 = t104 * dq[1];
+    const ariane6_real_t t347 = ariane6_sign(t346);
+    const ariane6_real_t t348 = ARIANE6_C(-12691.800000000003) * t101
+        - ARIANE6_C(805.4089362000002) * (t103 * t103) * (t100 * t100);
+    const ariane6_real_t t349 = t104 * (t346 * parameters[FV2]) + t104 * (t347 * parameters[FC2])
+        + t104 * (t103 * t348 * t166 * parameters[IA2]);
+    const ariane6_real_t t350 = ARIANE6_C(0.004) * t104 * input[1] - (t349 - t345) - t320 * t105;
+    const ariane6_real_t t351 = t350 + t325 * t107 + t328 * t108 + t341 * t94;
+    const ariane6_real_t t352 = ARIANE6_C(1.0) / t160;
+    const ariane6_real_t t353 = (t329 + t341 * t153 + t351 * t159) * t352;
     out[0] = t353;
     if (!(t353 >= ARIANE6_C(-1.0e15) && t353 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t354 = t327 * t336 + t337 * t353;
+    const ariane6_real_t t354 = t351 * t158 + t159 * t353;
     out[1] = t354;
     if (!(t354 >= ARIANE6_C(-1.0e15) && t354 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t355 = t277 * t298 + t299 * t353 + t326 * t354;
+    const ariane6_real_t t355 = t341 * t93 + t153 * t353 + t94 * t354;
     out[2] = t355;
     if (!(t355 >= ARIANE6_C(-1.0e15) && t355 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t356 = t319 * t354 - (t226 * t246 + t247 * t353) + t276 * t355;
+    const ariane6_real_t t356 = t108 * t354 - (t328 * t81 + t146 * t353) + t82 * t355;
     out[3] = t356;
     if (!(t356 >= ARIANE6_C(-1.0e15) && t356 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t357 = t199 * t219 + t220 * t353 + t317 * t354 - t272 * t355;
-    const ariane6_real_t t358 = t357 - t225 * t356;
+    const ariane6_real_t t357 = t325 * t33 + t140 * t353 + t107 * t354 - t74 * t355;
+    const ariane6_real_t t358 = t357 - t34 * t356;
     out[4] = t358;
     if (!(t358 >= ARIANE6_C(-1.0e15) && t358 <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t359 = t175 * t189 + t190 * t353 + t314 * t354 - t267 * t355;
-    out[5] = t223 * t356 - t359 + t198 * t358;
+    const ariane6_real_t t359 = t320 * t5 + t115 * t353 + t105 * t354 - t70 * t355;
+    out[5] = t28 * t356 - t359 + t6 * t358;
     if (!(out[5] >= ARIANE6_C(-1.0e15) && out[5] <= ARIANE6_C(1.0e15))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;

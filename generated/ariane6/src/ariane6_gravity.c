@@ -79,7 +79,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -108,56 +108,56 @@ int ariane6_gravity(
         return status;
     }
 
-    ariane6_real_t t0, t2;
-    ARIANE6_SINCOS(q[0], &t0, &t2);
-    ariane6_real_t t4, t9;
-    ARIANE6_SINCOS(q[1], &t4, &t9);
-    ariane6_real_t t7, t5;
-    ARIANE6_SINCOS(q[2], &t7, &t5);
-    ariane6_real_t t13, t6;
-    ARIANE6_SINCOS(q[3], &t13, &t6);
-    ariane6_real_t t17, t12;
-    ARIANE6_SINCOS(q[4], &t17, &t12);
-    ariane6_real_t t21, t16;
-    ARIANE6_SINCOS(q[5], &t21, &t16);
-    const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
-    const ariane6_real_t t8 = ARIANE6_C(-9.81) * t4;
-    const ariane6_real_t t10 = ARIANE6_C(9.81) * t9;
-    const ariane6_real_t t11 = t7 * t8 + t5 * t10;
-    const ariane6_real_t t14 = t5 * t8 - t7 * t10;
-    const ariane6_real_t t15 = t13 * t14;
-    const ariane6_real_t t18 = t6 * t14;
-    const ariane6_real_t t19 = t17 * t18 + t12 * t11;
-    const ariane6_real_t t20 = parameters[MY6] * t19;
-    const ariane6_real_t t22 = parameters[MX6] * t19;
-    const ariane6_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY5R] * t15;
-    const ariane6_real_t t24 = t12 * t18 - t17 * t11;
-    const ariane6_real_t t25 = parameters[MX6] * (t21 * t24 + t16 * t15) + parameters[MY6] * (t16 * t24
-        - t21 * t15);
-    const ariane6_real_t t26 = parameters[MX5] * t15 + t25;
-    const ariane6_real_t t27 = parameters[MY4R] * t11 + (t12 * t23 - t17 * t26);
-    const ariane6_real_t t28 = parameters[MX5] * t19 + parameters[MY5R] * t24 + (t16 * t22 - t21 * t20);
-    const ariane6_real_t t29 = parameters[MX4] * t11 + t28;
-    const ariane6_real_t t30 = t6 * t27 + t13 * t29;
-    const ariane6_real_t t31 = parameters[MX4] * t15 + parameters[MY4R] * t18 + (t17 * t23 + t12 * t26);
-    const ariane6_real_t t32 = t4 * (t5 * t30 - t7 * t31) + t9 * (t7 * t30 + t5 * t31);
-    out[0] = t3 * t32;
-    const ariane6_real_t t33 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t9
-        + ARIANE6_C(0.6427876096865393) * t4) + ARIANE6_C(0.420682));
-    const ariane6_real_t t34 = ARIANE6_C(0.019697757607273984) * t33 / (ARIANE6_C(0.766044443118978) * t4
-        + ARIANE6_C(0.6427876096865393) * t9);
-    const ariane6_real_t t35 = parameters[MX3R] * t11 + parameters[MY3R] * t14 + (t6 * t29 - t13 * t27);
-    out[1] = t34 * (parameters[MX2R] * t10 + parameters[MY2] * t8 + t35);
-    const ariane6_real_t t36 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t5
-        + ARIANE6_C(-0.9986295347545738) * t7) + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t37 = ARIANE6_C(-0.029841482047364396) * t36 / (ARIANE6_C(-0.052335956242943966) * t7
-        + ARIANE6_C(0.9986295347545738) * t5);
-    out[2] = t37 * t35;
-    out[3] = ARIANE6_C(0.2) * t31;
-    const ariane6_real_t t38 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t17 + ARIANE6_C(0.097));
-    const ariane6_real_t t39 = ARIANE6_C(0.07043047103899029) * t38 / t12;
-    out[4] = t39 * t28;
-    out[5] = ARIANE6_C(0.2) * t25;
+    ariane6_real_t t29, t31;
+    ARIANE6_SINCOS(q[0], &t29, &t31);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[1], &t0, &t3);
+    ariane6_real_t t5, t2;
+    ARIANE6_SINCOS(q[2], &t5, &t2);
+    ariane6_real_t t17, t7;
+    ARIANE6_SINCOS(q[3], &t17, &t7);
+    ariane6_real_t t9, t11;
+    ARIANE6_SINCOS(q[4], &t9, &t11);
+    ariane6_real_t t16, t14;
+    ARIANE6_SINCOS(q[5], &t16, &t14);
+    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t4 = ARIANE6_C(9.81) * t3;
+    const ariane6_real_t t6 = t2 * t1 - t5 * t4;
+    const ariane6_real_t t8 = t7 * t6;
+    const ariane6_real_t t10 = t5 * t1 + t2 * t4;
+    const ariane6_real_t t12 = t9 * t8 + t11 * t10;
+    const ariane6_real_t t13 = parameters[MY6] * t12;
+    const ariane6_real_t t15 = parameters[MX6] * t12;
+    const ariane6_real_t t18 = t17 * t6;
+    const ariane6_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18;
+    const ariane6_real_t t20 = t11 * t8 - t9 * t10;
+    const ariane6_real_t t21 = parameters[MX6] * (t16 * t20 + t14 * t18) + parameters[MY6] * (t14 * t20
+        - t16 * t18);
+    const ariane6_real_t t22 = parameters[MX5] * t18 + t21;
+    const ariane6_real_t t23 = parameters[MY4R] * t10 + (t11 * t19 - t9 * t22);
+    const ariane6_real_t t24 = parameters[MX5] * t12 + parameters[MY5R] * t20 + (t14 * t15 - t16 * t13);
+    const ariane6_real_t t25 = parameters[MX4] * t10 + t24;
+    const ariane6_real_t t26 = t7 * t23 + t17 * t25;
+    const ariane6_real_t t27 = parameters[MX4] * t18 + parameters[MY4R] * t8 + (t9 * t19 + t11 * t22);
+    const ariane6_real_t t28 = t0 * (t2 * t26 - t5 * t27) + t3 * (t5 * t26 + t2 * t27);
+    const ariane6_real_t t30 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t29 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t32 = ARIANE6_C(0.061525739908548135) * t30 / t31;
+    out[0] = t32 * t28;
+    const ariane6_real_t t33 = parameters[MX3R] * t10 + parameters[MY3R] * t6 + (t7 * t25 - t17 * t23);
+    const ariane6_real_t t34 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
+        + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
+    const ariane6_real_t t35 = ARIANE6_C(0.019697757607273984) * t34 / (ARIANE6_C(0.766044443118978) * t0
+        + ARIANE6_C(0.6427876096865393) * t3);
+    out[1] = t35 * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t33);
+    const ariane6_real_t t36 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
+        + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t37 = ARIANE6_C(-0.029841482047364396) * t36 / (ARIANE6_C(-0.052335956242943966) * t5
+        + ARIANE6_C(0.9986295347545738) * t2);
+    out[2] = t37 * t33;
+    out[3] = ARIANE6_C(0.2) * t27;
+    const ariane6_real_t t38 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t9 + ARIANE6_C(0.097));
+    const ariane6_real_t t39 = ARIANE6_C(0.07043047103899029) * t38 / t11;
+    out[4] = t39 * t24;
+    out[5] = ARIANE6_C(0.2) * t21;
     return ARIANE6_STATUS_OK;
 }

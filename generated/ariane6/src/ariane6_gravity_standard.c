@@ -103,7 +103,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,75 +133,75 @@ int ariane6_gravity_standard(
         return status;
     }
 
-    ariane6_real_t t0, t2;
-    ARIANE6_SINCOS(q[0], &t0, &t2);
-    ariane6_real_t t4, t5;
-    ARIANE6_SINCOS(q[1], &t4, &t5);
-    ariane6_real_t t8, t7;
-    ARIANE6_SINCOS(q[2], &t8, &t7);
-    ariane6_real_t t12, t11;
-    ARIANE6_SINCOS(q[3], &t12, &t11);
-    ariane6_real_t t16, t15;
-    ARIANE6_SINCOS(q[4], &t16, &t15);
-    ariane6_real_t t20, t19;
-    ARIANE6_SINCOS(q[5], &t20, &t19);
-    const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
-    const ariane6_real_t t6 = ARIANE6_C(9.81) * t5;
-    const ariane6_real_t t9 = ARIANE6_C(-9.81) * t4;
-    const ariane6_real_t t10 = t8 * t9 + t7 * t6;
-    const ariane6_real_t t13 = t7 * t9 - t8 * t6;
-    const ariane6_real_t t14 = t12 * t13;
-    const ariane6_real_t t17 = t11 * t13;
-    const ariane6_real_t t18 = t16 * t17 + t15 * t10;
-    const ariane6_real_t t21 = t16 * t10 - t15 * t17;
-    const ariane6_real_t t22 = t20 * t21 - t19 * t14;
-    const ariane6_real_t t23 = t18 * parameters[MY6] + t22 * parameters[MZ6];
-    const ariane6_real_t t24 = t19 * t21 + t20 * t14;
-    const ariane6_real_t t25 = t18 * parameters[MX6] - t24 * parameters[MZ6];
-    const ariane6_real_t t26 = t24 * parameters[M6];
-    const ariane6_real_t t27 = t22 * parameters[M6];
-    const ariane6_real_t t28 = t19 * t27 - t20 * t26;
-    const ariane6_real_t t29 = t19 * t23 + t20 * t25 + ARIANE6_C(0.3) * t28 - (t14 * parameters[MY5]
-        + t18 * parameters[MZ5]);
-    const ariane6_real_t t30 = t22 * parameters[MX6] + t24 * parameters[MY6];
-    const ariane6_real_t t31 = t21 * parameters[MZ5] + t14 * parameters[MX5] - t30;
-    const ariane6_real_t t32 = t14 * parameters[MZ4] - t10 * parameters[MY4] - (t15 * t29 - t16 * t31);
-    const ariane6_real_t t33 = t19 * t26 + t20 * t27;
-    const ariane6_real_t t34 = t18 * parameters[MX5] - t21 * parameters[MY5] + (t19 * t25 - t20 * t23
-        + ARIANE6_C(-0.3) * t33);
-    const ariane6_real_t t35 = t17 * parameters[MZ4] + t10 * parameters[MX4] + t34;
-    const ariane6_real_t t36 = t21 * parameters[M5] + t33;
-    const ariane6_real_t t37 = t18 * parameters[M5] + t18 * parameters[M6];
-    const ariane6_real_t t38 = t15 * t36 - t16 * t37 - t17 * parameters[M4];
-    const ariane6_real_t t39 = t28 - t14 * parameters[M5] - t14 * parameters[M4];
-    const ariane6_real_t t40 = t12 * t38 - t11 * t39;
-    const ariane6_real_t t41 = t12 * t35 - t11 * t32 + ARIANE6_C(-0.488) * t40 - t10 * parameters[MZ3];
-    const ariane6_real_t t42 = t14 * parameters[MX4] + t17 * parameters[MY4] + (t16 * t29 + t15 * t31);
-    const ariane6_real_t t43 = t13 * parameters[MZ3] + (ARIANE6_C(0.17) * t40 - t42);
-    const ariane6_real_t t44 = t4 * (t7 * t41 + t8 * t43 - t6 * parameters[MZ2]);
-    const ariane6_real_t t45 = t8 * t41 - t7 * t43 + ARIANE6_C(0.685) * t40 - t9 * parameters[MZ2];
-    out[0] = t3 * (t44 + t5 * t45 + ARIANE6_C(0.18) * t40);
-    const ariane6_real_t t46 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t5
-        + ARIANE6_C(0.6427876096865393) * t4) + ARIANE6_C(0.420682));
-    const ariane6_real_t t47 = ARIANE6_C(0.019697757607273984) * t46 / (ARIANE6_C(0.766044443118978) * t4
-        + ARIANE6_C(0.6427876096865393) * t5);
-    const ariane6_real_t t48 = t10 * parameters[M4] + (t16 * t36 + t15 * t37);
-    const ariane6_real_t t49 = t11 * t38 + t12 * t39;
-    const ariane6_real_t t50 = t12 * t32 + t11 * t35 + (ARIANE6_C(-0.17) * t48 + ARIANE6_C(-0.488) * t49);
-    const ariane6_real_t t51 = t10 * parameters[MX3] + t13 * parameters[MY3] + t50;
-    const ariane6_real_t t52 = t8 * (t49 - t13 * parameters[M3]) + t7 * (t10 * parameters[M3] + t48);
-    const ariane6_real_t t53 = t6 * parameters[MX2] + t9 * parameters[MY2] + (t51 + ARIANE6_C(0.685) * t52);
-    out[1] = t47 * t53;
-    const ariane6_real_t t54 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t7
-        + ARIANE6_C(-0.9986295347545738) * t8) + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t55 = ARIANE6_C(-0.029841482047364396) * t54 / (ARIANE6_C(-0.052335956242943966) * t8
-        + ARIANE6_C(0.9986295347545738) * t7);
-    out[2] = t55 * t51;
-    out[3] = ARIANE6_C(0.2) * t42;
-    const ariane6_real_t t56 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t16 + ARIANE6_C(0.097));
-    const ariane6_real_t t57 = ARIANE6_C(0.07043047103899029) * t56 / t15;
-    out[4] = t57 * t34;
-    out[5] = ARIANE6_C(-0.2) * t30;
+    ariane6_real_t t42, t44;
+    ARIANE6_SINCOS(q[0], &t42, &t44);
+    ariane6_real_t t0, t3;
+    ARIANE6_SINCOS(q[1], &t0, &t3);
+    ariane6_real_t t5, t2;
+    ARIANE6_SINCOS(q[2], &t5, &t2);
+    ariane6_real_t t15, t7;
+    ARIANE6_SINCOS(q[3], &t15, &t7);
+    ariane6_real_t t9, t11;
+    ARIANE6_SINCOS(q[4], &t9, &t11);
+    ariane6_real_t t14, t17;
+    ARIANE6_SINCOS(q[5], &t14, &t17);
+    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t4 = ARIANE6_C(9.81) * t3;
+    const ariane6_real_t t6 = t2 * t1 - t5 * t4;
+    const ariane6_real_t t8 = t7 * t6;
+    const ariane6_real_t t10 = t5 * t1 + t2 * t4;
+    const ariane6_real_t t12 = t9 * t8 + t11 * t10;
+    const ariane6_real_t t13 = t9 * t10 - t11 * t8;
+    const ariane6_real_t t16 = t15 * t6;
+    const ariane6_real_t t18 = t14 * t13 - t17 * t16;
+    const ariane6_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
+    const ariane6_real_t t20 = t17 * t13 + t14 * t16;
+    const ariane6_real_t t21 = t12 * parameters[MX6] - t20 * parameters[MZ6];
+    const ariane6_real_t t22 = t20 * parameters[M6];
+    const ariane6_real_t t23 = t18 * parameters[M6];
+    const ariane6_real_t t24 = t17 * t23 - t14 * t22;
+    const ariane6_real_t t25 = t17 * t19 + t14 * t21 + ARIANE6_C(0.3) * t24 - (t16 * parameters[MY5]
+        + t12 * parameters[MZ5]);
+    const ariane6_real_t t26 = t18 * parameters[MX6] + t20 * parameters[MY6];
+    const ariane6_real_t t27 = t13 * parameters[MZ5] + t16 * parameters[MX5] - t26;
+    const ariane6_real_t t28 = t16 * parameters[MZ4] - t10 * parameters[MY4] - (t11 * t25 - t9 * t27);
+    const ariane6_real_t t29 = t17 * t22 + t14 * t23;
+    const ariane6_real_t t30 = t12 * parameters[MX5] - t13 * parameters[MY5] + (t17 * t21 - t14 * t19
+        + ARIANE6_C(-0.3) * t29);
+    const ariane6_real_t t31 = t8 * parameters[MZ4] + t10 * parameters[MX4] + t30;
+    const ariane6_real_t t32 = t13 * parameters[M5] + t29;
+    const ariane6_real_t t33 = t12 * parameters[M5] + t12 * parameters[M6];
+    const ariane6_real_t t34 = t11 * t32 - t9 * t33 - t8 * parameters[M4];
+    const ariane6_real_t t35 = t24 - t16 * parameters[M5] - t16 * parameters[M4];
+    const ariane6_real_t t36 = t15 * t34 - t7 * t35;
+    const ariane6_real_t t37 = t15 * t31 - t7 * t28 + ARIANE6_C(-0.488) * t36 - t10 * parameters[MZ3];
+    const ariane6_real_t t38 = t16 * parameters[MX4] + t8 * parameters[MY4] + (t9 * t25 + t11 * t27);
+    const ariane6_real_t t39 = t6 * parameters[MZ3] + (ARIANE6_C(0.17) * t36 - t38);
+    const ariane6_real_t t40 = t0 * (t2 * t37 + t5 * t39 - t4 * parameters[MZ2]);
+    const ariane6_real_t t41 = t5 * t37 - t2 * t39 + ARIANE6_C(0.685) * t36 - t1 * parameters[MZ2];
+    const ariane6_real_t t43 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t42 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t45 = ARIANE6_C(0.061525739908548135) * t43 / t44;
+    out[0] = t45 * (t40 + t3 * t41 + ARIANE6_C(0.18) * t36);
+    const ariane6_real_t t46 = t10 * parameters[M4] + (t9 * t32 + t11 * t33);
+    const ariane6_real_t t47 = t7 * t34 + t15 * t35;
+    const ariane6_real_t t48 = t15 * t28 + t7 * t31 + (ARIANE6_C(-0.17) * t46 + ARIANE6_C(-0.488) * t47);
+    const ariane6_real_t t49 = t10 * parameters[MX3] + t6 * parameters[MY3] + t48;
+    const ariane6_real_t t50 = t5 * (t47 - t6 * parameters[M3]) + t2 * (t10 * parameters[M3] + t46);
+    const ariane6_real_t t51 = t4 * parameters[MX2] + t1 * parameters[MY2] + (t49 + ARIANE6_C(0.685) * t50);
+    const ariane6_real_t t52 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
+        + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
+    const ariane6_real_t t53 = ARIANE6_C(0.019697757607273984) * t52 / (ARIANE6_C(0.766044443118978) * t0
+        + ARIANE6_C(0.6427876096865393) * t3);
+    out[1] = t53 * t51;
+    const ariane6_real_t t54 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
+        + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t55 = ARIANE6_C(-0.029841482047364396) * t54 / (ARIANE6_C(-0.052335956242943966) * t5
+        + ARIANE6_C(0.9986295347545738) * t2);
+    out[2] = t55 * t49;
+    out[3] = ARIANE6_C(0.2) * t38;
+    const ariane6_real_t t56 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t9 + ARIANE6_C(0.097));
+    const ariane6_real_t t57 = ARIANE6_C(0.07043047103899029) * t56 / t11;
+    out[4] = t57 * t30;
+    out[5] = ARIANE6_C(-0.2) * t26;
     return ARIANE6_STATUS_OK;
 }

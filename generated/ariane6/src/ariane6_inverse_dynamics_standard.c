@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -139,302 +139,303 @@ int ariane6_inverse_dynamics_standard(
         return status;
     }
 
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[0], &t1, &t0);
-    ariane6_real_t t11, t12;
-    ARIANE6_SINCOS(q[1], &t11, &t12);
-    ariane6_real_t t33, t31;
-    ARIANE6_SINCOS(q[2], &t33, &t31);
-    ariane6_real_t t58, t57;
-    ARIANE6_SINCOS(q[3], &t58, &t57);
-    ariane6_real_t t87, t86;
-    ARIANE6_SINCOS(q[4], &t87, &t86);
-    ariane6_real_t t110, t109;
-    ARIANE6_SINCOS(q[5], &t110, &t109);
-    const ariane6_real_t t2 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t1 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t3 = ARIANE6_C(-1.0) / t2;
-    const ariane6_real_t t4 = t0 * (ARIANE6_C(-4063.3400000000006) * t3);
-    const ariane6_real_t t5 = t4 * dq[0];
-    const ariane6_real_t t6 = ariane6_sign(t5);
-    const ariane6_real_t t7 = ARIANE6_C(-4063.3400000000006) * t1
-        + ARIANE6_C(-82.55365977800001) * (t3 * t3) * (t0 * t0);
-    const ariane6_real_t t8 = dq[0] * dq[0];
-    const ariane6_real_t t9 = t5 * parameters[FV1] + t6 * parameters[FC1] + (t4 * ddq[0]
-        - t3 * t7 * t8) * parameters[IA1];
-    const ariane6_real_t t10 = ARIANE6_C(0.061525739908548135) * t2 / t0;
-    const ariane6_real_t t13 = t12 * dq[0];
-    const ariane6_real_t t14 = t13 * t13;
-    const ariane6_real_t t15 = dq[1] * dq[1];
-    const ariane6_real_t t16 = dq[1] * t13;
-    const ariane6_real_t t17 = t11 * ddq[0];
-    const ariane6_real_t t18 = t17 + t16;
-    const ariane6_real_t t19 = t11 * dq[0];
-    const ariane6_real_t t20 = dq[1] * t19;
-    const ariane6_real_t t21 = t12 * ddq[0];
-    const ariane6_real_t t22 = t21 - t20;
-    const ariane6_real_t t23 = t22 - t20;
-    const ariane6_real_t t24 = t16 * (parameters[ZZ2] - parameters[YY2]) + t18 * parameters[XX2]
-        + t23 * parameters[XY2];
-    const ariane6_real_t t25 = t19 * t13;
-    const ariane6_real_t t26 = ddq[1] + t25;
-    const ariane6_real_t t27 = ARIANE6_C(0.18) * t8;
-    const ariane6_real_t t28 = t11 * t27 + ARIANE6_C(9.81) * t12;
-    const ariane6_real_t t29 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t30 = (t14 - t15) * parameters[YZ2] + (t24 + t26 * parameters[XZ2])
-        + (t29 * parameters[MY2] - t28 * parameters[MZ2]);
-    const ariane6_real_t t32 = t29 + ARIANE6_C(-0.685) * t23;
-    const ariane6_real_t t34 = t12 * t27 + ARIANE6_C(-9.81) * t11;
-    const ariane6_real_t t35 = t34 + ARIANE6_C(0.685) * (t14 + t15);
-    const ariane6_real_t t36 = t28 + ARIANE6_C(0.685) * t26;
-    const ariane6_real_t t37 = t33 * t35 + t31 * t36;
-    const ariane6_real_t t38 = t12 * t31 - t11 * t33;
-    const ariane6_real_t t39 = dq[0] * t38;
-    const ariane6_real_t t40 = t39 * t39;
-    const ariane6_real_t t41 = dq[1] + dq[2];
-    const ariane6_real_t t42 = t41 * t41;
-    const ariane6_real_t t43 = t39 * t41;
-    const ariane6_real_t t44 = t11 * t31 + t12 * t33;
-    const ariane6_real_t t45 = ddq[0] * t44;
-    const ariane6_real_t t46 = t45 + t43;
-    const ariane6_real_t t47 = dq[0] * t44;
-    const ariane6_real_t t48 = t47 * t41;
-    const ariane6_real_t t49 = ddq[0] * t38;
-    const ariane6_real_t t50 = t49 - t48;
-    const ariane6_real_t t51 = t50 - t48;
-    const ariane6_real_t t52 = t46 * parameters[XX3] - t43 * (parameters[YY3] - parameters[ZZ3])
-        + t51 * parameters[XY3];
-    const ariane6_real_t t53 = ddq[1] + ddq[2];
-    const ariane6_real_t t54 = t47 * t39;
-    const ariane6_real_t t55 = t53 + t54;
-    const ariane6_real_t t56 = t32 * parameters[MY3] - t37 * parameters[MZ3] + ((t40 - t42) * parameters[YZ3]
-        + (t52 + t55 * parameters[XZ3]));
-    const ariane6_real_t t59 = t58 * t47 + t57 * t41;
-    const ariane6_real_t t60 = t59 * t59;
-    const ariane6_real_t t61 = dq[3] + t39;
-    const ariane6_real_t t62 = t61 * t61;
-    const ariane6_real_t t63 = t59 * t61;
-    const ariane6_real_t t64 = t54 - t53;
-    const ariane6_real_t t65 = t43 + t46;
-    const ariane6_real_t t66 = t58 * t64 + t57 * t65;
-    const ariane6_real_t t67 = t63 - t66;
-    const ariane6_real_t t68 = t57 * t47 - t58 * t41;
-    const ariane6_real_t t69 = t68 * t61;
-    const ariane6_real_t t70 = t58 * t65 - t57 * t64;
-    const ariane6_real_t t71 = t70 + t69;
-    const ariane6_real_t t72 = t69 + t71;
-    const ariane6_real_t t73 = t63 * (parameters[YY4] - parameters[ZZ4]) - t67 * parameters[XX4]
-        - t72 * parameters[XY4];
-    const ariane6_real_t t74 = ddq[3] + t50;
-    const ariane6_real_t t75 = t68 * t59;
-    const ariane6_real_t t76 = t74 - t75;
-    const ariane6_real_t t77 = t47 * t47;
-    const ariane6_real_t t78 = t77 + t42;
-    const ariane6_real_t t79 = t37 + (ARIANE6_C(-0.17) * t55 + ARIANE6_C(-0.488) * t78);
-    const ariane6_real_t t80 = t31 * t35 - t33 * t36;
-    const ariane6_real_t t81 = t40 + t42;
-    const ariane6_real_t t82 = t80 - (ARIANE6_C(0.17) * t81 - ARIANE6_C(-0.488) * t64);
-    const ariane6_real_t t83 = t32 + (ARIANE6_C(0.17) * t51 + ARIANE6_C(0.488) * t65);
-    const ariane6_real_t t84 = t57 * t83 - t58 * t82;
-    const ariane6_real_t t85 = (t60 - t62) * parameters[YZ4] + (t73 + t76 * parameters[XZ4])
-        + (t79 * parameters[MY4] + t84 * parameters[MZ4]);
-    const ariane6_real_t t88 = t86 * t61 - t87 * t68;
-    const ariane6_real_t t89 = t88 * t88;
-    const ariane6_real_t t90 = dq[4] + t59;
-    const ariane6_real_t t91 = t90 * t90;
-    const ariane6_real_t t92 = t88 * t90;
-    const ariane6_real_t t93 = t74 + t75;
-    const ariane6_real_t t94 = t63 + t67;
-    const ariane6_real_t t95 = t87 * t93 - t86 * t94;
-    const ariane6_real_t t96 = t95 + t92;
-    const ariane6_real_t t97 = t86 * t68 + t87 * t61;
-    const ariane6_real_t t98 = t97 * t90;
-    const ariane6_real_t t99 = t86 * t93 + t87 * t94;
-    const ariane6_real_t t100 = t99 - t98;
-    const ariane6_real_t t101 = t100 - t98;
-    const ariane6_real_t t102 = t96 * parameters[XX5] - t92 * (parameters[YY5] - parameters[ZZ5])
-        + t101 * parameters[XY5];
-    const ariane6_real_t t103 = ddq[4] + t71;
-    const ariane6_real_t t104 = t97 * t88;
-    const ariane6_real_t t105 = t103 + t104;
-    const ariane6_real_t t106 = t57 * t82 + t58 * t83;
-    const ariane6_real_t t107 = t87 * t106 + t86 * t79;
-    const ariane6_real_t t108 = (t89 - t91) * parameters[YZ5] + (t102 + t105 * parameters[XZ5])
-        + (t84 * parameters[MY5] - t107 * parameters[MZ5]);
-    const ariane6_real_t t111 = t110 * t97 + t109 * t90;
-    const ariane6_real_t t112 = t111 * t111;
-    const ariane6_real_t t113 = dq[5] + t88;
-    const ariane6_real_t t114 = t113 * t113;
-    const ariane6_real_t t115 = t111 * t113;
-    const ariane6_real_t t116 = t103 - t104;
-    const ariane6_real_t t117 = t92 + t96;
-    const ariane6_real_t t118 = t110 * t116 - t109 * t117;
-    const ariane6_real_t t119 = t118 + t115;
-    const ariane6_real_t t120 = t109 * t97 - t110 * t90;
-    const ariane6_real_t t121 = t120 * t113;
-    const ariane6_real_t t122 = t109 * t116 + t110 * t117;
-    const ariane6_real_t t123 = t122 + t121;
-    const ariane6_real_t t124 = t121 + t123;
-    const ariane6_real_t t125 = t115 * (parameters[YY6] - parameters[ZZ6]) - t119 * parameters[XX6]
-        - t124 * parameters[XY6];
-    const ariane6_real_t t126 = ddq[5] + t100;
-    const ariane6_real_t t127 = t120 * t111;
-    const ariane6_real_t t128 = t127 - t126;
-    const ariane6_real_t t129 = t97 * t97;
-    const ariane6_real_t t130 = t129 + t91;
-    const ariane6_real_t t131 = t107 + ARIANE6_C(-0.3) * t130;
-    const ariane6_real_t t132 = t86 * t106 - t87 * t79;
-    const ariane6_real_t t133 = t132 + ARIANE6_C(0.3) * t116;
-    const ariane6_real_t t134 = t84 + ARIANE6_C(0.3) * t117;
-    const ariane6_real_t t135 = t110 * t133 - t109 * t134;
-    const ariane6_real_t t136 = (t112 - t114) * parameters[YZ6] + (t125 - t128 * parameters[XZ6])
-        + (t131 * parameters[MY6] - t135 * parameters[MZ6]);
-    const ariane6_real_t t137 = t120 * t120;
-    const ariane6_real_t t138 = t115 + t119;
-    const ariane6_real_t t139 = t121 * (parameters[ZZ6] - parameters[XX6]) + t123 * parameters[YY6]
-        + t138 * parameters[XY6];
-    const ariane6_real_t t140 = t126 + t127;
-    const ariane6_real_t t141 = t109 * t133 + t110 * t134;
-    const ariane6_real_t t142 = (t137 - t114) * parameters[XZ6] + (t139 - t140 * parameters[YZ6])
-        + (t141 * parameters[MZ6] + t131 * parameters[MX6]);
-    const ariane6_real_t t143 = (t112 + t114) * parameters[MX6] + t140 * parameters[MY6]
-        + t122 * parameters[MZ6];
-    const ariane6_real_t t144 = t141 * parameters[M6] + t143;
-    const ariane6_real_t t145 = (t137 + t114) * parameters[MY6] + t128 * parameters[MX6]
-        - t118 * parameters[MZ6];
-    const ariane6_real_t t146 = t145 - t135 * parameters[M6];
-    const ariane6_real_t t147 = t110 * t144 + t109 * t146;
-    const ariane6_real_t t148 = t108 + (t109 * t136 + t110 * t142 + ARIANE6_C(0.3) * t147);
-    const ariane6_real_t t149 = t98 * (parameters[XX5] - parameters[ZZ5]) + t100 * parameters[YY5]
-        + t117 * parameters[XY5];
-    const ariane6_real_t t150 = (t91 - t129) * parameters[XZ5] + (t149 + t116 * parameters[YZ5])
-        - (t132 * parameters[MZ5] + t84 * parameters[MX5]);
-    const ariane6_real_t t151 = t127 * (parameters[XX6] - parameters[YY6]) + t126 * parameters[ZZ6]
-        - t122 * parameters[YZ6];
-    const ariane6_real_t t152 = (t137 - t112) * parameters[XY6] + (t151 - t118 * parameters[XZ6])
-        + (t135 * parameters[MX6] + t141 * parameters[MY6]);
-    const ariane6_real_t t153 = t150 + t152;
-    const ariane6_real_t t154 = t85 + (t86 * t148 - t87 * t153);
-    const ariane6_real_t t155 = t68 * t68;
-    const ariane6_real_t t156 = t69 * (parameters[ZZ4] - parameters[XX4]) + t71 * parameters[YY4]
-        + t94 * parameters[XY4];
-    const ariane6_real_t t157 = (t155 - t62) * parameters[XZ4] + (t156 - t93 * parameters[YZ4])
-        + (t106 * parameters[MZ4] + t79 * parameters[MX4]);
-    const ariane6_real_t t158 = t103 * parameters[ZZ5] - t104 * (parameters[XX5] - parameters[YY5])
-        + t99 * parameters[YZ5];
-    const ariane6_real_t t159 = (t129 - t89) * parameters[XY5] + (t158 + t95 * parameters[XZ5])
-        + (t107 * parameters[MX5] + t132 * parameters[MY5]);
-    const ariane6_real_t t160 = t110 * t146 - t109 * t144;
-    const ariane6_real_t t161 = t159 + (t109 * t142 - t110 * t136 + ARIANE6_C(-0.3) * t160);
-    const ariane6_real_t t162 = t157 + t161;
-    const ariane6_real_t t163 = (t60 + t62) * parameters[MX4] + t93 * parameters[MY4] + t70 * parameters[MZ4];
-    const ariane6_real_t t164 = t99 * parameters[MZ5] - ((t89 + t91) * parameters[MX5]
-        + t116 * parameters[MY5]);
-    const ariane6_real_t t165 = t164 - t132 * parameters[M5] + t160;
-    const ariane6_real_t t166 = t107 * parameters[M5] - (t130 * parameters[MY5] - t105 * parameters[MX5]
-        + t95 * parameters[MZ5]);
-    const ariane6_real_t t167 = (t137 + t112) * parameters[MZ6] - (t124 * parameters[MX6]
-        - t138 * parameters[MY6]);
-    const ariane6_real_t t168 = t166 + (t131 * parameters[M6] - t167);
-    const ariane6_real_t t169 = t86 * t165 - t87 * t168 - (t106 * parameters[M4] + t163);
-    const ariane6_real_t t170 = (t155 + t62) * parameters[MY4] - t76 * parameters[MX4]
-        + t66 * parameters[MZ4];
-    const ariane6_real_t t171 = (t129 + t89) * parameters[MZ5] - (t117 * parameters[MY5]
-        - t101 * parameters[MX5]);
-    const ariane6_real_t t172 = t171 - t84 * parameters[M5] - t147 - (t84 * parameters[M4] + t170);
-    const ariane6_real_t t173 = t58 * t169 + t57 * t172;
-    const ariane6_real_t t174 = t56 + (t57 * t154 + t58 * t162 + ARIANE6_C(-0.488) * t173);
-    const ariane6_real_t t175 = t48 * (parameters[XX3] - parameters[ZZ3]) + t50 * parameters[YY3]
-        + t65 * parameters[XY3];
-    const ariane6_real_t t176 = t80 * parameters[MZ3] + t32 * parameters[MX3] + ((t77 - t42) * parameters[XZ3]
-        - (t175 - t64 * parameters[YZ3]));
-    const ariane6_real_t t177 = t75 * (parameters[XX4] - parameters[YY4]) + t74 * parameters[ZZ4]
-        - t70 * parameters[YZ4];
-    const ariane6_real_t t178 = (t155 - t60) * parameters[XY4] + (t177 + t66 * parameters[XZ4])
-        + (t106 * parameters[MY4] - t84 * parameters[MX4]);
-    const ariane6_real_t t179 = t178 + (t87 * t148 + t86 * t153);
-    const ariane6_real_t t180 = t176 - (t179 + ARIANE6_C(-0.17) * t173);
-    const ariane6_real_t t181 = t19 * t19;
-    const ariane6_real_t t182 = t16 + t18;
-    const ariane6_real_t t183 = t20 * (parameters[XX2] - parameters[ZZ2]) + t22 * parameters[YY2]
-        + t182 * parameters[XY2];
-    const ariane6_real_t t184 = (t15 - t181) * parameters[XZ2] + (t183 + (ddq[1] - t25) * parameters[YZ2]);
-    const ariane6_real_t t185 = (t77 + t40) * parameters[MZ3] + (t51 * parameters[MX3]
-        - t65 * parameters[MY3]);
-    const ariane6_real_t t186 = t185 - t32 * parameters[M3] + t173;
-    const ariane6_real_t t187 = t184 - (t34 * parameters[MZ2] + t29 * parameters[MX2]) + (t33 * t174
-        - t31 * t180 + ARIANE6_C(0.685) * t186);
-    const ariane6_real_t t188 = t11 * (t30 + (t31 * t174 + t33 * t180)) + t12 * t187;
-    const ariane6_real_t t189 = (t181 + t14) * parameters[MZ2] + (t23 * parameters[MX2]
-        - t182 * parameters[MY2]);
-    const ariane6_real_t t190 = ddq[0] * parameters[ZZ1] + (t188 + ARIANE6_C(0.18) * (t189
-        - t29 * parameters[M2] + t186));
-    out[0] = ARIANE6_C(250.0) * t9 + t10 * t190;
-    const ariane6_real_t t191 = ARIANE6_C(0.766044443118978) * t11 + ARIANE6_C(0.6427876096865393) * t12;
-    const ariane6_real_t t192 = ARIANE6_C(0.766044443118978) * t12 - ARIANE6_C(0.6427876096865393) * t11;
-    const ariane6_real_t t193 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t192 + ARIANE6_C(0.420682));
-    const ariane6_real_t t194 = ARIANE6_C(1.0) / t193;
-    const ariane6_real_t t195 = t191 * (ARIANE6_C(12691.800000000003) * t194);
-    const ariane6_real_t t196 = t195 * dq[1];
-    const ariane6_real_t t197 = ariane6_sign(t196);
-    const ariane6_real_t t198 = ARIANE6_C(12691.800000000003) * t192
-        + ARIANE6_C(-805.4089362000002) * (t194 * t194) * (t191 * t191);
-    const ariane6_real_t t199 = t196 * parameters[FV2] + t197 * parameters[FC2] + (t195 * ddq[1]
-        + t194 * t198 * t15) * parameters[IA2];
-    const ariane6_real_t t200 = ARIANE6_C(0.019697757607273984) * t193 / t191;
-    const ariane6_real_t t201 = t25 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t21 * parameters[YZ2];
-    const ariane6_real_t t202 = t28 * parameters[MX2] + t34 * parameters[MY2] + ((t181
-        - t14) * parameters[XY2] + (t201 + t17 * parameters[XZ2]));
-    const ariane6_real_t t203 = t53 * parameters[ZZ3] - t54 * (parameters[XX3] - parameters[YY3])
-        + t49 * parameters[YZ3];
-    const ariane6_real_t t204 = t37 * parameters[MX3] + t80 * parameters[MY3] + ((t77 - t40) * parameters[XY3]
-        + (t203 + t45 * parameters[XZ3]));
-    const ariane6_real_t t205 = t72 * parameters[MX4] - t94 * parameters[MY4] - (t155
-        + t60) * parameters[MZ4];
-    const ariane6_real_t t206 = t79 * parameters[M4] + t205 + (t87 * t165 + t86 * t168);
-    const ariane6_real_t t207 = t57 * t169 - t58 * t172;
-    const ariane6_real_t t208 = t57 * t162 - t58 * t154 + (ARIANE6_C(-0.17) * t206
-        + ARIANE6_C(-0.488) * t207);
-    const ariane6_real_t t209 = t204 + t208;
-    const ariane6_real_t t210 = t64 * parameters[MY3] - t81 * parameters[MX3] + t49 * parameters[MZ3]
-        - t80 * parameters[M3];
-    const ariane6_real_t t211 = t37 * parameters[M3] + (t55 * parameters[MX3] - t78 * parameters[MY3]
-        - t45 * parameters[MZ3]);
-    const ariane6_real_t t212 = ARIANE6_C(0.685) * (t33 * (t210 + t207) + t31 * (t211 + t206));
-    out[1] = ARIANE6_C(250.0) * t199 + t200 * (t202 + (t209 + t212));
-    const ariane6_real_t t213 = ARIANE6_C(0.052335956242943966) * t33 - ARIANE6_C(0.9986295347545738) * t31;
-    const ariane6_real_t t214 = ARIANE6_C(0.052335956242943966) * t31 + ARIANE6_C(0.9986295347545738) * t33;
-    const ariane6_real_t t215 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t214 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t216 = ARIANE6_C(1.0) / t215;
-    const ariane6_real_t t217 = t213 * (ARIANE6_C(8377.600000000002) * t216);
-    const ariane6_real_t t218 = t217 * dq[2];
-    const ariane6_real_t t219 = ariane6_sign(t218);
-    const ariane6_real_t t220 = ARIANE6_C(8377.600000000002) * t214
-        + ARIANE6_C(-350.9209088000001) * (t216 * t216) * (t213 * t213);
-    const ariane6_real_t t221 = (t217 * ddq[2] + t216 * t220 * (dq[2] * dq[2])) * parameters[IA3];
-    const ariane6_real_t t222 = ARIANE6_C(0.029841482047364396) * t215 / t213;
-    const ariane6_real_t t223 = ARIANE6_C(250.0) * (t218 * parameters[FV3] + t219 * parameters[FC3] + t221)
-        + t222 * t209;
+    ariane6_real_t t181, t183;
+    ARIANE6_SINCOS(q[0], &t181, &t183);
+    ariane6_real_t t0, t2;
+    ARIANE6_SINCOS(q[1], &t0, &t2);
+    ariane6_real_t t3, t1;
+    ARIANE6_SINCOS(q[2], &t3, &t1);
+    ariane6_real_t t17, t11;
+    ARIANE6_SINCOS(q[3], &t17, &t11);
+    ariane6_real_t t25, t24;
+    ARIANE6_SINCOS(q[4], &t25, &t24);
+    ariane6_real_t t30, t47;
+    ARIANE6_SINCOS(q[5], &t30, &t47);
+    const ariane6_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane6_real_t t5 = dq[0] * t4;
+    const ariane6_real_t t6 = t2 * t1 - t0 * t3;
+    const ariane6_real_t t7 = dq[0] * t6;
+    const ariane6_real_t t8 = t5 * t7;
+    const ariane6_real_t t9 = ddq[1] + ddq[2];
+    const ariane6_real_t t10 = t8 - t9;
+    const ariane6_real_t t12 = ddq[0] * t4;
+    const ariane6_real_t t13 = dq[1] + dq[2];
+    const ariane6_real_t t14 = t7 * t13;
+    const ariane6_real_t t15 = t12 + t14;
+    const ariane6_real_t t16 = t14 + t15;
+    const ariane6_real_t t18 = t17 * t16 - t11 * t10;
+    const ariane6_real_t t19 = t11 * t5 - t17 * t13;
+    const ariane6_real_t t20 = dq[3] + t7;
+    const ariane6_real_t t21 = t19 * t20;
+    const ariane6_real_t t22 = t18 + t21;
+    const ariane6_real_t t23 = ddq[4] + t22;
+    const ariane6_real_t t26 = t24 * t19 + t25 * t20;
+    const ariane6_real_t t27 = t24 * t20 - t25 * t19;
+    const ariane6_real_t t28 = t26 * t27;
+    const ariane6_real_t t29 = t23 - t28;
+    const ariane6_real_t t31 = ddq[0] * t6;
+    const ariane6_real_t t32 = t5 * t13;
+    const ariane6_real_t t33 = t31 - t32;
+    const ariane6_real_t t34 = ddq[3] + t33;
+    const ariane6_real_t t35 = t17 * t5 + t11 * t13;
+    const ariane6_real_t t36 = t19 * t35;
+    const ariane6_real_t t37 = t34 + t36;
+    const ariane6_real_t t38 = t17 * t10 + t11 * t16;
+    const ariane6_real_t t39 = t35 * t20;
+    const ariane6_real_t t40 = t39 - t38;
+    const ariane6_real_t t41 = t39 + t40;
+    const ariane6_real_t t42 = t25 * t37 - t24 * t41;
+    const ariane6_real_t t43 = dq[4] + t35;
+    const ariane6_real_t t44 = t27 * t43;
+    const ariane6_real_t t45 = t42 + t44;
+    const ariane6_real_t t46 = t44 + t45;
+    const ariane6_real_t t48 = t30 * t29 - t47 * t46;
+    const ariane6_real_t t49 = t30 * t26 + t47 * t43;
+    const ariane6_real_t t50 = dq[5] + t27;
+    const ariane6_real_t t51 = t49 * t50;
+    const ariane6_real_t t52 = t48 + t51;
+    const ariane6_real_t t53 = t47 * t29 + t30 * t46;
+    const ariane6_real_t t54 = t47 * t26 - t30 * t43;
+    const ariane6_real_t t55 = t54 * t50;
+    const ariane6_real_t t56 = t53 + t55;
+    const ariane6_real_t t57 = t55 + t56;
+    const ariane6_real_t t58 = t51 * (parameters[YY6] - parameters[ZZ6]) - t52 * parameters[XX6]
+        - t57 * parameters[XY6];
+    const ariane6_real_t t59 = t24 * t37 + t25 * t41;
+    const ariane6_real_t t60 = t26 * t43;
+    const ariane6_real_t t61 = t59 - t60;
+    const ariane6_real_t t62 = ddq[5] + t61;
+    const ariane6_real_t t63 = t54 * t49;
+    const ariane6_real_t t64 = t63 - t62;
+    const ariane6_real_t t65 = t49 * t49;
+    const ariane6_real_t t66 = t50 * t50;
+    const ariane6_real_t t67 = dq[0] * dq[0];
+    const ariane6_real_t t68 = ARIANE6_C(0.18) * t67;
+    const ariane6_real_t t69 = t2 * t68 + ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t70 = t2 * dq[0];
+    const ariane6_real_t t71 = t70 * t70;
+    const ariane6_real_t t72 = dq[1] * dq[1];
+    const ariane6_real_t t73 = t69 + ARIANE6_C(0.685) * (t71 + t72);
+    const ariane6_real_t t74 = t0 * t68 + ARIANE6_C(9.81) * t2;
+    const ariane6_real_t t75 = t0 * dq[0];
+    const ariane6_real_t t76 = t75 * t70;
+    const ariane6_real_t t77 = ddq[1] + t76;
+    const ariane6_real_t t78 = t74 + ARIANE6_C(0.685) * t77;
+    const ariane6_real_t t79 = t1 * t73 - t3 * t78;
+    const ariane6_real_t t80 = t7 * t7;
+    const ariane6_real_t t81 = t13 * t13;
+    const ariane6_real_t t82 = t80 + t81;
+    const ariane6_real_t t83 = t79 - (ARIANE6_C(0.17) * t82 - ARIANE6_C(-0.488) * t10);
+    const ariane6_real_t t84 = t33 - t32;
+    const ariane6_real_t t85 = t2 * ddq[0];
+    const ariane6_real_t t86 = dq[1] * t75;
+    const ariane6_real_t t87 = t85 - t86;
+    const ariane6_real_t t88 = t87 - t86;
+    const ariane6_real_t t89 = ARIANE6_C(-0.18) * ddq[0];
+    const ariane6_real_t t90 = t89 + ARIANE6_C(-0.685) * t88;
+    const ariane6_real_t t91 = t90 + (ARIANE6_C(0.17) * t84 + ARIANE6_C(0.488) * t16);
+    const ariane6_real_t t92 = t11 * t83 + t17 * t91;
+    const ariane6_real_t t93 = t3 * t73 + t1 * t78;
+    const ariane6_real_t t94 = t9 + t8;
+    const ariane6_real_t t95 = t5 * t5;
+    const ariane6_real_t t96 = t95 + t81;
+    const ariane6_real_t t97 = t93 + (ARIANE6_C(-0.17) * t94 + ARIANE6_C(-0.488) * t96);
+    const ariane6_real_t t98 = t24 * t92 - t25 * t97;
+    const ariane6_real_t t99 = t98 + ARIANE6_C(0.3) * t29;
+    const ariane6_real_t t100 = t11 * t91 - t17 * t83;
+    const ariane6_real_t t101 = t100 + ARIANE6_C(0.3) * t46;
+    const ariane6_real_t t102 = t30 * t99 - t47 * t101;
+    const ariane6_real_t t103 = t25 * t92 + t24 * t97;
+    const ariane6_real_t t104 = t26 * t26;
+    const ariane6_real_t t105 = t43 * t43;
+    const ariane6_real_t t106 = t104 + t105;
+    const ariane6_real_t t107 = t103 + ARIANE6_C(-0.3) * t106;
+    const ariane6_real_t t108 = (t65 - t66) * parameters[YZ6] + (t58 - t64 * parameters[XZ6])
+        + (t107 * parameters[MY6] - t102 * parameters[MZ6]);
+    const ariane6_real_t t109 = t51 + t52;
+    const ariane6_real_t t110 = t55 * (parameters[ZZ6] - parameters[XX6]) + t56 * parameters[YY6]
+        + t109 * parameters[XY6];
+    const ariane6_real_t t111 = t62 + t63;
+    const ariane6_real_t t112 = t54 * t54;
+    const ariane6_real_t t113 = t47 * t99 + t30 * t101;
+    const ariane6_real_t t114 = (t112 - t66) * parameters[XZ6] + (t110 - t111 * parameters[YZ6])
+        + (t113 * parameters[MZ6] + t107 * parameters[MX6]);
+    const ariane6_real_t t115 = (t65 + t66) * parameters[MX6] + t111 * parameters[MY6]
+        + t53 * parameters[MZ6];
+    const ariane6_real_t t116 = t113 * parameters[M6] + t115;
+    const ariane6_real_t t117 = (t112 + t66) * parameters[MY6] + t64 * parameters[MX6]
+        - t48 * parameters[MZ6];
+    const ariane6_real_t t118 = t117 - t102 * parameters[M6];
+    const ariane6_real_t t119 = t30 * t116 + t47 * t118;
+    const ariane6_real_t t120 = t61 - t60;
+    const ariane6_real_t t121 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
+        + t120 * parameters[XY5];
+    const ariane6_real_t t122 = t23 + t28;
+    const ariane6_real_t t123 = t27 * t27;
+    const ariane6_real_t t124 = (t123 - t105) * parameters[YZ5] + (t121 + t122 * parameters[XZ5])
+        + (t100 * parameters[MY5] - t103 * parameters[MZ5]);
+    const ariane6_real_t t125 = t124 + (t47 * t108 + t30 * t114 + ARIANE6_C(0.3) * t119);
+    const ariane6_real_t t126 = t63 * (parameters[XX6] - parameters[YY6]) + t62 * parameters[ZZ6]
+        - t53 * parameters[YZ6];
+    const ariane6_real_t t127 = (t112 - t65) * parameters[XY6] + (t126 - t48 * parameters[XZ6])
+        + (t102 * parameters[MX6] + t113 * parameters[MY6]);
+    const ariane6_real_t t128 = t60 * (parameters[XX5] - parameters[ZZ5]) + t61 * parameters[YY5]
+        + t46 * parameters[XY5];
+    const ariane6_real_t t129 = (t105 - t104) * parameters[XZ5] + (t128 + t29 * parameters[YZ5])
+        - (t98 * parameters[MZ5] + t100 * parameters[MX5]);
+    const ariane6_real_t t130 = t129 + t127;
+    const ariane6_real_t t131 = t21 + t22;
+    const ariane6_real_t t132 = t39 * (parameters[YY4] - parameters[ZZ4]) - t40 * parameters[XX4]
+        - t131 * parameters[XY4];
+    const ariane6_real_t t133 = t34 - t36;
+    const ariane6_real_t t134 = t35 * t35;
+    const ariane6_real_t t135 = t20 * t20;
+    const ariane6_real_t t136 = (t134 - t135) * parameters[YZ4] + (t132 + t133 * parameters[XZ4])
+        + (t97 * parameters[MY4] + t100 * parameters[MZ4]);
+    const ariane6_real_t t137 = t136 + (t24 * t125 - t25 * t130);
+    const ariane6_real_t t138 = t30 * t118 - t47 * t116;
+    const ariane6_real_t t139 = t23 * parameters[ZZ5] - t28 * (parameters[XX5] - parameters[YY5])
+        + t59 * parameters[YZ5];
+    const ariane6_real_t t140 = (t104 - t123) * parameters[XY5] + (t139 + t42 * parameters[XZ5])
+        + (t103 * parameters[MX5] + t98 * parameters[MY5]);
+    const ariane6_real_t t141 = t140 + (t47 * t114 - t30 * t108 + ARIANE6_C(-0.3) * t138);
+    const ariane6_real_t t142 = t21 * (parameters[ZZ4] - parameters[XX4]) + t22 * parameters[YY4]
+        + t41 * parameters[XY4];
+    const ariane6_real_t t143 = t19 * t19;
+    const ariane6_real_t t144 = (t143 - t135) * parameters[XZ4] + (t142 - t37 * parameters[YZ4])
+        + (t92 * parameters[MZ4] + t97 * parameters[MX4]);
+    const ariane6_real_t t145 = t144 + t141;
+    const ariane6_real_t t146 = t59 * parameters[MZ5] - ((t123 + t105) * parameters[MX5]
+        + t29 * parameters[MY5]);
+    const ariane6_real_t t147 = t146 - t98 * parameters[M5] + t138;
+    const ariane6_real_t t148 = t103 * parameters[M5] - (t106 * parameters[MY5] - t122 * parameters[MX5]
+        + t42 * parameters[MZ5]);
+    const ariane6_real_t t149 = (t112 + t65) * parameters[MZ6] - (t57 * parameters[MX6]
+        - t109 * parameters[MY6]);
+    const ariane6_real_t t150 = t148 + (t107 * parameters[M6] - t149);
+    const ariane6_real_t t151 = (t134 + t135) * parameters[MX4] + t37 * parameters[MY4]
+        + t18 * parameters[MZ4];
+    const ariane6_real_t t152 = t24 * t147 - t25 * t150 - (t92 * parameters[M4] + t151);
+    const ariane6_real_t t153 = (t104 + t123) * parameters[MZ5] - (t46 * parameters[MY5]
+        - t120 * parameters[MX5]);
+    const ariane6_real_t t154 = (t143 + t135) * parameters[MY4] - t133 * parameters[MX4]
+        + t38 * parameters[MZ4];
+    const ariane6_real_t t155 = t153 - t100 * parameters[M5] - t119 - (t100 * parameters[M4] + t154);
+    const ariane6_real_t t156 = t17 * t152 + t11 * t155;
+    const ariane6_real_t t157 = t15 * parameters[XX3] - t14 * (parameters[YY3] - parameters[ZZ3])
+        + t84 * parameters[XY3];
+    const ariane6_real_t t158 = t90 * parameters[MY3] - t93 * parameters[MZ3] + ((t80 - t81) * parameters[YZ3]
+        + (t157 + t94 * parameters[XZ3]));
+    const ariane6_real_t t159 = t158 + (t11 * t137 + t17 * t145 + ARIANE6_C(-0.488) * t156);
+    const ariane6_real_t t160 = t36 * (parameters[XX4] - parameters[YY4]) + t34 * parameters[ZZ4]
+        - t18 * parameters[YZ4];
+    const ariane6_real_t t161 = (t143 - t134) * parameters[XY4] + (t160 + t38 * parameters[XZ4])
+        + (t92 * parameters[MY4] - t100 * parameters[MX4]);
+    const ariane6_real_t t162 = t161 + (t25 * t125 + t24 * t130);
+    const ariane6_real_t t163 = t32 * (parameters[XX3] - parameters[ZZ3]) + t33 * parameters[YY3]
+        + t16 * parameters[XY3];
+    const ariane6_real_t t164 = t79 * parameters[MZ3] + t90 * parameters[MX3] + ((t95 - t81) * parameters[XZ3]
+        - (t163 - t10 * parameters[YZ3]));
+    const ariane6_real_t t165 = t164 - (t162 + ARIANE6_C(-0.17) * t156);
+    const ariane6_real_t t166 = dq[1] * t70;
+    const ariane6_real_t t167 = t0 * ddq[0];
+    const ariane6_real_t t168 = t167 + t166;
+    const ariane6_real_t t169 = t166 * (parameters[ZZ2] - parameters[YY2]) + t168 * parameters[XX2]
+        + t88 * parameters[XY2];
+    const ariane6_real_t t170 = (t71 - t72) * parameters[YZ2] + (t169 + t77 * parameters[XZ2])
+        + (t89 * parameters[MY2] - t74 * parameters[MZ2]);
+    const ariane6_real_t t171 = (t95 + t80) * parameters[MZ3] + (t84 * parameters[MX3]
+        - t16 * parameters[MY3]);
+    const ariane6_real_t t172 = t171 - t90 * parameters[M3] + t156;
+    const ariane6_real_t t173 = t166 + t168;
+    const ariane6_real_t t174 = t86 * (parameters[XX2] - parameters[ZZ2]) + t87 * parameters[YY2]
+        + t173 * parameters[XY2];
+    const ariane6_real_t t175 = t75 * t75;
+    const ariane6_real_t t176 = (t72 - t175) * parameters[XZ2] + (t174 + (ddq[1] - t76) * parameters[YZ2]);
+    const ariane6_real_t t177 = t176 - (t69 * parameters[MZ2] + t89 * parameters[MX2]) + (t3 * t159
+        - t1 * t165 + ARIANE6_C(0.685) * t172);
+    const ariane6_real_t t178 = t0 * (t170 + (t1 * t159 + t3 * t165)) + t2 * t177;
+    const ariane6_real_t t179 = (t175 + t71) * parameters[MZ2] + (t88 * parameters[MX2]
+        - t173 * parameters[MY2]);
+    const ariane6_real_t t180 = ddq[0] * parameters[ZZ1] + (t178 + ARIANE6_C(0.18) * (t179
+        - t89 * parameters[M2] + t172));
+    const ariane6_real_t t182 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t181 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t184 = ARIANE6_C(0.061525739908548135) * t182 / t183;
+    const ariane6_real_t t185 = ARIANE6_C(-1.0) / t182;
+    const ariane6_real_t t186 = t183 * (ARIANE6_C(-4063.3400000000006) * t185);
+    const ariane6_real_t t187 = t186 * dq[0];
+    const ariane6_real_t t188 = ariane6_sign(t187);
+    const ariane6_real_t t189 = ARIANE6_C(-4063.3400000000006) * t181
+        + ARIANE6_C(-82.55365977800001) * (t185 * t185) * (t183 * t183);
+    const ariane6_real_t t190 = t187 * parameters[FV1] + t188 * parameters[FC1] + (t186 * ddq[0]
+        - t185 * t189 * t67) * parameters[IA1];
+    out[0] = ARIANE6_C(250.0) * t190 + t184 * t180;
+    const ariane6_real_t t191 = t11 * t152 - t17 * t155;
+    const ariane6_real_t t192 = t131 * parameters[MX4] - t41 * parameters[MY4] - (t143
+        + t134) * parameters[MZ4];
+    const ariane6_real_t t193 = t97 * parameters[M4] + t192 + (t25 * t147 + t24 * t150);
+    const ariane6_real_t t194 = t11 * t145 - t17 * t137 + (ARIANE6_C(-0.17) * t193
+        + ARIANE6_C(-0.488) * t191);
+    const ariane6_real_t t195 = t9 * parameters[ZZ3] - t8 * (parameters[XX3] - parameters[YY3])
+        + t31 * parameters[YZ3];
+    const ariane6_real_t t196 = t93 * parameters[MX3] + t79 * parameters[MY3] + ((t95 - t80) * parameters[XY3]
+        + (t195 + t12 * parameters[XZ3]));
+    const ariane6_real_t t197 = t196 + t194;
+    const ariane6_real_t t198 = t10 * parameters[MY3] - t82 * parameters[MX3] + t31 * parameters[MZ3]
+        - t79 * parameters[M3];
+    const ariane6_real_t t199 = t93 * parameters[M3] + (t94 * parameters[MX3] - t96 * parameters[MY3]
+        - t12 * parameters[MZ3]);
+    const ariane6_real_t t200 = ARIANE6_C(0.685) * (t3 * (t198 + t191) + t1 * (t199 + t193));
+    const ariane6_real_t t201 = t76 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t85 * parameters[YZ2];
+    const ariane6_real_t t202 = t74 * parameters[MX2] + t69 * parameters[MY2] + ((t175
+        - t71) * parameters[XY2] + (t201 + t167 * parameters[XZ2]));
+    const ariane6_real_t t203 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t0;
+    const ariane6_real_t t204 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t203 + ARIANE6_C(0.420682));
+    const ariane6_real_t t205 = ARIANE6_C(0.766044443118978) * t0 + ARIANE6_C(0.6427876096865393) * t2;
+    const ariane6_real_t t206 = ARIANE6_C(0.019697757607273984) * t204 / t205;
+    const ariane6_real_t t207 = ARIANE6_C(1.0) / t204;
+    const ariane6_real_t t208 = t205 * (ARIANE6_C(12691.800000000003) * t207);
+    const ariane6_real_t t209 = t208 * dq[1];
+    const ariane6_real_t t210 = ariane6_sign(t209);
+    const ariane6_real_t t211 = ARIANE6_C(12691.800000000003) * t203
+        + ARIANE6_C(-805.4089362000002) * (t207 * t207) * (t205 * t205);
+    const ariane6_real_t t212 = t209 * parameters[FV2] + t210 * parameters[FC2] + (t208 * ddq[1]
+        + t207 * t211 * t72) * parameters[IA2];
+    out[1] = ARIANE6_C(250.0) * t212 + t206 * (t202 + (t197 + t200));
+    const ariane6_real_t t213 = ARIANE6_C(0.052335956242943966) * t1 + ARIANE6_C(0.9986295347545738) * t3;
+    const ariane6_real_t t214 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t213 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t215 = ARIANE6_C(0.052335956242943966) * t3 - ARIANE6_C(0.9986295347545738) * t1;
+    const ariane6_real_t t216 = ARIANE6_C(0.029841482047364396) * t214 / t215;
+    const ariane6_real_t t217 = ARIANE6_C(1.0) / t214;
+    const ariane6_real_t t218 = t215 * (ARIANE6_C(8377.600000000002) * t217);
+    const ariane6_real_t t219 = t218 * dq[2];
+    const ariane6_real_t t220 = ariane6_sign(t219);
+    const ariane6_real_t t221 = ARIANE6_C(8377.600000000002) * t213
+        + ARIANE6_C(-350.9209088000001) * (t217 * t217) * (t215 * t215);
+    const ariane6_real_t t222 = (t218 * ddq[2] + t217 * t221 * (dq[2] * dq[2])) * parameters[IA3];
+    const ariane6_real_t t223 = ARIANE6_C(250.0) * (t219 * parameters[FV3] + t220 * parameters[FC3] + t222)
+        + t216 * t197;
     out[2] = t223;
     const ariane6_real_t t224 = ariane6_sign(dq[3]);
     const ariane6_real_t t225 = ARIANE6_C(1.0e2) * dq[3] * parameters[FV4] + t224 * parameters[FC4]
         + ARIANE6_C(1.0e2) * ddq[3] * parameters[IA4];
-    out[3] = ARIANE6_C(20.0) * t225 + ARIANE6_C(0.2) * t179;
-    const ariane6_real_t t226 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t87 + ARIANE6_C(0.097));
-    const ariane6_real_t t227 = ARIANE6_C(-1.0) / t226;
-    const ariane6_real_t t228 = t86 * (ARIANE6_C(-3549.6000000000004) * t227);
-    const ariane6_real_t t229 = t228 * dq[4];
-    const ariane6_real_t t230 = ariane6_sign(t229);
-    const ariane6_real_t t231 = ARIANE6_C(-3549.6000000000004) * t87
-        + ARIANE6_C(-62.9983008) * (t227 * t227) * (t86 * t86);
-    const ariane6_real_t t232 = (t228 * ddq[4] - t227 * t231 * (dq[4] * dq[4])) * parameters[IA5];
-    const ariane6_real_t t233 = ARIANE6_C(0.07043047103899029) * t226 / t86;
-    const ariane6_real_t t234 = ARIANE6_C(250.0) * (t229 * parameters[FV5] + t230 * parameters[FC5] + t232)
-        + t233 * t161;
+    out[3] = ARIANE6_C(20.0) * t225 + ARIANE6_C(0.2) * t162;
+    const ariane6_real_t t226 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t25 + ARIANE6_C(0.097));
+    const ariane6_real_t t227 = ARIANE6_C(0.07043047103899029) * t226 / t24;
+    const ariane6_real_t t228 = ARIANE6_C(-1.0) / t226;
+    const ariane6_real_t t229 = t24 * (ARIANE6_C(-3549.6000000000004) * t228);
+    const ariane6_real_t t230 = t229 * dq[4];
+    const ariane6_real_t t231 = ariane6_sign(t230);
+    const ariane6_real_t t232 = ARIANE6_C(-3549.6000000000004) * t25
+        + ARIANE6_C(-62.9983008) * (t228 * t228) * (t24 * t24);
+    const ariane6_real_t t233 = (t229 * ddq[4] - t228 * t232 * (dq[4] * dq[4])) * parameters[IA5];
+    const ariane6_real_t t234 = ARIANE6_C(250.0) * (t230 * parameters[FV5] + t231 * parameters[FC5] + t233)
+        + t227 * t141;
     out[4] = t234;
     const ariane6_real_t t235 = ariane6_sign(dq[5]);
     const ariane6_real_t t236 = ARIANE6_C(1.0e2) * dq[5] * parameters[FV6] + t235 * parameters[FC6]
         + ARIANE6_C(1.0e2) * ddq[5] * parameters[IA6];
-    out[5] = ARIANE6_C(20.0) * t236 + ARIANE6_C(0.2) * t152;
+    out[5] = ARIANE6_C(20.0) * t236 + ARIANE6_C(0.2) * t127;
     return ARIANE6_STATUS_OK;
 }

@@ -21,7 +21,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -39,70 +39,70 @@ int ariane6_jacobian(
         return status;
     }
 
-    ariane6_real_t t0, t13;
-    ARIANE6_SINCOS(q[0], &t0, &t13);
-    ariane6_real_t t7, t2;
-    ARIANE6_SINCOS(q[1], &t7, &t2);
-    ariane6_real_t t6, t5;
-    ARIANE6_SINCOS(q[2], &t6, &t5);
-    ariane6_real_t t14, t12;
-    ARIANE6_SINCOS(q[3], &t14, &t12);
-    ariane6_real_t t11, t15;
-    ARIANE6_SINCOS(q[4], &t11, &t15);
-    const ariane6_real_t t1 = ARIANE6_C(-0.18) * t0;
-    const ariane6_real_t t3 = t0 * t2;
-    const ariane6_real_t t4 = t1 + ARIANE6_C(-0.685) * t3;
-    const ariane6_real_t t8 = t0 * t7;
-    const ariane6_real_t t9 = t5 * t3 - t6 * t8;
-    const ariane6_real_t t10 = t6 * t3 + t5 * t8;
-    const ariane6_real_t t16 = t11 * (t12 * t9 + t13 * t14) + t15 * t10;
+    ariane6_real_t t0, t12;
+    ARIANE6_SINCOS(q[0], &t0, &t12);
+    ariane6_real_t t4, t1;
+    ARIANE6_SINCOS(q[1], &t4, &t1);
+    ariane6_real_t t6, t3;
+    ARIANE6_SINCOS(q[2], &t6, &t3);
+    ariane6_real_t t13, t11;
+    ARIANE6_SINCOS(q[3], &t13, &t11);
+    ariane6_real_t t14, t15;
+    ARIANE6_SINCOS(q[4], &t14, &t15);
+    const ariane6_real_t t2 = t0 * t1;
+    const ariane6_real_t t5 = t0 * t4;
+    const ariane6_real_t t7 = t3 * t2 - t6 * t5;
+    const ariane6_real_t t8 = t6 * t2 + t3 * t5;
+    const ariane6_real_t t9 = ARIANE6_C(-0.18) * t0;
+    const ariane6_real_t t10 = t9 + ARIANE6_C(-0.685) * t2;
+    const ariane6_real_t t16 = t14 * (t11 * t7 + t12 * t13) + t15 * t8;
     const ariane6_real_t t17 = ARIANE6_C(0.3) * t16;
-    const ariane6_real_t t18 = t4 + (ARIANE6_C(0.17) * t9 + ARIANE6_C(0.488) * t10) + t17;
+    const ariane6_real_t t18 = t10 + (ARIANE6_C(0.17) * t7 + ARIANE6_C(0.488) * t8) + t17;
     out[0] = t18;
-    const ariane6_real_t t19 = ARIANE6_C(0.685) * t7;
-    const ariane6_real_t t20 = t7 * t5 + t2 * t6;
-    const ariane6_real_t t21 = t2 * t5 - t7 * t6;
-    const ariane6_real_t t22 = t15 * t21 - t11 * (t12 * t20);
+    const ariane6_real_t t19 = t4 * t3 + t1 * t6;
+    const ariane6_real_t t20 = t1 * t3 - t4 * t6;
+    const ariane6_real_t t21 = ARIANE6_C(0.685) * t4;
+    const ariane6_real_t t22 = t15 * t20 - t14 * (t11 * t19);
     const ariane6_real_t t23 = ARIANE6_C(-0.3) * t22;
-    const ariane6_real_t t24 = ARIANE6_C(0.17) * t20 + ARIANE6_C(-0.488) * t21 - t19 + t23;
-    out[1] = t13 * t24;
-    const ariane6_real_t t25 = t19 + t24;
-    out[2] = t13 * t25;
-    out[3] = t10 * t23 + t21 * t17;
-    const ariane6_real_t t26 = t14 * t9 - t13 * t12;
-    const ariane6_real_t t27 = t14 * t20;
+    const ariane6_real_t t24 = ARIANE6_C(0.17) * t19 + ARIANE6_C(-0.488) * t20 - t21 + t23;
+    out[1] = t12 * t24;
+    const ariane6_real_t t25 = t21 + t24;
+    out[2] = t12 * t25;
+    out[3] = t8 * t23 + t20 * t17;
+    const ariane6_real_t t26 = t13 * t7 - t12 * t11;
+    const ariane6_real_t t27 = t13 * t19;
     out[4] = t27 * t17 - t26 * t23;
-    const ariane6_real_t t28 = ARIANE6_C(-0.18) * t13;
-    const ariane6_real_t t29 = t13 * t2;
-    const ariane6_real_t t30 = ARIANE6_C(0.685) * t29 - t28;
-    const ariane6_real_t t31 = t13 * t7;
-    const ariane6_real_t t32 = t6 * t31 - t5 * t29;
-    const ariane6_real_t t33 = t6 * t29 + t5 * t31;
-    const ariane6_real_t t34 = t11 * (t12 * t32 + t0 * t14) - t15 * t33;
+    const ariane6_real_t t28 = t12 * t1;
+    const ariane6_real_t t29 = t12 * t4;
+    const ariane6_real_t t30 = t6 * t29 - t3 * t28;
+    const ariane6_real_t t31 = t6 * t28 + t3 * t29;
+    const ariane6_real_t t32 = ARIANE6_C(-0.18) * t12;
+    const ariane6_real_t t33 = ARIANE6_C(0.685) * t28 - t32;
+    const ariane6_real_t t34 = t14 * (t11 * t30 + t0 * t13) - t15 * t31;
     const ariane6_real_t t35 = ARIANE6_C(0.3) * t34;
-    const ariane6_real_t t36 = t30 + (ARIANE6_C(0.17) * t32 + ARIANE6_C(-0.488) * t33) + t35;
+    const ariane6_real_t t36 = t33 + (ARIANE6_C(0.17) * t30 + ARIANE6_C(-0.488) * t31) + t35;
     out[6] = t36;
     out[7] = t0 * t24;
     out[8] = t0 * t25;
-    out[9] = t21 * t35 - t33 * t23;
-    const ariane6_real_t t37 = t0 * t12 - t14 * t32;
+    out[9] = t20 * t35 - t31 * t23;
+    const ariane6_real_t t37 = t0 * t11 - t13 * t30;
     out[10] = t27 * t35 + t37 * t23;
-    out[13] = t0 * (t1 - t18) + t13 * (t28 + t36);
-    out[14] = t0 * (t4 - t18) + t13 * (t36 - t30);
-    out[15] = t33 * t17 + t10 * t35;
+    out[13] = t0 * (t9 - t18) + t12 * (t32 + t36);
+    out[14] = t0 * (t10 - t18) + t12 * (t36 - t33);
+    out[15] = t31 * t17 + t8 * t35;
     out[16] = -(t37 * t17 + t26 * t35);
     out[19] = t0;
     out[20] = t0;
-    out[21] = -t33;
+    out[21] = -t31;
     out[22] = t37;
     out[23] = t34;
-    out[25] = -t13;
-    out[26] = -t13;
-    out[27] = -t10;
+    out[25] = -t12;
+    out[26] = -t12;
+    out[27] = -t8;
     out[28] = t26;
     out[29] = -t16;
     out[30] = ARIANE6_C(1.0);
-    out[33] = t21;
+    out[33] = t20;
     out[34] = t27;
     out[35] = t22;
     /* always zero */

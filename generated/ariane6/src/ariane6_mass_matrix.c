@@ -79,7 +79,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -108,14 +108,14 @@ int ariane6_mass_matrix(
         return status;
     }
 
-    ariane6_real_t t57, t56;
-    ARIANE6_SINCOS(q[0], &t57, &t56);
-    ariane6_real_t t52, t46;
-    ARIANE6_SINCOS(q[1], &t52, &t46);
-    ariane6_real_t t42, t23;
-    ARIANE6_SINCOS(q[2], &t42, &t23);
-    ariane6_real_t t12, t15;
-    ARIANE6_SINCOS(q[3], &t12, &t15);
+    ariane6_real_t t56, t59;
+    ARIANE6_SINCOS(q[0], &t56, &t59);
+    ariane6_real_t t52, t50;
+    ARIANE6_SINCOS(q[1], &t52, &t50);
+    ariane6_real_t t42, t35;
+    ARIANE6_SINCOS(q[2], &t42, &t35);
+    ariane6_real_t t14, t19;
+    ARIANE6_SINCOS(q[3], &t14, &t19);
     ariane6_real_t t8, t5;
     ARIANE6_SINCOS(q[4], &t8, &t5);
     ariane6_real_t t1, t0;
@@ -128,110 +128,110 @@ int ariane6_mass_matrix(
     const ariane6_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (ARIANE6_C(2.0) * t8);
     const ariane6_real_t t10 = t5 * t9;
     const ariane6_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    const ariane6_real_t t13 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ariane6_real_t t14 = parameters[MY4R] + t13;
-    const ariane6_real_t t16 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const ariane6_real_t t17 = t16 - parameters[MX5];
-    const ariane6_real_t t18 = t8 * parameters[MY5R] + t5 * t17;
-    const ariane6_real_t t19 = parameters[MX4] - t18;
-    const ariane6_real_t t20 = t12 * t14 - t15 * t19;
+    const ariane6_real_t t12 = t0 * parameters[MY6] + t1 * parameters[MX6];
+    const ariane6_real_t t13 = parameters[MY4R] + t12;
+    const ariane6_real_t t15 = t1 * parameters[MY6] - t0 * parameters[MX6];
+    const ariane6_real_t t16 = t15 - parameters[MX5];
+    const ariane6_real_t t17 = t8 * parameters[MY5R] + t5 * t16;
+    const ariane6_real_t t18 = parameters[MX4] - t17;
+    const ariane6_real_t t20 = t14 * t13 - t19 * t18;
     const ariane6_real_t t21 = ARIANE6_C(0.34) * t20;
     const ariane6_real_t t22 = t11 + t21;
+    const ariane6_real_t t23 = parameters[XX4R] + (parameters[ZZ6] - t10);
     const ariane6_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
-    const ariane6_real_t t25 = parameters[XX4R] + (parameters[ZZ6] - t10);
-    const ariane6_real_t t26 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    const ariane6_real_t t27 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
-    const ariane6_real_t t28 = parameters[YZ5] - t27;
-    const ariane6_real_t t29 = t5 * t26 - t8 * t28;
-    const ariane6_real_t t30 = t29 - parameters[XY4];
-    const ariane6_real_t t31 = t15 * (t24 - t25) - t30 * (ARIANE6_C(2.0) * t12);
-    const ariane6_real_t t32 = t15 * t31;
-    const ariane6_real_t t33 = t8 * t17 - t5 * parameters[MY5R];
-    const ariane6_real_t t34 = ARIANE6_C(-0.976) * t33;
-    const ariane6_real_t t35 = parameters[XX3R] + (t24 - t32 + t34);
+    const ariane6_real_t t25 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
+    const ariane6_real_t t26 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
+    const ariane6_real_t t27 = parameters[YZ5] - t26;
+    const ariane6_real_t t28 = t5 * t25 - t8 * t27;
+    const ariane6_real_t t29 = t28 - parameters[XY4];
+    const ariane6_real_t t30 = t19 * (t24 - t23) - t29 * (ARIANE6_C(2.0) * t14);
+    const ariane6_real_t t31 = t19 * t30;
+    const ariane6_real_t t32 = t8 * t16 - t5 * parameters[MY5R];
+    const ariane6_real_t t33 = ARIANE6_C(-0.976) * t32;
+    const ariane6_real_t t34 = parameters[XX3R] + (t24 - t31 + t33);
     const ariane6_real_t t36 = parameters[XZ4] + (t7 - t8 * t9);
-    const ariane6_real_t t37 = t8 * t26 + t5 * t28;
+    const ariane6_real_t t37 = t8 * t25 + t5 * t27;
     const ariane6_real_t t38 = t37 - parameters[YZ4];
-    const ariane6_real_t t39 = t15 * t36 + t12 * t38;
+    const ariane6_real_t t39 = t19 * t36 + t14 * t38;
     const ariane6_real_t t40 = ARIANE6_C(0.488) * t20;
-    const ariane6_real_t t41 = parameters[XY3R] + (t39 + (t40 + ARIANE6_C(-0.17) * t33));
-    const ariane6_real_t t43 = t23 * (t22 - t35) + t41 * (ARIANE6_C(2.0) * t42);
-    const ariane6_real_t t44 = t23 * t43;
-    const ariane6_real_t t45 = parameters[XX2R] + (t22 - t44);
-    const ariane6_real_t t47 = t33 - parameters[MY3R];
-    const ariane6_real_t t48 = parameters[MX3R] - t20;
-    const ariane6_real_t t49 = t42 * t47 + t23 * t48;
-    const ariane6_real_t t50 = ARIANE6_C(1.37) * t49;
-    const ariane6_real_t t51 = t23 * t47 - t42 * t48;
+    const ariane6_real_t t41 = parameters[XY3R] + (t39 + (t40 + ARIANE6_C(-0.17) * t32));
+    const ariane6_real_t t43 = t35 * (t22 - t34) + t41 * (ARIANE6_C(2.0) * t42);
+    const ariane6_real_t t44 = t35 * t43;
+    const ariane6_real_t t45 = parameters[MX3R] - t20;
+    const ariane6_real_t t46 = t32 - parameters[MY3R];
+    const ariane6_real_t t47 = t42 * t46 + t35 * t45;
+    const ariane6_real_t t48 = ARIANE6_C(1.37) * t47;
+    const ariane6_real_t t49 = parameters[XX2R] + (t22 - t44);
+    const ariane6_real_t t51 = t35 * t46 - t42 * t45;
     const ariane6_real_t t53 = (parameters[XY2] + (t41 - t42 * t43
         + ARIANE6_C(0.685) * t51)) * (ARIANE6_C(2.0) * t52);
-    const ariane6_real_t t54 = t46 * (t46 * (t35 + t44 + t50 - t45) + t53);
-    const ariane6_real_t t55 = ARIANE6_C(0.36) * (t52 * (t51 - parameters[MY2]) + t46 * (parameters[MX2R]
-        + t49));
-    const ariane6_real_t t58 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t57 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t59 = ARIANE6_C(1.0) / t58;
-    const ariane6_real_t t60 = t56 * (ARIANE6_C(4063.3400000000006) * t59);
-    const ariane6_real_t t61 = parameters[ZZ1R] + (t45 + t54 + t55) + parameters[IA1] * (t60 * t60);
+    const ariane6_real_t t54 = t50 * (t50 * (t34 + t44 + t48 - t49) + t53);
+    const ariane6_real_t t55 = ARIANE6_C(0.36) * (t52 * (t51 - parameters[MY2]) + t50 * (parameters[MX2R]
+        + t47));
+    const ariane6_real_t t57 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t56 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t58 = ARIANE6_C(1.0) / t57;
+    const ariane6_real_t t60 = t59 * (ARIANE6_C(4063.3400000000006) * t58);
+    const ariane6_real_t t61 = parameters[ZZ1R] + (t49 + t54 + t55) + parameters[IA1] * (t60 * t60);
     out[0] = t61;
-    const ariane6_real_t t62 = t15 * t14 + t12 * t19;
-    const ariane6_real_t t63 = parameters[XZ3] + (t30 + t12 * t31 + ARIANE6_C(-0.17) * t62);
-    const ariane6_real_t t64 = t15 * t38 - t12 * t36 + ARIANE6_C(0.488) * t62;
+    const ariane6_real_t t62 = t19 * t13 + t14 * t18;
+    const ariane6_real_t t63 = parameters[XZ3] + (t29 + t14 * t30 + ARIANE6_C(-0.17) * t62);
+    const ariane6_real_t t64 = t19 * t38 - t14 * t36 + ARIANE6_C(0.488) * t62;
     const ariane6_real_t t65 = parameters[YZ3] + t64;
-    const ariane6_real_t t66 = t23 * t63 - t42 * t65;
-    const ariane6_real_t t67 = t42 * t63 + t23 * t65;
+    const ariane6_real_t t66 = t35 * t63 - t42 * t65;
+    const ariane6_real_t t67 = t42 * t63 + t35 * t65;
     const ariane6_real_t t68 = t52 * (parameters[XZ2R] + (t66 + ARIANE6_C(0.685) * t62))
-        + t46 * (parameters[YZ2] + t67);
+        + t50 * (parameters[YZ2] + t67);
     out[1] = t68;
-    const ariane6_real_t t69 = t52 * t66 + t46 * t67;
+    const ariane6_real_t t69 = t52 * t66 + t50 * t67;
     out[2] = t69;
     const ariane6_real_t t70 = t39 + t40;
     const ariane6_real_t t71 = t11 + ARIANE6_C(0.17) * t20;
-    const ariane6_real_t t72 = t46 * (t42 * t70 + t23 * t71 + ARIANE6_C(-0.685) * t20);
-    const ariane6_real_t t73 = t52 * (t23 * t70 - t42 * t71) + t72 + ARIANE6_C(-0.18) * t20;
+    const ariane6_real_t t72 = t50 * (t42 * t70 + t35 * t71 + ARIANE6_C(-0.685) * t20);
+    const ariane6_real_t t73 = t52 * (t35 * t70 - t42 * t71) + t72 + ARIANE6_C(-0.18) * t20;
     out[3] = t73;
-    const ariane6_real_t t74 = t12 * t33;
-    const ariane6_real_t t75 = t15 * t29 + t12 * t24 + ARIANE6_C(-0.488) * t74;
+    const ariane6_real_t t74 = t14 * t32;
+    const ariane6_real_t t75 = t19 * t28 + t14 * t24 + ARIANE6_C(-0.488) * t74;
     const ariane6_real_t t76 = t37 + ARIANE6_C(-0.17) * t74;
-    const ariane6_real_t t77 = t46 * (t42 * t75 + t23 * t76 + ARIANE6_C(0.685) * t74);
-    const ariane6_real_t t78 = t52 * (t23 * t75 - t42 * t76) + t77 + ARIANE6_C(0.18) * t74;
+    const ariane6_real_t t77 = t50 * (t42 * t75 + t35 * t76 + ARIANE6_C(0.685) * t74);
+    const ariane6_real_t t78 = t52 * (t35 * t75 - t42 * t76) + t77 + ARIANE6_C(0.18) * t74;
     out[4] = t78;
     const ariane6_real_t t79 = t5 * t6 - t8 * parameters[ZZ6];
-    const ariane6_real_t t80 = t5 * t13;
-    const ariane6_real_t t81 = t12 * t80 + t15 * t16;
-    const ariane6_real_t t82 = t15 * t79 - t12 * t27 + ARIANE6_C(0.488) * t81;
+    const ariane6_real_t t80 = t5 * t12;
+    const ariane6_real_t t81 = t14 * t80 + t19 * t15;
+    const ariane6_real_t t82 = t19 * t79 - t14 * t26 + ARIANE6_C(0.488) * t81;
     const ariane6_real_t t83 = t8 * t6 + t5 * parameters[ZZ6];
     const ariane6_real_t t84 = t83 + ARIANE6_C(0.17) * t81;
-    const ariane6_real_t t85 = t46 * (t42 * t82 + t23 * t84 + ARIANE6_C(-0.685) * t81);
-    const ariane6_real_t t86 = t52 * (t23 * t82 - t42 * t84) + t85 + ARIANE6_C(-0.18) * t81;
+    const ariane6_real_t t85 = t50 * (t42 * t82 + t35 * t84 + ARIANE6_C(-0.685) * t81);
+    const ariane6_real_t t86 = t52 * (t35 * t82 - t42 * t84) + t85 + ARIANE6_C(-0.18) * t81;
     out[5] = t86;
     out[6] = t68;
-    const ariane6_real_t t87 = parameters[ZZ3R] + (t25 + t32 + (t21 + t34));
-    const ariane6_real_t t88 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t46
+    const ariane6_real_t t87 = parameters[ZZ3R] + (t23 + t31 + (t21 + t33));
+    const ariane6_real_t t88 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t50
         + ARIANE6_C(0.6427876096865393) * t52) + ARIANE6_C(0.420682));
     const ariane6_real_t t89 = ARIANE6_C(1.0) / t88;
     const ariane6_real_t t90 = (ARIANE6_C(0.766044443118978) * t52
-        + ARIANE6_C(0.6427876096865393) * t46) * (ARIANE6_C(12691.800000000003) * t89);
-    out[7] = parameters[ZZ2R] + (t87 + t50) + parameters[IA2] * (t90 * t90);
-    const ariane6_real_t t91 = t87 + ARIANE6_C(0.685) * t49;
+        + ARIANE6_C(0.6427876096865393) * t50) * (ARIANE6_C(12691.800000000003) * t89);
+    out[7] = parameters[ZZ2R] + (t87 + t48) + parameters[IA2] * (t90 * t90);
+    const ariane6_real_t t91 = t87 + ARIANE6_C(0.685) * t47;
     out[8] = t91;
     const ariane6_real_t t92 = t64 + ARIANE6_C(-0.685) * (t42 * t62);
     out[9] = t92;
-    const ariane6_real_t t93 = t15 * t33;
-    const ariane6_real_t t94 = t15 * t24 - t12 * t29 + (ARIANE6_C(0.17) * t18 + ARIANE6_C(-0.488) * t93);
-    const ariane6_real_t t95 = t94 + ARIANE6_C(0.685) * (t42 * t93 - t23 * t18);
+    const ariane6_real_t t93 = t19 * t32;
+    const ariane6_real_t t94 = t19 * t24 - t14 * t28 + (ARIANE6_C(0.17) * t17 + ARIANE6_C(-0.488) * t93);
+    const ariane6_real_t t95 = t94 + ARIANE6_C(0.685) * (t42 * t93 - t35 * t17);
     out[10] = t95;
-    const ariane6_real_t t96 = t8 * t13;
-    const ariane6_real_t t97 = t15 * t80 - t12 * t16;
-    const ariane6_real_t t98 = ARIANE6_C(0.17) * t96 + ARIANE6_C(0.488) * t97 - (t12 * t79 + t15 * t27);
-    const ariane6_real_t t99 = t98 + ARIANE6_C(-0.685) * (t42 * t97 + t23 * t96);
+    const ariane6_real_t t96 = t19 * t80 - t14 * t15;
+    const ariane6_real_t t97 = t8 * t12;
+    const ariane6_real_t t98 = ARIANE6_C(0.17) * t97 + ARIANE6_C(0.488) * t96 - (t14 * t79 + t19 * t26);
+    const ariane6_real_t t99 = t98 + ARIANE6_C(-0.685) * (t42 * t96 + t35 * t97);
     out[11] = t99;
     out[12] = t69;
     out[13] = t91;
-    const ariane6_real_t t100 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t23
+    const ariane6_real_t t100 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t35
         + ARIANE6_C(-0.9986295347545738) * t42) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t101 = ARIANE6_C(1.0) / t100;
     const ariane6_real_t t102 = (ARIANE6_C(0.052335956242943966) * t42
-        + ARIANE6_C(-0.9986295347545738) * t23) * (ARIANE6_C(8377.600000000002) * t101);
+        + ARIANE6_C(-0.9986295347545738) * t35) * (ARIANE6_C(8377.600000000002) * t101);
     out[14] = t87 + parameters[IA3] * (t102 * t102);
     out[15] = t64;
     out[16] = t94;
@@ -250,12 +250,12 @@ int ariane6_mass_matrix(
     const ariane6_real_t t104 = ARIANE6_C(1.0) / t103;
     const ariane6_real_t t105 = t5 * (ARIANE6_C(3549.6000000000004) * t104);
     out[28] = t24 + parameters[IA5] * (t105 * t105);
-    out[29] = -t27;
+    out[29] = -t26;
     out[30] = t86;
     out[31] = t99;
     out[32] = t98;
     out[33] = t83;
-    out[34] = -t27;
+    out[34] = -t26;
     out[35] = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     return ARIANE6_STATUS_OK;
 }

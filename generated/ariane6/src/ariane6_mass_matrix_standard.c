@@ -103,7 +103,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,16 +133,16 @@ int ariane6_mass_matrix_standard(
         return status;
     }
 
-    ariane6_real_t t69, t68;
-    ARIANE6_SINCOS(q[0], &t69, &t68);
-    ariane6_real_t t63, t55;
-    ARIANE6_SINCOS(q[1], &t63, &t55);
-    ariane6_real_t t51, t29;
-    ARIANE6_SINCOS(q[2], &t51, &t29);
-    ariane6_real_t t18, t21;
-    ARIANE6_SINCOS(q[3], &t18, &t21);
-    ariane6_real_t t12, t7;
-    ARIANE6_SINCOS(q[4], &t12, &t7);
+    ariane6_real_t t68, t71;
+    ARIANE6_SINCOS(q[0], &t68, &t71);
+    ariane6_real_t t63, t61;
+    ARIANE6_SINCOS(q[1], &t63, &t61);
+    ariane6_real_t t51, t44;
+    ARIANE6_SINCOS(q[2], &t51, &t44);
+    ariane6_real_t t25, t18;
+    ARIANE6_SINCOS(q[3], &t25, &t18);
+    ariane6_real_t t12, t8;
+    ARIANE6_SINCOS(q[4], &t12, &t8);
     ariane6_real_t t1, t0;
     ARIANE6_SINCOS(q[5], &t1, &t0);
     const ariane6_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
@@ -151,124 +151,124 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t4 = ARIANE6_C(0.3) * parameters[M6];
     const ariane6_real_t t5 = ARIANE6_C(0.3) * (t4 + ARIANE6_C(2.0) * parameters[MZ6]);
     const ariane6_real_t t6 = parameters[XX5] + (parameters[YY6] - t3 + t5);
-    const ariane6_real_t t8 = parameters[YY5] + parameters[ZZ6];
+    const ariane6_real_t t7 = parameters[YY5] + parameters[ZZ6];
     const ariane6_real_t t9 = t1 * parameters[MY6] - t0 * parameters[MX6];
     const ariane6_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + ARIANE6_C(0.3) * t9;
     const ariane6_real_t t11 = parameters[XY5] + t10;
-    const ariane6_real_t t13 = t7 * (t8 - t6) + t11 * (ARIANE6_C(2.0) * t12);
-    const ariane6_real_t t14 = t7 * t13;
-    const ariane6_real_t t15 = parameters[ZZ4] + (t6 + t14);
-    const ariane6_real_t t16 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t17 = ARIANE6_C(0.17) * t16;
+    const ariane6_real_t t13 = t8 * (t7 - t6) + t11 * (ARIANE6_C(2.0) * t12);
+    const ariane6_real_t t14 = t8 * t13;
+    const ariane6_real_t t15 = parameters[XX4] + (t7 - t14);
+    const ariane6_real_t t16 = parameters[ZZ5] + (parameters[XX6] + t3 + t5);
+    const ariane6_real_t t17 = parameters[YY4] + t16;
     const ariane6_real_t t19 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ariane6_real_t t20 = parameters[MY4] + (t19 - parameters[MZ5]);
-    const ariane6_real_t t22 = parameters[MY5] + (parameters[MZ6] + t4);
-    const ariane6_real_t t23 = t9 - parameters[MX5];
-    const ariane6_real_t t24 = t12 * t22 + t7 * t23;
-    const ariane6_real_t t25 = parameters[MX4] - t24;
-    const ariane6_real_t t26 = t18 * t20 - t21 * t25;
-    const ariane6_real_t t27 = ARIANE6_C(0.17) * (t17 + ARIANE6_C(2.0) * t26);
-    const ariane6_real_t t28 = parameters[YY3] + (t15 + t27);
-    const ariane6_real_t t30 = parameters[ZZ5] + (parameters[XX6] + t3 + t5);
-    const ariane6_real_t t31 = parameters[YY4] + t30;
-    const ariane6_real_t t32 = parameters[XX4] + (t8 - t14);
-    const ariane6_real_t t33 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    const ariane6_real_t t34 = ARIANE6_C(0.3) * t19 - (t1 * parameters[XZ6] + t0 * parameters[YZ6]);
-    const ariane6_real_t t35 = parameters[YZ5] + t34;
-    const ariane6_real_t t36 = t7 * t33 - t12 * t35;
-    const ariane6_real_t t37 = t36 - parameters[XY4];
-    const ariane6_real_t t38 = t21 * (t31 - t32) - t37 * (ARIANE6_C(2.0) * t18);
-    const ariane6_real_t t39 = t21 * t38;
-    const ariane6_real_t t40 = ARIANE6_C(0.488) * t16;
-    const ariane6_real_t t41 = t12 * t23 - t7 * t22;
-    const ariane6_real_t t42 = parameters[MZ4] - t41;
-    const ariane6_real_t t43 = ARIANE6_C(0.488) * (t40 + ARIANE6_C(2.0) * t42);
-    const ariane6_real_t t44 = parameters[XX3] + (t31 - t39 + t43);
+    const ariane6_real_t t20 = ARIANE6_C(0.3) * t19 - (t1 * parameters[XZ6] + t0 * parameters[YZ6]);
+    const ariane6_real_t t21 = parameters[YZ5] + t20;
+    const ariane6_real_t t22 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
+    const ariane6_real_t t23 = t8 * t22 - t12 * t21;
+    const ariane6_real_t t24 = t23 - parameters[XY4];
+    const ariane6_real_t t26 = t18 * (t17 - t15) - t24 * (ARIANE6_C(2.0) * t25);
+    const ariane6_real_t t27 = t18 * t26;
+    const ariane6_real_t t28 = t9 - parameters[MX5];
+    const ariane6_real_t t29 = parameters[MY5] + (parameters[MZ6] + t4);
+    const ariane6_real_t t30 = t12 * t28 - t8 * t29;
+    const ariane6_real_t t31 = parameters[MZ4] - t30;
+    const ariane6_real_t t32 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const ariane6_real_t t33 = ARIANE6_C(0.488) * t32;
+    const ariane6_real_t t34 = ARIANE6_C(0.488) * (t33 + ARIANE6_C(2.0) * t31);
+    const ariane6_real_t t35 = parameters[XX3] + (t17 - t27 + t34);
+    const ariane6_real_t t36 = parameters[ZZ4] + (t6 + t14);
+    const ariane6_real_t t37 = parameters[MY4] + (t19 - parameters[MZ5]);
+    const ariane6_real_t t38 = t12 * t29 + t8 * t28;
+    const ariane6_real_t t39 = parameters[MX4] - t38;
+    const ariane6_real_t t40 = t25 * t37 - t18 * t39;
+    const ariane6_real_t t41 = ARIANE6_C(0.17) * t32;
+    const ariane6_real_t t42 = ARIANE6_C(0.17) * (t41 + ARIANE6_C(2.0) * t40);
+    const ariane6_real_t t43 = parameters[YY3] + (t36 + t42);
     const ariane6_real_t t45 = parameters[XZ4] + (t11 - t12 * t13);
-    const ariane6_real_t t46 = t12 * t33 + t7 * t35;
+    const ariane6_real_t t46 = t12 * t22 + t8 * t21;
     const ariane6_real_t t47 = t46 - parameters[YZ4];
-    const ariane6_real_t t48 = t21 * t45 + t18 * t47;
-    const ariane6_real_t t49 = t26 + t17;
-    const ariane6_real_t t50 = parameters[XY3] + (t48 + (ARIANE6_C(0.17) * t42 + ARIANE6_C(0.488) * t49));
-    const ariane6_real_t t52 = t29 * (t44 - t28) - t50 * (ARIANE6_C(2.0) * t51);
-    const ariane6_real_t t53 = t29 * t52;
-    const ariane6_real_t t54 = parameters[XX2] + (t28 + t53);
-    const ariane6_real_t t56 = parameters[M3] + t16;
-    const ariane6_real_t t57 = ARIANE6_C(0.685) * t56;
-    const ariane6_real_t t58 = parameters[MY3] + (t42 + t40);
-    const ariane6_real_t t59 = parameters[MX3] - t49;
-    const ariane6_real_t t60 = t29 * t59 - t51 * t58;
-    const ariane6_real_t t61 = ARIANE6_C(0.685) * (t57 + ARIANE6_C(2.0) * t60);
-    const ariane6_real_t t62 = t29 * t58 + t51 * t59;
+    const ariane6_real_t t48 = t18 * t45 + t25 * t47;
+    const ariane6_real_t t49 = t40 + t41;
+    const ariane6_real_t t50 = parameters[XY3] + (t48 + (ARIANE6_C(0.17) * t31 + ARIANE6_C(0.488) * t49));
+    const ariane6_real_t t52 = t44 * (t35 - t43) - t50 * (ARIANE6_C(2.0) * t51);
+    const ariane6_real_t t53 = t44 * t52;
+    const ariane6_real_t t54 = parameters[XX2] + (t43 + t53);
+    const ariane6_real_t t55 = parameters[MX3] - t49;
+    const ariane6_real_t t56 = parameters[MY3] + (t31 + t33);
+    const ariane6_real_t t57 = t44 * t55 - t51 * t56;
+    const ariane6_real_t t58 = parameters[M3] + t32;
+    const ariane6_real_t t59 = ARIANE6_C(0.685) * t58;
+    const ariane6_real_t t60 = ARIANE6_C(0.685) * (t59 + ARIANE6_C(2.0) * t57);
+    const ariane6_real_t t62 = t44 * t56 + t51 * t55;
     const ariane6_real_t t64 = (parameters[XY2] + (t50 + t51 * t52
         + ARIANE6_C(-0.685) * t62)) * (ARIANE6_C(2.0) * t63);
-    const ariane6_real_t t65 = t55 * (parameters[YY2] + (t44 - t53 + t61) - t54) + t64;
-    const ariane6_real_t t66 = t55 * (parameters[MX2] + (t60 + t57)) - t63 * (parameters[MY2] + t62);
-    const ariane6_real_t t67 = t54 + t55 * t65 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2] + t56)
+    const ariane6_real_t t65 = t61 * (parameters[YY2] + (t35 - t53 + t60) - t54) + t64;
+    const ariane6_real_t t66 = t61 * (parameters[MX2] + (t57 + t59)) - t63 * (parameters[MY2] + t62);
+    const ariane6_real_t t67 = t54 + t61 * t65 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2] + t58)
         + ARIANE6_C(2.0) * t66);
-    const ariane6_real_t t70 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t69 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t71 = ARIANE6_C(1.0) / t70;
-    const ariane6_real_t t72 = t68 * (ARIANE6_C(4063.3400000000006) * t71);
+    const ariane6_real_t t69 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t68 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t70 = ARIANE6_C(1.0) / t69;
+    const ariane6_real_t t72 = t71 * (ARIANE6_C(4063.3400000000006) * t70);
     out[0] = parameters[ZZ1] + t67 + parameters[IA1] * (t72 * t72);
-    const ariane6_real_t t73 = t21 * t20 + t18 * t25;
-    const ariane6_real_t t74 = parameters[XZ3] + (t37 + t18 * t38 + ARIANE6_C(-0.17) * t73);
-    const ariane6_real_t t75 = t21 * t47 - t18 * t45 + ARIANE6_C(0.488) * t73;
+    const ariane6_real_t t73 = t18 * t37 + t25 * t39;
+    const ariane6_real_t t74 = parameters[XZ3] + (t24 + t25 * t26 + ARIANE6_C(-0.17) * t73);
+    const ariane6_real_t t75 = t18 * t47 - t25 * t45 + ARIANE6_C(0.488) * t73;
     const ariane6_real_t t76 = parameters[YZ3] + t75;
-    const ariane6_real_t t77 = t29 * t74 - t51 * t76;
-    const ariane6_real_t t78 = t51 * t74 + t29 * t76;
+    const ariane6_real_t t77 = t44 * t74 - t51 * t76;
+    const ariane6_real_t t78 = t51 * t74 + t44 * t76;
     const ariane6_real_t t79 = t63 * (parameters[XZ2] + (t77 + ARIANE6_C(0.685) * (t73 - parameters[MZ3])))
-        + t55 * (parameters[YZ2] + t78);
+        + t61 * (parameters[YZ2] + t78);
     out[1] = t79;
-    const ariane6_real_t t80 = t63 * t77 + t55 * t78;
+    const ariane6_real_t t80 = t63 * t77 + t61 * t78;
     out[2] = t80;
-    const ariane6_real_t t81 = t48 + ARIANE6_C(0.488) * t26;
-    const ariane6_real_t t82 = t15 + ARIANE6_C(0.17) * t26;
-    const ariane6_real_t t83 = t55 * (t51 * t81 + t29 * t82 + ARIANE6_C(-0.685) * t26);
-    const ariane6_real_t t84 = t63 * (t29 * t81 - t51 * t82) + t83 + ARIANE6_C(-0.18) * t26;
+    const ariane6_real_t t81 = t48 + ARIANE6_C(0.488) * t40;
+    const ariane6_real_t t82 = t36 + ARIANE6_C(0.17) * t40;
+    const ariane6_real_t t83 = t61 * (t51 * t81 + t44 * t82 + ARIANE6_C(-0.685) * t40);
+    const ariane6_real_t t84 = t63 * (t44 * t81 - t51 * t82) + t83 + ARIANE6_C(-0.18) * t40;
     out[3] = t84;
-    const ariane6_real_t t85 = t18 * t41;
-    const ariane6_real_t t86 = t21 * t36 + t18 * t30 + ARIANE6_C(-0.488) * t85;
+    const ariane6_real_t t85 = t25 * t30;
+    const ariane6_real_t t86 = t18 * t23 + t25 * t16 + ARIANE6_C(-0.488) * t85;
     const ariane6_real_t t87 = t46 + ARIANE6_C(-0.17) * t85;
-    const ariane6_real_t t88 = t55 * (t51 * t86 + t29 * t87 + ARIANE6_C(0.685) * t85);
-    const ariane6_real_t t89 = t63 * (t29 * t86 - t51 * t87) + t88 + ARIANE6_C(0.18) * t85;
+    const ariane6_real_t t88 = t61 * (t51 * t86 + t44 * t87 + ARIANE6_C(0.685) * t85);
+    const ariane6_real_t t89 = t63 * (t44 * t86 - t51 * t87) + t88 + ARIANE6_C(0.18) * t85;
     out[4] = t89;
-    const ariane6_real_t t90 = t7 * t10 - t12 * parameters[ZZ6];
-    const ariane6_real_t t91 = t7 * t19;
-    const ariane6_real_t t92 = t18 * t91 + t21 * t9;
-    const ariane6_real_t t93 = t21 * t90 + t18 * t34 + ARIANE6_C(0.488) * t92;
-    const ariane6_real_t t94 = t12 * t10 + t7 * parameters[ZZ6];
+    const ariane6_real_t t90 = t8 * t10 - t12 * parameters[ZZ6];
+    const ariane6_real_t t91 = t8 * t19;
+    const ariane6_real_t t92 = t25 * t91 + t18 * t9;
+    const ariane6_real_t t93 = t18 * t90 + t25 * t20 + ARIANE6_C(0.488) * t92;
+    const ariane6_real_t t94 = t12 * t10 + t8 * parameters[ZZ6];
     const ariane6_real_t t95 = t94 + ARIANE6_C(0.17) * t92;
-    const ariane6_real_t t96 = t55 * (t51 * t93 + t29 * t95 + ARIANE6_C(-0.685) * t92);
-    const ariane6_real_t t97 = t63 * (t29 * t93 - t51 * t95) + t96 + ARIANE6_C(-0.18) * t92;
+    const ariane6_real_t t96 = t61 * (t51 * t93 + t44 * t95 + ARIANE6_C(-0.685) * t92);
+    const ariane6_real_t t97 = t63 * (t44 * t93 - t51 * t95) + t96 + ARIANE6_C(-0.18) * t92;
     out[5] = t97;
     out[6] = t79;
-    const ariane6_real_t t98 = parameters[ZZ3] + (t32 + t39 + (t27 + t43));
-    const ariane6_real_t t99 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t55
+    const ariane6_real_t t98 = parameters[ZZ3] + (t15 + t27 + (t42 + t34));
+    const ariane6_real_t t99 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t61
         + ARIANE6_C(0.6427876096865393) * t63) + ARIANE6_C(0.420682));
     const ariane6_real_t t100 = ARIANE6_C(1.0) / t99;
     const ariane6_real_t t101 = (ARIANE6_C(0.766044443118978) * t63
-        + ARIANE6_C(0.6427876096865393) * t55) * (ARIANE6_C(12691.800000000003) * t100);
-    out[7] = parameters[ZZ2] + (t98 + t61) + parameters[IA2] * (t101 * t101);
-    const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t60;
+        + ARIANE6_C(0.6427876096865393) * t61) * (ARIANE6_C(12691.800000000003) * t100);
+    out[7] = parameters[ZZ2] + (t98 + t60) + parameters[IA2] * (t101 * t101);
+    const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t57;
     out[8] = t102;
     const ariane6_real_t t103 = t75 + ARIANE6_C(-0.685) * (t51 * t73);
     out[9] = t103;
-    const ariane6_real_t t104 = t21 * t41;
-    const ariane6_real_t t105 = t21 * t30 - t18 * t36 + (ARIANE6_C(0.17) * t24 + ARIANE6_C(-0.488) * t104);
-    const ariane6_real_t t106 = t105 + ARIANE6_C(0.685) * (t51 * t104 - t29 * t24);
+    const ariane6_real_t t104 = t18 * t30;
+    const ariane6_real_t t105 = t18 * t16 - t25 * t23 + (ARIANE6_C(0.17) * t38 + ARIANE6_C(-0.488) * t104);
+    const ariane6_real_t t106 = t105 + ARIANE6_C(0.685) * (t51 * t104 - t44 * t38);
     out[10] = t106;
-    const ariane6_real_t t107 = t12 * t19;
-    const ariane6_real_t t108 = t21 * t91 - t18 * t9;
-    const ariane6_real_t t109 = t21 * t34 - t18 * t90 + (ARIANE6_C(0.17) * t107 + ARIANE6_C(0.488) * t108);
-    const ariane6_real_t t110 = t109 + ARIANE6_C(-0.685) * (t51 * t108 + t29 * t107);
+    const ariane6_real_t t107 = t18 * t91 - t25 * t9;
+    const ariane6_real_t t108 = t12 * t19;
+    const ariane6_real_t t109 = t18 * t20 - t25 * t90 + (ARIANE6_C(0.17) * t108 + ARIANE6_C(0.488) * t107);
+    const ariane6_real_t t110 = t109 + ARIANE6_C(-0.685) * (t51 * t107 + t44 * t108);
     out[11] = t110;
     out[12] = t80;
     out[13] = t102;
-    const ariane6_real_t t111 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t29
+    const ariane6_real_t t111 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t44
         + ARIANE6_C(-0.9986295347545738) * t51) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t112 = ARIANE6_C(1.0) / t111;
     const ariane6_real_t t113 = (ARIANE6_C(0.052335956242943966) * t51
-        + ARIANE6_C(-0.9986295347545738) * t29) * (ARIANE6_C(8377.600000000002) * t112);
+        + ARIANE6_C(-0.9986295347545738) * t44) * (ARIANE6_C(8377.600000000002) * t112);
     out[14] = t98 + parameters[IA3] * (t113 * t113);
     out[15] = t75;
     out[16] = t105;
@@ -276,7 +276,7 @@ int ariane6_mass_matrix_standard(
     out[18] = t84;
     out[19] = t103;
     out[20] = t75;
-    out[21] = t15 + ARIANE6_C(1.0e4) * parameters[IA4];
+    out[21] = t36 + ARIANE6_C(1.0e4) * parameters[IA4];
     out[22] = t46;
     out[23] = t94;
     out[24] = t89;
@@ -285,14 +285,14 @@ int ariane6_mass_matrix_standard(
     out[27] = t46;
     const ariane6_real_t t114 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t12 + ARIANE6_C(0.097));
     const ariane6_real_t t115 = ARIANE6_C(1.0) / t114;
-    const ariane6_real_t t116 = t7 * (ARIANE6_C(3549.6000000000004) * t115);
-    out[28] = t30 + parameters[IA5] * (t116 * t116);
-    out[29] = t34;
+    const ariane6_real_t t116 = t8 * (ARIANE6_C(3549.6000000000004) * t115);
+    out[28] = t16 + parameters[IA5] * (t116 * t116);
+    out[29] = t20;
     out[30] = t97;
     out[31] = t110;
     out[32] = t109;
     out[33] = t94;
-    out[34] = t34;
+    out[34] = t20;
     out[35] = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     return ARIANE6_STATUS_OK;
 }

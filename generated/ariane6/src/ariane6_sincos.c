@@ -11,7 +11,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xFF706B1FUL
+#if ARIANE6_GENERATION != 0xC9DD674DUL
 #error "ariane6.h and ariane6_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 ariane6_pair_t ariane6_sincos(ariane6_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * ARIANE6_C(0.636619772) + ARIANE6_C(16384.5));
+    const ariane6_real_t turns = x * ARIANE6_C(0.636619772) + ARIANE6_C(16384.5);
+    const long quarter = (long)turns;
     const ariane6_real_t k = (ariane6_real_t)quarter - ARIANE6_C(16384.0);
     const ariane6_real_t r = x - k * ARIANE6_C(1.5703125) - k * ARIANE6_C(4.83826792e-4);
     const ariane6_real_t z = r * r;

@@ -32,7 +32,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -55,24 +55,24 @@ int gravity_arm_bias(
         return status;
     }
 
-    gravity_arm_real_t t1, t3;
-    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
-    gravity_arm_real_t t5, t7;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
-    const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(9.81) * t1;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
-    const gravity_arm_real_t t6 = t4 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = parameters[MX2] * (t5 * t6 + t7 * t2) + parameters[MY2] * (t7 * t6
-        - t5 * t2);
-    const gravity_arm_real_t t9 = dq[0] + dq[1];
-    const gravity_arm_real_t t10 = t9 * t9;
-    const gravity_arm_real_t t11 = GRAVITY_ARM_C(-0.538534) * (t5 * (parameters[MX2] * t10)
-        + t7 * (parameters[MY2] * t10));
-    const gravity_arm_real_t t12 = parameters[FV1] * dq[0] + parameters[FC1] * t0 + (parameters[MX1R] * t2
-        + parameters[MY1] * t4 + (t8 + t11));
+    gravity_arm_real_t t4, t0;
+    GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
+    gravity_arm_real_t t3, t6;
+    GRAVITY_ARM_SINCOS(q[1], &t3, &t6);
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
+    const gravity_arm_real_t t7 = parameters[MX2] * (t3 * t2 + t6 * t5) + parameters[MY2] * (t6 * t2
+        - t3 * t5);
+    const gravity_arm_real_t t8 = dq[0] + dq[1];
+    const gravity_arm_real_t t9 = t8 * t8;
+    const gravity_arm_real_t t10 = GRAVITY_ARM_C(-0.538534) * (t3 * (parameters[MX2] * t9)
+        + t6 * (parameters[MY2] * t9));
+    const gravity_arm_real_t t11 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t12 = parameters[FV1] * dq[0] + parameters[FC1] * t11 + (parameters[MX1R] * t5
+        + parameters[MY1] * t1 + (t7 + t10));
     out[0] = t12;
     const gravity_arm_real_t t13 = gravity_arm_sign(dq[1]);
-    out[1] = parameters[FV2] * dq[1] + parameters[FC2] * t13 + t8;
+    out[1] = parameters[FV2] * dq[1] + parameters[FC2] * t13 + t7;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -46,7 +46,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -70,25 +70,25 @@ int gravity_arm_bias_standard(
         return status;
     }
 
-    gravity_arm_real_t t1, t3;
-    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
-    gravity_arm_real_t t5, t7;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
-    const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(9.81) * t1;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
-    const gravity_arm_real_t t6 = t4 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = t5 * t6 + t7 * t2;
-    const gravity_arm_real_t t9 = t7 * t6 - t5 * t2;
-    const gravity_arm_real_t t10 = parameters[MX2] * t8 + parameters[MY2] * t9;
-    const gravity_arm_real_t t11 = dq[0] + dq[1];
-    const gravity_arm_real_t t12 = t11 * t11;
-    const gravity_arm_real_t t13 = t7 * (parameters[M2] * t8 - t12 * parameters[MY2])
-        - t5 * (parameters[M2] * t9 + t12 * parameters[MX2]);
-    const gravity_arm_real_t t14 = t2 * parameters[MX1] + t4 * parameters[MY1] + (t10
-        + GRAVITY_ARM_C(0.538534) * t13);
-    out[0] = dq[0] * parameters[FV1] + t0 * parameters[FC1] + t14;
+    gravity_arm_real_t t4, t0;
+    GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
+    gravity_arm_real_t t6, t3;
+    GRAVITY_ARM_SINCOS(q[1], &t6, &t3);
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
+    const gravity_arm_real_t t7 = t3 * t2 - t6 * t5;
+    const gravity_arm_real_t t8 = dq[0] + dq[1];
+    const gravity_arm_real_t t9 = t8 * t8;
+    const gravity_arm_real_t t10 = t6 * t2 + t3 * t5;
+    const gravity_arm_real_t t11 = t3 * (parameters[M2] * t10 - t9 * parameters[MY2])
+        - t6 * (parameters[M2] * t7 + t9 * parameters[MX2]);
+    const gravity_arm_real_t t12 = parameters[MX2] * t10 + parameters[MY2] * t7;
+    const gravity_arm_real_t t13 = t5 * parameters[MX1] + t1 * parameters[MY1] + (t12
+        + GRAVITY_ARM_C(0.538534) * t11);
+    const gravity_arm_real_t t14 = gravity_arm_sign(dq[0]);
+    out[0] = dq[0] * parameters[FV1] + t14 * parameters[FC1] + t13;
     const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]);
-    out[1] = dq[1] * parameters[FV2] + t15 * parameters[FC2] + t10;
+    out[1] = dq[1] * parameters[FV2] + t15 * parameters[FC2] + t12;
     return GRAVITY_ARM_STATUS_OK;
 }

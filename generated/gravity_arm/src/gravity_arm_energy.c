@@ -33,7 +33,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -58,20 +58,20 @@ int gravity_arm_energy(
         return status;
     }
 
-    gravity_arm_real_t t8, t6;
-    GRAVITY_ARM_SINCOS(q[0], &t8, &t6);
-    gravity_arm_real_t t4, t2;
-    GRAVITY_ARM_SINCOS(q[1], &t4, &t2);
+    gravity_arm_real_t t6, t8;
+    GRAVITY_ARM_SINCOS(q[0], &t6, &t8);
+    gravity_arm_real_t t3, t2;
+    GRAVITY_ARM_SINCOS(q[1], &t3, &t2);
     const gravity_arm_real_t t0 = dq[0] + dq[1];
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(0.538534) * dq[0];
+    const gravity_arm_real_t t4 = parameters[MX2] * (t0 * (t2 * t1)) - parameters[MY2] * (t0 * (t3 * t1));
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + GRAVITY_ARM_C(0.5) * (t0 * (parameters[ZZ2] * t0));
-    const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * dq[0];
-    const gravity_arm_real_t t5 = parameters[MX2] * (t0 * (t2 * t3)) - parameters[MY2] * (t0 * (t4 * t3));
-    kinetic[0] = t1 + t5;
-    const gravity_arm_real_t t7 = GRAVITY_ARM_C(-9.81) * t6;
-    const gravity_arm_real_t t9 = GRAVITY_ARM_C(9.81) * t8;
-    const gravity_arm_real_t t10 = parameters[MX2] * (t4 * t9 + t2 * t7) + parameters[MY2] * (t2 * t9
-        - t4 * t7);
-    potential[0] = parameters[MX1R] * t7 + parameters[MY1] * t9 + t10;
+    kinetic[0] = t5 + t4;
+    const gravity_arm_real_t t7 = GRAVITY_ARM_C(9.81) * t6;
+    const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
+    const gravity_arm_real_t t10 = parameters[MX2] * (t3 * t7 + t2 * t9) + parameters[MY2] * (t2 * t7
+        - t3 * t9);
+    potential[0] = parameters[MX1R] * t9 + parameters[MY1] * t7 + t10;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -47,7 +47,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -75,19 +75,19 @@ int gravity_arm_energy_standard(
 
     gravity_arm_real_t t10, t8;
     GRAVITY_ARM_SINCOS(q[0], &t10, &t8);
-    gravity_arm_real_t t1, t4;
-    GRAVITY_ARM_SINCOS(q[1], &t1, &t4);
-    const gravity_arm_real_t t0 = dq[0] + dq[1];
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(0.538534) * dq[0];
-    const gravity_arm_real_t t3 = t1 * t2;
-    const gravity_arm_real_t t5 = t4 * t2;
-    const gravity_arm_real_t t6 = t0 * (t0 * parameters[ZZ2]) + parameters[M2] * (t3 * t3 + t5 * t5);
+    gravity_arm_real_t t1, t3;
+    GRAVITY_ARM_SINCOS(q[1], &t1, &t3);
+    const gravity_arm_real_t t0 = GRAVITY_ARM_C(0.538534) * dq[0];
+    const gravity_arm_real_t t2 = t1 * t0;
+    const gravity_arm_real_t t4 = t3 * t0;
+    const gravity_arm_real_t t5 = dq[0] + dq[1];
+    const gravity_arm_real_t t6 = t5 * (t5 * parameters[ZZ2]) + parameters[M2] * (t2 * t2 + t4 * t4);
     const gravity_arm_real_t t7 = GRAVITY_ARM_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
-        + GRAVITY_ARM_C(0.5) * t6 + (parameters[MX2] * (t0 * t5) - parameters[MY2] * (t0 * t3));
+        + GRAVITY_ARM_C(0.5) * t6 + (parameters[MX2] * (t5 * t4) - parameters[MY2] * (t5 * t2));
     kinetic[0] = t7;
     const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
     const gravity_arm_real_t t11 = GRAVITY_ARM_C(9.81) * t10;
-    const gravity_arm_real_t t12 = (t4 * t9 + t1 * t11) * parameters[MX2] + (t4 * t11
+    const gravity_arm_real_t t12 = (t3 * t9 + t1 * t11) * parameters[MX2] + (t3 * t11
         - t1 * t9) * parameters[MY2];
     const gravity_arm_real_t t13 = t9 * parameters[MX1] + t11 * parameters[MY1] + (t12
         + parameters[M2] * (GRAVITY_ARM_C(-5.28301854) * t8));

@@ -34,7 +34,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -59,46 +59,46 @@ int gravity_arm_forward_dynamics(
         return status;
     }
 
-    gravity_arm_real_t t1, t3;
-    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
-    gravity_arm_real_t t5, t7;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
-    const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(-9.81) * t1;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_C(-9.81) * t3;
-    const gravity_arm_real_t t6 = t4 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = parameters[MX2] * (t5 * t6 + t7 * t2) + parameters[MY2] * (t7 * t6
-        - t5 * t2);
-    const gravity_arm_real_t t9 = dq[0] + dq[1];
-    const gravity_arm_real_t t10 = t9 * t9;
-    const gravity_arm_real_t t11 = GRAVITY_ARM_C(0.538534) * (t5 * (parameters[MX2] * t10)
-        + t7 * (parameters[MY2] * t10));
-    const gravity_arm_real_t t12 = parameters[MX1R] * t2 + parameters[MY1] * t4 + (t8 + t11)
-        - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
-    const gravity_arm_real_t t13 = gravity_arm_sign(dq[1]);
-    const gravity_arm_real_t t14 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t13 - t8);
+    gravity_arm_real_t t10, t7;
+    GRAVITY_ARM_SINCOS(q[0], &t10, &t7);
+    gravity_arm_real_t t0, t1;
+    GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
     if (!(parameters[ZZ2] > GRAVITY_ARM_C(1.0e-9))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t15 = t5 * parameters[MY2] - t7 * parameters[MX2];
-    const gravity_arm_real_t t16 = GRAVITY_ARM_C(0.538534) * t15 - parameters[ZZ2];
-    const gravity_arm_real_t t17 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
-    const gravity_arm_real_t t18 = t16 * t17;
-    const gravity_arm_real_t t19 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t15)
-        - t16 * t18;
-    if (!(t19 > GRAVITY_ARM_C(1.0e-9))) {
+    const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
+    const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
+    const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
+    const gravity_arm_real_t t5 = t3 * t4;
+    const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2)
+        - t3 * t5;
+    if (!(t6 > GRAVITY_ARM_C(1.0e-9))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t20 = GRAVITY_ARM_C(1.0) / t19;
-    const gravity_arm_real_t t21 = (input[0] + t12 + t14 * t18) * t20;
+    const gravity_arm_real_t t8 = GRAVITY_ARM_C(-9.81) * t7;
+    const gravity_arm_real_t t9 = t8 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t11 = GRAVITY_ARM_C(-9.81) * t10;
+    const gravity_arm_real_t t12 = parameters[MX2] * (t0 * t9 + t1 * t11) + parameters[MY2] * (t1 * t9
+        - t0 * t11);
+    const gravity_arm_real_t t13 = dq[0] + dq[1];
+    const gravity_arm_real_t t14 = t13 * t13;
+    const gravity_arm_real_t t15 = GRAVITY_ARM_C(0.538534) * (t0 * (parameters[MX2] * t14)
+        + t1 * (parameters[MY2] * t14));
+    const gravity_arm_real_t t16 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t17 = parameters[MX1R] * t11 + parameters[MY1] * t8 + (t12 + t15)
+        - (parameters[FV1] * dq[0] + parameters[FC1] * t16);
+    const gravity_arm_real_t t18 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t19 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t18 - t12);
+    const gravity_arm_real_t t20 = GRAVITY_ARM_C(1.0) / t6;
+    const gravity_arm_real_t t21 = (input[0] + t17 + t19 * t5) * t20;
     out[0] = t21;
     if (!(t21 >= GRAVITY_ARM_C(-1.0e15) && t21 <= GRAVITY_ARM_C(1.0e15))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    out[1] = t14 * t17 + t18 * t21;
+    out[1] = t19 * t4 + t5 * t21;
     if (!(out[1] >= GRAVITY_ARM_C(-1.0e15) && out[1] <= GRAVITY_ARM_C(1.0e15))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;

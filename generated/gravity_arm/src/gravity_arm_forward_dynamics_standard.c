@@ -48,7 +48,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -74,50 +74,50 @@ int gravity_arm_forward_dynamics_standard(
         return status;
     }
 
-    gravity_arm_real_t t1, t3;
-    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
-    gravity_arm_real_t t5, t7;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
-    const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(-9.81) * t1;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_C(-9.81) * t3;
-    const gravity_arm_real_t t6 = t4 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = t5 * t6 + t7 * t2;
-    const gravity_arm_real_t t9 = t5 * t2 - t7 * t6;
-    const gravity_arm_real_t t10 = parameters[MX2] * t8 - parameters[MY2] * t9;
-    const gravity_arm_real_t t11 = dq[0] + dq[1];
-    const gravity_arm_real_t t12 = t11 * t11;
-    const gravity_arm_real_t t13 = t5 * (parameters[M2] * t9 + t12 * parameters[MX2])
-        + t7 * (parameters[M2] * t8 + t12 * parameters[MY2]);
-    const gravity_arm_real_t t14 = t2 * parameters[MX1] + t4 * parameters[MY1] + (t10
-        + GRAVITY_ARM_C(0.538534) * t13);
-    const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]);
-    const gravity_arm_real_t t16 = input[1] - (dq[1] * parameters[FV2] + t15 * parameters[FC2] - t10);
+    gravity_arm_real_t t11, t8;
+    GRAVITY_ARM_SINCOS(q[0], &t11, &t8);
+    gravity_arm_real_t t0, t1;
+    GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
     if (!(parameters[ZZ2] > GRAVITY_ARM_C(1.0e-9))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t17 = t5 * parameters[MY2] - t7 * parameters[MX2];
-    const gravity_arm_real_t t18 = GRAVITY_ARM_C(0.538534) * t17 - parameters[ZZ2];
-    const gravity_arm_real_t t19 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
-    const gravity_arm_real_t t20 = t18 * t19;
-    const gravity_arm_real_t t21 = input[0] + (t14 - (dq[0] * parameters[FV1] + t0 * parameters[FC1]))
-        + t16 * t20;
-    const gravity_arm_real_t t22 = parameters[ZZ1] + (parameters[ZZ2]
-        + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(-2.0) * t17));
-    const gravity_arm_real_t t23 = t22 - t18 * t20;
-    if (!(t23 > GRAVITY_ARM_C(1.0e-9))) {
+    const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
+    const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
+    const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
+    const gravity_arm_real_t t5 = t3 * t4;
+    const gravity_arm_real_t t6 = parameters[ZZ1] + (parameters[ZZ2]
+        + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(-2.0) * t2));
+    const gravity_arm_real_t t7 = t6 - t3 * t5;
+    if (!(t7 > GRAVITY_ARM_C(1.0e-9))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t24 = GRAVITY_ARM_C(1.0) / t23;
-    const gravity_arm_real_t t25 = t21 * t24;
+    const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
+    const gravity_arm_real_t t10 = t9 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t12 = GRAVITY_ARM_C(-9.81) * t11;
+    const gravity_arm_real_t t13 = t0 * t12 - t1 * t10;
+    const gravity_arm_real_t t14 = dq[0] + dq[1];
+    const gravity_arm_real_t t15 = t14 * t14;
+    const gravity_arm_real_t t16 = t0 * t10 + t1 * t12;
+    const gravity_arm_real_t t17 = t0 * (parameters[M2] * t13 + t15 * parameters[MX2])
+        + t1 * (parameters[M2] * t16 + t15 * parameters[MY2]);
+    const gravity_arm_real_t t18 = parameters[MX2] * t16 - parameters[MY2] * t13;
+    const gravity_arm_real_t t19 = t12 * parameters[MX1] + t9 * parameters[MY1] + (t18
+        + GRAVITY_ARM_C(0.538534) * t17);
+    const gravity_arm_real_t t20 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t21 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t22 = input[1] - (dq[1] * parameters[FV2] + t21 * parameters[FC2] - t18);
+    const gravity_arm_real_t t23 = input[0] + (t19 - (dq[0] * parameters[FV1] + t20 * parameters[FC1]))
+        + t22 * t5;
+    const gravity_arm_real_t t24 = GRAVITY_ARM_C(1.0) / t7;
+    const gravity_arm_real_t t25 = t23 * t24;
     out[0] = t25;
     if (!(t25 >= GRAVITY_ARM_C(-1.0e15) && t25 <= GRAVITY_ARM_C(1.0e15))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    out[1] = t16 * t19 + t20 * t25;
+    out[1] = t22 * t4 + t5 * t25;
     if (!(out[1] >= GRAVITY_ARM_C(-1.0e15) && out[1] <= GRAVITY_ARM_C(1.0e15))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;

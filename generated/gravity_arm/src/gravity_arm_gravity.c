@@ -31,7 +31,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -52,15 +52,15 @@ int gravity_arm_gravity(
         return status;
     }
 
-    gravity_arm_real_t t0, t2;
-    GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
-    gravity_arm_real_t t5, t4;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t4);
+    gravity_arm_real_t t0, t3;
+    GRAVITY_ARM_SINCOS(q[0], &t0, &t3);
+    gravity_arm_real_t t5, t2;
+    GRAVITY_ARM_SINCOS(q[1], &t5, &t2);
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
-    const gravity_arm_real_t t6 = parameters[MX2] * (t4 * t1 + t5 * t3) + parameters[MY2] * (t4 * t3
+    const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
+    const gravity_arm_real_t t6 = parameters[MX2] * (t2 * t1 + t5 * t4) + parameters[MY2] * (t2 * t4
         - t5 * t1);
-    out[0] = parameters[MX1R] * t1 + parameters[MY1] * t3 + t6;
+    out[0] = parameters[MX1R] * t1 + parameters[MY1] * t4 + t6;
     out[1] = t6;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -45,7 +45,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -67,18 +67,18 @@ int gravity_arm_gravity_standard(
         return status;
     }
 
-    gravity_arm_real_t t0, t2;
-    GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
-    gravity_arm_real_t t4, t5;
-    GRAVITY_ARM_SINCOS(q[1], &t4, &t5);
+    gravity_arm_real_t t3, t0;
+    GRAVITY_ARM_SINCOS(q[0], &t3, &t0);
+    gravity_arm_real_t t2, t5;
+    GRAVITY_ARM_SINCOS(q[1], &t2, &t5);
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
-    const gravity_arm_real_t t6 = t4 * t3 + t5 * t1;
-    const gravity_arm_real_t t7 = t5 * t3 - t4 * t1;
+    const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
+    const gravity_arm_real_t t6 = t2 * t1 + t5 * t4;
+    const gravity_arm_real_t t7 = t5 * t1 - t2 * t4;
     const gravity_arm_real_t t8 = t6 * parameters[MX2] + t7 * parameters[MY2];
     const gravity_arm_real_t t9 = GRAVITY_ARM_C(0.538534) * (t5 * (t6 * parameters[M2])
-        - t4 * (t7 * parameters[M2]));
-    out[0] = t1 * parameters[MX1] + t3 * parameters[MY1] + (t8 + t9);
+        - t2 * (t7 * parameters[M2]));
+    out[0] = t4 * parameters[MX1] + t1 * parameters[MY1] + (t8 + t9);
     out[1] = t8;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -47,7 +47,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -73,29 +73,29 @@ int gravity_arm_inverse_dynamics_standard(
         return status;
     }
 
-    gravity_arm_real_t t1, t3;
-    GRAVITY_ARM_SINCOS(q[0], &t1, &t3);
-    gravity_arm_real_t t6, t8;
-    GRAVITY_ARM_SINCOS(q[1], &t6, &t8);
-    const gravity_arm_real_t t0 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t2 = GRAVITY_ARM_C(9.81) * t1;
-    const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
-    const gravity_arm_real_t t5 = ddq[0] + ddq[1];
-    const gravity_arm_real_t t7 = t4 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t9 = t2 + GRAVITY_ARM_C(0.538534) * ddq[0];
-    const gravity_arm_real_t t10 = t6 * t7 + t8 * t9;
-    const gravity_arm_real_t t11 = t8 * t7 - t6 * t9;
-    const gravity_arm_real_t t12 = t5 * parameters[ZZ2] + (t10 * parameters[MX2] + t11 * parameters[MY2]);
-    const gravity_arm_real_t t13 = dq[0] + dq[1];
-    const gravity_arm_real_t t14 = t13 * t13;
-    const gravity_arm_real_t t15 = t6 * (t11 * parameters[M2] + (t14 * parameters[MX2]
-        + t5 * parameters[MY2]));
-    const gravity_arm_real_t t16 = t8 * (t10 * parameters[M2] + (t5 * parameters[MX2]
-        - t14 * parameters[MY2]));
-    const gravity_arm_real_t t17 = t2 * parameters[MX1] + t4 * parameters[MY1] + ddq[0] * parameters[ZZ1]
-        + (t12 + GRAVITY_ARM_C(0.538534) * (t16 - t15));
-    out[0] = dq[0] * parameters[FV1] + t0 * parameters[FC1] + t17;
+    gravity_arm_real_t t4, t0;
+    GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
+    gravity_arm_real_t t3, t7;
+    GRAVITY_ARM_SINCOS(q[1], &t3, &t7);
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
+    const gravity_arm_real_t t6 = t5 + GRAVITY_ARM_C(0.538534) * ddq[0];
+    const gravity_arm_real_t t8 = t3 * t2 + t7 * t6;
+    const gravity_arm_real_t t9 = t7 * t2 - t3 * t6;
+    const gravity_arm_real_t t10 = ddq[0] + ddq[1];
+    const gravity_arm_real_t t11 = t10 * parameters[ZZ2] + (t8 * parameters[MX2] + t9 * parameters[MY2]);
+    const gravity_arm_real_t t12 = dq[0] + dq[1];
+    const gravity_arm_real_t t13 = t12 * t12;
+    const gravity_arm_real_t t14 = t3 * (t9 * parameters[M2] + (t13 * parameters[MX2]
+        + t10 * parameters[MY2]));
+    const gravity_arm_real_t t15 = t7 * (t8 * parameters[M2] + (t10 * parameters[MX2]
+        - t13 * parameters[MY2]));
+    const gravity_arm_real_t t16 = t5 * parameters[MX1] + t1 * parameters[MY1] + ddq[0] * parameters[ZZ1]
+        + (t11 + GRAVITY_ARM_C(0.538534) * (t15 - t14));
+    const gravity_arm_real_t t17 = gravity_arm_sign(dq[0]);
+    out[0] = dq[0] * parameters[FV1] + t17 * parameters[FC1] + t16;
     const gravity_arm_real_t t18 = gravity_arm_sign(dq[1]);
-    out[1] = dq[1] * parameters[FV2] + t18 * parameters[FC2] + t12;
+    out[1] = dq[1] * parameters[FV2] + t18 * parameters[FC2] + t11;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -24,7 +24,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -48,8 +48,8 @@ int gravity_arm_regressor(
 
     gravity_arm_real_t t0, t2;
     GRAVITY_ARM_SINCOS(q[0], &t0, &t2);
-    gravity_arm_real_t t5, t7;
-    GRAVITY_ARM_SINCOS(q[1], &t5, &t7);
+    gravity_arm_real_t t6, t8;
+    GRAVITY_ARM_SINCOS(q[1], &t6, &t8);
     out[0] = ddq[0];
     const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
     out[1] = t1;
@@ -58,16 +58,16 @@ int gravity_arm_regressor(
     const gravity_arm_real_t t4 = ddq[0] + ddq[1];
     out[3] = t4;
     out[13] = t4;
-    const gravity_arm_real_t t6 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t8 = t1 + GRAVITY_ARM_C(0.538534) * ddq[0];
-    const gravity_arm_real_t t9 = t5 * t6 + t7 * t8;
+    const gravity_arm_real_t t5 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t7 = t1 + GRAVITY_ARM_C(0.538534) * ddq[0];
+    const gravity_arm_real_t t9 = t6 * t5 + t8 * t7;
     const gravity_arm_real_t t10 = dq[0] + dq[1];
     const gravity_arm_real_t t11 = t10 * t10;
-    const gravity_arm_real_t t12 = GRAVITY_ARM_C(-0.538534) * t5;
-    const gravity_arm_real_t t13 = GRAVITY_ARM_C(0.538534) * t7;
+    const gravity_arm_real_t t12 = GRAVITY_ARM_C(-0.538534) * t6;
+    const gravity_arm_real_t t13 = GRAVITY_ARM_C(0.538534) * t8;
     out[4] = t9 + (t11 * t12 + t4 * t13);
     out[14] = t9;
-    const gravity_arm_real_t t14 = t7 * t6 - t5 * t8;
+    const gravity_arm_real_t t14 = t8 * t5 - t6 * t7;
     out[5] = t14 + (t4 * t12 - t11 * t13);
     out[15] = t14;
     out[6] = dq[0];

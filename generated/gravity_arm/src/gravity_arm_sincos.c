@@ -11,7 +11,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x6295FD76UL
+#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
 #error "gravity_arm.h and gravity_arm_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 gravity_arm_pair_t gravity_arm_sincos(gravity_arm_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * GRAVITY_ARM_C(0.636619772) + GRAVITY_ARM_C(16384.5));
+    const gravity_arm_real_t turns = x * GRAVITY_ARM_C(0.636619772) + GRAVITY_ARM_C(16384.5);
+    const long quarter = (long)turns;
     const gravity_arm_real_t k = (gravity_arm_real_t)quarter - GRAVITY_ARM_C(16384.0);
     const gravity_arm_real_t r = x - k * GRAVITY_ARM_C(1.5703125) - k * GRAVITY_ARM_C(4.83826792e-4);
     const gravity_arm_real_t z = r * r;

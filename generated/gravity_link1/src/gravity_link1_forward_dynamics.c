@@ -27,7 +27,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
+#if GRAVITY_LINK1_GENERATION != 0xA2F1487BUL
 #error "gravity_link1.h and gravity_link1_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,13 +54,13 @@ int gravity_link1_forward_dynamics(
 
     gravity_link1_real_t t1, t2;
     GRAVITY_LINK1_SINCOS(q[0], &t1, &t2);
-    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]);
-    const gravity_link1_real_t t3 = parameters[MX1] * (GRAVITY_LINK1_C(-9.81) * t1)
-        + parameters[MY1] * (GRAVITY_LINK1_C(-9.81) * t2) - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     if (!(parameters[ZZ1] > GRAVITY_LINK1_C(1.0e-9))) {
         gravity_link1_zero(out, 1);
         return GRAVITY_LINK1_STATUS_PIVOT;
     }
+    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]);
+    const gravity_link1_real_t t3 = parameters[MX1] * (GRAVITY_LINK1_C(-9.81) * t1)
+        + parameters[MY1] * (GRAVITY_LINK1_C(-9.81) * t2) - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     const gravity_link1_real_t t4 = GRAVITY_LINK1_C(1.0) / parameters[ZZ1];
     out[0] = (input[0] + t3) * t4;
     if (!(out[0] >= GRAVITY_LINK1_C(-1.0e15) && out[0] <= GRAVITY_LINK1_C(1.0e15))) {

@@ -11,7 +11,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x72B1B022UL
+#if GRAVITY_LINK1_GENERATION != 0xA2F1487BUL
 #error "gravity_link1.h and gravity_link1_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 gravity_link1_pair_t gravity_link1_sincos(gravity_link1_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * GRAVITY_LINK1_C(0.636619772) + GRAVITY_LINK1_C(16384.5));
+    const gravity_link1_real_t turns = x * GRAVITY_LINK1_C(0.636619772) + GRAVITY_LINK1_C(16384.5);
+    const long quarter = (long)turns;
     const gravity_link1_real_t k = (gravity_link1_real_t)quarter - GRAVITY_LINK1_C(16384.0);
     const gravity_link1_real_t r = x - k * GRAVITY_LINK1_C(1.5703125) - k * GRAVITY_LINK1_C(4.83826792e-4);
     const gravity_link1_real_t z = r * r;

@@ -43,7 +43,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFC76844FUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -67,17 +67,17 @@ int gravity_link1_loaded_bias_standard(
         return status;
     }
 
-    gravity_link1_loaded_real_t t1, t3;
-    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t3);
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
-    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(9.81) * t1;
+    gravity_link1_loaded_real_t t3, t0;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t3, &t0);
+    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0;
+    const gravity_link1_loaded_real_t t2 = dq[0] * dq[0];
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(9.81) * t3;
-    const gravity_link1_loaded_real_t t5 = dq[0] * dq[0];
-    const gravity_link1_loaded_real_t t6 = t2 * parameters[MX2] + (t4
-        + GRAVITY_LINK1_LOADED_C(0.538534) * t5) * parameters[MY2]
-        + GRAVITY_LINK1_LOADED_C(0.538534) * (t2 * parameters[M2] - t5 * parameters[MY2]);
-    const gravity_link1_loaded_real_t t7 = dq[0] * parameters[FV1] + t0 * parameters[FC1]
-        + (t2 * parameters[MX1] + t4 * parameters[MY1] + t6);
+    const gravity_link1_loaded_real_t t5 = t4 * parameters[MX2] + (t1
+        + GRAVITY_LINK1_LOADED_C(0.538534) * t2) * parameters[MY2]
+        + GRAVITY_LINK1_LOADED_C(0.538534) * (t4 * parameters[M2] - t2 * parameters[MY2]);
+    const gravity_link1_loaded_real_t t6 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t7 = dq[0] * parameters[FV1] + t6 * parameters[FC1]
+        + (t4 * parameters[MX1] + t1 * parameters[MY1] + t5);
     out[0] = t7;
     return GRAVITY_LINK1_LOADED_STATUS_OK;
 }

@@ -27,7 +27,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFC76844FUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,14 +54,14 @@ int gravity_link1_loaded_forward_dynamics(
 
     gravity_link1_loaded_real_t t1, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t2);
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
-    const gravity_link1_loaded_real_t t3 = parameters[MX1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t1)
-        + parameters[MY1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t2) - (parameters[FV1] * dq[0]
-        + parameters[FC1] * t0);
     if (!(parameters[ZZ1R] > GRAVITY_LINK1_LOADED_C(1.0e-9))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }
+    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t3 = parameters[MX1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t1)
+        + parameters[MY1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t2) - (parameters[FV1] * dq[0]
+        + parameters[FC1] * t0);
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(1.0) / parameters[ZZ1R];
     out[0] = (input[0] + t3) * t4;
     if (!(out[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && out[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {

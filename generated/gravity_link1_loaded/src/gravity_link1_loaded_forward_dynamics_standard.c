@@ -45,7 +45,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFC76844FUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -71,26 +71,26 @@ int gravity_link1_loaded_forward_dynamics_standard(
         return status;
     }
 
-    gravity_link1_loaded_real_t t1, t3;
-    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t3);
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
-    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(-9.81) * t1;
-    const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(-9.81) * t3;
-    const gravity_link1_loaded_real_t t5 = dq[0] * dq[0];
-    const gravity_link1_loaded_real_t t6 = t2 * parameters[MX2] + (t4
-        + GRAVITY_LINK1_LOADED_C(-0.538534) * t5) * parameters[MY2]
-        + GRAVITY_LINK1_LOADED_C(0.538534) * (t2 * parameters[M2] + t5 * parameters[MY2]);
-    const gravity_link1_loaded_real_t t7 = t2 * parameters[MX1] + t4 * parameters[MY1] + t6
-        - (dq[0] * parameters[FV1] + t0 * parameters[FC1]);
-    const gravity_link1_loaded_real_t t8 = parameters[ZZ1] + (parameters[ZZ2]
+    gravity_link1_loaded_real_t t4, t1;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t4, &t1);
+    const gravity_link1_loaded_real_t t0 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2]
         + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2]));
-    if (!(t8 > GRAVITY_LINK1_LOADED_C(1.0e-9))) {
+    if (!(t0 > GRAVITY_LINK1_LOADED_C(1.0e-9))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }
-    const gravity_link1_loaded_real_t t9 = GRAVITY_LINK1_LOADED_C(1.0) / t8;
-    out[0] = (input[0] + t7) * t9;
+    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(-9.81) * t1;
+    const gravity_link1_loaded_real_t t3 = dq[0] * dq[0];
+    const gravity_link1_loaded_real_t t5 = GRAVITY_LINK1_LOADED_C(-9.81) * t4;
+    const gravity_link1_loaded_real_t t6 = t5 * parameters[MX2] + (t2
+        + GRAVITY_LINK1_LOADED_C(-0.538534) * t3) * parameters[MY2]
+        + GRAVITY_LINK1_LOADED_C(0.538534) * (t5 * parameters[M2] + t3 * parameters[MY2]);
+    const gravity_link1_loaded_real_t t7 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t8 = t5 * parameters[MX1] + t2 * parameters[MY1] + t6
+        - (dq[0] * parameters[FV1] + t7 * parameters[FC1]);
+    const gravity_link1_loaded_real_t t9 = GRAVITY_LINK1_LOADED_C(1.0) / t0;
+    out[0] = (input[0] + t8) * t9;
     if (!(out[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && out[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;

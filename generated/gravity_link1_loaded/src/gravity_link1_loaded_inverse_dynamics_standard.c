@@ -44,7 +44,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x718187B7UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFC76844FUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -70,19 +70,19 @@ int gravity_link1_loaded_inverse_dynamics_standard(
         return status;
     }
 
-    gravity_link1_loaded_real_t t1, t3;
-    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t3);
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
-    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(9.81) * t1;
+    gravity_link1_loaded_real_t t3, t0;
+    GRAVITY_LINK1_LOADED_SINCOS(q[0], &t3, &t0);
+    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0;
+    const gravity_link1_loaded_real_t t2 = dq[0] * dq[0];
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(9.81) * t3;
-    const gravity_link1_loaded_real_t t5 = dq[0] * dq[0];
-    const gravity_link1_loaded_real_t t6 = t2 + GRAVITY_LINK1_LOADED_C(0.538534) * ddq[0];
-    const gravity_link1_loaded_real_t t7 = ddq[0] * parameters[ZZ2] + ((t4
-        + GRAVITY_LINK1_LOADED_C(0.538534) * t5) * parameters[MY2] + t6 * parameters[MX2]);
-    const gravity_link1_loaded_real_t t8 = GRAVITY_LINK1_LOADED_C(0.538534) * (t6 * parameters[M2]
-        + (ddq[0] * parameters[MX2] - t5 * parameters[MY2]));
-    const gravity_link1_loaded_real_t t9 = t2 * parameters[MX1] + t4 * parameters[MY1]
-        + ddq[0] * parameters[ZZ1] + (t7 + t8);
-    out[0] = dq[0] * parameters[FV1] + t0 * parameters[FC1] + t9;
+    const gravity_link1_loaded_real_t t5 = t4 + GRAVITY_LINK1_LOADED_C(0.538534) * ddq[0];
+    const gravity_link1_loaded_real_t t6 = ddq[0] * parameters[ZZ2] + ((t1
+        + GRAVITY_LINK1_LOADED_C(0.538534) * t2) * parameters[MY2] + t5 * parameters[MX2]);
+    const gravity_link1_loaded_real_t t7 = GRAVITY_LINK1_LOADED_C(0.538534) * (t5 * parameters[M2]
+        + (ddq[0] * parameters[MX2] - t2 * parameters[MY2]));
+    const gravity_link1_loaded_real_t t8 = t4 * parameters[MX1] + t1 * parameters[MY1]
+        + ddq[0] * parameters[ZZ1] + (t6 + t7);
+    const gravity_link1_loaded_real_t t9 = gravity_link1_loaded_sign(dq[0]);
+    out[0] = dq[0] * parameters[FV1] + t9 * parameters[FC1] + t8;
     return GRAVITY_LINK1_LOADED_STATUS_OK;
 }

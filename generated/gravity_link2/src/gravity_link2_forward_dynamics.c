@@ -27,7 +27,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
+#if GRAVITY_LINK2_GENERATION != 0xB0014BBEUL
 #error "gravity_link2.h and gravity_link2_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,13 +54,13 @@ int gravity_link2_forward_dynamics(
 
     gravity_link2_real_t t1, t2;
     GRAVITY_LINK2_SINCOS(q[0], &t1, &t2);
-    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]);
-    const gravity_link2_real_t t3 = parameters[MX1] * (GRAVITY_LINK2_C(-9.81) * t1)
-        + parameters[MY1] * (GRAVITY_LINK2_C(-9.81) * t2) - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     if (!(parameters[ZZ1] > GRAVITY_LINK2_C(1.0e-9))) {
         gravity_link2_zero(out, 1);
         return GRAVITY_LINK2_STATUS_PIVOT;
     }
+    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]);
+    const gravity_link2_real_t t3 = parameters[MX1] * (GRAVITY_LINK2_C(-9.81) * t1)
+        + parameters[MY1] * (GRAVITY_LINK2_C(-9.81) * t2) - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     const gravity_link2_real_t t4 = GRAVITY_LINK2_C(1.0) / parameters[ZZ1];
     out[0] = (input[0] + t3) * t4;
     if (!(out[0] >= GRAVITY_LINK2_C(-1.0e15) && out[0] <= GRAVITY_LINK2_C(1.0e15))) {

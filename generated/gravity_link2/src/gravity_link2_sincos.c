@@ -11,7 +11,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x0104676DUL
+#if GRAVITY_LINK2_GENERATION != 0xB0014BBEUL
 #error "gravity_link2.h and gravity_link2_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * GRAVITY_LINK2_C(0.636619772) + GRAVITY_LINK2_C(16384.5));
+    const gravity_link2_real_t turns = x * GRAVITY_LINK2_C(0.636619772) + GRAVITY_LINK2_C(16384.5);
+    const long quarter = (long)turns;
     const gravity_link2_real_t k = (gravity_link2_real_t)quarter - GRAVITY_LINK2_C(16384.0);
     const gravity_link2_real_t r = x - k * GRAVITY_LINK2_C(1.5703125) - k * GRAVITY_LINK2_C(4.83826792e-4);
     const gravity_link2_real_t z = r * r;

@@ -93,7 +93,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0xAF7D4BC0UL
+#define IIWA14_GENERATION 0xCED26AECUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef IIWA14_REAL

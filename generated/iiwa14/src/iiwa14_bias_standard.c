@@ -118,7 +118,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,282 +145,285 @@ int iiwa14_bias_standard(
         return status;
     }
 
-    iiwa14_real_t t1, t2;
-    IIWA14_SINCOS(q[1], &t1, &t2);
-    iiwa14_real_t t14, t13;
-    IIWA14_SINCOS(q[2], &t14, &t13);
-    iiwa14_real_t t38, t37;
-    IIWA14_SINCOS(q[3], &t38, &t37);
-    iiwa14_real_t t60, t59;
-    IIWA14_SINCOS(q[4], &t60, &t59);
-    iiwa14_real_t t87, t86;
-    IIWA14_SINCOS(q[5], &t87, &t86);
-    iiwa14_real_t t109, t108;
-    IIWA14_SINCOS(q[6], &t109, &t108);
-    const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t3 = t2 * dq[0];
-    const iiwa14_real_t t4 = dq[1] * t3;
-    const iiwa14_real_t t5 = t1 * dq[0];
-    const iiwa14_real_t t6 = dq[1] * t5;
-    const iiwa14_real_t t7 = t4 * parameters[XX2] + t4 * (parameters[ZZ2] - parameters[YY2])
-        + IIWA14_C(-2.0) * t6 * parameters[XY2];
-    const iiwa14_real_t t8 = t5 * t3;
-    const iiwa14_real_t t9 = t3 * t3;
-    const iiwa14_real_t t10 = dq[1] * dq[1];
-    const iiwa14_real_t t11 = IIWA14_C(-9.81) * t2;
-    const iiwa14_real_t t12 = t7 - t8 * parameters[XZ2] + (t10 - t9) * parameters[YZ2]
-        + t11 * parameters[MZ2];
-    const iiwa14_real_t t15 = t14 * t5 + t13 * dq[1];
-    const iiwa14_real_t t16 = dq[2] + t3;
+    iiwa14_real_t t0, t6;
+    IIWA14_SINCOS(q[1], &t0, &t6);
+    iiwa14_real_t t3, t2;
+    IIWA14_SINCOS(q[2], &t3, &t2);
+    iiwa14_real_t t9, t5;
+    IIWA14_SINCOS(q[3], &t9, &t5);
+    iiwa14_real_t t14, t11;
+    IIWA14_SINCOS(q[4], &t14, &t11);
+    iiwa14_real_t t32, t48;
+    IIWA14_SINCOS(q[5], &t32, &t48);
+    iiwa14_real_t t62, t55;
+    IIWA14_SINCOS(q[6], &t62, &t55);
+    const iiwa14_real_t t1 = t0 * dq[0];
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_real_t t7 = t6 * dq[0];
+    const iiwa14_real_t t8 = dq[2] + t7;
+    const iiwa14_real_t t10 = t9 * t8 - t5 * t4;
+    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1];
+    const iiwa14_real_t t13 = dq[3] - t12;
+    const iiwa14_real_t t15 = t14 * t13 - t11 * t10;
+    const iiwa14_real_t t16 = t14 * t10 + t11 * t13;
     const iiwa14_real_t t17 = t15 * t16;
-    const iiwa14_real_t t18 = IIWA14_C(2.0) * t4;
-    const iiwa14_real_t t19 = t14 * t8 + t13 * t18;
-    const iiwa14_real_t t20 = t17 - t19;
-    const iiwa14_real_t t21 = t13 * t5 - t14 * dq[1];
-    const iiwa14_real_t t22 = t21 * t16;
-    const iiwa14_real_t t23 = t14 * t18 - t13 * t8;
-    const iiwa14_real_t t24 = t22 + t23;
-    const iiwa14_real_t t25 = parameters[XX3] * t20 - t17 * (parameters[YY3] - parameters[ZZ3])
-        + parameters[XY3] * (t22 + t24);
-    const iiwa14_real_t t26 = t21 * t15;
-    const iiwa14_real_t t27 = t6 + t26;
-    const iiwa14_real_t t28 = t15 * t15;
-    const iiwa14_real_t t29 = t16 * t16;
-    const iiwa14_real_t t30 = t5 * t5;
-    const iiwa14_real_t t31 = t11 + IIWA14_C(0.42) * (t30 + t10);
-    const iiwa14_real_t t32 = IIWA14_C(9.81) * t1;
-    const iiwa14_real_t t33 = IIWA14_C(-0.42) * t8 - t32;
-    const iiwa14_real_t t34 = IIWA14_C(0.84) * t4;
-    const iiwa14_real_t t35 = t14 * t33 - t13 * t34;
-    const iiwa14_real_t t36 = t25 - parameters[XZ3] * t27 + (t28 - t29) * parameters[YZ3]
-        + (parameters[MZ3] * t35 - t31 * parameters[MY3]);
-    const iiwa14_real_t t39 = t38 * t21 + t37 * t16;
-    const iiwa14_real_t t40 = dq[3] - t15;
-    const iiwa14_real_t t41 = t39 * t40;
-    const iiwa14_real_t t42 = t26 - t6;
-    const iiwa14_real_t t43 = t17 + t20;
-    const iiwa14_real_t t44 = t38 * t42 + t37 * t43;
-    const iiwa14_real_t t45 = t41 + t44;
-    const iiwa14_real_t t46 = t38 * t16 - t37 * t21;
-    const iiwa14_real_t t47 = t46 * t40;
-    const iiwa14_real_t t48 = t37 * t42 - t38 * t43;
-    const iiwa14_real_t t49 = t48 - t47;
-    const iiwa14_real_t t50 = t49 - t47;
-    const iiwa14_real_t t51 = parameters[XX4] * t45 + t41 * (parameters[ZZ4] - parameters[YY4])
-        + parameters[XY4] * t50;
-    const iiwa14_real_t t52 = t46 * t39;
-    const iiwa14_real_t t53 = t24 - t52;
-    const iiwa14_real_t t54 = t39 * t39;
-    const iiwa14_real_t t55 = t40 * t40;
-    const iiwa14_real_t t56 = t13 * t33 + t14 * t34;
-    const iiwa14_real_t t57 = t37 * t31 + t38 * t56;
-    const iiwa14_real_t t58 = t51 - parameters[XZ4] * t53 + (t54 - t55) * parameters[YZ4]
-        + (parameters[MY4] * t35 + parameters[MZ4] * t57);
-    const iiwa14_real_t t61 = t60 * t46 + t59 * t40;
-    const iiwa14_real_t t62 = dq[4] + t39;
-    const iiwa14_real_t t63 = t61 * t62;
-    const iiwa14_real_t t64 = t52 + t24;
-    const iiwa14_real_t t65 = t41 + t45;
-    const iiwa14_real_t t66 = t60 * t64 + t59 * t65;
-    const iiwa14_real_t t67 = t63 - t66;
-    const iiwa14_real_t t68 = t60 * t40 - t59 * t46;
-    const iiwa14_real_t t69 = t68 * t62;
-    const iiwa14_real_t t70 = t59 * t64 - t60 * t65;
-    const iiwa14_real_t t71 = t69 + t70;
-    const iiwa14_real_t t72 = t69 + t71;
-    const iiwa14_real_t t73 = parameters[XY5] * t72 - (parameters[XX5] * t67 + t63 * (parameters[ZZ5]
+    const iiwa14_real_t t18 = t4 * t12;
+    const iiwa14_real_t t19 = dq[1] * t1;
+    const iiwa14_real_t t20 = t18 - t19;
+    const iiwa14_real_t t21 = t12 * t8;
+    const iiwa14_real_t t22 = t1 * t7;
+    const iiwa14_real_t t23 = dq[1] * t7;
+    const iiwa14_real_t t24 = IIWA14_C(2.0) * t23;
+    const iiwa14_real_t t25 = t3 * t22 + t2 * t24;
+    const iiwa14_real_t t26 = t21 - t25;
+    const iiwa14_real_t t27 = t21 + t26;
+    const iiwa14_real_t t28 = t5 * t20 - t9 * t27;
+    const iiwa14_real_t t29 = t10 * t13;
+    const iiwa14_real_t t30 = t28 - t29;
+    const iiwa14_real_t t31 = t30 - t17;
+    const iiwa14_real_t t33 = t9 * t4 + t5 * t8;
+    const iiwa14_real_t t34 = t10 * t33;
+    const iiwa14_real_t t35 = t4 * t8;
+    const iiwa14_real_t t36 = t3 * t24 - t2 * t22;
+    const iiwa14_real_t t37 = t35 + t36;
+    const iiwa14_real_t t38 = t34 + t37;
+    const iiwa14_real_t t39 = t9 * t20 + t5 * t27;
+    const iiwa14_real_t t40 = t33 * t13;
+    const iiwa14_real_t t41 = t40 + t39;
+    const iiwa14_real_t t42 = t40 + t41;
+    const iiwa14_real_t t43 = t14 * t38 + t11 * t42;
+    const iiwa14_real_t t44 = dq[4] + t33;
+    const iiwa14_real_t t45 = t16 * t44;
+    const iiwa14_real_t t46 = t45 - t43;
+    const iiwa14_real_t t47 = t45 + t46;
+    const iiwa14_real_t t49 = t32 * t31 + t48 * t47;
+    const iiwa14_real_t t50 = t48 * t44 - t32 * t15;
+    const iiwa14_real_t t51 = t16 - dq[5];
+    const iiwa14_real_t t52 = t50 * t51;
+    const iiwa14_real_t t53 = t49 - t52;
+    const iiwa14_real_t t54 = t53 - t52;
+    const iiwa14_real_t t56 = t11 * t38 - t14 * t42;
+    const iiwa14_real_t t57 = t15 * t44;
+    const iiwa14_real_t t58 = t57 + t56;
+    const iiwa14_real_t t59 = t48 * t15 + t32 * t44;
+    const iiwa14_real_t t60 = t59 * t50;
+    const iiwa14_real_t t61 = t58 - t60;
+    const iiwa14_real_t t63 = t62 * t61 - t55 * t54;
+    const iiwa14_real_t t64 = t62 * t59 - t55 * t51;
+    const iiwa14_real_t t65 = dq[6] + t50;
+    const iiwa14_real_t t66 = t64 * t65;
+    const iiwa14_real_t t67 = t66 + t63;
+    const iiwa14_real_t t68 = t55 * t61 + t62 * t54;
+    const iiwa14_real_t t69 = t55 * t59 + t62 * t51;
+    const iiwa14_real_t t70 = t69 * t65;
+    const iiwa14_real_t t71 = t70 + t68;
+    const iiwa14_real_t t72 = t70 + t71;
+    const iiwa14_real_t t73 = parameters[XX7] * t67 + t66 * (parameters[ZZ7] - parameters[YY7])
+        + parameters[XY7] * t72;
+    const iiwa14_real_t t74 = t48 * t31 - t32 * t47;
+    const iiwa14_real_t t75 = t59 * t51;
+    const iiwa14_real_t t76 = t75 + t74;
+    const iiwa14_real_t t77 = t69 * t64;
+    const iiwa14_real_t t78 = t77 - t76;
+    const iiwa14_real_t t79 = t64 * t64;
+    const iiwa14_real_t t80 = t65 * t65;
+    const iiwa14_real_t t81 = t1 * t1;
+    const iiwa14_real_t t82 = dq[1] * dq[1];
+    const iiwa14_real_t t83 = IIWA14_C(-9.81) * t6;
+    const iiwa14_real_t t84 = t83 + IIWA14_C(0.42) * (t81 + t82);
+    const iiwa14_real_t t85 = IIWA14_C(9.81) * t0;
+    const iiwa14_real_t t86 = IIWA14_C(-0.42) * t22 - t85;
+    const iiwa14_real_t t87 = IIWA14_C(0.84) * t23;
+    const iiwa14_real_t t88 = t2 * t86 + t3 * t87;
+    const iiwa14_real_t t89 = t5 * t88 - t9 * t84;
+    const iiwa14_real_t t90 = t89 - IIWA14_C(-0.4) * t38;
+    const iiwa14_real_t t91 = t3 * t86 - t2 * t87;
+    const iiwa14_real_t t92 = t91 + IIWA14_C(0.4) * t42;
+    const iiwa14_real_t t93 = t14 * t92 - t11 * t90;
+    const iiwa14_real_t t94 = t10 * t10;
+    const iiwa14_real_t t95 = t13 * t13;
+    const iiwa14_real_t t96 = t94 + t95;
+    const iiwa14_real_t t97 = t5 * t84 + t9 * t88;
+    const iiwa14_real_t t98 = IIWA14_C(0.4) * t96 + t97;
+    const iiwa14_real_t t99 = t32 * t98 - t48 * t93;
+    const iiwa14_real_t t100 = t99 + IIWA14_C(0.126) * t61;
+    const iiwa14_real_t t101 = t14 * t90 + t11 * t92;
+    const iiwa14_real_t t102 = t101 + IIWA14_C(-0.126) * t54;
+    const iiwa14_real_t t103 = t62 * t100 + t55 * t102;
+    const iiwa14_real_t t104 = t59 * t59;
+    const iiwa14_real_t t105 = t51 * t51;
+    const iiwa14_real_t t106 = t104 + t105;
+    const iiwa14_real_t t107 = t32 * t93 + t48 * t98;
+    const iiwa14_real_t t108 = IIWA14_C(0.126) * t106 + t107;
+    const iiwa14_real_t t109 = t73 - parameters[XZ7] * t78 + (t79 - t80) * parameters[YZ7]
+        + (parameters[MZ7] * t103 - parameters[MY7] * t108);
+    const iiwa14_real_t t110 = t66 + t67;
+    const iiwa14_real_t t111 = parameters[YY7] * t71 + t70 * (parameters[ZZ7] - parameters[XX7])
+        + parameters[XY7] * t110;
+    const iiwa14_real_t t112 = t77 + t76;
+    const iiwa14_real_t t113 = t69 * t69;
+    const iiwa14_real_t t114 = t55 * t100 - t62 * t102;
+    const iiwa14_real_t t115 = t111 + parameters[YZ7] * t112 + (t80 - t113) * parameters[XZ7]
+        + (parameters[MZ7] * t114 + parameters[MX7] * t108);
+    const iiwa14_real_t t116 = (t79 + t80) * parameters[MX7] + parameters[MY7] * t112 - parameters[MZ7] * t68;
+    const iiwa14_real_t t117 = parameters[M7] * t114 - t116;
+    const iiwa14_real_t t118 = parameters[MX7] * t78 + (t113 + t80) * parameters[MY7] + parameters[MZ7] * t63;
+    const iiwa14_real_t t119 = parameters[M7] * t103 + t118;
+    const iiwa14_real_t t120 = t55 * t119 - t62 * t117;
+    const iiwa14_real_t t121 = t75 + t76;
+    const iiwa14_real_t t122 = parameters[XX6] * t53 + t52 * (parameters[YY6] - parameters[ZZ6])
+        + parameters[XY6] * t121;
+    const iiwa14_real_t t123 = t60 + t58;
+    const iiwa14_real_t t124 = t50 * t50;
+    const iiwa14_real_t t125 = parameters[XZ6] * t123 - t122 + (t124 - t105) * parameters[YZ6]
+        - (parameters[MY6] * t101 + parameters[MZ6] * t107);
+    const iiwa14_real_t t126 = t125 + (t55 * t109 - t62 * t115 - IIWA14_C(-0.126) * t120);
+    const iiwa14_real_t t127 = parameters[ZZ7] * t76 + t77 * (parameters[XX7] - parameters[YY7])
+        + parameters[YZ7] * t68;
+    const iiwa14_real_t t128 = t127 + parameters[XZ7] * t63 + (t113 - t79) * parameters[XY7]
+        - (parameters[MX7] * t103 + parameters[MY7] * t114);
+    const iiwa14_real_t t129 = parameters[YY6] * t76 - t75 * (parameters[XX6] - parameters[ZZ6])
+        + parameters[XY6] * t54;
+    const iiwa14_real_t t130 = t129 - parameters[YZ6] * t61 + (t104 - t105) * parameters[XZ6]
+        - (parameters[MZ6] * t99 + parameters[MX6] * t101);
+    const iiwa14_real_t t131 = t130 + t128;
+    const iiwa14_real_t t132 = t57 + t58;
+    const iiwa14_real_t t133 = parameters[XY5] * t132 - (parameters[XX5] * t46 + t45 * (parameters[ZZ5]
         - parameters[YY5]));
-    const iiwa14_real_t t74 = t68 * t61;
-    const iiwa14_real_t t75 = t74 + t49;
-    const iiwa14_real_t t76 = t61 * t61;
-    const iiwa14_real_t t77 = t62 * t62;
-    const iiwa14_real_t t78 = t46 * t46;
-    const iiwa14_real_t t79 = t78 + t55;
-    const iiwa14_real_t t80 = IIWA14_C(0.4) * t79 + t57;
-    const iiwa14_real_t t81 = t37 * t56 - t38 * t31;
-    const iiwa14_real_t t82 = t81 - IIWA14_C(-0.4) * t64;
-    const iiwa14_real_t t83 = t35 + IIWA14_C(0.4) * t65;
-    const iiwa14_real_t t84 = t60 * t82 + t59 * t83;
-    const iiwa14_real_t t85 = t73 + parameters[XZ5] * t75 + (t76 - t77) * parameters[YZ5]
-        + (parameters[MZ5] * t84 - parameters[MY5] * t80);
-    const iiwa14_real_t t88 = t86 * t62 - t87 * t68;
-    const iiwa14_real_t t89 = t61 - dq[5];
-    const iiwa14_real_t t90 = t88 * t89;
-    const iiwa14_real_t t91 = t49 - t74;
-    const iiwa14_real_t t92 = t63 + t67;
-    const iiwa14_real_t t93 = t87 * t91 + t86 * t92;
-    const iiwa14_real_t t94 = t93 - t90;
-    const iiwa14_real_t t95 = t86 * t68 + t87 * t62;
-    const iiwa14_real_t t96 = t95 * t89;
-    const iiwa14_real_t t97 = t86 * t91 - t87 * t92;
-    const iiwa14_real_t t98 = t96 + t97;
-    const iiwa14_real_t t99 = t96 + t98;
-    const iiwa14_real_t t100 = parameters[XX6] * t94 + t90 * (parameters[YY6] - parameters[ZZ6])
-        + parameters[XY6] * t99;
-    const iiwa14_real_t t101 = t95 * t88;
-    const iiwa14_real_t t102 = t101 + t71;
-    const iiwa14_real_t t103 = t88 * t88;
-    const iiwa14_real_t t104 = t89 * t89;
-    const iiwa14_real_t t105 = t60 * t83 - t59 * t82;
-    const iiwa14_real_t t106 = t87 * t105 + t86 * t80;
-    const iiwa14_real_t t107 = parameters[XZ6] * t102 - t100 + (t103 - t104) * parameters[YZ6]
-        - (parameters[MY6] * t84 + parameters[MZ6] * t106);
-    const iiwa14_real_t t110 = t109 * t95 - t108 * t89;
-    const iiwa14_real_t t111 = dq[6] + t88;
-    const iiwa14_real_t t112 = t110 * t111;
-    const iiwa14_real_t t113 = t71 - t101;
-    const iiwa14_real_t t114 = t94 - t90;
-    const iiwa14_real_t t115 = t109 * t113 - t108 * t114;
-    const iiwa14_real_t t116 = t112 + t115;
-    const iiwa14_real_t t117 = t108 * t95 + t109 * t89;
-    const iiwa14_real_t t118 = t117 * t111;
-    const iiwa14_real_t t119 = t108 * t113 + t109 * t114;
-    const iiwa14_real_t t120 = t118 + t119;
-    const iiwa14_real_t t121 = t118 + t120;
-    const iiwa14_real_t t122 = parameters[XX7] * t116 + t112 * (parameters[ZZ7] - parameters[YY7])
-        + parameters[XY7] * t121;
-    const iiwa14_real_t t123 = t117 * t110;
-    const iiwa14_real_t t124 = t123 - t98;
-    const iiwa14_real_t t125 = t110 * t110;
-    const iiwa14_real_t t126 = t111 * t111;
-    const iiwa14_real_t t127 = t95 * t95;
-    const iiwa14_real_t t128 = t127 + t104;
-    const iiwa14_real_t t129 = IIWA14_C(0.126) * t128 + t106;
-    const iiwa14_real_t t130 = t87 * t80 - t86 * t105;
-    const iiwa14_real_t t131 = t130 + IIWA14_C(0.126) * t113;
-    const iiwa14_real_t t132 = t84 + IIWA14_C(-0.126) * t114;
-    const iiwa14_real_t t133 = t109 * t131 + t108 * t132;
-    const iiwa14_real_t t134 = t122 - parameters[XZ7] * t124 + (t125 - t126) * parameters[YZ7]
-        + (parameters[MZ7] * t133 - parameters[MY7] * t129);
-    const iiwa14_real_t t135 = t112 + t116;
-    const iiwa14_real_t t136 = parameters[YY7] * t120 + t118 * (parameters[ZZ7] - parameters[XX7])
-        + parameters[XY7] * t135;
-    const iiwa14_real_t t137 = t123 + t98;
-    const iiwa14_real_t t138 = t117 * t117;
-    const iiwa14_real_t t139 = t108 * t131 - t109 * t132;
-    const iiwa14_real_t t140 = t136 + parameters[YZ7] * t137 + (t126 - t138) * parameters[XZ7]
-        + (parameters[MZ7] * t139 + parameters[MX7] * t129);
-    const iiwa14_real_t t141 = (t125 + t126) * parameters[MX7] + parameters[MY7] * t137
-        - parameters[MZ7] * t119;
-    const iiwa14_real_t t142 = parameters[M7] * t139 - t141;
-    const iiwa14_real_t t143 = parameters[MX7] * t124 + (t138 + t126) * parameters[MY7]
-        + parameters[MZ7] * t115;
-    const iiwa14_real_t t144 = parameters[M7] * t133 + t143;
-    const iiwa14_real_t t145 = t108 * t144 - t109 * t142;
-    const iiwa14_real_t t146 = t107 + (t108 * t134 - t109 * t140 - IIWA14_C(-0.126) * t145);
-    const iiwa14_real_t t147 = parameters[YY6] * t98 - t96 * (parameters[XX6] - parameters[ZZ6])
-        + parameters[XY6] * t114;
-    const iiwa14_real_t t148 = t147 - parameters[YZ6] * t113 + (t127 - t104) * parameters[XZ6]
-        - (parameters[MZ6] * t130 + parameters[MX6] * t84);
-    const iiwa14_real_t t149 = parameters[ZZ7] * t98 + t123 * (parameters[XX7] - parameters[YY7])
-        + parameters[YZ7] * t119;
-    const iiwa14_real_t t150 = t149 + parameters[XZ7] * t115 + (t138 - t125) * parameters[XY7]
-        - (parameters[MX7] * t133 + parameters[MY7] * t139);
-    const iiwa14_real_t t151 = t148 + t150;
-    const iiwa14_real_t t152 = t85 + (t86 * t146 + t87 * t151);
-    const iiwa14_real_t t153 = parameters[YY5] * t71 - t69 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t92;
-    const iiwa14_real_t t154 = t68 * t68;
-    const iiwa14_real_t t155 = t153 + parameters[YZ5] * t91 - (t154 - t77) * parameters[XZ5]
-        + (parameters[MX5] * t80 - parameters[MZ5] * t105);
-    const iiwa14_real_t t156 = parameters[ZZ6] * t71 - t101 * (parameters[XX6] - parameters[YY6])
-        - parameters[YZ6] * t97;
-    const iiwa14_real_t t157 = t156 - parameters[XZ6] * t93 + (t127 - t103) * parameters[XY6]
-        + (parameters[MX6] * t106 - parameters[MY6] * t130);
-    const iiwa14_real_t t158 = t108 * t142 + t109 * t144;
-    const iiwa14_real_t t159 = t157 + (t109 * t134 + t108 * t140 + IIWA14_C(0.126) * t158);
-    const iiwa14_real_t t160 = t155 + t159;
-    const iiwa14_real_t t161 = (t76 + t77) * parameters[MX5] + parameters[MY5] * t91 - parameters[MZ5] * t70;
-    const iiwa14_real_t t162 = (t103 + t104) * parameters[MX6] + parameters[MY6] * t113
-        + parameters[MZ6] * t97;
-    const iiwa14_real_t t163 = parameters[M6] * t130 - t162 + t158;
-    const iiwa14_real_t t164 = parameters[M6] * t106 + (parameters[MX6] * t102 - t128 * parameters[MY6]
-        + parameters[MZ6] * t93);
-    const iiwa14_real_t t165 = parameters[MX7] * t121 - parameters[MY7] * t135 + (t138
-        + t125) * parameters[MZ7];
-    const iiwa14_real_t t166 = t164 + (parameters[M7] * t129 + t165);
-    const iiwa14_real_t t167 = t86 * t163 - t87 * t166 - (parameters[M5] * t105 + t161);
-    const iiwa14_real_t t168 = (t154 + t77) * parameters[MY5] - parameters[MX5] * t75 + parameters[MZ5] * t66;
-    const iiwa14_real_t t169 = parameters[MY6] * t114 - parameters[MX6] * t99 + (t127
-        + t103) * parameters[MZ6];
-    const iiwa14_real_t t170 = parameters[M5] * t84 + t168 + (parameters[M6] * t84 + t169 + t145);
-    const iiwa14_real_t t171 = t59 * t170 - t60 * t167;
-    const iiwa14_real_t t172 = t58 + (t59 * t152 - t60 * t160 + IIWA14_C(0.4) * t171);
-    const iiwa14_real_t t173 = parameters[YY4] * t49 - t47 * (parameters[ZZ4] - parameters[XX4])
-        + parameters[XY4] * t65;
-    const iiwa14_real_t t174 = t173 - parameters[YZ4] * t64 + (t55 - t78) * parameters[XZ4]
-        + (parameters[MZ4] * t81 - parameters[MX4] * t35);
-    const iiwa14_real_t t175 = parameters[ZZ5] * t49 - t74 * (parameters[XX5] - parameters[YY5])
-        + parameters[YZ5] * t70;
-    const iiwa14_real_t t176 = t175 + parameters[XZ5] * t66 + (t154 - t76) * parameters[XY5]
-        + (parameters[MY5] * t105 - parameters[MX5] * t84);
-    const iiwa14_real_t t177 = t176 + (t86 * t151 - t87 * t146);
-    const iiwa14_real_t t178 = t174 + t177;
-    const iiwa14_real_t t179 = t36 + (t37 * t172 - t38 * t178);
-    const iiwa14_real_t t180 = parameters[YY3] * t24 + t22 * (parameters[ZZ3] - parameters[XX3])
-        + parameters[XY3] * t43;
-    const iiwa14_real_t t181 = t21 * t21;
-    const iiwa14_real_t t182 = t180 + parameters[YZ3] * t42 + (t29 - t181) * parameters[XZ3]
-        + (parameters[MZ3] * t56 + t31 * parameters[MX3]);
-    const iiwa14_real_t t183 = parameters[ZZ4] * t24 - t52 * (parameters[YY4] - parameters[XX4])
-        - parameters[YZ4] * t48;
-    const iiwa14_real_t t184 = t183 - parameters[XZ4] * t44 + (t54 - t78) * parameters[XY4]
-        + (parameters[MX4] * t57 + parameters[MY4] * t81);
-    const iiwa14_real_t t185 = t59 * t167 + t60 * t170;
-    const iiwa14_real_t t186 = t184 + (t60 * t152 + t59 * t160 + IIWA14_C(0.4) * t185);
-    const iiwa14_real_t t187 = t182 + t186;
-    const iiwa14_real_t t188 = parameters[MZ3] * t23 - ((t28 + t29) * parameters[MX3]
-        + parameters[MY3] * t42);
-    const iiwa14_real_t t189 = parameters[MY4] * t64 - (t54 + t55) * parameters[MX4] + parameters[MZ4] * t48;
-    const iiwa14_real_t t190 = parameters[M4] * t57 + (parameters[MX4] * t53 + t79 * parameters[MY4]
-        + parameters[MZ4] * t44);
-    const iiwa14_real_t t191 = parameters[MX5] * t72 + parameters[MY5] * t92 + (t154 + t76) * parameters[MZ5];
-    const iiwa14_real_t t192 = parameters[M5] * t80 + t191 + (t87 * t163 + t86 * t166);
-    const iiwa14_real_t t193 = t37 * (parameters[M4] * t81 + t189 + t185) + t38 * (t190 + t192);
-    const iiwa14_real_t t194 = parameters[M3] * t56 + t188 + t193;
-    const iiwa14_real_t t195 = parameters[MX3] * t27 + (t181 + t29) * parameters[MY3] - parameters[MZ3] * t19;
-    const iiwa14_real_t t196 = parameters[MX4] * t50 - parameters[MY4] * t65 + (t78 + t54) * parameters[MZ4];
-    const iiwa14_real_t t197 = t196 - parameters[M4] * t35 - t171 - (parameters[M3] * t35 + t195);
-    const iiwa14_real_t t198 = t14 * t187 - t13 * t179 + IIWA14_C(0.42) * (t14 * t194 + t13 * t197);
-    const iiwa14_real_t t199 = t6 * (parameters[XX2] - parameters[ZZ2]) - t6 * parameters[YY2]
-        + t18 * parameters[XY2];
-    const iiwa14_real_t t200 = t199 + t8 * parameters[YZ2] + (t30 - t10) * parameters[XZ2]
-        + t32 * parameters[MZ2];
-    const iiwa14_real_t t201 = t26 * (parameters[XX3] - parameters[YY3]) - t6 * parameters[ZZ3]
-        + parameters[YZ3] * t23;
-    const iiwa14_real_t t202 = t201 - parameters[XZ3] * t19 + (t181 - t28) * parameters[XY3]
-        - (parameters[MX3] * t35 + parameters[MY3] * t56);
-    const iiwa14_real_t t203 = t202 + (t38 * t172 + t37 * t178);
-    const iiwa14_real_t t204 = IIWA14_C(0.0625) * (t1 * (t12 + t198) + t2 * (t200 + t203));
+    const iiwa14_real_t t134 = t17 + t30;
+    const iiwa14_real_t t135 = t16 * t16;
+    const iiwa14_real_t t136 = t44 * t44;
+    const iiwa14_real_t t137 = t133 + parameters[XZ5] * t134 + (t135 - t136) * parameters[YZ5]
+        + (parameters[MZ5] * t101 - parameters[MY5] * t98);
+    const iiwa14_real_t t138 = t137 + (t48 * t126 + t32 * t131);
+    const iiwa14_real_t t139 = t55 * t117 + t62 * t119;
+    const iiwa14_real_t t140 = parameters[ZZ6] * t58 - t60 * (parameters[XX6] - parameters[YY6])
+        - parameters[YZ6] * t74;
+    const iiwa14_real_t t141 = t140 - parameters[XZ6] * t49 + (t104 - t124) * parameters[XY6]
+        + (parameters[MX6] * t107 - parameters[MY6] * t99);
+    const iiwa14_real_t t142 = t141 + (t62 * t109 + t55 * t115 + IIWA14_C(0.126) * t139);
+    const iiwa14_real_t t143 = parameters[YY5] * t58 - t57 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t47;
+    const iiwa14_real_t t144 = t15 * t15;
+    const iiwa14_real_t t145 = t143 + parameters[YZ5] * t31 - (t144 - t136) * parameters[XZ5]
+        + (parameters[MX5] * t98 - parameters[MZ5] * t93);
+    const iiwa14_real_t t146 = t145 + t142;
+    const iiwa14_real_t t147 = (t124 + t105) * parameters[MX6] + parameters[MY6] * t61
+        + parameters[MZ6] * t74;
+    const iiwa14_real_t t148 = parameters[M6] * t99 - t147 + t139;
+    const iiwa14_real_t t149 = parameters[M6] * t107 + (parameters[MX6] * t123 - t106 * parameters[MY6]
+        + parameters[MZ6] * t49);
+    const iiwa14_real_t t150 = parameters[MX7] * t72 - parameters[MY7] * t110 + (t113
+        + t79) * parameters[MZ7];
+    const iiwa14_real_t t151 = t149 + (parameters[M7] * t108 + t150);
+    const iiwa14_real_t t152 = (t135 + t136) * parameters[MX5] + parameters[MY5] * t31
+        - parameters[MZ5] * t56;
+    const iiwa14_real_t t153 = t48 * t148 - t32 * t151 - (parameters[M5] * t93 + t152);
+    const iiwa14_real_t t154 = parameters[MY6] * t54 - parameters[MX6] * t121 + (t104
+        + t124) * parameters[MZ6];
+    const iiwa14_real_t t155 = (t144 + t136) * parameters[MY5] - parameters[MX5] * t134
+        + parameters[MZ5] * t43;
+    const iiwa14_real_t t156 = parameters[M5] * t101 + t155 + (parameters[M6] * t101 + t154 + t120);
+    const iiwa14_real_t t157 = t11 * t156 - t14 * t153;
+    const iiwa14_real_t t158 = t30 - t29;
+    const iiwa14_real_t t159 = parameters[XX4] * t41 + t40 * (parameters[ZZ4] - parameters[YY4])
+        + parameters[XY4] * t158;
+    const iiwa14_real_t t160 = t37 - t34;
+    const iiwa14_real_t t161 = t33 * t33;
+    const iiwa14_real_t t162 = t159 - parameters[XZ4] * t160 + (t161 - t95) * parameters[YZ4]
+        + (parameters[MY4] * t91 + parameters[MZ4] * t97);
+    const iiwa14_real_t t163 = t162 + (t11 * t138 - t14 * t146 + IIWA14_C(0.4) * t157);
+    const iiwa14_real_t t164 = parameters[ZZ5] * t30 - t17 * (parameters[XX5] - parameters[YY5])
+        + parameters[YZ5] * t56;
+    const iiwa14_real_t t165 = t164 + parameters[XZ5] * t43 + (t144 - t135) * parameters[XY5]
+        + (parameters[MY5] * t93 - parameters[MX5] * t101);
+    const iiwa14_real_t t166 = t165 + (t48 * t131 - t32 * t126);
+    const iiwa14_real_t t167 = parameters[YY4] * t30 - t29 * (parameters[ZZ4] - parameters[XX4])
+        + parameters[XY4] * t42;
+    const iiwa14_real_t t168 = t167 - parameters[YZ4] * t38 + (t95 - t94) * parameters[XZ4]
+        + (parameters[MZ4] * t89 - parameters[MX4] * t91);
+    const iiwa14_real_t t169 = t168 + t166;
+    const iiwa14_real_t t170 = parameters[XX3] * t26 - t21 * (parameters[YY3] - parameters[ZZ3])
+        + parameters[XY3] * (t35 + t37);
+    const iiwa14_real_t t171 = t19 + t18;
+    const iiwa14_real_t t172 = t12 * t12;
+    const iiwa14_real_t t173 = t8 * t8;
+    const iiwa14_real_t t174 = t170 - parameters[XZ3] * t171 + (t172 - t173) * parameters[YZ3]
+        + (parameters[MZ3] * t91 - t84 * parameters[MY3]);
+    const iiwa14_real_t t175 = t174 + (t5 * t163 - t9 * t169);
+    const iiwa14_real_t t176 = t11 * t153 + t14 * t156;
+    const iiwa14_real_t t177 = parameters[ZZ4] * t37 - t34 * (parameters[YY4] - parameters[XX4])
+        - parameters[YZ4] * t28;
+    const iiwa14_real_t t178 = t177 - parameters[XZ4] * t39 + (t161 - t94) * parameters[XY4]
+        + (parameters[MX4] * t97 + parameters[MY4] * t89);
+    const iiwa14_real_t t179 = t178 + (t14 * t138 + t11 * t146 + IIWA14_C(0.4) * t176);
+    const iiwa14_real_t t180 = parameters[YY3] * t37 + t35 * (parameters[ZZ3] - parameters[XX3])
+        + parameters[XY3] * t27;
+    const iiwa14_real_t t181 = t4 * t4;
+    const iiwa14_real_t t182 = t180 + parameters[YZ3] * t20 + (t173 - t181) * parameters[XZ3]
+        + (parameters[MZ3] * t88 + t84 * parameters[MX3]);
+    const iiwa14_real_t t183 = t182 + t179;
+    const iiwa14_real_t t184 = parameters[MY4] * t38 - (t161 + t95) * parameters[MX4] + parameters[MZ4] * t28;
+    const iiwa14_real_t t185 = parameters[MX5] * t132 + parameters[MY5] * t47 + (t144
+        + t135) * parameters[MZ5];
+    const iiwa14_real_t t186 = parameters[M5] * t98 + t185 + (t32 * t148 + t48 * t151);
+    const iiwa14_real_t t187 = parameters[M4] * t97 + (parameters[MX4] * t160 + t96 * parameters[MY4]
+        + parameters[MZ4] * t39);
+    const iiwa14_real_t t188 = t5 * (parameters[M4] * t89 + t184 + t176) + t9 * (t187 + t186);
+    const iiwa14_real_t t189 = parameters[MZ3] * t36 - ((t172 + t173) * parameters[MX3]
+        + parameters[MY3] * t20);
+    const iiwa14_real_t t190 = parameters[M3] * t88 + t189 + t188;
+    const iiwa14_real_t t191 = parameters[MX4] * t158 - parameters[MY4] * t42 + (t94
+        + t161) * parameters[MZ4];
+    const iiwa14_real_t t192 = parameters[MX3] * t171 + (t181 + t173) * parameters[MY3]
+        - parameters[MZ3] * t25;
+    const iiwa14_real_t t193 = t191 - parameters[M4] * t91 - t157 - (parameters[M3] * t91 + t192);
+    const iiwa14_real_t t194 = t3 * t183 - t2 * t175 + IIWA14_C(0.42) * (t3 * t190 + t2 * t193);
+    const iiwa14_real_t t195 = t23 * parameters[XX2] + t23 * (parameters[ZZ2] - parameters[YY2])
+        + IIWA14_C(-2.0) * t19 * parameters[XY2];
+    const iiwa14_real_t t196 = t7 * t7;
+    const iiwa14_real_t t197 = t195 - t22 * parameters[XZ2] + (t82 - t196) * parameters[YZ2]
+        + t83 * parameters[MZ2];
+    const iiwa14_real_t t198 = t18 * (parameters[XX3] - parameters[YY3]) - t19 * parameters[ZZ3]
+        + parameters[YZ3] * t36;
+    const iiwa14_real_t t199 = t198 - parameters[XZ3] * t25 + (t181 - t172) * parameters[XY3]
+        - (parameters[MX3] * t91 + parameters[MY3] * t88);
+    const iiwa14_real_t t200 = t199 + (t9 * t163 + t5 * t169);
+    const iiwa14_real_t t201 = t19 * (parameters[XX2] - parameters[ZZ2]) - t19 * parameters[YY2]
+        + t24 * parameters[XY2];
+    const iiwa14_real_t t202 = t201 + t22 * parameters[YZ2] + (t81 - t82) * parameters[XZ2]
+        + t85 * parameters[MZ2];
+    const iiwa14_real_t t203 = IIWA14_C(0.0625) * (t0 * (t197 + t194) + t6 * (t202 + t200));
+    const iiwa14_real_t t204 = iiwa14_sign(dq[0]);
     const iiwa14_real_t t205 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[0] * parameters[FV1]
-        + t0 * parameters[FC1]) + t204;
+        + t204 * parameters[FC1]) + t203;
     out[0] = t205;
-    const iiwa14_real_t t206 = iiwa14_sign(dq[1]);
-    const iiwa14_real_t t207 = t8 * (parameters[YY2] - parameters[XX2]) + (t30 - t9) * parameters[XY2]
-        + (t11 * parameters[MX2] + t32 * parameters[MY2]);
-    const iiwa14_real_t t208 = t14 * t179 + t13 * t187 + IIWA14_C(0.42) * (t13 * t194 - t14 * t197);
+    const iiwa14_real_t t206 = t3 * t175 + t2 * t183 + IIWA14_C(0.42) * (t2 * t190 - t3 * t193);
+    const iiwa14_real_t t207 = t22 * (parameters[YY2] - parameters[XX2]) + (t81 - t196) * parameters[XY2]
+        + (t83 * parameters[MX2] + t85 * parameters[MY2]);
+    const iiwa14_real_t t208 = iiwa14_sign(dq[1]);
     const iiwa14_real_t t209 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[1] * parameters[FV2]
-        + t206 * parameters[FC2]) + IIWA14_C(0.0625) * (t207 + t208);
+        + t208 * parameters[FC2]) + IIWA14_C(0.0625) * (t207 + t206);
     out[1] = t209;
     const iiwa14_real_t t210 = iiwa14_sign(dq[2]);
     const iiwa14_real_t t211 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[2] * parameters[FV3]
-        + t210 * parameters[FC3]) + IIWA14_C(0.0625) * t203;
+        + t210 * parameters[FC3]) + IIWA14_C(0.0625) * t200;
     out[2] = t211;
     const iiwa14_real_t t212 = iiwa14_sign(dq[3]);
     const iiwa14_real_t t213 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
-        + t212 * parameters[FC4]) + IIWA14_C(-0.0625) * t186;
+        + t212 * parameters[FC4]) + IIWA14_C(-0.0625) * t179;
     out[3] = t213;
     const iiwa14_real_t t214 = iiwa14_sign(dq[4]);
     const iiwa14_real_t t215 = IIWA14_C(12.5) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
-        + t214 * parameters[FC5]) + IIWA14_C(0.125) * t177;
+        + t214 * parameters[FC5]) + IIWA14_C(0.125) * t166;
     out[4] = t215;
     const iiwa14_real_t t216 = iiwa14_sign(dq[5]);
     const iiwa14_real_t t217 = IIWA14_C(20.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
-        + t216 * parameters[FC6]) + IIWA14_C(0.125) * t159;
+        + t216 * parameters[FC6]) + IIWA14_C(0.125) * t142;
     out[5] = t217;
     const iiwa14_real_t t218 = iiwa14_sign(dq[6]);
     const iiwa14_real_t t219 = IIWA14_C(20.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
-        + t218 * parameters[FC7]) + IIWA14_C(0.125) * t150;
+        + t218 * parameters[FC7]) + IIWA14_C(0.125) * t128;
     out[6] = t219;
     return IIWA14_STATUS_OK;
 }

@@ -90,7 +90,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -118,10 +118,10 @@ int iiwa14_energy(
         return status;
     }
 
-    iiwa14_real_t t0, t2;
-    IIWA14_SINCOS(q[1], &t0, &t2);
-    iiwa14_real_t t8, t7;
-    IIWA14_SINCOS(q[2], &t8, &t7);
+    iiwa14_real_t t0, t6;
+    IIWA14_SINCOS(q[1], &t0, &t6);
+    iiwa14_real_t t3, t2;
+    IIWA14_SINCOS(q[2], &t3, &t2);
     iiwa14_real_t t22, t21;
     IIWA14_SINCOS(q[3], &t22, &t21);
     iiwa14_real_t t33, t32;
@@ -131,27 +131,27 @@ int iiwa14_energy(
     iiwa14_real_t t58, t57;
     IIWA14_SINCOS(q[6], &t58, &t57);
     const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t3 = t2 * dq[0];
-    const iiwa14_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2] * dq[1]);
-    const iiwa14_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
-        + parameters[YZ2] * t3));
-    const iiwa14_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const iiwa14_real_t t9 = t8 * dq[1] - t7 * t1;
-    const iiwa14_real_t t10 = t8 * t1 + t7 * dq[1];
-    const iiwa14_real_t t11 = dq[2] + t3;
-    const iiwa14_real_t t12 = t9 * (parameters[XX3R] * t9 + parameters[XY3] * t10 + parameters[XZ3] * t11);
-    const iiwa14_real_t t13 = t11 * (parameters[XZ3] * t9 + parameters[YZ3] * t10 + parameters[ZZ3R] * t11);
-    const iiwa14_real_t t14 = t12 + t10 * (parameters[XY3] * t9 + parameters[YZ3] * t11) + t13;
-    const iiwa14_real_t t15 = IIWA14_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + IIWA14_C(0.5) * t6
-        + IIWA14_C(0.5) * t14;
+    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_real_t t7 = t6 * dq[0];
+    const iiwa14_real_t t8 = dq[2] + t7;
+    const iiwa14_real_t t9 = t4 * (parameters[XX3R] * t4 + parameters[XY3] * t5 + parameters[XZ3] * t8);
+    const iiwa14_real_t t10 = t8 * (parameters[XZ3] * t4 + parameters[YZ3] * t5 + parameters[ZZ3R] * t8);
+    const iiwa14_real_t t11 = t9 + t5 * (parameters[XY3] * t4 + parameters[YZ3] * t8) + t10;
+    const iiwa14_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t7 - parameters[XZ2] * dq[1]);
+    const iiwa14_real_t t13 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
+        + parameters[YZ2] * t7));
+    const iiwa14_real_t t14 = t12 + t7 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
+    const iiwa14_real_t t15 = IIWA14_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + IIWA14_C(0.5) * t14
+        + IIWA14_C(0.5) * t11;
     const iiwa14_real_t t16 = IIWA14_C(-0.42) * dq[1];
     const iiwa14_real_t t17 = IIWA14_C(0.42) * t1;
-    const iiwa14_real_t t18 = t8 * t16 + t7 * t17;
-    const iiwa14_real_t t19 = t7 * t16 - t8 * t17;
-    const iiwa14_real_t t20 = t15 + (parameters[MX3] * (t11 * t18) + parameters[MY3R] * (t11 * t19));
-    const iiwa14_real_t t23 = t21 * t9 + t22 * t11;
-    const iiwa14_real_t t24 = t22 * t9 - t21 * t11;
-    const iiwa14_real_t t25 = dq[3] - t10;
+    const iiwa14_real_t t18 = t3 * t16 + t2 * t17;
+    const iiwa14_real_t t19 = t2 * t16 - t3 * t17;
+    const iiwa14_real_t t20 = t15 + (parameters[MX3] * (t8 * t18) + parameters[MY3R] * (t8 * t19));
+    const iiwa14_real_t t23 = t21 * t4 + t22 * t8;
+    const iiwa14_real_t t24 = t22 * t4 - t21 * t8;
+    const iiwa14_real_t t25 = dq[3] - t5;
     const iiwa14_real_t t26 = t23 * (parameters[XY4] * t24 - parameters[XX4R] * t23 - parameters[XZ4] * t25);
     const iiwa14_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24 + parameters[ZZ4R] * t25);
     const iiwa14_real_t t28 = t27 - (t26 + t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25));
@@ -199,9 +199,9 @@ int iiwa14_energy(
         + IIWA14_C(0.5) * (IIWA14_C(2.56e4) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t69 + IIWA14_C(0.5) * (IIWA14_C(2.56e4) * parameters[IA7] * (dq[6] * dq[6]));
     const iiwa14_real_t t70 = IIWA14_C(-9.81) * t0;
-    const iiwa14_real_t t71 = IIWA14_C(-9.81) * t2;
-    const iiwa14_real_t t72 = t7 * t70;
-    const iiwa14_real_t t73 = t8 * t70;
+    const iiwa14_real_t t71 = IIWA14_C(-9.81) * t6;
+    const iiwa14_real_t t72 = t2 * t70;
+    const iiwa14_real_t t73 = t3 * t70;
     const iiwa14_real_t t74 = parameters[MX2] * t70 + parameters[MY2R] * t71 + (parameters[MX3] * t72
         - parameters[MY3R] * t73);
     const iiwa14_real_t t75 = t21 * t72 - t22 * t71;

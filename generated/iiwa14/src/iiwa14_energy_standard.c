@@ -119,7 +119,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -148,96 +148,96 @@ int iiwa14_energy_standard(
         return status;
     }
 
-    iiwa14_real_t t0, t2;
-    IIWA14_SINCOS(q[1], &t0, &t2);
-    iiwa14_real_t t9, t8;
-    IIWA14_SINCOS(q[2], &t9, &t8);
+    iiwa14_real_t t0, t6;
+    IIWA14_SINCOS(q[1], &t0, &t6);
+    iiwa14_real_t t3, t2;
+    IIWA14_SINCOS(q[2], &t3, &t2);
     iiwa14_real_t t24, t23;
     IIWA14_SINCOS(q[3], &t24, &t23);
-    iiwa14_real_t t38, t37;
-    IIWA14_SINCOS(q[4], &t38, &t37);
+    iiwa14_real_t t40, t38;
+    IIWA14_SINCOS(q[4], &t40, &t38);
     iiwa14_real_t t54, t53;
     IIWA14_SINCOS(q[5], &t54, &t53);
-    iiwa14_real_t t68, t67;
-    IIWA14_SINCOS(q[6], &t68, &t67);
+    iiwa14_real_t t70, t68;
+    IIWA14_SINCOS(q[6], &t70, &t68);
     const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t3 = t2 * dq[0];
-    const iiwa14_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] - dq[1] * parameters[XZ2]);
-    const iiwa14_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] - dq[1] * parameters[YZ2]);
-    const iiwa14_real_t t6 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2]
-        + t3 * parameters[YZ2]));
-    const iiwa14_real_t t7 = IIWA14_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + IIWA14_C(0.5) * (t4 + t5
-        + t6);
-    const iiwa14_real_t t10 = t9 * dq[1] - t8 * t1;
-    const iiwa14_real_t t11 = t9 * t1 + t8 * dq[1];
-    const iiwa14_real_t t12 = dq[2] + t3;
-    const iiwa14_real_t t13 = t10 * (t10 * parameters[XX3] + t11 * parameters[XY3] + t12 * parameters[XZ3]);
-    const iiwa14_real_t t14 = t11 * (t10 * parameters[XY3] + t11 * parameters[YY3] + t12 * parameters[YZ3]);
-    const iiwa14_real_t t15 = t12 * (t10 * parameters[XZ3] + t11 * parameters[YZ3] + t12 * parameters[ZZ3]);
-    const iiwa14_real_t t16 = IIWA14_C(0.42) * dq[1];
-    const iiwa14_real_t t17 = IIWA14_C(0.42) * t1;
-    const iiwa14_real_t t18 = t8 * t16 + t9 * t17;
-    const iiwa14_real_t t19 = t8 * t17 - t9 * t16;
-    const iiwa14_real_t t20 = t19 * t19;
-    const iiwa14_real_t t21 = t13 + t14 + t15 + parameters[M3] * (t18 * t18 + t20);
-    const iiwa14_real_t t22 = parameters[MX3] * (t12 * t19) - parameters[MY3] * (t12 * t18)
-        + parameters[MZ3] * (t11 * t18 - t10 * t19);
-    const iiwa14_real_t t25 = t23 * t10 + t24 * t12;
-    const iiwa14_real_t t26 = t24 * t10 - t23 * t12;
-    const iiwa14_real_t t27 = t11 - dq[3];
+    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_real_t t7 = t6 * dq[0];
+    const iiwa14_real_t t8 = dq[2] + t7;
+    const iiwa14_real_t t9 = t4 * (t4 * parameters[XX3] + t5 * parameters[XY3] + t8 * parameters[XZ3]);
+    const iiwa14_real_t t10 = t5 * (t4 * parameters[XY3] + t5 * parameters[YY3] + t8 * parameters[YZ3]);
+    const iiwa14_real_t t11 = t8 * (t4 * parameters[XZ3] + t5 * parameters[YZ3] + t8 * parameters[ZZ3]);
+    const iiwa14_real_t t12 = IIWA14_C(0.42) * dq[1];
+    const iiwa14_real_t t13 = IIWA14_C(0.42) * t1;
+    const iiwa14_real_t t14 = t2 * t12 + t3 * t13;
+    const iiwa14_real_t t15 = t2 * t13 - t3 * t12;
+    const iiwa14_real_t t16 = t15 * t15;
+    const iiwa14_real_t t17 = t9 + t10 + t11 + parameters[M3] * (t14 * t14 + t16);
+    const iiwa14_real_t t18 = t1 * (t1 * parameters[XX2] + t7 * parameters[XY2] - dq[1] * parameters[XZ2]);
+    const iiwa14_real_t t19 = t7 * (t1 * parameters[XY2] + t7 * parameters[YY2] - dq[1] * parameters[YZ2]);
+    const iiwa14_real_t t20 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2]
+        + t7 * parameters[YZ2]));
+    const iiwa14_real_t t21 = IIWA14_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + IIWA14_C(0.5) * (t18 + t19
+        + t20);
+    const iiwa14_real_t t22 = parameters[MX3] * (t8 * t15) - parameters[MY3] * (t8 * t14)
+        + parameters[MZ3] * (t5 * t14 - t4 * t15);
+    const iiwa14_real_t t25 = t23 * t4 + t24 * t8;
+    const iiwa14_real_t t26 = t24 * t4 - t23 * t8;
+    const iiwa14_real_t t27 = t5 - dq[3];
     const iiwa14_real_t t28 = t25 * (t26 * parameters[XY4] - t25 * parameters[XX4] + t27 * parameters[XZ4]);
     const iiwa14_real_t t29 = t26 * (t25 * parameters[XY4] - t26 * parameters[YY4] - t27 * parameters[YZ4]);
     const iiwa14_real_t t30 = t27 * (t25 * parameters[XZ4] - t26 * parameters[YZ4] - t27 * parameters[ZZ4]);
-    const iiwa14_real_t t31 = t23 * t18;
-    const iiwa14_real_t t32 = t24 * t18;
+    const iiwa14_real_t t31 = t23 * t14;
+    const iiwa14_real_t t32 = t24 * t14;
     const iiwa14_real_t t33 = t32 * t32;
-    const iiwa14_real_t t34 = parameters[M4] * (t20 + (t31 * t31 + t33)) - (t28 + t29 + t30);
-    const iiwa14_real_t t35 = parameters[MX4] * (t27 * t32 - t26 * t19) + parameters[MY4] * (t27 * t31
-        - t25 * t19);
-    const iiwa14_real_t t36 = t7 + IIWA14_C(0.5) * t21 + t22 + IIWA14_C(0.5) * t34 + (t35
+    const iiwa14_real_t t34 = parameters[M4] * (t16 + (t31 * t31 + t33)) - (t28 + t29 + t30);
+    const iiwa14_real_t t35 = parameters[MX4] * (t27 * t32 - t26 * t15) + parameters[MY4] * (t27 * t31
+        - t25 * t15);
+    const iiwa14_real_t t36 = t21 + IIWA14_C(0.5) * t17 + t22 + IIWA14_C(0.5) * t34 + (t35
         + parameters[MZ4] * (t25 * t32 - t26 * t31));
-    const iiwa14_real_t t39 = t37 * t25 + t38 * t27;
-    const iiwa14_real_t t40 = t37 * t27 - t38 * t25;
-    const iiwa14_real_t t41 = t26 - dq[4];
-    const iiwa14_real_t t42 = t39 * (t41 * parameters[XZ5] - (t39 * parameters[XX5] + t40 * parameters[XY5]));
-    const iiwa14_real_t t43 = t40 * (t39 * parameters[XY5] + t40 * parameters[YY5] - t41 * parameters[YZ5]);
-    const iiwa14_real_t t44 = t41 * (t39 * parameters[XZ5] + t40 * parameters[YZ5] - t41 * parameters[ZZ5]);
-    const iiwa14_real_t t45 = t31 + IIWA14_C(0.4) * t27;
-    const iiwa14_real_t t46 = t19 + IIWA14_C(-0.4) * t25;
-    const iiwa14_real_t t47 = t37 * t45 + t38 * t46;
-    const iiwa14_real_t t48 = t38 * t45 - t37 * t46;
-    const iiwa14_real_t t49 = t48 * t48;
-    const iiwa14_real_t t50 = t43 - t42 - t44 + parameters[M5] * (t33 + (t47 * t47 + t49));
-    const iiwa14_real_t t51 = parameters[MX5] * (t41 * t48 + t40 * t32) + parameters[MY5] * (t41 * t47
-        - t39 * t32);
-    const iiwa14_real_t t52 = t36 + IIWA14_C(0.5) * t50 + (t51 + parameters[MZ5] * (t40 * t47 + t39 * t48));
-    const iiwa14_real_t t55 = t53 * t39 + t54 * t41;
-    const iiwa14_real_t t56 = t53 * t41 - t54 * t39;
-    const iiwa14_real_t t57 = dq[5] + t40;
-    const iiwa14_real_t t58 = t55 * (t55 * parameters[XX6] + t56 * parameters[XY6] + t57 * parameters[XZ6]);
-    const iiwa14_real_t t59 = t56 * (t55 * parameters[XY6] + t56 * parameters[YY6] + t57 * parameters[YZ6]);
-    const iiwa14_real_t t60 = t57 * (t55 * parameters[XZ6] + t56 * parameters[YZ6] + t57 * parameters[ZZ6]);
-    const iiwa14_real_t t61 = t53 * t47 + t54 * t32;
-    const iiwa14_real_t t62 = t53 * t32 - t54 * t47;
-    const iiwa14_real_t t63 = t62 * t62;
-    const iiwa14_real_t t64 = t58 + t59 + t60 + parameters[M6] * (t49 + (t61 * t61 + t63));
-    const iiwa14_real_t t65 = parameters[MX6] * (t57 * t62 + t56 * t48) - parameters[MY6] * (t55 * t48
-        + t57 * t61);
-    const iiwa14_real_t t66 = t52 + IIWA14_C(0.5) * t64 + (t65 + parameters[MZ6] * (t56 * t61 - t55 * t62));
-    const iiwa14_real_t t69 = t67 * t55 + t68 * t57;
-    const iiwa14_real_t t70 = t67 * t57 - t68 * t55;
-    const iiwa14_real_t t71 = t56 - dq[6];
-    const iiwa14_real_t t72 = t69 * (t71 * parameters[XZ7] - (t69 * parameters[XX7] + t70 * parameters[XY7]));
-    const iiwa14_real_t t73 = t70 * (t69 * parameters[XY7] + t70 * parameters[YY7] - t71 * parameters[YZ7]);
-    const iiwa14_real_t t74 = t71 * (t69 * parameters[XZ7] + t70 * parameters[YZ7] - t71 * parameters[ZZ7]);
-    const iiwa14_real_t t75 = t61 + IIWA14_C(0.126) * t57;
-    const iiwa14_real_t t76 = IIWA14_C(-0.126) * t55 - t48;
-    const iiwa14_real_t t77 = t67 * t75 + t68 * t76;
-    const iiwa14_real_t t78 = t68 * t75 - t67 * t76;
-    const iiwa14_real_t t79 = t73 - t72 - t74 + parameters[M7] * (t63 + (t77 * t77 + t78 * t78));
-    const iiwa14_real_t t80 = parameters[MX7] * (t71 * t78 + t70 * t62) + parameters[MY7] * (t71 * t77
-        - t69 * t62);
-    const iiwa14_real_t t81 = t66 + IIWA14_C(0.5) * t79 + (t80 + parameters[MZ7] * (t70 * t77 + t69 * t78));
+    const iiwa14_real_t t37 = t31 + IIWA14_C(0.4) * t27;
+    const iiwa14_real_t t39 = t15 + IIWA14_C(-0.4) * t25;
+    const iiwa14_real_t t41 = t38 * t37 + t40 * t39;
+    const iiwa14_real_t t42 = t40 * t37 - t38 * t39;
+    const iiwa14_real_t t43 = t42 * t42;
+    const iiwa14_real_t t44 = t38 * t25 + t40 * t27;
+    const iiwa14_real_t t45 = t38 * t27 - t40 * t25;
+    const iiwa14_real_t t46 = t26 - dq[4];
+    const iiwa14_real_t t47 = t44 * (t46 * parameters[XZ5] - (t44 * parameters[XX5] + t45 * parameters[XY5]));
+    const iiwa14_real_t t48 = t45 * (t44 * parameters[XY5] + t45 * parameters[YY5] - t46 * parameters[YZ5]);
+    const iiwa14_real_t t49 = t46 * (t44 * parameters[XZ5] + t45 * parameters[YZ5] - t46 * parameters[ZZ5]);
+    const iiwa14_real_t t50 = t48 - t47 - t49 + parameters[M5] * (t33 + (t41 * t41 + t43));
+    const iiwa14_real_t t51 = parameters[MX5] * (t46 * t42 + t45 * t32) + parameters[MY5] * (t46 * t41
+        - t44 * t32);
+    const iiwa14_real_t t52 = t36 + IIWA14_C(0.5) * t50 + (t51 + parameters[MZ5] * (t45 * t41 + t44 * t42));
+    const iiwa14_real_t t55 = t53 * t41 + t54 * t32;
+    const iiwa14_real_t t56 = t53 * t32 - t54 * t41;
+    const iiwa14_real_t t57 = t56 * t56;
+    const iiwa14_real_t t58 = t53 * t44 + t54 * t46;
+    const iiwa14_real_t t59 = t53 * t46 - t54 * t44;
+    const iiwa14_real_t t60 = dq[5] + t45;
+    const iiwa14_real_t t61 = t58 * (t58 * parameters[XX6] + t59 * parameters[XY6] + t60 * parameters[XZ6]);
+    const iiwa14_real_t t62 = t59 * (t58 * parameters[XY6] + t59 * parameters[YY6] + t60 * parameters[YZ6]);
+    const iiwa14_real_t t63 = t60 * (t58 * parameters[XZ6] + t59 * parameters[YZ6] + t60 * parameters[ZZ6]);
+    const iiwa14_real_t t64 = t61 + t62 + t63 + parameters[M6] * (t43 + (t55 * t55 + t57));
+    const iiwa14_real_t t65 = parameters[MX6] * (t60 * t56 + t59 * t42) - parameters[MY6] * (t58 * t42
+        + t60 * t55);
+    const iiwa14_real_t t66 = t52 + IIWA14_C(0.5) * t64 + (t65 + parameters[MZ6] * (t59 * t55 - t58 * t56));
+    const iiwa14_real_t t67 = t55 + IIWA14_C(0.126) * t60;
+    const iiwa14_real_t t69 = IIWA14_C(-0.126) * t58 - t42;
+    const iiwa14_real_t t71 = t68 * t67 + t70 * t69;
+    const iiwa14_real_t t72 = t70 * t67 - t68 * t69;
+    const iiwa14_real_t t73 = t68 * t58 + t70 * t60;
+    const iiwa14_real_t t74 = t68 * t60 - t70 * t58;
+    const iiwa14_real_t t75 = t59 - dq[6];
+    const iiwa14_real_t t76 = t73 * (t75 * parameters[XZ7] - (t73 * parameters[XX7] + t74 * parameters[XY7]));
+    const iiwa14_real_t t77 = t74 * (t73 * parameters[XY7] + t74 * parameters[YY7] - t75 * parameters[YZ7]);
+    const iiwa14_real_t t78 = t75 * (t73 * parameters[XZ7] + t74 * parameters[YZ7] - t75 * parameters[ZZ7]);
+    const iiwa14_real_t t79 = t77 - t76 - t78 + parameters[M7] * (t57 + (t71 * t71 + t72 * t72));
+    const iiwa14_real_t t80 = parameters[MX7] * (t75 * t72 + t74 * t56) + parameters[MY7] * (t75 * t71
+        - t73 * t56);
+    const iiwa14_real_t t81 = t66 + IIWA14_C(0.5) * t79 + (t80 + parameters[MZ7] * (t74 * t71 + t73 * t72));
     const iiwa14_real_t t82 = t81 + IIWA14_C(0.5) * (dq[0] * dq[0] * (IIWA14_C(2.56e4) * parameters[IA1]))
         + IIWA14_C(0.5) * (dq[1] * dq[1] * (IIWA14_C(2.56e4) * parameters[IA2]));
     const iiwa14_real_t t83 = t82 + IIWA14_C(0.5) * (dq[2] * dq[2] * (IIWA14_C(2.56e4) * parameters[IA3]))
@@ -246,20 +246,20 @@ int iiwa14_energy_standard(
         + IIWA14_C(0.5) * (dq[5] * dq[5] * (IIWA14_C(2.56e4) * parameters[IA6]));
     kinetic[0] = t84 + IIWA14_C(0.5) * (dq[6] * dq[6] * (IIWA14_C(2.56e4) * parameters[IA7]));
     const iiwa14_real_t t85 = IIWA14_C(-9.81) * t0;
-    const iiwa14_real_t t86 = IIWA14_C(9.81) * t2;
+    const iiwa14_real_t t86 = IIWA14_C(9.81) * t6;
     const iiwa14_real_t t87 = IIWA14_C(9.81) * parameters[MZ1] + IIWA14_C(3.5316) * parameters[M1]
         + (t85 * parameters[MX2] - t86 * parameters[MY2] + IIWA14_C(3.5316) * parameters[M2]);
-    const iiwa14_real_t t88 = t8 * t85;
-    const iiwa14_real_t t89 = t9 * t85;
-    const iiwa14_real_t t90 = IIWA14_C(4.1202) * t2 + IIWA14_C(3.5316);
+    const iiwa14_real_t t88 = t2 * t85;
+    const iiwa14_real_t t89 = t3 * t85;
+    const iiwa14_real_t t90 = IIWA14_C(4.1202) * t6 + IIWA14_C(3.5316);
     const iiwa14_real_t t91 = t88 * parameters[MX3] - t89 * parameters[MY3] + t86 * parameters[MZ3]
         + parameters[M3] * t90;
     const iiwa14_real_t t92 = t23 * t88 + t24 * t86;
     const iiwa14_real_t t93 = t23 * t86 - t24 * t88;
     const iiwa14_real_t t94 = t92 * parameters[MX4] + t93 * parameters[MY4] + t89 * parameters[MZ4]
         + parameters[M4] * t90;
-    const iiwa14_real_t t95 = t37 * t92 - t38 * t89;
-    const iiwa14_real_t t96 = t38 * t92 + t37 * t89;
+    const iiwa14_real_t t95 = t38 * t92 - t40 * t89;
+    const iiwa14_real_t t96 = t40 * t92 + t38 * t89;
     const iiwa14_real_t t97 = t90 + IIWA14_C(0.4) * t93;
     const iiwa14_real_t t98 = t95 * parameters[MX5] - t96 * parameters[MY5] + t93 * parameters[MZ5]
         + parameters[M5] * t97;
@@ -267,8 +267,8 @@ int iiwa14_energy_standard(
     const iiwa14_real_t t100 = t54 * t95 + t53 * t93;
     const iiwa14_real_t t101 = t99 * parameters[MX6] - t100 * parameters[MY6] - t96 * parameters[MZ6]
         + parameters[M6] * t97;
-    const iiwa14_real_t t102 = (t67 * t99 - t68 * t96) * parameters[MX7] - (t68 * t99
-        + t67 * t96) * parameters[MY7];
+    const iiwa14_real_t t102 = (t68 * t99 - t70 * t96) * parameters[MX7] - (t70 * t99
+        + t68 * t96) * parameters[MY7];
     const iiwa14_real_t t103 = t102 + t100 * parameters[MZ7] + parameters[M7] * (t97
         + IIWA14_C(0.126) * t100);
     potential[0] = t87 + t91 + t94 + t98 + t101 + t103;

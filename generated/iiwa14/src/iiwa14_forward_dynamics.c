@@ -91,7 +91,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -119,463 +119,464 @@ int iiwa14_forward_dynamics(
         return status;
     }
 
-    iiwa14_real_t t2, t3;
-    IIWA14_SINCOS(q[1], &t2, &t3);
-    iiwa14_real_t t13, t12;
-    IIWA14_SINCOS(q[2], &t13, &t12);
-    iiwa14_real_t t34, t33;
-    IIWA14_SINCOS(q[3], &t34, &t33);
-    iiwa14_real_t t57, t56;
-    IIWA14_SINCOS(q[4], &t57, &t56);
-    iiwa14_real_t t81, t80;
-    IIWA14_SINCOS(q[5], &t81, &t80);
-    iiwa14_real_t t104, t103;
-    IIWA14_SINCOS(q[6], &t104, &t103);
-    const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0]))
-        + IIWA14_C(-160.0) * (parameters[FC1] * t0);
-    const iiwa14_real_t t4 = t3 * dq[0];
-    const iiwa14_real_t t5 = dq[1] * t4;
-    const iiwa14_real_t t6 = t2 * dq[0];
-    const iiwa14_real_t t7 = dq[1] * t6;
-    const iiwa14_real_t t8 = parameters[XY2] * (IIWA14_C(2.0) * t7) - (parameters[XX2R] * t5
-        + parameters[ZZ2R] * t5);
-    const iiwa14_real_t t9 = t6 * t4;
-    const iiwa14_real_t t10 = dq[1] * dq[1];
-    const iiwa14_real_t t11 = t4 * t4;
-    const iiwa14_real_t t14 = IIWA14_C(-2.0) * t5;
-    const iiwa14_real_t t15 = t12 * t14 - t13 * t9;
-    const iiwa14_real_t t16 = t13 * t6 + t12 * dq[1];
-    const iiwa14_real_t t17 = dq[2] + t4;
-    const iiwa14_real_t t18 = t16 * t17;
-    const iiwa14_real_t t19 = t15 + t18;
-    const iiwa14_real_t t20 = t13 * dq[1] - t12 * t6;
-    const iiwa14_real_t t21 = t20 * t17;
-    const iiwa14_real_t t22 = t12 * t9 + t13 * t14;
-    const iiwa14_real_t t23 = t22 + t21;
-    const iiwa14_real_t t24 = parameters[XY3] * (t21 + t23) - (parameters[XX3R] * t19
-        + parameters[ZZ3R] * t18);
-    const iiwa14_real_t t25 = t20 * t16;
-    const iiwa14_real_t t26 = t7 - t25;
-    const iiwa14_real_t t27 = t16 * t16;
-    const iiwa14_real_t t28 = t17 * t17;
-    const iiwa14_real_t t29 = IIWA14_C(9.81) * t3;
-    const iiwa14_real_t t30 = t6 * t6;
-    const iiwa14_real_t t31 = t29 + IIWA14_C(-0.42) * (t10 + t30);
-    const iiwa14_real_t t32 = t24 + parameters[XZ3] * t26 - parameters[YZ3] * (t27 - t28)
-        - parameters[MY3R] * t31;
-    const iiwa14_real_t t35 = t7 + t25;
-    const iiwa14_real_t t36 = t18 + t19;
-    const iiwa14_real_t t37 = t33 * t36 - t34 * t35;
-    const iiwa14_real_t t38 = t34 * t20 - t33 * t17;
-    const iiwa14_real_t t39 = dq[3] - t16;
-    const iiwa14_real_t t40 = t38 * t39;
-    const iiwa14_real_t t41 = t37 - t40;
-    const iiwa14_real_t t42 = t33 * t20 + t34 * t17;
-    const iiwa14_real_t t43 = t42 * t39;
-    const iiwa14_real_t t44 = t33 * t35 + t34 * t36;
-    const iiwa14_real_t t45 = t44 + t43;
-    const iiwa14_real_t t46 = t43 + t45;
-    const iiwa14_real_t t47 = t42 * t38;
-    const iiwa14_real_t t48 = t23 - t47;
-    const iiwa14_real_t t49 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4] * t46
-        - parameters[XZ4] * t48;
-    const iiwa14_real_t t50 = t38 * t38;
-    const iiwa14_real_t t51 = t39 * t39;
-    const iiwa14_real_t t52 = IIWA14_C(-9.81) * t2;
-    const iiwa14_real_t t53 = t52 + IIWA14_C(-0.42) * t9;
-    const iiwa14_real_t t54 = IIWA14_C(0.84) * t5;
-    const iiwa14_real_t t55 = t13 * t53 - t12 * t54;
-    const iiwa14_real_t t58 = t23 + t47;
-    const iiwa14_real_t t59 = t41 - t40;
-    const iiwa14_real_t t60 = t56 * t59 - t57 * t58;
-    const iiwa14_real_t t61 = t57 * t42 + t56 * t39;
-    const iiwa14_real_t t62 = t38 - dq[4];
-    const iiwa14_real_t t63 = t61 * t62;
-    const iiwa14_real_t t64 = t60 + t63;
-    const iiwa14_real_t t65 = t56 * t42 - t57 * t39;
-    const iiwa14_real_t t66 = t65 * t62;
-    const iiwa14_real_t t67 = t56 * t58 + t57 * t59;
-    const iiwa14_real_t t68 = t67 - t66;
-    const iiwa14_real_t t69 = t68 - t66;
-    const iiwa14_real_t t70 = t65 * t61;
-    const iiwa14_real_t t71 = t45 + t70;
-    const iiwa14_real_t t72 = parameters[XY5] * t69 - (parameters[XX5R] * t64 + parameters[ZZ5R] * t63)
-        + parameters[XZ5] * t71;
-    const iiwa14_real_t t73 = t61 * t61;
-    const iiwa14_real_t t74 = t62 * t62;
-    const iiwa14_real_t t75 = t12 * t53 + t13 * t54;
-    const iiwa14_real_t t76 = t34 * t75 - t33 * t31;
-    const iiwa14_real_t t77 = t42 * t42;
-    const iiwa14_real_t t78 = t77 + t51;
-    const iiwa14_real_t t79 = t76 + IIWA14_C(0.4) * t78;
-    const iiwa14_real_t t82 = t45 - t70;
-    const iiwa14_real_t t83 = t63 + t64;
-    const iiwa14_real_t t84 = t81 * t82 + t80 * t83;
-    const iiwa14_real_t t85 = t80 * t62 - t81 * t65;
-    const iiwa14_real_t t86 = dq[5] - t61;
-    const iiwa14_real_t t87 = t85 * t86;
-    const iiwa14_real_t t88 = t84 + t87;
-    const iiwa14_real_t t89 = t80 * t65 + t81 * t62;
-    const iiwa14_real_t t90 = t89 * t86;
-    const iiwa14_real_t t91 = t81 * t83 - t80 * t82;
-    const iiwa14_real_t t92 = t91 + t90;
-    const iiwa14_real_t t93 = t90 + t92;
-    const iiwa14_real_t t94 = t89 * t85;
-    const iiwa14_real_t t95 = t68 - t94;
-    const iiwa14_real_t t96 = parameters[XX6R] * t88 + parameters[ZZ6R] * t87 - parameters[XY6] * t93
-        - parameters[XZ6] * t95;
-    const iiwa14_real_t t97 = t85 * t85;
-    const iiwa14_real_t t98 = t86 * t86;
-    const iiwa14_real_t t99 = t33 * t75 + t34 * t31;
-    const iiwa14_real_t t100 = t99 + IIWA14_C(-0.4) * t58;
-    const iiwa14_real_t t101 = t55 + IIWA14_C(0.4) * t59;
-    const iiwa14_real_t t102 = t57 * t100 + t56 * t101;
-    const iiwa14_real_t t105 = t68 + t94;
-    const iiwa14_real_t t106 = t87 + t88;
-    const iiwa14_real_t t107 = t103 * t106 - t104 * t105;
-    const iiwa14_real_t t108 = t103 * t86 - t104 * t89;
-    const iiwa14_real_t t109 = t85 - dq[6];
-    const iiwa14_real_t t110 = t108 * t109;
-    const iiwa14_real_t t111 = t107 - t110;
-    const iiwa14_real_t t112 = t103 * t89 + t104 * t86;
-    const iiwa14_real_t t113 = t112 * t109;
-    const iiwa14_real_t t114 = t103 * t105 + t104 * t106;
-    const iiwa14_real_t t115 = t114 - t113 - t113;
-    const iiwa14_real_t t116 = t112 * t108;
-    const iiwa14_real_t t117 = t92 + t116;
-    const iiwa14_real_t t118 = parameters[ZZ7] * t110 - parameters[XX7R] * t111 + parameters[XY7] * t115
-        - parameters[XZ7R] * t117;
-    const iiwa14_real_t t119 = t108 * t108;
-    const iiwa14_real_t t120 = t109 * t109;
-    const iiwa14_real_t t121 = t56 * t100 - t57 * t101;
-    const iiwa14_real_t t122 = t80 * t79 - t81 * t121;
-    const iiwa14_real_t t123 = t118 - parameters[YZ7R] * (t119 - t120) + parameters[MY7] * t122;
-    const iiwa14_real_t t124 = t111 - t110;
-    const iiwa14_real_t t125 = t116 - t92;
-    const iiwa14_real_t t126 = t113 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t124
-        + parameters[YZ7R] * t125;
-    const iiwa14_real_t t127 = t112 * t112;
-    const iiwa14_real_t t128 = t126 + parameters[XZ7R] * (t127 - t120) - parameters[MX7] * t122;
-    const iiwa14_real_t t129 = t96 + parameters[YZ6] * (t97 - t98) - parameters[MY6R] * t102 - (t103 * t123
-        - t104 * t128);
-    const iiwa14_real_t t130 = parameters[XY6] * t106 - t90 * (parameters[ZZ6R] - parameters[XX6R])
-        - parameters[YZ6] * t105;
-    const iiwa14_real_t t131 = t89 * t89;
-    const iiwa14_real_t t132 = parameters[XX7R] * t116 - parameters[ZZ7] * t92 + parameters[YZ7R] * t114
-        - parameters[XZ7R] * t107;
-    const iiwa14_real_t t133 = t80 * t121 + t81 * t79;
-    const iiwa14_real_t t134 = parameters[MX7] * (t104 * t133 + t103 * t102) + parameters[MY7] * (t103 * t133
-        - t104 * t102);
-    const iiwa14_real_t t135 = t132 + parameters[XY7] * (t119 - t127) + t134;
-    const iiwa14_real_t t136 = t130 + parameters[XZ6] * (t98 - t131) + parameters[MX6] * t102 + t135;
-    const iiwa14_real_t t137 = t72 + parameters[YZ5] * (t74 - t73) + parameters[MY5R] * t79 + (t81 * t136
-        - t80 * t129);
-    const iiwa14_real_t t138 = t66 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t83
-        + parameters[YZ5] * t82;
-    const iiwa14_real_t t139 = t65 * t65;
-    const iiwa14_real_t t140 = parameters[ZZ6R] * t68 + parameters[XX6R] * t94 + parameters[YZ6] * t91
-        - parameters[XZ6] * t84;
-    const iiwa14_real_t t141 = t140 - parameters[XY6] * (t131 - t97) - (parameters[MX6] * t122
-        - parameters[MY6R] * t133);
-    const iiwa14_real_t t142 = t141 + (t104 * t123 + t103 * t128);
-    const iiwa14_real_t t143 = t138 + parameters[XZ5] * (t139 - t74) - parameters[MX5] * t79 + t142;
-    const iiwa14_real_t t144 = parameters[MX7] * (t119 + t120) - parameters[MY7] * t125;
-    const iiwa14_real_t t145 = parameters[MX7] * t117 - parameters[MY7] * (t127 + t120);
-    const iiwa14_real_t t146 = parameters[MX6] * (t97 + t98) - parameters[MY6R] * t105 + (t103 * t144
-        + t104 * t145);
-    const iiwa14_real_t t147 = parameters[MX6] * t95 + parameters[MY6R] * (t131 + t98)
-        + (parameters[MX7] * t115 + parameters[MY7] * t124);
-    const iiwa14_real_t t148 = parameters[MX5] * (t73 + t74) - parameters[MY5R] * t82 + (t80 * t146
-        - t81 * t147);
-    const iiwa14_real_t t149 = parameters[MX6] * t93 + parameters[MY6R] * t106 + (t103 * t145 - t104 * t144);
-    const iiwa14_real_t t150 = t149 - (parameters[MX5] * t71 + parameters[MY5R] * (t139 + t74));
-    const iiwa14_real_t t151 = t56 * t150 - t57 * t148;
-    const iiwa14_real_t t152 = t49 + parameters[YZ4] * (t51 - t50) - parameters[MY4R] * t55 + (t56 * t137
-        - t57 * t143 + IIWA14_C(0.4) * t151);
-    const iiwa14_real_t t153 = t43 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t59
-        + parameters[YZ4] * t58;
-    const iiwa14_real_t t154 = parameters[ZZ5R] * t45 - parameters[XX5R] * t70 + parameters[YZ5] * t67
-        - parameters[XZ5] * t60;
-    const iiwa14_real_t t155 = t154 + parameters[XY5] * (t73 - t139) + (parameters[MX5] * t102
-        + parameters[MY5R] * t121);
-    const iiwa14_real_t t156 = t155 + (t81 * t129 + t80 * t136);
-    const iiwa14_real_t t157 = parameters[XZ4] * (t77 - t51) - t153 + parameters[MX4] * t55 + t156;
-    const iiwa14_real_t t158 = t32 + (t33 * t152 - t34 * t157);
-    const iiwa14_real_t t159 = parameters[YZ3] * t35 - (t21 * (parameters[XX3R] - parameters[ZZ3R])
-        + parameters[XY3] * t36);
-    const iiwa14_real_t t160 = t20 * t20;
-    const iiwa14_real_t t161 = parameters[ZZ4R] * t23 + parameters[XX4R] * t47 - parameters[YZ4] * t44
-        + parameters[XZ4] * t37;
-    const iiwa14_real_t t162 = t161 + parameters[XY4] * (t77 - t50) - (parameters[MX4] * t76
-        + parameters[MY4R] * t99);
-    const iiwa14_real_t t163 = t56 * t148 + t57 * t150;
-    const iiwa14_real_t t164 = t162 + (t57 * t137 + t56 * t143 + IIWA14_C(0.4) * t163);
-    const iiwa14_real_t t165 = t159 + parameters[XZ3] * (t160 - t28) + parameters[MX3] * t31 + t164;
-    const iiwa14_real_t t166 = t33 * (parameters[MX4] * (t50 + t51) + parameters[MY4R] * t58 + t163);
-    const iiwa14_real_t t167 = parameters[MX5] * t69 + parameters[MY5R] * t83 + (t81 * t146 + t80 * t147);
-    const iiwa14_real_t t168 = t166 + t34 * (parameters[MX4] * t48 - parameters[MY4R] * t78 + t167);
-    const iiwa14_real_t t169 = parameters[MX3] * (t27 + t28) - parameters[MY3R] * t35 + t168;
-    const iiwa14_real_t t170 = parameters[MX3] * t26 + parameters[MY3R] * (t160 + t28) - (t151
-        - (parameters[MX4] * t46 + parameters[MY4R] * t59));
-    const iiwa14_real_t t171 = t13 * t165 - t12 * t158 + IIWA14_C(0.42) * (t13 * t169 + t12 * t170);
-    const iiwa14_real_t t172 = t8 + parameters[XZ2] * t9 + parameters[YZ2] * (t11 - t10) + t171;
-    const iiwa14_real_t t173 = t7 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t14
-        - parameters[YZ2] * t9;
-    const iiwa14_real_t t174 = parameters[ZZ3R] * t7 + parameters[XX3R] * t25 + parameters[YZ3] * t22
-        - parameters[XZ3] * t15;
-    const iiwa14_real_t t175 = t174 + parameters[XY3] * (t27 - t160) + (parameters[MX3] * t55
-        + parameters[MY3R] * t75);
-    const iiwa14_real_t t176 = t175 + (t34 * t152 + t33 * t157);
-    const iiwa14_real_t t177 = t2 * t172 + t3 * (t173 + parameters[XZ2] * (t10 - t30) + t176);
-    const iiwa14_real_t t178 = iiwa14_sign(dq[6]);
-    const iiwa14_real_t t179 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6]))
-        + IIWA14_C(160.0) * (parameters[FC7] * t178);
-    const iiwa14_real_t t180 = IIWA14_C(8.0) * input[6] - (t179 - t135);
-    const iiwa14_real_t t181 = t104 * parameters[YZ7R] - t103 * parameters[XZ7R];
-    const iiwa14_real_t t182 = t80 * t181 - t81 * parameters[ZZ7];
-    const iiwa14_real_t t183 = t104 * parameters[XZ7R] + t103 * parameters[YZ7R];
-    const iiwa14_real_t t184 = t103 * parameters[MY7] + t104 * parameters[MX7];
-    const iiwa14_real_t t185 = t80 * t184;
-    const iiwa14_real_t t186 = t103 * parameters[MX7] - t104 * parameters[MY7];
-    const iiwa14_real_t t187 = t56 * t186 - t57 * t185;
-    const iiwa14_real_t t188 = t56 * t182 + t57 * t183 + IIWA14_C(0.4) * t187;
-    const iiwa14_real_t t189 = t81 * t181 + t80 * parameters[ZZ7];
-    const iiwa14_real_t t190 = t33 * t188 + t34 * t189;
-    const iiwa14_real_t t191 = t56 * t185 + t57 * t186;
-    const iiwa14_real_t t192 = t57 * t182 - t56 * t183 + IIWA14_C(0.4) * t191;
-    const iiwa14_real_t t193 = t33 * t191 + t34 * (t81 * t184);
-    const iiwa14_real_t t194 = t13 * t192 - t12 * t190 + IIWA14_C(0.42) * (t13 * t193 - t12 * t187);
-    const iiwa14_real_t t195 = t34 * t188 - t33 * t189;
-    const iiwa14_real_t t196 = t2 * t194 + t3 * t195;
-    const iiwa14_real_t t197 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
-    if (!(t197 > IIWA14_C(1.0e-9))) {
+    iiwa14_real_t t132, t130;
+    IIWA14_SINCOS(q[1], &t132, &t130);
+    iiwa14_real_t t91, t93;
+    IIWA14_SINCOS(q[2], &t91, &t93);
+    iiwa14_real_t t66, t62;
+    IIWA14_SINCOS(q[3], &t66, &t62);
+    iiwa14_real_t t28, t30;
+    IIWA14_SINCOS(q[4], &t28, &t30);
+    iiwa14_real_t t11, t13;
+    IIWA14_SINCOS(q[5], &t11, &t13);
+    iiwa14_real_t t1, t2;
+    IIWA14_SINCOS(q[6], &t1, &t2);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    if (!(t0 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t198 = IIWA14_C(-1.0) / t197;
-    const iiwa14_real_t t199 = t196 * t198;
-    const iiwa14_real_t t200 = iiwa14_sign(dq[5]);
-    const iiwa14_real_t t201 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5]))
-        + IIWA14_C(160.0) * (parameters[FC6] * t200);
-    const iiwa14_real_t t202 = t183 * t198;
-    const iiwa14_real_t t203 = IIWA14_C(8.0) * input[5] - (t201 - t142) + t180 * t202;
-    const iiwa14_real_t t204 = parameters[XY7] * (IIWA14_C(2.0) * t104) - t103 * parameters[XX7R];
-    const iiwa14_real_t t205 = t104 * t204 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t206 = t183 - parameters[YZ6];
-    const iiwa14_real_t t207 = t81 * t206 - t80 * t205;
-    const iiwa14_real_t t208 = t103 * t204;
-    const iiwa14_real_t t209 = parameters[ZZ6R] + (parameters[XX7R] + t208);
-    const iiwa14_real_t t210 = parameters[MX6] + t186;
-    const iiwa14_real_t t211 = t80 * parameters[MY6R] + t81 * t210;
-    const iiwa14_real_t t212 = t57 * t211;
-    const iiwa14_real_t t213 = t57 * t209 - t56 * t207 + IIWA14_C(-0.4) * t212;
-    const iiwa14_real_t t214 = t81 * t205 + t80 * t206;
-    const iiwa14_real_t t215 = t33 * t213 + t34 * t214;
-    const iiwa14_real_t t216 = t56 * t211;
-    const iiwa14_real_t t217 = IIWA14_C(0.4) * t216 - (t57 * t207 + t56 * t209);
-    const iiwa14_real_t t218 = t80 * t210 - t81 * parameters[MY6R];
-    const iiwa14_real_t t219 = t33 * t216 - t34 * t218;
-    const iiwa14_real_t t220 = t13 * t217 - t12 * t215 + IIWA14_C(0.42) * (t13 * t219 + t12 * t212);
-    const iiwa14_real_t t221 = t34 * t213 - t33 * t214;
-    const iiwa14_real_t t222 = t2 * t220 + t3 * t221 + t196 * t202;
-    const iiwa14_real_t t223 = t209 + IIWA14_C(2.56e4) * parameters[IA6] + t183 * t202;
-    if (!(t223 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
+    const iiwa14_real_t t4 = IIWA14_C(-1.0) / t0;
+    const iiwa14_real_t t5 = t3 * t4;
+    const iiwa14_real_t t6 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t2 * parameters[XX7R];
+    const iiwa14_real_t t7 = t2 * t6;
+    const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
+    const iiwa14_real_t t9 = t8 + IIWA14_C(2.56e4) * parameters[IA6] + t3 * t5;
+    if (!(t9 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t224 = IIWA14_C(-1.0) / t223;
-    const iiwa14_real_t t225 = t222 * t224;
-    const iiwa14_real_t t226 = IIWA14_C(16.0) * input[0] + (t1 + t177) - t180 * t199 - t203 * t225;
-    const iiwa14_real_t t227 = iiwa14_sign(dq[4]);
-    const iiwa14_real_t t228 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4]))
-        + IIWA14_C(1.0e2) * (parameters[FC5] * t227);
-    const iiwa14_real_t t229 = t189 * t198;
-    const iiwa14_real_t t230 = t214 + t189 * t202;
-    const iiwa14_real_t t231 = t230 * t224;
-    const iiwa14_real_t t232 = IIWA14_C(8.0) * input[4] - (t228 - t156) + t180 * t229 + t203 * t231;
-    const iiwa14_real_t t233 = parameters[XY6] + t181;
-    const iiwa14_real_t t234 = parameters[XX6R] - t208;
-    const iiwa14_real_t t235 = t80 * (t234 - parameters[ZZ7]) + t233 * (IIWA14_C(-2.0) * t81);
-    const iiwa14_real_t t236 = t233 + t81 * t235 - parameters[XZ5];
-    const iiwa14_real_t t237 = parameters[YZ5] + t214;
-    const iiwa14_real_t t238 = parameters[MY5R] + t184;
-    const iiwa14_real_t t239 = parameters[MX5] + t218;
-    const iiwa14_real_t t240 = t56 * t239 - t57 * t238;
-    const iiwa14_real_t t241 = t56 * t236 + t57 * t237 + IIWA14_C(0.4) * t240;
-    const iiwa14_real_t t242 = t80 * t235;
-    const iiwa14_real_t t243 = parameters[ZZ5R] + (t234 - t242);
-    const iiwa14_real_t t244 = t33 * t241 + t34 * t243;
-    const iiwa14_real_t t245 = t56 * t238 + t57 * t239;
-    const iiwa14_real_t t246 = t57 * t236 - t56 * t237 + IIWA14_C(0.4) * t245;
-    const iiwa14_real_t t247 = t33 * t245;
-    const iiwa14_real_t t248 = t13 * t246 - t12 * t244 + IIWA14_C(0.42) * (t13 * t247 - t12 * t240);
-    const iiwa14_real_t t249 = t34 * t241 - t33 * t243;
-    const iiwa14_real_t t250 = t2 * t248 + t3 * t249 + t196 * t229 + t222 * t231;
-    const iiwa14_real_t t251 = t243 + IIWA14_C(1.0e4) * parameters[IA5] + t189 * t229 + t230 * t231;
-    if (!(t251 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t10 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t12 = t3 - parameters[YZ6];
+    const iiwa14_real_t t14 = t11 * t10 + t13 * t12;
+    const iiwa14_real_t t15 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const iiwa14_real_t t16 = t11 * t15 + t13 * parameters[ZZ7];
+    const iiwa14_real_t t17 = t14 + t16 * t5;
+    const iiwa14_real_t t18 = IIWA14_C(-1.0) / t9;
+    const iiwa14_real_t t19 = t17 * t18;
+    const iiwa14_real_t t20 = parameters[XX6R] - t7;
+    const iiwa14_real_t t21 = parameters[XY6] + t15;
+    const iiwa14_real_t t22 = t13 * (t20 - parameters[ZZ7]) + t21 * (IIWA14_C(-2.0) * t11);
+    const iiwa14_real_t t23 = t13 * t22;
+    const iiwa14_real_t t24 = parameters[ZZ5R] + (t20 - t23);
+    const iiwa14_real_t t25 = t16 * t4;
+    const iiwa14_real_t t26 = t24 + IIWA14_C(1.0e4) * parameters[IA5] + t16 * t25 + t17 * t19;
+    if (!(t26 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t252 = IIWA14_C(-1.0) / t251;
-    const iiwa14_real_t t253 = t250 * t252;
-    const iiwa14_real_t t254 = iiwa14_sign(dq[3]);
-    const iiwa14_real_t t255 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3]))
-        + IIWA14_C(160.0) * (parameters[FC4] * t254);
-    const iiwa14_real_t t256 = t192 * t198;
-    const iiwa14_real_t t257 = t217 + t192 * t202;
-    const iiwa14_real_t t258 = t257 * t224;
-    const iiwa14_real_t t259 = IIWA14_C(16.0) * input[3] - (t255 + t164) + t180 * t256 + t203 * t258;
-    const iiwa14_real_t t260 = t246 + t192 * t229 + t257 * t231;
-    const iiwa14_real_t t261 = t260 * t252;
-    const iiwa14_real_t t262 = t259 + t232 * t261;
-    const iiwa14_real_t t263 = parameters[XY5] + t207;
-    const iiwa14_real_t t264 = parameters[XX5R] + (parameters[ZZ7] + t242);
-    const iiwa14_real_t t265 = t56 * (t209 - t264) + t263 * (IIWA14_C(2.0) * t57);
-    const iiwa14_real_t t266 = t263 - t57 * t265 - parameters[XZ4];
-    const iiwa14_real_t t267 = parameters[YZ4] + t246;
-    const iiwa14_real_t t268 = t33 * t266 + t34 * t267;
-    const iiwa14_real_t t269 = t56 * t265;
-    const iiwa14_real_t t270 = IIWA14_C(-0.8) * t211;
-    const iiwa14_real_t t271 = parameters[ZZ4R] + (t264 + t269 + t270);
-    const iiwa14_real_t t272 = parameters[MY4R] - t211;
-    const iiwa14_real_t t273 = parameters[MX4] + t240;
-    const iiwa14_real_t t274 = t33 * t272 + t34 * t273;
-    const iiwa14_real_t t275 = t13 * t271 - t12 * t268 + IIWA14_C(0.42) * (t13 * t274);
-    const iiwa14_real_t t276 = t34 * t266 - t33 * t267;
-    const iiwa14_real_t t277 = t2 * t275 + t3 * t276 + t196 * t256 + t222 * t258;
-    const iiwa14_real_t t278 = t277 + t250 * t261;
-    const iiwa14_real_t t279 = t271 + IIWA14_C(2.56e4) * parameters[IA4] + t192 * t256 + t257 * t258;
-    const iiwa14_real_t t280 = t279 + t260 * t261;
-    if (!(t280 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t27 = t21 + t11 * t22 - parameters[XZ5];
+    const iiwa14_real_t t29 = parameters[YZ5] + t14;
+    const iiwa14_real_t t31 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const iiwa14_real_t t32 = parameters[MY5R] + t31;
+    const iiwa14_real_t t33 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t34 = parameters[MX6] + t33;
+    const iiwa14_real_t t35 = t13 * t34 - t11 * parameters[MY6R];
+    const iiwa14_real_t t36 = parameters[MX5] + t35;
+    const iiwa14_real_t t37 = t30 * t32 + t28 * t36;
+    const iiwa14_real_t t38 = t28 * t27 - t30 * t29 + IIWA14_C(0.4) * t37;
+    const iiwa14_real_t t39 = t13 * t15 - t11 * parameters[ZZ7];
+    const iiwa14_real_t t40 = t13 * t31;
+    const iiwa14_real_t t41 = t30 * t40 + t28 * t33;
+    const iiwa14_real_t t42 = t28 * t39 - t30 * t3 + IIWA14_C(0.4) * t41;
+    const iiwa14_real_t t43 = t11 * t12 - t13 * t10;
+    const iiwa14_real_t t44 = t13 * parameters[MY6R] + t11 * t34;
+    const iiwa14_real_t t45 = t30 * t44;
+    const iiwa14_real_t t46 = IIWA14_C(0.4) * t45 - (t28 * t43 + t30 * t8);
+    const iiwa14_real_t t47 = t46 + t42 * t5;
+    const iiwa14_real_t t48 = t38 + t42 * t25 + t47 * t19;
+    const iiwa14_real_t t49 = IIWA14_C(-1.0) / t26;
+    const iiwa14_real_t t50 = t48 * t49;
+    const iiwa14_real_t t51 = t42 * t4;
+    const iiwa14_real_t t52 = parameters[XX5R] + (parameters[ZZ7] + t23);
+    const iiwa14_real_t t53 = parameters[XY5] + t43;
+    const iiwa14_real_t t54 = t30 * (t8 - t52) + t53 * (IIWA14_C(2.0) * t28);
+    const iiwa14_real_t t55 = t30 * t54;
+    const iiwa14_real_t t56 = IIWA14_C(-0.8) * t44;
+    const iiwa14_real_t t57 = parameters[ZZ4R] + (t52 + t55 + t56);
+    const iiwa14_real_t t58 = t47 * t18;
+    const iiwa14_real_t t59 = t57 + IIWA14_C(2.56e4) * parameters[IA4] + t42 * t51 + t47 * t58;
+    const iiwa14_real_t t60 = t59 + t48 * t50;
+    if (!(t60 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t281 = IIWA14_C(1.0) / t280;
-    const iiwa14_real_t t282 = t278 * t281;
-    const iiwa14_real_t t283 = iiwa14_sign(dq[2]);
-    const iiwa14_real_t t284 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2]))
-        + IIWA14_C(-160.0) * (parameters[FC3] * t283);
-    const iiwa14_real_t t285 = t195 * t198;
-    const iiwa14_real_t t286 = t221 + t195 * t202;
-    const iiwa14_real_t t287 = t286 * t224;
-    const iiwa14_real_t t288 = IIWA14_C(16.0) * input[2] + (t284 + t176) - t180 * t285 - t203 * t287;
-    const iiwa14_real_t t289 = t249 + t195 * t229 + t286 * t231;
-    const iiwa14_real_t t290 = t289 * t252;
-    const iiwa14_real_t t291 = t276 + t195 * t256 + t286 * t258 + t289 * t261;
-    const iiwa14_real_t t292 = t291 * t281;
-    const iiwa14_real_t t293 = t288 - t232 * t290 + t262 * t292;
-    const iiwa14_real_t t294 = t241 - parameters[XY4];
-    const iiwa14_real_t t295 = parameters[XX4R] + (t209 - t269 + t270);
-    const iiwa14_real_t t296 = t33 * (t243 - t295) - t294 * (IIWA14_C(2.0) * t34);
-    const iiwa14_real_t t297 = t294 + t34 * t296 - parameters[XZ3];
-    const iiwa14_real_t t298 = parameters[YZ3] + t276;
-    const iiwa14_real_t t299 = parameters[MY3R] + t245;
-    const iiwa14_real_t t300 = parameters[MX3] + (t33 * t273 - t34 * t272);
-    const iiwa14_real_t t301 = t12 * t297 + t13 * t298 + IIWA14_C(0.42) * (t12 * t300 - t13 * t299);
-    const iiwa14_real_t t302 = t33 * t296;
-    const iiwa14_real_t t303 = parameters[ZZ3R] + (t295 + t302);
-    const iiwa14_real_t t304 = t2 * t301 + t3 * t303 + t196 * t285 + t222 * t287;
-    const iiwa14_real_t t305 = t278 * t292 - (t304 + t250 * t290);
-    const iiwa14_real_t t306 = t303 + IIWA14_C(2.56e4) * parameters[IA3] + t195 * t285 + t286 * t287;
-    const iiwa14_real_t t307 = t306 + t289 * t290 - t291 * t292;
-    if (!(t307 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t61 = parameters[XX4R] + (t8 - t55 + t56);
+    const iiwa14_real_t t63 = t30 * t36 - t28 * t32;
+    const iiwa14_real_t t64 = t30 * t27 + t28 * t29 + IIWA14_C(0.4) * t63;
+    const iiwa14_real_t t65 = t64 - parameters[XY4];
+    const iiwa14_real_t t67 = t62 * (t24 - t61) - t65 * (IIWA14_C(2.0) * t66);
+    const iiwa14_real_t t68 = t62 * t67;
+    const iiwa14_real_t t69 = parameters[ZZ3R] + (t61 + t68);
+    const iiwa14_real_t t70 = t30 * t33 - t28 * t40;
+    const iiwa14_real_t t71 = t30 * t39 + t28 * t3 + IIWA14_C(0.4) * t70;
+    const iiwa14_real_t t72 = t66 * t71 - t62 * t16;
+    const iiwa14_real_t t73 = t72 * t4;
+    const iiwa14_real_t t74 = t28 * t44;
+    const iiwa14_real_t t75 = t28 * t8 - t30 * t43 + IIWA14_C(-0.4) * t74;
+    const iiwa14_real_t t76 = t66 * t75 - t62 * t14;
+    const iiwa14_real_t t77 = t76 + t72 * t5;
+    const iiwa14_real_t t78 = t77 * t18;
+    const iiwa14_real_t t79 = t69 + IIWA14_C(2.56e4) * parameters[IA3] + t72 * t73 + t77 * t78;
+    const iiwa14_real_t t80 = t66 * t64 - t62 * t24;
+    const iiwa14_real_t t81 = t80 + t72 * t25 + t77 * t19;
+    const iiwa14_real_t t82 = t81 * t49;
+    const iiwa14_real_t t83 = t53 - t28 * t54 - parameters[XZ4];
+    const iiwa14_real_t t84 = parameters[YZ4] + t38;
+    const iiwa14_real_t t85 = t66 * t83 - t62 * t84;
+    const iiwa14_real_t t86 = t85 + t72 * t51 + t77 * t58 + t81 * t50;
+    const iiwa14_real_t t87 = IIWA14_C(1.0) / t60;
+    const iiwa14_real_t t88 = t86 * t87;
+    const iiwa14_real_t t89 = t79 + t81 * t82 - t86 * t88;
+    if (!(t89 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t308 = IIWA14_C(1.0) / t307;
-    const iiwa14_real_t t309 = t305 * t308;
-    const iiwa14_real_t t310 = t226 - t232 * t253 + t262 * t282 + t293 * t309;
-    const iiwa14_real_t t311 = iiwa14_sign(dq[1]);
-    const iiwa14_real_t t312 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1]))
-        + IIWA14_C(-160.0) * (parameters[FC2] * t311);
-    const iiwa14_real_t t313 = parameters[XX2R] * t9 + parameters[XY2] * (t11 - t30) + (parameters[MX2] * t29
-        + parameters[MY2R] * t52);
-    const iiwa14_real_t t314 = t13 * t158 + t12 * t165 + IIWA14_C(0.42) * (t12 * t169 - t13 * t170);
-    const iiwa14_real_t t315 = t13 * t190 + t12 * t192 + IIWA14_C(0.42) * (t12 * t193 + t13 * t187);
-    const iiwa14_real_t t316 = t315 * t198;
-    const iiwa14_real_t t317 = IIWA14_C(16.0) * input[1] + (t312 + (t313 + t314)) - t180 * t316;
-    const iiwa14_real_t t318 = t13 * t215 + t12 * t217 + IIWA14_C(0.42) * (t12 * t219 - t13 * t212);
-    const iiwa14_real_t t319 = t318 + t315 * t202;
-    const iiwa14_real_t t320 = t319 * t224;
-    const iiwa14_real_t t321 = t13 * t244 + t12 * t246 + IIWA14_C(0.42) * (t12 * t247 + t13 * t240);
-    const iiwa14_real_t t322 = t321 + t315 * t229 + t319 * t231;
-    const iiwa14_real_t t323 = t322 * t252;
-    const iiwa14_real_t t324 = t13 * t268 + t12 * t271 + IIWA14_C(0.42) * (t12 * t274);
-    const iiwa14_real_t t325 = t324 + t315 * t256 + t319 * t258 + t322 * t261;
-    const iiwa14_real_t t326 = t325 * t281;
-    const iiwa14_real_t t327 = t317 - t203 * t320 - t232 * t323 + t262 * t326;
-    const iiwa14_real_t t328 = t13 * t297 - t12 * t298 + IIWA14_C(0.42) * (t12 * t299 + t13 * t300);
-    const iiwa14_real_t t329 = t328 - t315 * t285 - t319 * t287 - t322 * t290;
-    const iiwa14_real_t t330 = t329 + t325 * t292;
-    const iiwa14_real_t t331 = t330 * t308;
-    const iiwa14_real_t t332 = t327 + t293 * t331;
-    const iiwa14_real_t t333 = parameters[XY3] + t268;
-    const iiwa14_real_t t334 = parameters[XX3R] + (t243 - t302);
-    const iiwa14_real_t t335 = t12 * (t271 - t334) + t333 * (IIWA14_C(2.0) * t13);
-    const iiwa14_real_t t336 = t2 * (parameters[XZ2] + (t333 - t13 * t335)) + t3 * (parameters[YZ2] + t328);
-    const iiwa14_real_t t337 = t336 - t196 * t316 - t222 * t320 - t250 * t323;
-    const iiwa14_real_t t338 = t337 + t278 * t326 + t305 * t331;
-    const iiwa14_real_t t339 = t12 * t335;
-    const iiwa14_real_t t340 = IIWA14_C(0.84) * t274;
-    const iiwa14_real_t t341 = parameters[ZZ2R] + (t334 + t339 + t340) + t315 * t316 + t319 * t320;
-    const iiwa14_real_t t342 = t341 + t322 * t323 - t325 * t326 - t330 * t331;
-    if (!(t342 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t90 = t65 + t66 * t67 - parameters[XZ3];
+    const iiwa14_real_t t92 = parameters[YZ3] + t85;
+    const iiwa14_real_t t94 = parameters[MY3R] + t37;
+    const iiwa14_real_t t95 = parameters[MX4] + t63;
+    const iiwa14_real_t t96 = parameters[MY4R] - t44;
+    const iiwa14_real_t t97 = parameters[MX3] + (t62 * t95 - t66 * t96);
+    const iiwa14_real_t t98 = t91 * t90 - t93 * t92 + IIWA14_C(0.42) * (t93 * t94 + t91 * t97);
+    const iiwa14_real_t t99 = t62 * t71 + t66 * t16;
+    const iiwa14_real_t t100 = t62 * t41 + t66 * (t11 * t31);
+    const iiwa14_real_t t101 = t91 * t99 + t93 * t42 + IIWA14_C(0.42) * (t93 * t100 + t91 * t70);
+    const iiwa14_real_t t102 = t62 * t75 + t66 * t14;
+    const iiwa14_real_t t103 = t62 * t45 - t66 * t35;
+    const iiwa14_real_t t104 = t91 * t102 + t93 * t46 + IIWA14_C(0.42) * (t93 * t103 - t91 * t74);
+    const iiwa14_real_t t105 = t104 + t101 * t5;
+    const iiwa14_real_t t106 = t62 * t64 + t66 * t24;
+    const iiwa14_real_t t107 = t62 * t37;
+    const iiwa14_real_t t108 = t91 * t106 + t93 * t38 + IIWA14_C(0.42) * (t93 * t107 + t91 * t63);
+    const iiwa14_real_t t109 = t108 + t101 * t25 + t105 * t19;
+    const iiwa14_real_t t110 = t98 - t101 * t73 - t105 * t78 - t109 * t82;
+    const iiwa14_real_t t111 = t62 * t83 + t66 * t84;
+    const iiwa14_real_t t112 = t62 * t96 + t66 * t95;
+    const iiwa14_real_t t113 = t91 * t111 + t93 * t57 + IIWA14_C(0.42) * (t93 * t112);
+    const iiwa14_real_t t114 = t113 + t101 * t51 + t105 * t58 + t109 * t50;
+    const iiwa14_real_t t115 = t110 + t114 * t88;
+    const iiwa14_real_t t116 = IIWA14_C(1.0) / t89;
+    const iiwa14_real_t t117 = t115 * t116;
+    const iiwa14_real_t t118 = parameters[XX3R] + (t24 - t68);
+    const iiwa14_real_t t119 = parameters[XY3] + t111;
+    const iiwa14_real_t t120 = t93 * (t57 - t118) + t119 * (IIWA14_C(2.0) * t91);
+    const iiwa14_real_t t121 = t93 * t120;
+    const iiwa14_real_t t122 = IIWA14_C(0.84) * t112;
+    const iiwa14_real_t t123 = t101 * t4;
+    const iiwa14_real_t t124 = t105 * t18;
+    const iiwa14_real_t t125 = parameters[ZZ2R] + (t118 + t121 + t122) + t101 * t123 + t105 * t124;
+    const iiwa14_real_t t126 = t109 * t49;
+    const iiwa14_real_t t127 = t114 * t87;
+    const iiwa14_real_t t128 = t125 + t109 * t126 - t114 * t127 - t115 * t117;
+    if (!(t128 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t343 = IIWA14_C(1.0) / t342;
-    const iiwa14_real_t t344 = t338 * t343;
-    const iiwa14_real_t t345 = parameters[XX2R] + (t271 - t339 + t340);
-    const iiwa14_real_t t346 = t3 * (t303 - t345) + (parameters[XY2] + t301) * (IIWA14_C(2.0) * t2);
-    const iiwa14_real_t t347 = parameters[ZZ1R] + (t345 + t3 * t346) + t196 * t199 + t222 * t225;
-    const iiwa14_real_t t348 = t347 + t250 * t253 - t278 * t282 - t305 * t309;
-    const iiwa14_real_t t349 = t348 - t338 * t344;
-    if (!(t349 > IIWA14_C(1.0e-9))) {
+    const iiwa14_real_t t129 = parameters[XX2R] + (t57 - t121 + t122);
+    const iiwa14_real_t t131 = t93 * t90 + t91 * t92 + IIWA14_C(0.42) * (t93 * t97 - t91 * t94);
+    const iiwa14_real_t t133 = t130 * (t69 - t129) + (parameters[XY2] + t131) * (IIWA14_C(2.0) * t132);
+    const iiwa14_real_t t134 = t91 * t42 - t93 * t99 + IIWA14_C(0.42) * (t91 * t100 - t93 * t70);
+    const iiwa14_real_t t135 = t132 * t134 + t130 * t72;
+    const iiwa14_real_t t136 = t135 * t4;
+    const iiwa14_real_t t137 = t91 * t46 - t93 * t102 + IIWA14_C(0.42) * (t91 * t103 + t93 * t74);
+    const iiwa14_real_t t138 = t132 * t137 + t130 * t76 + t135 * t5;
+    const iiwa14_real_t t139 = t138 * t18;
+    const iiwa14_real_t t140 = parameters[ZZ1R] + (t129 + t130 * t133) + t135 * t136 + t138 * t139;
+    const iiwa14_real_t t141 = t91 * t38 - t93 * t106 + IIWA14_C(0.42) * (t91 * t107 - t93 * t63);
+    const iiwa14_real_t t142 = t132 * t141 + t130 * t80 + t135 * t25 + t138 * t19;
+    const iiwa14_real_t t143 = t142 * t49;
+    const iiwa14_real_t t144 = t91 * t57 - t93 * t111 + IIWA14_C(0.42) * (t91 * t112);
+    const iiwa14_real_t t145 = t132 * t144 + t130 * t85 + t135 * t51 + t138 * t58;
+    const iiwa14_real_t t146 = t145 + t142 * t50;
+    const iiwa14_real_t t147 = t146 * t87;
+    const iiwa14_real_t t148 = t132 * t131 + t130 * t69 + t135 * t73 + t138 * t78;
+    const iiwa14_real_t t149 = t146 * t88 - (t148 + t142 * t82);
+    const iiwa14_real_t t150 = t149 * t116;
+    const iiwa14_real_t t151 = t140 + t142 * t143 - t146 * t147 - t149 * t150;
+    const iiwa14_real_t t152 = t132 * (parameters[XZ2] + (t119 - t91 * t120)) + t130 * (parameters[YZ2]
+        + t98);
+    const iiwa14_real_t t153 = t152 - t135 * t123 - t138 * t124 - t142 * t126;
+    const iiwa14_real_t t154 = t153 + t146 * t127 + t149 * t117;
+    const iiwa14_real_t t155 = IIWA14_C(1.0) / t128;
+    const iiwa14_real_t t156 = t154 * t155;
+    const iiwa14_real_t t157 = t151 - t154 * t156;
+    if (!(t157 > IIWA14_C(1.0e-9))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t350 = IIWA14_C(1.0) / t349;
-    const iiwa14_real_t t351 = (t310 + t332 * t344) * t350;
+    const iiwa14_real_t t158 = t132 * dq[0];
+    const iiwa14_real_t t159 = t91 * dq[1] - t93 * t158;
+    const iiwa14_real_t t160 = t91 * t158 + t93 * dq[1];
+    const iiwa14_real_t t161 = t159 * t160;
+    const iiwa14_real_t t162 = dq[1] * t158;
+    const iiwa14_real_t t163 = t162 + t161;
+    const iiwa14_real_t t164 = t130 * dq[0];
+    const iiwa14_real_t t165 = t158 * t164;
+    const iiwa14_real_t t166 = dq[1] * t164;
+    const iiwa14_real_t t167 = IIWA14_C(-2.0) * t166;
+    const iiwa14_real_t t168 = t93 * t167 - t91 * t165;
+    const iiwa14_real_t t169 = dq[2] + t164;
+    const iiwa14_real_t t170 = t160 * t169;
+    const iiwa14_real_t t171 = t168 + t170;
+    const iiwa14_real_t t172 = t170 + t171;
+    const iiwa14_real_t t173 = t62 * t163 + t66 * t172;
+    const iiwa14_real_t t174 = t62 * t159 + t66 * t169;
+    const iiwa14_real_t t175 = dq[3] - t160;
+    const iiwa14_real_t t176 = t174 * t175;
+    const iiwa14_real_t t177 = t173 + t176;
+    const iiwa14_real_t t178 = t30 * t174 - t28 * t175;
+    const iiwa14_real_t t179 = t28 * t174 + t30 * t175;
+    const iiwa14_real_t t180 = t178 * t179;
+    const iiwa14_real_t t181 = t177 - t180;
+    const iiwa14_real_t t182 = t93 * t165 + t91 * t167;
+    const iiwa14_real_t t183 = t159 * t169;
+    const iiwa14_real_t t184 = t182 + t183;
+    const iiwa14_real_t t185 = t66 * t159 - t62 * t169;
+    const iiwa14_real_t t186 = t174 * t185;
+    const iiwa14_real_t t187 = t184 + t186;
+    const iiwa14_real_t t188 = t62 * t172 - t66 * t163;
+    const iiwa14_real_t t189 = t185 * t175;
+    const iiwa14_real_t t190 = t188 - t189;
+    const iiwa14_real_t t191 = t190 - t189;
+    const iiwa14_real_t t192 = t30 * t191 - t28 * t187;
+    const iiwa14_real_t t193 = t185 - dq[4];
+    const iiwa14_real_t t194 = t179 * t193;
+    const iiwa14_real_t t195 = t192 + t194;
+    const iiwa14_real_t t196 = t194 + t195;
+    const iiwa14_real_t t197 = t11 * t181 + t13 * t196;
+    const iiwa14_real_t t198 = t13 * t193 - t11 * t178;
+    const iiwa14_real_t t199 = dq[5] - t179;
+    const iiwa14_real_t t200 = t198 * t199;
+    const iiwa14_real_t t201 = t197 + t200;
+    const iiwa14_real_t t202 = t200 + t201;
+    const iiwa14_real_t t203 = t30 * t187 + t28 * t191;
+    const iiwa14_real_t t204 = t178 * t193;
+    const iiwa14_real_t t205 = t203 - t204;
+    const iiwa14_real_t t206 = t13 * t178 + t11 * t193;
+    const iiwa14_real_t t207 = t206 * t198;
+    const iiwa14_real_t t208 = t205 + t207;
+    const iiwa14_real_t t209 = t2 * t202 - t1 * t208;
+    const iiwa14_real_t t210 = t2 * t199 - t1 * t206;
+    const iiwa14_real_t t211 = t198 - dq[6];
+    const iiwa14_real_t t212 = t210 * t211;
+    const iiwa14_real_t t213 = t209 - t212;
+    const iiwa14_real_t t214 = t2 * t208 + t1 * t202;
+    const iiwa14_real_t t215 = t2 * t206 + t1 * t199;
+    const iiwa14_real_t t216 = t215 * t211;
+    const iiwa14_real_t t217 = t214 - t216 - t216;
+    const iiwa14_real_t t218 = t11 * t196 - t13 * t181;
+    const iiwa14_real_t t219 = t206 * t199;
+    const iiwa14_real_t t220 = t218 + t219;
+    const iiwa14_real_t t221 = t215 * t210;
+    const iiwa14_real_t t222 = t220 + t221;
+    const iiwa14_real_t t223 = parameters[ZZ7] * t212 - parameters[XX7R] * t213 + parameters[XY7] * t217
+        - parameters[XZ7R] * t222;
+    const iiwa14_real_t t224 = t210 * t210;
+    const iiwa14_real_t t225 = t211 * t211;
+    const iiwa14_real_t t226 = IIWA14_C(-9.81) * t132;
+    const iiwa14_real_t t227 = t226 + IIWA14_C(-0.42) * t165;
+    const iiwa14_real_t t228 = IIWA14_C(0.84) * t166;
+    const iiwa14_real_t t229 = t93 * t227 + t91 * t228;
+    const iiwa14_real_t t230 = t158 * t158;
+    const iiwa14_real_t t231 = dq[1] * dq[1];
+    const iiwa14_real_t t232 = IIWA14_C(9.81) * t130;
+    const iiwa14_real_t t233 = t232 + IIWA14_C(-0.42) * (t231 + t230);
+    const iiwa14_real_t t234 = t62 * t229 + t66 * t233;
+    const iiwa14_real_t t235 = t234 + IIWA14_C(-0.4) * t187;
+    const iiwa14_real_t t236 = t91 * t227 - t93 * t228;
+    const iiwa14_real_t t237 = t236 + IIWA14_C(0.4) * t191;
+    const iiwa14_real_t t238 = t30 * t235 - t28 * t237;
+    const iiwa14_real_t t239 = t174 * t174;
+    const iiwa14_real_t t240 = t175 * t175;
+    const iiwa14_real_t t241 = t239 + t240;
+    const iiwa14_real_t t242 = t66 * t229 - t62 * t233;
+    const iiwa14_real_t t243 = t242 + IIWA14_C(0.4) * t241;
+    const iiwa14_real_t t244 = t13 * t243 - t11 * t238;
+    const iiwa14_real_t t245 = t223 - parameters[YZ7R] * (t224 - t225) + parameters[MY7] * t244;
+    const iiwa14_real_t t246 = t213 - t212;
+    const iiwa14_real_t t247 = t221 - t220;
+    const iiwa14_real_t t248 = t216 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t246
+        + parameters[YZ7R] * t247;
+    const iiwa14_real_t t249 = t215 * t215;
+    const iiwa14_real_t t250 = t248 + parameters[XZ7R] * (t249 - t225) - parameters[MX7] * t244;
+    const iiwa14_real_t t251 = t219 + t220;
+    const iiwa14_real_t t252 = t205 - t207;
+    const iiwa14_real_t t253 = parameters[XX6R] * t201 + parameters[ZZ6R] * t200 - parameters[XY6] * t251
+        - parameters[XZ6] * t252;
+    const iiwa14_real_t t254 = t198 * t198;
+    const iiwa14_real_t t255 = t199 * t199;
+    const iiwa14_real_t t256 = t28 * t235 + t30 * t237;
+    const iiwa14_real_t t257 = t253 + parameters[YZ6] * (t254 - t255) - parameters[MY6R] * t256 - (t2 * t245
+        - t1 * t250);
+    const iiwa14_real_t t258 = parameters[XX7R] * t221 - parameters[ZZ7] * t220 + parameters[YZ7R] * t214
+        - parameters[XZ7R] * t209;
+    const iiwa14_real_t t259 = t13 * t238 + t11 * t243;
+    const iiwa14_real_t t260 = parameters[MX7] * (t1 * t259 + t2 * t256) + parameters[MY7] * (t2 * t259
+        - t1 * t256);
+    const iiwa14_real_t t261 = t258 + parameters[XY7] * (t224 - t249) + t260;
+    const iiwa14_real_t t262 = parameters[XY6] * t202 - t219 * (parameters[ZZ6R] - parameters[XX6R])
+        - parameters[YZ6] * t208;
+    const iiwa14_real_t t263 = t206 * t206;
+    const iiwa14_real_t t264 = t262 + parameters[XZ6] * (t255 - t263) + parameters[MX6] * t256 + t261;
+    const iiwa14_real_t t265 = t205 - t204;
+    const iiwa14_real_t t266 = t177 + t180;
+    const iiwa14_real_t t267 = parameters[XY5] * t265 - (parameters[XX5R] * t195 + parameters[ZZ5R] * t194)
+        + parameters[XZ5] * t266;
+    const iiwa14_real_t t268 = t179 * t179;
+    const iiwa14_real_t t269 = t193 * t193;
+    const iiwa14_real_t t270 = t267 + parameters[YZ5] * (t269 - t268) + parameters[MY5R] * t243 + (t11 * t264
+        - t13 * t257);
+    const iiwa14_real_t t271 = parameters[ZZ6R] * t205 + parameters[XX6R] * t207 + parameters[YZ6] * t218
+        - parameters[XZ6] * t197;
+    const iiwa14_real_t t272 = t271 - parameters[XY6] * (t263 - t254) - (parameters[MX6] * t244
+        - parameters[MY6R] * t259);
+    const iiwa14_real_t t273 = t272 + (t1 * t245 + t2 * t250);
+    const iiwa14_real_t t274 = t204 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t196
+        + parameters[YZ5] * t181;
+    const iiwa14_real_t t275 = t178 * t178;
+    const iiwa14_real_t t276 = t274 + parameters[XZ5] * (t275 - t269) - parameters[MX5] * t243 + t273;
+    const iiwa14_real_t t277 = parameters[MX7] * (t224 + t225) - parameters[MY7] * t247;
+    const iiwa14_real_t t278 = parameters[MX7] * t222 - parameters[MY7] * (t249 + t225);
+    const iiwa14_real_t t279 = parameters[MX6] * (t254 + t255) - parameters[MY6R] * t208 + (t2 * t277
+        + t1 * t278);
+    const iiwa14_real_t t280 = parameters[MX6] * t252 + parameters[MY6R] * (t263 + t255)
+        + (parameters[MX7] * t217 + parameters[MY7] * t246);
+    const iiwa14_real_t t281 = parameters[MX5] * (t268 + t269) - parameters[MY5R] * t181 + (t13 * t279
+        - t11 * t280);
+    const iiwa14_real_t t282 = parameters[MX6] * t251 + parameters[MY6R] * t202 + (t2 * t278 - t1 * t277);
+    const iiwa14_real_t t283 = t282 - (parameters[MX5] * t266 + parameters[MY5R] * (t275 + t269));
+    const iiwa14_real_t t284 = t30 * t283 - t28 * t281;
+    const iiwa14_real_t t285 = t176 + t177;
+    const iiwa14_real_t t286 = t184 - t186;
+    const iiwa14_real_t t287 = parameters[ZZ4R] * t189 - parameters[XX4R] * t190 + parameters[XY4] * t285
+        - parameters[XZ4] * t286;
+    const iiwa14_real_t t288 = t185 * t185;
+    const iiwa14_real_t t289 = t287 + parameters[YZ4] * (t240 - t288) - parameters[MY4R] * t236 + (t30 * t270
+        - t28 * t276 + IIWA14_C(0.4) * t284);
+    const iiwa14_real_t t290 = parameters[ZZ5R] * t177 - parameters[XX5R] * t180 + parameters[YZ5] * t203
+        - parameters[XZ5] * t192;
+    const iiwa14_real_t t291 = t290 + parameters[XY5] * (t268 - t275) + (parameters[MX5] * t256
+        + parameters[MY5R] * t238);
+    const iiwa14_real_t t292 = t291 + (t11 * t257 + t13 * t264);
+    const iiwa14_real_t t293 = t176 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t191
+        + parameters[YZ4] * t187;
+    const iiwa14_real_t t294 = parameters[XZ4] * (t239 - t240) - t293 + parameters[MX4] * t236 + t292;
+    const iiwa14_real_t t295 = parameters[XY3] * (t183 + t184) - (parameters[XX3R] * t171
+        + parameters[ZZ3R] * t170);
+    const iiwa14_real_t t296 = t162 - t161;
+    const iiwa14_real_t t297 = t160 * t160;
+    const iiwa14_real_t t298 = t169 * t169;
+    const iiwa14_real_t t299 = t295 + parameters[XZ3] * t296 - parameters[YZ3] * (t297 - t298)
+        - parameters[MY3R] * t233;
+    const iiwa14_real_t t300 = t299 + (t62 * t289 - t66 * t294);
+    const iiwa14_real_t t301 = t30 * t281 + t28 * t283;
+    const iiwa14_real_t t302 = parameters[ZZ4R] * t184 + parameters[XX4R] * t186 - parameters[YZ4] * t173
+        + parameters[XZ4] * t188;
+    const iiwa14_real_t t303 = t302 + parameters[XY4] * (t239 - t288) - (parameters[MX4] * t242
+        + parameters[MY4R] * t234);
+    const iiwa14_real_t t304 = t303 + (t28 * t270 + t30 * t276 + IIWA14_C(0.4) * t301);
+    const iiwa14_real_t t305 = parameters[YZ3] * t163 - (t183 * (parameters[XX3R] - parameters[ZZ3R])
+        + parameters[XY3] * t172);
+    const iiwa14_real_t t306 = t159 * t159;
+    const iiwa14_real_t t307 = t305 + parameters[XZ3] * (t306 - t298) + parameters[MX3] * t233 + t304;
+    const iiwa14_real_t t308 = t62 * (parameters[MX4] * (t288 + t240) + parameters[MY4R] * t187 + t301);
+    const iiwa14_real_t t309 = parameters[MX5] * t265 + parameters[MY5R] * t196 + (t11 * t279 + t13 * t280);
+    const iiwa14_real_t t310 = t308 + t66 * (parameters[MX4] * t286 - parameters[MY4R] * t241 + t309);
+    const iiwa14_real_t t311 = parameters[MX3] * (t297 + t298) - parameters[MY3R] * t163 + t310;
+    const iiwa14_real_t t312 = parameters[MX3] * t296 + parameters[MY3R] * (t306 + t298) - (t284
+        - (parameters[MX4] * t285 + parameters[MY4R] * t191));
+    const iiwa14_real_t t313 = t91 * t307 - t93 * t300 + IIWA14_C(0.42) * (t91 * t311 + t93 * t312);
+    const iiwa14_real_t t314 = parameters[XY2] * (IIWA14_C(2.0) * t162) - (parameters[XX2R] * t166
+        + parameters[ZZ2R] * t166);
+    const iiwa14_real_t t315 = t164 * t164;
+    const iiwa14_real_t t316 = t314 + parameters[XZ2] * t165 + parameters[YZ2] * (t315 - t231) + t313;
+    const iiwa14_real_t t317 = parameters[ZZ3R] * t162 + parameters[XX3R] * t161 + parameters[YZ3] * t182
+        - parameters[XZ3] * t168;
+    const iiwa14_real_t t318 = t317 + parameters[XY3] * (t297 - t306) + (parameters[MX3] * t236
+        + parameters[MY3R] * t229);
+    const iiwa14_real_t t319 = t318 + (t66 * t289 + t62 * t294);
+    const iiwa14_real_t t320 = t162 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t167
+        - parameters[YZ2] * t165;
+    const iiwa14_real_t t321 = t132 * t316 + t130 * (t320 + parameters[XZ2] * (t231 - t230) + t319);
+    const iiwa14_real_t t322 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t323 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0]))
+        + IIWA14_C(-160.0) * (parameters[FC1] * t322);
+    const iiwa14_real_t t324 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t325 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6]))
+        + IIWA14_C(160.0) * (parameters[FC7] * t324);
+    const iiwa14_real_t t326 = IIWA14_C(8.0) * input[6] - (t325 - t261);
+    const iiwa14_real_t t327 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t328 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5]))
+        + IIWA14_C(160.0) * (parameters[FC6] * t327);
+    const iiwa14_real_t t329 = IIWA14_C(8.0) * input[5] - (t328 - t273) + t326 * t5;
+    const iiwa14_real_t t330 = IIWA14_C(16.0) * input[0] + (t323 + t321) - t326 * t136 - t329 * t139;
+    const iiwa14_real_t t331 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t332 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4]))
+        + IIWA14_C(1.0e2) * (parameters[FC5] * t331);
+    const iiwa14_real_t t333 = IIWA14_C(8.0) * input[4] - (t332 - t292) + t326 * t25 + t329 * t19;
+    const iiwa14_real_t t334 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t335 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3]))
+        + IIWA14_C(160.0) * (parameters[FC4] * t334);
+    const iiwa14_real_t t336 = IIWA14_C(16.0) * input[3] - (t335 + t304) + t326 * t51 + t329 * t58;
+    const iiwa14_real_t t337 = t336 + t333 * t50;
+    const iiwa14_real_t t338 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t339 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2]))
+        + IIWA14_C(-160.0) * (parameters[FC3] * t338);
+    const iiwa14_real_t t340 = IIWA14_C(16.0) * input[2] + (t339 + t319) - t326 * t73 - t329 * t78;
+    const iiwa14_real_t t341 = t340 - t333 * t82 + t337 * t88;
+    const iiwa14_real_t t342 = t330 - t333 * t143 + t337 * t147 + t341 * t150;
+    const iiwa14_real_t t343 = t91 * t300 + t93 * t307 + IIWA14_C(0.42) * (t93 * t311 - t91 * t312);
+    const iiwa14_real_t t344 = parameters[XX2R] * t165 + parameters[XY2] * (t315 - t230)
+        + (parameters[MX2] * t232 + parameters[MY2R] * t226);
+    const iiwa14_real_t t345 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t346 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1]))
+        + IIWA14_C(-160.0) * (parameters[FC2] * t345);
+    const iiwa14_real_t t347 = IIWA14_C(16.0) * input[1] + (t346 + (t344 + t343)) - t326 * t123;
+    const iiwa14_real_t t348 = t347 - t329 * t124 - t333 * t126 + t337 * t127;
+    const iiwa14_real_t t349 = t348 + t341 * t117;
+    const iiwa14_real_t t350 = IIWA14_C(1.0) / t157;
+    const iiwa14_real_t t351 = (t342 + t349 * t156) * t350;
     out[0] = t351;
     if (!(t351 >= IIWA14_C(-1.0e15) && t351 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t352 = t332 * t343 + t344 * t351;
+    const iiwa14_real_t t352 = t349 * t155 + t156 * t351;
     out[1] = t352;
     if (!(t352 >= IIWA14_C(-1.0e15) && t352 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t353 = t293 * t308 + t309 * t351 + t331 * t352;
+    const iiwa14_real_t t353 = t341 * t116 + t150 * t351 + t117 * t352;
     out[2] = t353;
     if (!(t353 >= IIWA14_C(-1.0e15) && t353 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t354 = t262 * t281 + t282 * t351 + t326 * t352 + t292 * t353;
+    const iiwa14_real_t t354 = t337 * t87 + t147 * t351 + t127 * t352 + t88 * t353;
     out[3] = t354;
     if (!(t354 >= IIWA14_C(-1.0e15) && t354 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t355 = t232 * t252 + t253 * t351 + t323 * t352 + t290 * t353;
-    const iiwa14_real_t t356 = t261 * t354 - t355;
+    const iiwa14_real_t t355 = t333 * t49 + t143 * t351 + t126 * t352 + t82 * t353;
+    const iiwa14_real_t t356 = t50 * t354 - t355;
     out[4] = t356;
     if (!(t356 >= IIWA14_C(-1.0e15) && t356 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t357 = t203 * t224 + t225 * t351 + t320 * t352 + t287 * t353;
-    const iiwa14_real_t t358 = t258 * t354 - t357 + t231 * t356;
+    const iiwa14_real_t t357 = t329 * t18 + t139 * t351 + t124 * t352 + t78 * t353;
+    const iiwa14_real_t t358 = t58 * t354 - t357 + t19 * t356;
     out[5] = t358;
     if (!(t358 >= IIWA14_C(-1.0e15) && t358 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t359 = t180 * t198 + t199 * t351 + t316 * t352 + t285 * t353;
-    const iiwa14_real_t t360 = t256 * t354 - t359 + t229 * t356 + t202 * t358;
+    const iiwa14_real_t t359 = t326 * t4 + t136 * t351 + t123 * t352 + t73 * t353;
+    const iiwa14_real_t t360 = t51 * t354 - t359 + t25 * t356 + t5 * t358;
     out[6] = t360;
     if (!(t360 >= IIWA14_C(-1.0e15) && t360 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);

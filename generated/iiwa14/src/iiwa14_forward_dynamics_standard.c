@@ -120,7 +120,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -149,520 +149,527 @@ int iiwa14_forward_dynamics_standard(
         return status;
     }
 
-    iiwa14_real_t t2, t3;
-    IIWA14_SINCOS(q[1], &t2, &t3);
-    iiwa14_real_t t15, t14;
-    IIWA14_SINCOS(q[2], &t15, &t14);
-    iiwa14_real_t t39, t38;
-    IIWA14_SINCOS(q[3], &t39, &t38);
-    iiwa14_real_t t61, t60;
-    IIWA14_SINCOS(q[4], &t61, &t60);
-    iiwa14_real_t t88, t87;
-    IIWA14_SINCOS(q[5], &t88, &t87);
-    iiwa14_real_t t110, t109;
-    IIWA14_SINCOS(q[6], &t110, &t109);
-    const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1])
-        + IIWA14_C(-160.0) * (t0 * parameters[FC1]);
-    const iiwa14_real_t t4 = t3 * dq[0];
-    const iiwa14_real_t t5 = dq[1] * t4;
-    const iiwa14_real_t t6 = t2 * dq[0];
-    const iiwa14_real_t t7 = dq[1] * t6;
-    const iiwa14_real_t t8 = t5 * (parameters[YY2] - parameters[ZZ2]) - t5 * parameters[XX2]
-        + IIWA14_C(2.0) * t7 * parameters[XY2];
-    const iiwa14_real_t t9 = t6 * t4;
-    const iiwa14_real_t t10 = t4 * t4;
-    const iiwa14_real_t t11 = dq[1] * dq[1];
-    const iiwa14_real_t t12 = IIWA14_C(9.81) * t3;
-    const iiwa14_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2]
-        + t12 * parameters[MZ2];
-    const iiwa14_real_t t16 = t15 * t6 + t14 * dq[1];
-    const iiwa14_real_t t17 = dq[2] + t4;
-    const iiwa14_real_t t18 = t16 * t17;
-    const iiwa14_real_t t19 = IIWA14_C(-2.0) * t5;
-    const iiwa14_real_t t20 = t15 * t9 - t14 * t19;
-    const iiwa14_real_t t21 = t20 - t18;
-    const iiwa14_real_t t22 = t15 * dq[1] - t14 * t6;
-    const iiwa14_real_t t23 = t22 * t17;
-    const iiwa14_real_t t24 = t14 * t9 + t15 * t19;
-    const iiwa14_real_t t25 = t23 + t24;
-    const iiwa14_real_t t26 = parameters[XX3] * t21 + t18 * (parameters[YY3] - parameters[ZZ3])
-        + parameters[XY3] * (t23 + t25);
-    const iiwa14_real_t t27 = t22 * t16;
-    const iiwa14_real_t t28 = t7 - t27;
-    const iiwa14_real_t t29 = t16 * t16;
-    const iiwa14_real_t t30 = t17 * t17;
-    const iiwa14_real_t t31 = t6 * t6;
-    const iiwa14_real_t t32 = t12 + IIWA14_C(-0.42) * (t31 + t11);
-    const iiwa14_real_t t33 = IIWA14_C(9.81) * t2;
-    const iiwa14_real_t t34 = t33 + IIWA14_C(0.42) * t9;
-    const iiwa14_real_t t35 = IIWA14_C(0.84) * t5;
-    const iiwa14_real_t t36 = t15 * t34 + t14 * t35;
-    const iiwa14_real_t t37 = (t29 - t30) * parameters[YZ3] - (t26 + parameters[XZ3] * t28)
-        + (t32 * parameters[MY3] - parameters[MZ3] * t36);
-    const iiwa14_real_t t40 = t39 * t22 - t38 * t17;
-    const iiwa14_real_t t41 = t16 - dq[3];
-    const iiwa14_real_t t42 = t40 * t41;
-    const iiwa14_real_t t43 = t7 + t27;
-    const iiwa14_real_t t44 = t21 - t18;
-    const iiwa14_real_t t45 = t39 * t43 + t38 * t44;
-    const iiwa14_real_t t46 = t45 - t42;
-    const iiwa14_real_t t47 = t38 * t22 + t39 * t17;
-    const iiwa14_real_t t48 = t47 * t41;
-    const iiwa14_real_t t49 = t38 * t43 - t39 * t44;
-    const iiwa14_real_t t50 = t49 - t48;
-    const iiwa14_real_t t51 = t50 - t48;
-    const iiwa14_real_t t52 = parameters[XX4] * t46 + t42 * (parameters[YY4] - parameters[ZZ4])
-        + parameters[XY4] * t51;
-    const iiwa14_real_t t53 = t47 * t40;
-    const iiwa14_real_t t54 = t53 - t25;
-    const iiwa14_real_t t55 = t40 * t40;
-    const iiwa14_real_t t56 = t41 * t41;
-    const iiwa14_real_t t57 = t14 * t34 - t15 * t35;
-    const iiwa14_real_t t58 = t38 * t32 + t39 * t57;
-    const iiwa14_real_t t59 = t52 + parameters[XZ4] * t54 + (t56 - t55) * parameters[YZ4]
-        + (parameters[MY4] * t36 + parameters[MZ4] * t58);
-    const iiwa14_real_t t62 = t60 * t41 - t61 * t47;
-    const iiwa14_real_t t63 = t40 - dq[4];
-    const iiwa14_real_t t64 = t62 * t63;
-    const iiwa14_real_t t65 = t53 + t25;
-    const iiwa14_real_t t66 = t46 - t42;
-    const iiwa14_real_t t67 = t61 * t65 + t60 * t66;
-    const iiwa14_real_t t68 = t64 + t67;
-    const iiwa14_real_t t69 = t60 * t47 + t61 * t41;
-    const iiwa14_real_t t70 = t69 * t63;
-    const iiwa14_real_t t71 = t60 * t65 - t61 * t66;
-    const iiwa14_real_t t72 = t71 - t70;
-    const iiwa14_real_t t73 = t72 - t70;
-    const iiwa14_real_t t74 = parameters[XX5] * t68 - t64 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t73;
-    const iiwa14_real_t t75 = t69 * t62;
-    const iiwa14_real_t t76 = t50 - t75;
-    const iiwa14_real_t t77 = t62 * t62;
-    const iiwa14_real_t t78 = t63 * t63;
-    const iiwa14_real_t t79 = t47 * t47;
-    const iiwa14_real_t t80 = t79 + t56;
-    const iiwa14_real_t t81 = IIWA14_C(0.4) * t80 - t58;
-    const iiwa14_real_t t82 = t38 * t57 - t39 * t32;
-    const iiwa14_real_t t83 = t82 + IIWA14_C(0.4) * t65;
-    const iiwa14_real_t t84 = t36 + IIWA14_C(0.4) * t66;
-    const iiwa14_real_t t85 = t61 * t83 + t60 * t84;
-    const iiwa14_real_t t86 = t74 + parameters[XZ5] * t76 + (t78 - t77) * parameters[YZ5]
-        + (parameters[MY5] * t81 + parameters[MZ5] * t85);
-    const iiwa14_real_t t89 = t87 * t63 - t88 * t69;
-    const iiwa14_real_t t90 = dq[5] + t62;
-    const iiwa14_real_t t91 = t89 * t90;
-    const iiwa14_real_t t92 = t75 + t50;
-    const iiwa14_real_t t93 = t64 + t68;
-    const iiwa14_real_t t94 = t88 * t92 - t87 * t93;
-    const iiwa14_real_t t95 = t91 + t94;
-    const iiwa14_real_t t96 = t87 * t69 + t88 * t63;
-    const iiwa14_real_t t97 = t96 * t90;
-    const iiwa14_real_t t98 = t87 * t92 + t88 * t93;
-    const iiwa14_real_t t99 = t97 - t98;
-    const iiwa14_real_t t100 = t97 + t99;
-    const iiwa14_real_t t101 = parameters[XX6] * t95 - t91 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t100;
-    const iiwa14_real_t t102 = t96 * t89;
-    const iiwa14_real_t t103 = t72 - t102;
-    const iiwa14_real_t t104 = t89 * t89;
-    const iiwa14_real_t t105 = t90 * t90;
-    const iiwa14_real_t t106 = t61 * t84 - t60 * t83;
-    const iiwa14_real_t t107 = t88 * t106 - t87 * t81;
-    const iiwa14_real_t t108 = t101 - parameters[XZ6] * t103 + (t104 - t105) * parameters[YZ6]
-        + (parameters[MY6] * t85 + parameters[MZ6] * t107);
-    const iiwa14_real_t t111 = t109 * t90 - t110 * t96;
-    const iiwa14_real_t t112 = t89 - dq[6];
-    const iiwa14_real_t t113 = t111 * t112;
-    const iiwa14_real_t t114 = t102 + t72;
-    const iiwa14_real_t t115 = t91 + t95;
-    const iiwa14_real_t t116 = t109 * t115 - t110 * t114;
-    const iiwa14_real_t t117 = t116 - t113;
-    const iiwa14_real_t t118 = t109 * t96 + t110 * t90;
-    const iiwa14_real_t t119 = t118 * t112;
-    const iiwa14_real_t t120 = t109 * t114 + t110 * t115;
-    const iiwa14_real_t t121 = t120 - t119;
-    const iiwa14_real_t t122 = t121 - t119;
-    const iiwa14_real_t t123 = parameters[XX7] * t117 + t113 * (parameters[YY7] - parameters[ZZ7])
-        - parameters[XY7] * t122;
-    const iiwa14_real_t t124 = t118 * t111;
-    const iiwa14_real_t t125 = t124 + t99;
-    const iiwa14_real_t t126 = t111 * t111;
-    const iiwa14_real_t t127 = t112 * t112;
-    const iiwa14_real_t t128 = t96 * t96;
-    const iiwa14_real_t t129 = t128 + t105;
-    const iiwa14_real_t t130 = IIWA14_C(-0.126) * t129 + t107;
-    const iiwa14_real_t t131 = t87 * t106 + t88 * t81;
-    const iiwa14_real_t t132 = t131 + IIWA14_C(-0.126) * t114;
-    const iiwa14_real_t t133 = t85 + IIWA14_C(-0.126) * t115;
-    const iiwa14_real_t t134 = t110 * t132 - t109 * t133;
-    const iiwa14_real_t t135 = t123 + parameters[XZ7] * t125 + (t126 - t127) * parameters[YZ7]
-        + (parameters[MY7] * t130 + parameters[MZ7] * t134);
-    const iiwa14_real_t t136 = t117 - t113;
-    const iiwa14_real_t t137 = parameters[XY7] * t136 - (parameters[YY7] * t121 + t119 * (parameters[XX7]
+    iiwa14_real_t t142, t143;
+    IIWA14_SINCOS(q[1], &t142, &t143);
+    iiwa14_real_t t105, t102;
+    IIWA14_SINCOS(q[2], &t105, &t102);
+    iiwa14_real_t t71, t73;
+    IIWA14_SINCOS(q[3], &t71, &t73);
+    iiwa14_real_t t38, t35;
+    IIWA14_SINCOS(q[4], &t38, &t35);
+    iiwa14_real_t t20, t16;
+    IIWA14_SINCOS(q[5], &t20, &t16);
+    iiwa14_real_t t1, t2;
+    IIWA14_SINCOS(q[6], &t1, &t2);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    if (!(t0 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const iiwa14_real_t t4 = t1 * parameters[XZ7] + t2 * parameters[YZ7] + IIWA14_C(-0.126) * t3;
+    const iiwa14_real_t t5 = IIWA14_C(-1.0) / t0;
+    const iiwa14_real_t t6 = t4 * t5;
+    const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7];
+    const iiwa14_real_t t8 = t2 * t7 + parameters[XY7] * (IIWA14_C(2.0) * t1);
+    const iiwa14_real_t t9 = t2 * t8;
+    const iiwa14_real_t t10 = IIWA14_C(0.126) * parameters[M7];
+    const iiwa14_real_t t11 = IIWA14_C(0.126) * (t10 + IIWA14_C(2.0) * parameters[MZ7]);
+    const iiwa14_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
+    const iiwa14_real_t t13 = t12 + IIWA14_C(2.56e4) * parameters[IA6] + t4 * t6;
+    if (!(t13 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t14 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const iiwa14_real_t t15 = parameters[YY6] + parameters[ZZ7];
+    const iiwa14_real_t t17 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t18 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t17;
+    const iiwa14_real_t t19 = parameters[XY6] + t18;
+    const iiwa14_real_t t21 = t16 * (t14 - t15) + t19 * (IIWA14_C(-2.0) * t20);
+    const iiwa14_real_t t22 = t16 * t21;
+    const iiwa14_real_t t23 = parameters[ZZ5] + (t14 - t22);
+    const iiwa14_real_t t24 = t20 * t18 + t16 * parameters[ZZ7];
+    const iiwa14_real_t t25 = t24 * t5;
+    const iiwa14_real_t t26 = t4 - parameters[YZ6];
+    const iiwa14_real_t t27 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t28 = t20 * t27 + t16 * t26;
+    const iiwa14_real_t t29 = t28 + t24 * t6;
+    const iiwa14_real_t t30 = IIWA14_C(-1.0) / t13;
+    const iiwa14_real_t t31 = t29 * t30;
+    const iiwa14_real_t t32 = t23 + IIWA14_C(1.0e4) * parameters[IA5] + t24 * t25 + t29 * t31;
+    if (!(t32 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t33 = parameters[XX5] + (t15 + t22);
+    const iiwa14_real_t t34 = parameters[YY5] + t12;
+    const iiwa14_real_t t36 = t20 * t26 - t16 * t27;
+    const iiwa14_real_t t37 = parameters[XY5] + t36;
+    const iiwa14_real_t t39 = t35 * (t33 - t34) - t37 * (IIWA14_C(2.0) * t38);
+    const iiwa14_real_t t40 = t35 * t39;
+    const iiwa14_real_t t41 = parameters[MX6] + t17;
+    const iiwa14_real_t t42 = parameters[MZ7] + t10 - parameters[MY6];
+    const iiwa14_real_t t43 = t16 * t42 - t20 * t41;
+    const iiwa14_real_t t44 = parameters[MZ5] + t43;
+    const iiwa14_real_t t45 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const iiwa14_real_t t46 = IIWA14_C(0.4) * t45;
+    const iiwa14_real_t t47 = IIWA14_C(0.4) * (t46 + IIWA14_C(2.0) * t44);
+    const iiwa14_real_t t48 = parameters[ZZ4] + (t33 - t40 + t47);
+    const iiwa14_real_t t49 = t16 * t18 - t20 * parameters[ZZ7];
+    const iiwa14_real_t t50 = t16 * t3;
+    const iiwa14_real_t t51 = t35 * t50 + t38 * t17;
+    const iiwa14_real_t t52 = t38 * t49 - t35 * t4 + IIWA14_C(0.4) * t51;
+    const iiwa14_real_t t53 = t52 * t5;
+    const iiwa14_real_t t54 = t35 * t43;
+    const iiwa14_real_t t55 = IIWA14_C(-0.4) * t54 - (t38 * t36 + t35 * t12);
+    const iiwa14_real_t t56 = t55 + t52 * t6;
+    const iiwa14_real_t t57 = t56 * t30;
+    const iiwa14_real_t t58 = t48 + IIWA14_C(2.56e4) * parameters[IA4] + t52 * t53 + t56 * t57;
+    const iiwa14_real_t t59 = t19 + t20 * t21 - parameters[XZ5];
+    const iiwa14_real_t t60 = parameters[YZ5] + t28;
+    const iiwa14_real_t t61 = parameters[MY5] + (parameters[MZ6] + t3);
+    const iiwa14_real_t t62 = t20 * t42 + t16 * t41;
+    const iiwa14_real_t t63 = parameters[MX5] + t62;
+    const iiwa14_real_t t64 = t35 * t61 + t38 * t63;
+    const iiwa14_real_t t65 = t38 * t59 - t35 * t60 + IIWA14_C(0.4) * t64;
+    const iiwa14_real_t t66 = t65 + t52 * t25 + t56 * t31;
+    const iiwa14_real_t t67 = IIWA14_C(-1.0) / t32;
+    const iiwa14_real_t t68 = t66 * t67;
+    const iiwa14_real_t t69 = t58 + t66 * t68;
+    if (!(t69 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t70 = t37 + t38 * t39 - parameters[XZ4];
+    const iiwa14_real_t t72 = parameters[YZ4] + t65;
+    const iiwa14_real_t t74 = t71 * t70 - t73 * t72;
+    const iiwa14_real_t t75 = t35 * t17 - t38 * t50;
+    const iiwa14_real_t t76 = t35 * t49 + t38 * t4 + IIWA14_C(0.4) * t75;
+    const iiwa14_real_t t77 = t71 * t76 - t73 * t24;
+    const iiwa14_real_t t78 = t38 * t43;
+    const iiwa14_real_t t79 = t38 * t12 - t35 * t36 + IIWA14_C(0.4) * t78;
+    const iiwa14_real_t t80 = t71 * t79 - t73 * t28;
+    const iiwa14_real_t t81 = t80 + t77 * t6;
+    const iiwa14_real_t t82 = t35 * t63 - t38 * t61;
+    const iiwa14_real_t t83 = t35 * t59 + t38 * t60 + IIWA14_C(0.4) * t82;
+    const iiwa14_real_t t84 = t71 * t83 - t73 * t23;
+    const iiwa14_real_t t85 = t84 + t77 * t25 + t81 * t31;
+    const iiwa14_real_t t86 = t74 + t77 * t53 + t81 * t57 + t85 * t68;
+    const iiwa14_real_t t87 = IIWA14_C(1.0) / t69;
+    const iiwa14_real_t t88 = t86 * t87;
+    const iiwa14_real_t t89 = parameters[XX4] + (t34 + t40 + t47);
+    const iiwa14_real_t t90 = parameters[YY4] + t23;
+    const iiwa14_real_t t91 = t83 - parameters[XY4];
+    const iiwa14_real_t t92 = t73 * (t90 - t89) - t91 * (IIWA14_C(2.0) * t71);
+    const iiwa14_real_t t93 = t73 * t92;
+    const iiwa14_real_t t94 = parameters[ZZ3] + (t89 + t93);
+    const iiwa14_real_t t95 = t77 * t5;
+    const iiwa14_real_t t96 = t81 * t30;
+    const iiwa14_real_t t97 = t94 + IIWA14_C(2.56e4) * parameters[IA3] + t77 * t95 + t81 * t96;
+    const iiwa14_real_t t98 = t85 * t67;
+    const iiwa14_real_t t99 = t97 + t85 * t98 - t86 * t88;
+    if (!(t99 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t100 = parameters[XX3] + (t90 - t93);
+    const iiwa14_real_t t101 = parameters[YY3] + t48;
+    const iiwa14_real_t t103 = t73 * t70 + t71 * t72;
+    const iiwa14_real_t t104 = parameters[XY3] + t103;
+    const iiwa14_real_t t106 = t102 * (t101 - t100) + t104 * (IIWA14_C(2.0) * t105);
+    const iiwa14_real_t t107 = t102 * t106;
+    const iiwa14_real_t t108 = parameters[MX4] + t82;
+    const iiwa14_real_t t109 = parameters[MY4] + (t44 + t46);
+    const iiwa14_real_t t110 = t73 * t109 + t71 * t108;
+    const iiwa14_real_t t111 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t45))
+        + IIWA14_C(2.0) * (parameters[MZ3] + t110);
+    const iiwa14_real_t t112 = IIWA14_C(0.42) * t111;
+    const iiwa14_real_t t113 = t73 * t76 + t71 * t24;
+    const iiwa14_real_t t114 = t73 * t51 + t71 * (t20 * t3);
+    const iiwa14_real_t t115 = t105 * t113 + t102 * t52 + IIWA14_C(0.42) * (t102 * t114 + t105 * t75);
+    const iiwa14_real_t t116 = t115 * t5;
+    const iiwa14_real_t t117 = parameters[ZZ2] + (t100 + t107 + t112) + IIWA14_C(2.56e4) * parameters[IA2]
+        + t115 * t116;
+    const iiwa14_real_t t118 = t73 * t79 + t71 * t28;
+    const iiwa14_real_t t119 = t73 * t54 + t71 * t62;
+    const iiwa14_real_t t120 = t105 * t118 + t102 * t55 + IIWA14_C(0.42) * (t105 * t78 - t102 * t119);
+    const iiwa14_real_t t121 = t120 + t115 * t6;
+    const iiwa14_real_t t122 = t121 * t30;
+    const iiwa14_real_t t123 = t73 * t83 + t71 * t23;
+    const iiwa14_real_t t124 = t73 * t64;
+    const iiwa14_real_t t125 = t105 * t123 + t102 * t65 + IIWA14_C(0.42) * (t102 * t124 + t105 * t82);
+    const iiwa14_real_t t126 = t125 + t115 * t25 + t121 * t31;
+    const iiwa14_real_t t127 = t126 * t67;
+    const iiwa14_real_t t128 = t105 * t103 + t102 * t48 + IIWA14_C(0.42) * (t102 * t110);
+    const iiwa14_real_t t129 = t128 + t115 * t53 + t121 * t57 + t126 * t68;
+    const iiwa14_real_t t130 = t129 * t87;
+    const iiwa14_real_t t131 = t117 + t121 * t122 + t126 * t127 - t129 * t130;
+    const iiwa14_real_t t132 = t91 + t71 * t92 - parameters[XZ3];
+    const iiwa14_real_t t133 = parameters[YZ3] + t74;
+    const iiwa14_real_t t134 = parameters[MY3] - (parameters[MZ4] - t64);
+    const iiwa14_real_t t135 = parameters[MX3] + (t73 * t108 - t71 * t109);
+    const iiwa14_real_t t136 = t105 * t132 - t102 * t133 + IIWA14_C(0.42) * (t102 * t134 + t105 * t135);
+    const iiwa14_real_t t137 = t136 - t115 * t95 - t121 * t96 - t126 * t98;
+    const iiwa14_real_t t138 = t137 + t129 * t88;
+    const iiwa14_real_t t139 = IIWA14_C(1.0) / t99;
+    const iiwa14_real_t t140 = t138 * t139;
+    const iiwa14_real_t t141 = t131 - t138 * t140;
+    if (!(t141 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t144 = t142 * (parameters[XZ2] + (t104 - t105 * t106)) + t143 * (parameters[YZ2]
+        + t136);
+    const iiwa14_real_t t145 = t105 * t52 - t102 * t113 + IIWA14_C(0.42) * (t105 * t114 - t102 * t75);
+    const iiwa14_real_t t146 = t142 * t145 + t143 * t77;
+    const iiwa14_real_t t147 = t105 * t55 - t102 * t118 + IIWA14_C(-0.42) * (t105 * t119 + t102 * t78);
+    const iiwa14_real_t t148 = t142 * t147 + t143 * t80 + t146 * t6;
+    const iiwa14_real_t t149 = t105 * t65 - t102 * t123 + IIWA14_C(0.42) * (t105 * t124 - t102 * t82);
+    const iiwa14_real_t t150 = t142 * t149 + t143 * t84 + t146 * t25 + t148 * t31;
+    const iiwa14_real_t t151 = t144 - t146 * t116 - t148 * t122 - t150 * t127;
+    const iiwa14_real_t t152 = t105 * t48 - t102 * t103 + IIWA14_C(0.42) * (t105 * t110);
+    const iiwa14_real_t t153 = t142 * t152 + t143 * t74 + t146 * t53 + t148 * t57;
+    const iiwa14_real_t t154 = t153 + t150 * t68;
+    const iiwa14_real_t t155 = t102 * t132 + t105 * t133 + IIWA14_C(0.42) * (t102 * t135 - t105 * t134);
+    const iiwa14_real_t t156 = t142 * t155 + t143 * t94 + t146 * t95 + t148 * t96;
+    const iiwa14_real_t t157 = t154 * t88 - (t156 + t150 * t98);
+    const iiwa14_real_t t158 = t151 + t154 * t130 + t157 * t140;
+    const iiwa14_real_t t159 = IIWA14_C(1.0) / t141;
+    const iiwa14_real_t t160 = t158 * t159;
+    const iiwa14_real_t t161 = parameters[XX2] + (t101 - t107 + t112);
+    const iiwa14_real_t t162 = t143 * (parameters[YY2] + t94 - t161) + (parameters[XY2]
+        + t155) * (IIWA14_C(2.0) * t142);
+    const iiwa14_real_t t163 = t146 * t5;
+    const iiwa14_real_t t164 = parameters[ZZ1] + (t161 + t143 * t162) + IIWA14_C(2.56e4) * parameters[IA1]
+        + t146 * t163;
+    const iiwa14_real_t t165 = t148 * t30;
+    const iiwa14_real_t t166 = t150 * t67;
+    const iiwa14_real_t t167 = t154 * t87;
+    const iiwa14_real_t t168 = t164 + t148 * t165 + t150 * t166 - t154 * t167;
+    const iiwa14_real_t t169 = t157 * t139;
+    const iiwa14_real_t t170 = t168 - t157 * t169 - t158 * t160;
+    if (!(t170 > IIWA14_C(1.0e-9))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t171 = t142 * dq[0];
+    const iiwa14_real_t t172 = t105 * dq[1] - t102 * t171;
+    const iiwa14_real_t t173 = t143 * dq[0];
+    const iiwa14_real_t t174 = dq[2] + t173;
+    const iiwa14_real_t t175 = t73 * t172 + t71 * t174;
+    const iiwa14_real_t t176 = t105 * t171 + t102 * dq[1];
+    const iiwa14_real_t t177 = t176 - dq[3];
+    const iiwa14_real_t t178 = t35 * t175 + t38 * t177;
+    const iiwa14_real_t t179 = t35 * t177 - t38 * t175;
+    const iiwa14_real_t t180 = t178 * t179;
+    const iiwa14_real_t t181 = t172 * t176;
+    const iiwa14_real_t t182 = dq[1] * t171;
+    const iiwa14_real_t t183 = t182 + t181;
+    const iiwa14_real_t t184 = t176 * t174;
+    const iiwa14_real_t t185 = t171 * t173;
+    const iiwa14_real_t t186 = dq[1] * t173;
+    const iiwa14_real_t t187 = IIWA14_C(-2.0) * t186;
+    const iiwa14_real_t t188 = t105 * t185 - t102 * t187;
+    const iiwa14_real_t t189 = t188 - t184;
+    const iiwa14_real_t t190 = t189 - t184;
+    const iiwa14_real_t t191 = t73 * t183 - t71 * t190;
+    const iiwa14_real_t t192 = t175 * t177;
+    const iiwa14_real_t t193 = t191 - t192;
+    const iiwa14_real_t t194 = t180 + t193;
+    const iiwa14_real_t t195 = t71 * t172 - t73 * t174;
+    const iiwa14_real_t t196 = t175 * t195;
+    const iiwa14_real_t t197 = t172 * t174;
+    const iiwa14_real_t t198 = t102 * t185 + t105 * t187;
+    const iiwa14_real_t t199 = t197 + t198;
+    const iiwa14_real_t t200 = t196 + t199;
+    const iiwa14_real_t t201 = t71 * t183 + t73 * t190;
+    const iiwa14_real_t t202 = t195 * t177;
+    const iiwa14_real_t t203 = t201 - t202;
+    const iiwa14_real_t t204 = t203 - t202;
+    const iiwa14_real_t t205 = t38 * t200 + t35 * t204;
+    const iiwa14_real_t t206 = t195 - dq[4];
+    const iiwa14_real_t t207 = t179 * t206;
+    const iiwa14_real_t t208 = t207 + t205;
+    const iiwa14_real_t t209 = t207 + t208;
+    const iiwa14_real_t t210 = t20 * t194 - t16 * t209;
+    const iiwa14_real_t t211 = t16 * t206 - t20 * t178;
+    const iiwa14_real_t t212 = dq[5] + t179;
+    const iiwa14_real_t t213 = t211 * t212;
+    const iiwa14_real_t t214 = t213 + t210;
+    const iiwa14_real_t t215 = t213 + t214;
+    const iiwa14_real_t t216 = t35 * t200 - t38 * t204;
+    const iiwa14_real_t t217 = t178 * t206;
+    const iiwa14_real_t t218 = t216 - t217;
+    const iiwa14_real_t t219 = t16 * t178 + t20 * t206;
+    const iiwa14_real_t t220 = t219 * t211;
+    const iiwa14_real_t t221 = t220 + t218;
+    const iiwa14_real_t t222 = t2 * t215 - t1 * t221;
+    const iiwa14_real_t t223 = t2 * t212 - t1 * t219;
+    const iiwa14_real_t t224 = t211 - dq[6];
+    const iiwa14_real_t t225 = t223 * t224;
+    const iiwa14_real_t t226 = t222 - t225;
+    const iiwa14_real_t t227 = t2 * t221 + t1 * t215;
+    const iiwa14_real_t t228 = t2 * t219 + t1 * t212;
+    const iiwa14_real_t t229 = t228 * t224;
+    const iiwa14_real_t t230 = t227 - t229;
+    const iiwa14_real_t t231 = t230 - t229;
+    const iiwa14_real_t t232 = parameters[XX7] * t226 + t225 * (parameters[YY7] - parameters[ZZ7])
+        - parameters[XY7] * t231;
+    const iiwa14_real_t t233 = t16 * t194 + t20 * t209;
+    const iiwa14_real_t t234 = t219 * t212;
+    const iiwa14_real_t t235 = t234 - t233;
+    const iiwa14_real_t t236 = t228 * t223;
+    const iiwa14_real_t t237 = t236 + t235;
+    const iiwa14_real_t t238 = t223 * t223;
+    const iiwa14_real_t t239 = t224 * t224;
+    const iiwa14_real_t t240 = t171 * t171;
+    const iiwa14_real_t t241 = dq[1] * dq[1];
+    const iiwa14_real_t t242 = IIWA14_C(9.81) * t143;
+    const iiwa14_real_t t243 = t242 + IIWA14_C(-0.42) * (t240 + t241);
+    const iiwa14_real_t t244 = IIWA14_C(9.81) * t142;
+    const iiwa14_real_t t245 = t244 + IIWA14_C(0.42) * t185;
+    const iiwa14_real_t t246 = IIWA14_C(0.84) * t186;
+    const iiwa14_real_t t247 = t102 * t245 - t105 * t246;
+    const iiwa14_real_t t248 = t73 * t247 - t71 * t243;
+    const iiwa14_real_t t249 = t248 + IIWA14_C(0.4) * t200;
+    const iiwa14_real_t t250 = t105 * t245 + t102 * t246;
+    const iiwa14_real_t t251 = t250 + IIWA14_C(0.4) * t204;
+    const iiwa14_real_t t252 = t38 * t251 - t35 * t249;
+    const iiwa14_real_t t253 = t175 * t175;
+    const iiwa14_real_t t254 = t177 * t177;
+    const iiwa14_real_t t255 = t253 + t254;
+    const iiwa14_real_t t256 = t73 * t243 + t71 * t247;
+    const iiwa14_real_t t257 = IIWA14_C(0.4) * t255 - t256;
+    const iiwa14_real_t t258 = t16 * t252 + t20 * t257;
+    const iiwa14_real_t t259 = t258 + IIWA14_C(-0.126) * t221;
+    const iiwa14_real_t t260 = t38 * t249 + t35 * t251;
+    const iiwa14_real_t t261 = t260 + IIWA14_C(-0.126) * t215;
+    const iiwa14_real_t t262 = t1 * t259 - t2 * t261;
+    const iiwa14_real_t t263 = t219 * t219;
+    const iiwa14_real_t t264 = t212 * t212;
+    const iiwa14_real_t t265 = t263 + t264;
+    const iiwa14_real_t t266 = t20 * t252 - t16 * t257;
+    const iiwa14_real_t t267 = IIWA14_C(-0.126) * t265 + t266;
+    const iiwa14_real_t t268 = t232 + parameters[XZ7] * t237 + (t238 - t239) * parameters[YZ7]
+        + (parameters[MY7] * t267 + parameters[MZ7] * t262);
+    const iiwa14_real_t t269 = t226 - t225;
+    const iiwa14_real_t t270 = parameters[XY7] * t269 - (parameters[YY7] * t230 + t229 * (parameters[XX7]
         - parameters[ZZ7]));
-    const iiwa14_real_t t138 = t99 - t124;
-    const iiwa14_real_t t139 = t118 * t118;
-    const iiwa14_real_t t140 = t109 * t132 + t110 * t133;
-    const iiwa14_real_t t141 = t137 + parameters[YZ7] * t138 - (t139 - t127) * parameters[XZ7]
-        + (parameters[MZ7] * t140 - parameters[MX7] * t130);
-    const iiwa14_real_t t142 = (t126 + t127) * parameters[MX7] + parameters[MY7] * t138
-        + parameters[MZ7] * t120;
-    const iiwa14_real_t t143 = parameters[M7] * t140 - t142;
-    const iiwa14_real_t t144 = parameters[MX7] * t125 - (t139 + t127) * parameters[MY7]
-        - parameters[MZ7] * t116;
-    const iiwa14_real_t t145 = t144 - parameters[M7] * t134;
-    const iiwa14_real_t t146 = t110 * t143 + t109 * t145;
-    const iiwa14_real_t t147 = t108 + (t109 * t135 - t110 * t141 - IIWA14_C(0.126) * t146);
-    const iiwa14_real_t t148 = parameters[XY6] * t115 - (parameters[YY6] * t99 + t97 * (parameters[ZZ6]
+    const iiwa14_real_t t271 = t235 - t236;
+    const iiwa14_real_t t272 = t228 * t228;
+    const iiwa14_real_t t273 = t2 * t259 + t1 * t261;
+    const iiwa14_real_t t274 = t270 + parameters[YZ7] * t271 - (t272 - t239) * parameters[XZ7]
+        + (parameters[MZ7] * t273 - parameters[MX7] * t267);
+    const iiwa14_real_t t275 = (t238 + t239) * parameters[MX7] + parameters[MY7] * t271
+        + parameters[MZ7] * t227;
+    const iiwa14_real_t t276 = parameters[M7] * t273 - t275;
+    const iiwa14_real_t t277 = parameters[MX7] * t237 - (t272 + t239) * parameters[MY7]
+        - parameters[MZ7] * t222;
+    const iiwa14_real_t t278 = t277 - parameters[M7] * t262;
+    const iiwa14_real_t t279 = t1 * t276 + t2 * t278;
+    const iiwa14_real_t t280 = t234 + t235;
+    const iiwa14_real_t t281 = parameters[XX6] * t214 - t213 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t280;
+    const iiwa14_real_t t282 = t218 - t220;
+    const iiwa14_real_t t283 = t211 * t211;
+    const iiwa14_real_t t284 = t281 - parameters[XZ6] * t282 + (t283 - t264) * parameters[YZ6]
+        + (parameters[MY6] * t260 + parameters[MZ6] * t266);
+    const iiwa14_real_t t285 = t284 + (t2 * t268 - t1 * t274 - IIWA14_C(0.126) * t279);
+    const iiwa14_real_t t286 = parameters[YZ7] * t227 - (parameters[ZZ7] * t235 + t236 * t7)
+        - parameters[XZ7] * t222;
+    const iiwa14_real_t t287 = t286 + (t238 - t272) * parameters[XY7] + (parameters[MX7] * t262
+        + parameters[MY7] * t273);
+    const iiwa14_real_t t288 = parameters[XY6] * t215 - (parameters[YY6] * t235 + t234 * (parameters[ZZ6]
         - parameters[XX6]));
-    const iiwa14_real_t t149 = t148 - parameters[YZ6] * t114 + (t105 - t128) * parameters[XZ6]
-        + (parameters[MZ6] * t131 - parameters[MX6] * t85);
-    const iiwa14_real_t t150 = parameters[YY7] - parameters[XX7];
-    const iiwa14_real_t t151 = parameters[YZ7] * t120 - (parameters[ZZ7] * t99 + t124 * t150)
-        - parameters[XZ7] * t116;
-    const iiwa14_real_t t152 = t151 + (t126 - t139) * parameters[XY7] + (parameters[MX7] * t134
-        + parameters[MY7] * t140);
-    const iiwa14_real_t t153 = t149 + t152;
-    const iiwa14_real_t t154 = t86 + (t88 * t153 - t87 * t147);
-    const iiwa14_real_t t155 = parameters[YY5] * t72 + t70 * (parameters[XX5] - parameters[ZZ5])
-        + parameters[XY5] * t93;
-    const iiwa14_real_t t156 = t69 * t69;
-    const iiwa14_real_t t157 = parameters[MZ5] * t106 + parameters[MX5] * t81 - (t155 + parameters[YZ5] * t92
-        + (t156 - t78) * parameters[XZ5]);
-    const iiwa14_real_t t158 = parameters[YZ6] * t98 - (parameters[ZZ6] * t72 + t102 * (parameters[XX6]
+    const iiwa14_real_t t289 = t288 - parameters[YZ6] * t221 + (t264 - t263) * parameters[XZ6]
+        + (parameters[MZ6] * t258 - parameters[MX6] * t260);
+    const iiwa14_real_t t290 = t289 + t287;
+    const iiwa14_real_t t291 = t218 - t217;
+    const iiwa14_real_t t292 = parameters[XX5] * t208 - t207 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t291;
+    const iiwa14_real_t t293 = t193 - t180;
+    const iiwa14_real_t t294 = t179 * t179;
+    const iiwa14_real_t t295 = t206 * t206;
+    const iiwa14_real_t t296 = t292 + parameters[XZ5] * t293 + (t295 - t294) * parameters[YZ5]
+        + (parameters[MY5] * t257 + parameters[MZ5] * t260);
+    const iiwa14_real_t t297 = t296 + (t20 * t290 - t16 * t285);
+    const iiwa14_real_t t298 = t1 * t278 - t2 * t276;
+    const iiwa14_real_t t299 = parameters[YZ6] * t233 - (parameters[ZZ6] * t218 + t220 * (parameters[XX6]
         - parameters[YY6]));
-    const iiwa14_real_t t159 = t158 + parameters[XZ6] * t94 + (t128 - t104) * parameters[XY6]
-        - (parameters[MX6] * t107 + parameters[MY6] * t131);
-    const iiwa14_real_t t160 = t110 * t145 - t109 * t143;
-    const iiwa14_real_t t161 = t159 + (t110 * t135 + t109 * t141 + IIWA14_C(-0.126) * t160);
-    const iiwa14_real_t t162 = t157 + t161;
-    const iiwa14_real_t t163 = (t77 + t78) * parameters[MX5] - parameters[MY5] * t92 + parameters[MZ5] * t71;
-    const iiwa14_real_t t164 = (t104 + t105) * parameters[MX6] - parameters[MY6] * t114
-        - parameters[MZ6] * t98;
-    const iiwa14_real_t t165 = t164 - parameters[M6] * t131 + t160;
-    const iiwa14_real_t t166 = parameters[M6] * t107 + (parameters[MX6] * t103 + t129 * parameters[MY6]
-        + parameters[MZ6] * t94);
-    const iiwa14_real_t t167 = parameters[MX7] * t122 + parameters[MY7] * t136 - (t139
-        + t126) * parameters[MZ7];
-    const iiwa14_real_t t168 = t166 + (parameters[M7] * t130 + t167);
-    const iiwa14_real_t t169 = parameters[M5] * t106 - t163 + (t88 * t168 - t87 * t165);
-    const iiwa14_real_t t170 = parameters[MZ5] * t67 - (parameters[MX5] * t76 + (t156
-        + t78) * parameters[MY5]);
-    const iiwa14_real_t t171 = parameters[MX6] * t100 + parameters[MY6] * t115 - (t128
-        + t104) * parameters[MZ6];
-    const iiwa14_real_t t172 = parameters[M5] * t85 + t170 + (parameters[M6] * t85 + t171 + t146);
-    const iiwa14_real_t t173 = t61 * t169 + t60 * t172;
-    const iiwa14_real_t t174 = t59 + (t60 * t154 + t61 * t162 + IIWA14_C(0.4) * t173);
-    const iiwa14_real_t t175 = parameters[YY4] * t50 + t48 * (parameters[XX4] - parameters[ZZ4])
-        + parameters[XY4] * t66;
-    const iiwa14_real_t t176 = t175 - parameters[YZ4] * t65 + (t79 - t56) * parameters[XZ4]
-        + (parameters[MZ4] * t82 - parameters[MX4] * t36);
-    const iiwa14_real_t t177 = parameters[ZZ5] * t50 - t75 * (parameters[YY5] - parameters[XX5])
-        + parameters[YZ5] * t71;
-    const iiwa14_real_t t178 = t177 + parameters[XZ5] * t67 + (t77 - t156) * parameters[XY5]
-        + (parameters[MY5] * t106 - parameters[MX5] * t85);
-    const iiwa14_real_t t179 = t178 + (t88 * t147 + t87 * t153);
-    const iiwa14_real_t t180 = t176 + t179;
-    const iiwa14_real_t t181 = t37 + (t39 * t180 - t38 * t174);
-    const iiwa14_real_t t182 = parameters[YY3] * t25 - t23 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t44;
-    const iiwa14_real_t t183 = t22 * t22;
-    const iiwa14_real_t t184 = t182 + parameters[YZ3] * t43 + (t183 - t30) * parameters[XZ3]
-        + (parameters[MZ3] * t57 + t32 * parameters[MX3]);
-    const iiwa14_real_t t185 = parameters[ZZ4] * t25 + t53 * (parameters[XX4] - parameters[YY4])
-        - parameters[YZ4] * t49;
-    const iiwa14_real_t t186 = t185 - parameters[XZ4] * t45 + (t79 - t55) * parameters[XY4]
-        + (parameters[MX4] * t58 + parameters[MY4] * t82);
-    const iiwa14_real_t t187 = t61 * t172 - t60 * t169;
-    const iiwa14_real_t t188 = t186 + (t61 * t154 - t60 * t162 + IIWA14_C(0.4) * t187);
-    const iiwa14_real_t t189 = t184 + t188;
-    const iiwa14_real_t t190 = (t29 + t30) * parameters[MX3] - parameters[MY3] * t43 + parameters[MZ3] * t24;
-    const iiwa14_real_t t191 = (t55 + t56) * parameters[MX4] + parameters[MY4] * t65 + parameters[MZ4] * t49;
-    const iiwa14_real_t t192 = parameters[M4] * t58 + (parameters[MZ4] * t45 - (parameters[MX4] * t54
-        + t80 * parameters[MY4]));
-    const iiwa14_real_t t193 = parameters[MX5] * t73 - parameters[MY5] * t93 - (t156 + t77) * parameters[MZ5];
-    const iiwa14_real_t t194 = t193 - parameters[M5] * t81 + (t88 * t165 + t87 * t168);
-    const iiwa14_real_t t195 = t38 * (parameters[M4] * t82 + t191 + t187) + t39 * (t192 + t194);
-    const iiwa14_real_t t196 = parameters[M3] * t57 + t190 + t195;
-    const iiwa14_real_t t197 = parameters[MX3] * t28 + (t183 + t30) * parameters[MY3] - parameters[MZ3] * t20;
-    const iiwa14_real_t t198 = parameters[MY4] * t66 - parameters[MX4] * t51 + (t79 + t55) * parameters[MZ4];
-    const iiwa14_real_t t199 = parameters[M3] * t36 - t197 + (parameters[M4] * t36 + t198 + t173);
-    const iiwa14_real_t t200 = t14 * t181 + t15 * t189 + IIWA14_C(0.42) * (t15 * t196 - t14 * t199);
-    const iiwa14_real_t t201 = t7 * parameters[YY2] + t7 * (parameters[ZZ2] - parameters[XX2])
-        + t19 * parameters[XY2];
-    const iiwa14_real_t t202 = t201 - t9 * parameters[YZ2] + (t11 - t31) * parameters[XZ2]
-        - t33 * parameters[MZ2];
-    const iiwa14_real_t t203 = t7 * parameters[ZZ3] - t27 * (parameters[YY3] - parameters[XX3])
-        + parameters[YZ3] * t24;
-    const iiwa14_real_t t204 = t203 + parameters[XZ3] * t20 + (t29 - t183) * parameters[XY3]
-        - (parameters[MX3] * t36 + parameters[MY3] * t57);
-    const iiwa14_real_t t205 = t204 + (t39 * t174 + t38 * t180);
-    const iiwa14_real_t t206 = t1 + (t2 * (t13 + t200) + t3 * (t202 + t205));
-    const iiwa14_real_t t207 = iiwa14_sign(dq[6]);
-    const iiwa14_real_t t208 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7])
-        + IIWA14_C(160.0) * (t207 * parameters[FC7]);
-    const iiwa14_real_t t209 = IIWA14_C(8.0) * input[6] - (t208 - t152);
-    const iiwa14_real_t t210 = t109 * parameters[MX7] - t110 * parameters[MY7];
-    const iiwa14_real_t t211 = t110 * parameters[YZ7] - t109 * parameters[XZ7] + IIWA14_C(0.126) * t210;
-    const iiwa14_real_t t212 = t87 * t211 - t88 * parameters[ZZ7];
-    const iiwa14_real_t t213 = t109 * parameters[MY7] + t110 * parameters[MX7];
-    const iiwa14_real_t t214 = t110 * parameters[XZ7] + t109 * parameters[YZ7] + IIWA14_C(-0.126) * t213;
-    const iiwa14_real_t t215 = t87 * t213;
-    const iiwa14_real_t t216 = t60 * t210 - t61 * t215;
-    const iiwa14_real_t t217 = t60 * t212 + t61 * t214 + IIWA14_C(0.4) * t216;
-    const iiwa14_real_t t218 = t88 * t211 + t87 * parameters[ZZ7];
-    const iiwa14_real_t t219 = t38 * t217 + t39 * t218;
-    const iiwa14_real_t t220 = t60 * t215 + t61 * t210;
-    const iiwa14_real_t t221 = t61 * t212 - t60 * t214 + IIWA14_C(0.4) * t220;
-    const iiwa14_real_t t222 = t38 * t220 + t39 * (t88 * t213);
-    const iiwa14_real_t t223 = t15 * t221 - t14 * t219 + IIWA14_C(0.42) * (t15 * t222 - t14 * t216);
-    const iiwa14_real_t t224 = t39 * t217 - t38 * t218;
-    const iiwa14_real_t t225 = t2 * t223 + t3 * t224;
-    const iiwa14_real_t t226 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
-    if (!(t226 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t227 = IIWA14_C(-1.0) / t226;
-    const iiwa14_real_t t228 = t225 * t227;
-    const iiwa14_real_t t229 = iiwa14_sign(dq[5]);
-    const iiwa14_real_t t230 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6])
-        + IIWA14_C(160.0) * (t229 * parameters[FC6]);
-    const iiwa14_real_t t231 = t214 * t227;
-    const iiwa14_real_t t232 = IIWA14_C(8.0) * input[5] - (t230 + t161) + t209 * t231;
-    const iiwa14_real_t t233 = t109 * t150 + parameters[XY7] * (IIWA14_C(2.0) * t110);
-    const iiwa14_real_t t234 = t110 * t233 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t235 = t214 - parameters[YZ6];
-    const iiwa14_real_t t236 = t88 * t235 - t87 * t234;
-    const iiwa14_real_t t237 = t109 * t233;
-    const iiwa14_real_t t238 = IIWA14_C(0.126) * parameters[M7];
-    const iiwa14_real_t t239 = IIWA14_C(0.126) * (t238 + IIWA14_C(2.0) * parameters[MZ7]);
-    const iiwa14_real_t t240 = parameters[ZZ6] + (parameters[XX7] + t237 + t239);
-    const iiwa14_real_t t241 = parameters[MZ7] + t238 - parameters[MY6];
-    const iiwa14_real_t t242 = parameters[MX6] + t210;
-    const iiwa14_real_t t243 = t87 * t241 - t88 * t242;
-    const iiwa14_real_t t244 = t61 * t243;
-    const iiwa14_real_t t245 = t61 * t240 - t60 * t236 + IIWA14_C(0.4) * t244;
-    const iiwa14_real_t t246 = t88 * t234 + t87 * t235;
-    const iiwa14_real_t t247 = t38 * t245 + t39 * t246;
-    const iiwa14_real_t t248 = t60 * t243;
-    const iiwa14_real_t t249 = IIWA14_C(-0.4) * t248 - (t61 * t236 + t60 * t240);
-    const iiwa14_real_t t250 = t88 * t241 + t87 * t242;
-    const iiwa14_real_t t251 = t38 * t248 + t39 * t250;
-    const iiwa14_real_t t252 = t15 * t249 - t14 * t247 + IIWA14_C(-0.42) * (t15 * t251 + t14 * t244);
-    const iiwa14_real_t t253 = t39 * t245 - t38 * t246;
-    const iiwa14_real_t t254 = t2 * t252 + t3 * t253 + t225 * t231;
-    const iiwa14_real_t t255 = t240 + IIWA14_C(2.56e4) * parameters[IA6] + t214 * t231;
-    if (!(t255 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t256 = IIWA14_C(-1.0) / t255;
-    const iiwa14_real_t t257 = t254 * t256;
-    const iiwa14_real_t t258 = IIWA14_C(16.0) * input[0] + t206 - t209 * t228 - t232 * t257;
-    const iiwa14_real_t t259 = iiwa14_sign(dq[4]);
-    const iiwa14_real_t t260 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5])
-        + IIWA14_C(1.0e2) * (t259 * parameters[FC5]);
-    const iiwa14_real_t t261 = t218 * t227;
-    const iiwa14_real_t t262 = t246 + t218 * t231;
-    const iiwa14_real_t t263 = t262 * t256;
-    const iiwa14_real_t t264 = IIWA14_C(8.0) * input[4] - (t260 - t179) + t209 * t261 + t232 * t263;
-    const iiwa14_real_t t265 = parameters[XY6] + t211;
-    const iiwa14_real_t t266 = parameters[XX6] + (parameters[YY7] - t237 + t239);
-    const iiwa14_real_t t267 = parameters[YY6] + parameters[ZZ7];
-    const iiwa14_real_t t268 = t87 * (t266 - t267) + t265 * (IIWA14_C(-2.0) * t88);
-    const iiwa14_real_t t269 = t265 + t88 * t268 - parameters[XZ5];
-    const iiwa14_real_t t270 = parameters[YZ5] + t246;
-    const iiwa14_real_t t271 = parameters[MY5] + (parameters[MZ6] + t213);
-    const iiwa14_real_t t272 = parameters[MX5] + t250;
-    const iiwa14_real_t t273 = t60 * t272 - t61 * t271;
-    const iiwa14_real_t t274 = t60 * t269 + t61 * t270 + IIWA14_C(0.4) * t273;
-    const iiwa14_real_t t275 = t87 * t268;
-    const iiwa14_real_t t276 = parameters[ZZ5] + (t266 - t275);
-    const iiwa14_real_t t277 = t38 * t274 + t39 * t276;
-    const iiwa14_real_t t278 = t60 * t271 + t61 * t272;
-    const iiwa14_real_t t279 = t61 * t269 - t60 * t270 + IIWA14_C(0.4) * t278;
-    const iiwa14_real_t t280 = t38 * t278;
-    const iiwa14_real_t t281 = t15 * t279 - t14 * t277 + IIWA14_C(0.42) * (t15 * t280 - t14 * t273);
-    const iiwa14_real_t t282 = t39 * t274 - t38 * t276;
-    const iiwa14_real_t t283 = t2 * t281 + t3 * t282 + t225 * t261 + t254 * t263;
-    const iiwa14_real_t t284 = t276 + IIWA14_C(1.0e4) * parameters[IA5] + t218 * t261 + t262 * t263;
-    if (!(t284 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t285 = IIWA14_C(-1.0) / t284;
-    const iiwa14_real_t t286 = t283 * t285;
-    const iiwa14_real_t t287 = iiwa14_sign(dq[3]);
-    const iiwa14_real_t t288 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4])
-        + IIWA14_C(160.0) * (t287 * parameters[FC4]);
-    const iiwa14_real_t t289 = t221 * t227;
-    const iiwa14_real_t t290 = t249 + t221 * t231;
-    const iiwa14_real_t t291 = t290 * t256;
-    const iiwa14_real_t t292 = IIWA14_C(16.0) * input[3] - (t288 + t188) + t209 * t289 + t232 * t291;
-    const iiwa14_real_t t293 = t279 + t221 * t261 + t290 * t263;
-    const iiwa14_real_t t294 = t293 * t285;
-    const iiwa14_real_t t295 = t292 + t264 * t294;
-    const iiwa14_real_t t296 = parameters[XY5] + t236;
-    const iiwa14_real_t t297 = parameters[XX5] + (t267 + t275);
-    const iiwa14_real_t t298 = parameters[YY5] + t240;
-    const iiwa14_real_t t299 = t60 * (t297 - t298) - t296 * (IIWA14_C(2.0) * t61);
-    const iiwa14_real_t t300 = t296 + t61 * t299 - parameters[XZ4];
-    const iiwa14_real_t t301 = parameters[YZ4] + t279;
-    const iiwa14_real_t t302 = t38 * t300 + t39 * t301;
-    const iiwa14_real_t t303 = t60 * t299;
-    const iiwa14_real_t t304 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_real_t t305 = IIWA14_C(0.4) * t304;
-    const iiwa14_real_t t306 = parameters[MZ5] + t243;
-    const iiwa14_real_t t307 = IIWA14_C(0.4) * (t305 + IIWA14_C(2.0) * t306);
-    const iiwa14_real_t t308 = parameters[ZZ4] + (t297 - t303 + t307);
-    const iiwa14_real_t t309 = parameters[MY4] + (t306 + t305);
-    const iiwa14_real_t t310 = parameters[MX4] + t273;
-    const iiwa14_real_t t311 = t38 * t309 + t39 * t310;
-    const iiwa14_real_t t312 = t15 * t308 - t14 * t302 + IIWA14_C(0.42) * (t15 * t311);
-    const iiwa14_real_t t313 = t39 * t300 - t38 * t301;
-    const iiwa14_real_t t314 = t2 * t312 + t3 * t313 + t225 * t289 + t254 * t291;
-    const iiwa14_real_t t315 = t314 + t283 * t294;
-    const iiwa14_real_t t316 = t308 + IIWA14_C(2.56e4) * parameters[IA4] + t221 * t289 + t290 * t291;
-    const iiwa14_real_t t317 = t316 + t293 * t294;
-    if (!(t317 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t318 = IIWA14_C(1.0) / t317;
-    const iiwa14_real_t t319 = t315 * t318;
-    const iiwa14_real_t t320 = iiwa14_sign(dq[2]);
-    const iiwa14_real_t t321 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3])
-        + IIWA14_C(-160.0) * (t320 * parameters[FC3]);
-    const iiwa14_real_t t322 = t224 * t227;
-    const iiwa14_real_t t323 = t253 + t224 * t231;
-    const iiwa14_real_t t324 = t323 * t256;
-    const iiwa14_real_t t325 = IIWA14_C(16.0) * input[2] + (t321 + t205) - t209 * t322 - t232 * t324;
-    const iiwa14_real_t t326 = t282 + t224 * t261 + t323 * t263;
-    const iiwa14_real_t t327 = t326 * t285;
-    const iiwa14_real_t t328 = t313 + t224 * t289 + t323 * t291 + t326 * t294;
-    const iiwa14_real_t t329 = t328 * t318;
-    const iiwa14_real_t t330 = t325 - t264 * t327 + t295 * t329;
-    const iiwa14_real_t t331 = t274 - parameters[XY4];
-    const iiwa14_real_t t332 = parameters[XX4] + (t298 + t303 + t307);
-    const iiwa14_real_t t333 = parameters[YY4] + t276;
-    const iiwa14_real_t t334 = t38 * (t333 - t332) - t331 * (IIWA14_C(2.0) * t39);
-    const iiwa14_real_t t335 = t331 + t39 * t334 - parameters[XZ3];
-    const iiwa14_real_t t336 = parameters[YZ3] + t313;
-    const iiwa14_real_t t337 = parameters[MY3] - (parameters[MZ4] - t278);
-    const iiwa14_real_t t338 = parameters[MX3] + (t38 * t310 - t39 * t309);
-    const iiwa14_real_t t339 = t14 * t335 + t15 * t336 + IIWA14_C(0.42) * (t14 * t338 - t15 * t337);
-    const iiwa14_real_t t340 = t38 * t334;
-    const iiwa14_real_t t341 = parameters[ZZ3] + (t332 + t340);
-    const iiwa14_real_t t342 = t2 * t339 + t3 * t341 + t225 * t322 + t254 * t324;
-    const iiwa14_real_t t343 = t315 * t329 - (t342 + t283 * t327);
-    const iiwa14_real_t t344 = t341 + IIWA14_C(2.56e4) * parameters[IA3] + t224 * t322 + t323 * t324;
-    const iiwa14_real_t t345 = t344 + t326 * t327 - t328 * t329;
-    if (!(t345 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t346 = IIWA14_C(1.0) / t345;
-    const iiwa14_real_t t347 = t343 * t346;
-    const iiwa14_real_t t348 = t258 - t264 * t286 + t295 * t319 + t330 * t347;
-    const iiwa14_real_t t349 = iiwa14_sign(dq[1]);
-    const iiwa14_real_t t350 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2])
-        + IIWA14_C(-160.0) * (t349 * parameters[FC2]);
-    const iiwa14_real_t t351 = t9 * (parameters[XX2] - parameters[YY2]) + (t10 - t31) * parameters[XY2]
-        + (t12 * parameters[MX2] - t33 * parameters[MY2]);
-    const iiwa14_real_t t352 = t14 * t189 - t15 * t181 + IIWA14_C(0.42) * (t14 * t196 + t15 * t199);
-    const iiwa14_real_t t353 = t15 * t219 + t14 * t221 + IIWA14_C(0.42) * (t14 * t222 + t15 * t216);
-    const iiwa14_real_t t354 = t353 * t227;
-    const iiwa14_real_t t355 = IIWA14_C(16.0) * input[1] + (t350 + (t351 + t352)) - t209 * t354;
-    const iiwa14_real_t t356 = t15 * t247 + t14 * t249 + IIWA14_C(0.42) * (t15 * t244 - t14 * t251);
-    const iiwa14_real_t t357 = t356 + t353 * t231;
-    const iiwa14_real_t t358 = t357 * t256;
-    const iiwa14_real_t t359 = t15 * t277 + t14 * t279 + IIWA14_C(0.42) * (t14 * t280 + t15 * t273);
-    const iiwa14_real_t t360 = t359 + t353 * t261 + t357 * t263;
-    const iiwa14_real_t t361 = t360 * t285;
-    const iiwa14_real_t t362 = t15 * t302 + t14 * t308 + IIWA14_C(0.42) * (t14 * t311);
-    const iiwa14_real_t t363 = t362 + t353 * t289 + t357 * t291 + t360 * t294;
-    const iiwa14_real_t t364 = t363 * t318;
-    const iiwa14_real_t t365 = t355 - t232 * t358 - t264 * t361 + t295 * t364;
-    const iiwa14_real_t t366 = t15 * t335 - t14 * t336 + IIWA14_C(0.42) * (t14 * t337 + t15 * t338);
-    const iiwa14_real_t t367 = t366 - t353 * t322 - t357 * t324 - t360 * t327;
-    const iiwa14_real_t t368 = t367 + t363 * t329;
-    const iiwa14_real_t t369 = t368 * t346;
-    const iiwa14_real_t t370 = t365 + t330 * t369;
-    const iiwa14_real_t t371 = parameters[XY3] + t302;
-    const iiwa14_real_t t372 = parameters[XX3] + (t333 - t340);
-    const iiwa14_real_t t373 = parameters[YY3] + t308;
-    const iiwa14_real_t t374 = t14 * (t373 - t372) + t371 * (IIWA14_C(2.0) * t15);
-    const iiwa14_real_t t375 = t2 * (parameters[XZ2] + (t371 - t15 * t374)) + t3 * (parameters[YZ2] + t366);
-    const iiwa14_real_t t376 = t375 - t225 * t354 - t254 * t358 - t283 * t361;
-    const iiwa14_real_t t377 = t376 + t315 * t364 + t343 * t369;
-    const iiwa14_real_t t378 = t14 * t374;
-    const iiwa14_real_t t379 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t304))
-        + IIWA14_C(2.0) * (parameters[MZ3] + t311);
-    const iiwa14_real_t t380 = IIWA14_C(0.42) * t379;
-    const iiwa14_real_t t381 = parameters[ZZ2] + (t372 + t378 + t380) + IIWA14_C(2.56e4) * parameters[IA2]
-        + t353 * t354;
-    const iiwa14_real_t t382 = t381 + t357 * t358 + t360 * t361 - t363 * t364;
-    const iiwa14_real_t t383 = t382 - t368 * t369;
-    if (!(t383 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t384 = IIWA14_C(1.0) / t383;
-    const iiwa14_real_t t385 = t377 * t384;
-    const iiwa14_real_t t386 = parameters[XX2] + (t373 - t378 + t380);
-    const iiwa14_real_t t387 = t3 * (parameters[YY2] + t341 - t386) + (parameters[XY2]
-        + t339) * (IIWA14_C(2.0) * t2);
-    const iiwa14_real_t t388 = parameters[ZZ1] + (t386 + t3 * t387) + IIWA14_C(2.56e4) * parameters[IA1]
-        + t225 * t228;
-    const iiwa14_real_t t389 = t388 + t254 * t257 + t283 * t286 - t315 * t319;
-    const iiwa14_real_t t390 = t389 - t343 * t347 - t377 * t385;
-    if (!(t390 > IIWA14_C(1.0e-9))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t391 = IIWA14_C(1.0) / t390;
-    const iiwa14_real_t t392 = (t348 + t370 * t385) * t391;
+    const iiwa14_real_t t300 = t299 + parameters[XZ6] * t210 + (t263 - t283) * parameters[XY6]
+        - (parameters[MX6] * t266 + parameters[MY6] * t258);
+    const iiwa14_real_t t301 = t300 + (t1 * t268 + t2 * t274 + IIWA14_C(-0.126) * t298);
+    const iiwa14_real_t t302 = parameters[YY5] * t218 + t217 * (parameters[XX5] - parameters[ZZ5])
+        + parameters[XY5] * t209;
+    const iiwa14_real_t t303 = t178 * t178;
+    const iiwa14_real_t t304 = parameters[MZ5] * t252 + parameters[MX5] * t257 - (t302
+        + parameters[YZ5] * t194 + (t303 - t295) * parameters[XZ5]);
+    const iiwa14_real_t t305 = t304 + t301;
+    const iiwa14_real_t t306 = (t283 + t264) * parameters[MX6] - parameters[MY6] * t221
+        - parameters[MZ6] * t233;
+    const iiwa14_real_t t307 = t306 - parameters[M6] * t258 + t298;
+    const iiwa14_real_t t308 = parameters[M6] * t266 + (parameters[MX6] * t282 + t265 * parameters[MY6]
+        + parameters[MZ6] * t210);
+    const iiwa14_real_t t309 = parameters[MX7] * t231 + parameters[MY7] * t269 - (t272
+        + t238) * parameters[MZ7];
+    const iiwa14_real_t t310 = t308 + (parameters[M7] * t267 + t309);
+    const iiwa14_real_t t311 = (t294 + t295) * parameters[MX5] - parameters[MY5] * t194
+        + parameters[MZ5] * t216;
+    const iiwa14_real_t t312 = parameters[M5] * t252 - t311 + (t20 * t310 - t16 * t307);
+    const iiwa14_real_t t313 = parameters[MX6] * t280 + parameters[MY6] * t215 - (t263
+        + t283) * parameters[MZ6];
+    const iiwa14_real_t t314 = parameters[MZ5] * t205 - (parameters[MX5] * t293 + (t303
+        + t295) * parameters[MY5]);
+    const iiwa14_real_t t315 = parameters[M5] * t260 + t314 + (parameters[M6] * t260 + t313 + t279);
+    const iiwa14_real_t t316 = t38 * t312 + t35 * t315;
+    const iiwa14_real_t t317 = t193 - t192;
+    const iiwa14_real_t t318 = parameters[XX4] * t203 + t202 * (parameters[YY4] - parameters[ZZ4])
+        + parameters[XY4] * t317;
+    const iiwa14_real_t t319 = t196 - t199;
+    const iiwa14_real_t t320 = t195 * t195;
+    const iiwa14_real_t t321 = t318 + parameters[XZ4] * t319 + (t254 - t320) * parameters[YZ4]
+        + (parameters[MY4] * t250 + parameters[MZ4] * t256);
+    const iiwa14_real_t t322 = t321 + (t35 * t297 + t38 * t305 + IIWA14_C(0.4) * t316);
+    const iiwa14_real_t t323 = parameters[ZZ5] * t193 - t180 * (parameters[YY5] - parameters[XX5])
+        + parameters[YZ5] * t216;
+    const iiwa14_real_t t324 = t323 + parameters[XZ5] * t205 + (t294 - t303) * parameters[XY5]
+        + (parameters[MY5] * t252 - parameters[MX5] * t260);
+    const iiwa14_real_t t325 = t324 + (t20 * t285 + t16 * t290);
+    const iiwa14_real_t t326 = parameters[YY4] * t193 + t192 * (parameters[XX4] - parameters[ZZ4])
+        + parameters[XY4] * t204;
+    const iiwa14_real_t t327 = t326 - parameters[YZ4] * t200 + (t253 - t254) * parameters[XZ4]
+        + (parameters[MZ4] * t248 - parameters[MX4] * t250);
+    const iiwa14_real_t t328 = t327 + t325;
+    const iiwa14_real_t t329 = parameters[XX3] * t189 + t184 * (parameters[YY3] - parameters[ZZ3])
+        + parameters[XY3] * (t197 + t199);
+    const iiwa14_real_t t330 = t182 - t181;
+    const iiwa14_real_t t331 = t176 * t176;
+    const iiwa14_real_t t332 = t174 * t174;
+    const iiwa14_real_t t333 = (t331 - t332) * parameters[YZ3] - (t329 + parameters[XZ3] * t330)
+        + (t243 * parameters[MY3] - parameters[MZ3] * t250);
+    const iiwa14_real_t t334 = t333 + (t71 * t328 - t73 * t322);
+    const iiwa14_real_t t335 = t38 * t315 - t35 * t312;
+    const iiwa14_real_t t336 = parameters[ZZ4] * t199 + t196 * (parameters[XX4] - parameters[YY4])
+        - parameters[YZ4] * t191;
+    const iiwa14_real_t t337 = t336 - parameters[XZ4] * t201 + (t253 - t320) * parameters[XY4]
+        + (parameters[MX4] * t256 + parameters[MY4] * t248);
+    const iiwa14_real_t t338 = t337 + (t38 * t297 - t35 * t305 + IIWA14_C(0.4) * t335);
+    const iiwa14_real_t t339 = parameters[YY3] * t199 - t197 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t190;
+    const iiwa14_real_t t340 = t172 * t172;
+    const iiwa14_real_t t341 = t339 + parameters[YZ3] * t183 + (t340 - t332) * parameters[XZ3]
+        + (parameters[MZ3] * t247 + t243 * parameters[MX3]);
+    const iiwa14_real_t t342 = t341 + t338;
+    const iiwa14_real_t t343 = (t320 + t254) * parameters[MX4] + parameters[MY4] * t200
+        + parameters[MZ4] * t191;
+    const iiwa14_real_t t344 = parameters[MX5] * t291 - parameters[MY5] * t209 - (t303
+        + t294) * parameters[MZ5];
+    const iiwa14_real_t t345 = t344 - parameters[M5] * t257 + (t20 * t307 + t16 * t310);
+    const iiwa14_real_t t346 = parameters[M4] * t256 + (parameters[MZ4] * t201 - (parameters[MX4] * t319
+        + t255 * parameters[MY4]));
+    const iiwa14_real_t t347 = t73 * (parameters[M4] * t248 + t343 + t335) + t71 * (t346 + t345);
+    const iiwa14_real_t t348 = (t331 + t332) * parameters[MX3] - parameters[MY3] * t183
+        + parameters[MZ3] * t198;
+    const iiwa14_real_t t349 = parameters[M3] * t247 + t348 + t347;
+    const iiwa14_real_t t350 = parameters[MY4] * t204 - parameters[MX4] * t317 + (t253
+        + t320) * parameters[MZ4];
+    const iiwa14_real_t t351 = parameters[MX3] * t330 + (t340 + t332) * parameters[MY3]
+        - parameters[MZ3] * t188;
+    const iiwa14_real_t t352 = parameters[M3] * t250 - t351 + (parameters[M4] * t250 + t350 + t316);
+    const iiwa14_real_t t353 = t102 * t334 + t105 * t342 + IIWA14_C(0.42) * (t105 * t349 - t102 * t352);
+    const iiwa14_real_t t354 = t186 * (parameters[YY2] - parameters[ZZ2]) - t186 * parameters[XX2]
+        + IIWA14_C(2.0) * t182 * parameters[XY2];
+    const iiwa14_real_t t355 = t173 * t173;
+    const iiwa14_real_t t356 = t354 + t185 * parameters[XZ2] + (t355 - t241) * parameters[YZ2]
+        + t242 * parameters[MZ2];
+    const iiwa14_real_t t357 = t182 * parameters[ZZ3] - t181 * (parameters[YY3] - parameters[XX3])
+        + parameters[YZ3] * t198;
+    const iiwa14_real_t t358 = t357 + parameters[XZ3] * t188 + (t331 - t340) * parameters[XY3]
+        - (parameters[MX3] * t250 + parameters[MY3] * t247);
+    const iiwa14_real_t t359 = t358 + (t71 * t322 + t73 * t328);
+    const iiwa14_real_t t360 = t182 * parameters[YY2] + t182 * (parameters[ZZ2] - parameters[XX2])
+        + t187 * parameters[XY2];
+    const iiwa14_real_t t361 = t360 - t185 * parameters[YZ2] + (t241 - t240) * parameters[XZ2]
+        - t244 * parameters[MZ2];
+    const iiwa14_real_t t362 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t363 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1])
+        + IIWA14_C(-160.0) * (t362 * parameters[FC1]);
+    const iiwa14_real_t t364 = t363 + (t142 * (t356 + t353) + t143 * (t361 + t359));
+    const iiwa14_real_t t365 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t366 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7])
+        + IIWA14_C(160.0) * (t365 * parameters[FC7]);
+    const iiwa14_real_t t367 = IIWA14_C(8.0) * input[6] - (t366 - t287);
+    const iiwa14_real_t t368 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t369 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6])
+        + IIWA14_C(160.0) * (t368 * parameters[FC6]);
+    const iiwa14_real_t t370 = IIWA14_C(8.0) * input[5] - (t369 + t301) + t367 * t6;
+    const iiwa14_real_t t371 = IIWA14_C(16.0) * input[0] + t364 - t367 * t163 - t370 * t165;
+    const iiwa14_real_t t372 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t373 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5])
+        + IIWA14_C(1.0e2) * (t372 * parameters[FC5]);
+    const iiwa14_real_t t374 = IIWA14_C(8.0) * input[4] - (t373 - t325) + t367 * t25 + t370 * t31;
+    const iiwa14_real_t t375 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t376 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4])
+        + IIWA14_C(160.0) * (t375 * parameters[FC4]);
+    const iiwa14_real_t t377 = IIWA14_C(16.0) * input[3] - (t376 + t338) + t367 * t53 + t370 * t57;
+    const iiwa14_real_t t378 = t377 + t374 * t68;
+    const iiwa14_real_t t379 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t380 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3])
+        + IIWA14_C(-160.0) * (t379 * parameters[FC3]);
+    const iiwa14_real_t t381 = IIWA14_C(16.0) * input[2] + (t380 + t359) - t367 * t95 - t370 * t96;
+    const iiwa14_real_t t382 = t381 - t374 * t98 + t378 * t88;
+    const iiwa14_real_t t383 = t371 - t374 * t166 + t378 * t167 + t382 * t169;
+    const iiwa14_real_t t384 = t102 * t342 - t105 * t334 + IIWA14_C(0.42) * (t102 * t349 + t105 * t352);
+    const iiwa14_real_t t385 = t185 * (parameters[XX2] - parameters[YY2]) + (t355 - t240) * parameters[XY2]
+        + (t242 * parameters[MX2] - t244 * parameters[MY2]);
+    const iiwa14_real_t t386 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t387 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2])
+        + IIWA14_C(-160.0) * (t386 * parameters[FC2]);
+    const iiwa14_real_t t388 = IIWA14_C(16.0) * input[1] + (t387 + (t385 + t384)) - t367 * t116;
+    const iiwa14_real_t t389 = t388 - t370 * t122 - t374 * t127 + t378 * t130;
+    const iiwa14_real_t t390 = t389 + t382 * t140;
+    const iiwa14_real_t t391 = IIWA14_C(1.0) / t170;
+    const iiwa14_real_t t392 = (t383 + t390 * t160) * t391;
     out[0] = t392;
     if (!(t392 >= IIWA14_C(-1.0e15) && t392 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t393 = t370 * t384 + t385 * t392;
+    const iiwa14_real_t t393 = t390 * t159 + t160 * t392;
     out[1] = t393;
     if (!(t393 >= IIWA14_C(-1.0e15) && t393 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t394 = t330 * t346 + t347 * t392 + t369 * t393;
+    const iiwa14_real_t t394 = t382 * t139 + t169 * t392 + t140 * t393;
     out[2] = t394;
     if (!(t394 >= IIWA14_C(-1.0e15) && t394 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t395 = t295 * t318 + t319 * t392 + t364 * t393 + t329 * t394;
+    const iiwa14_real_t t395 = t378 * t87 + t167 * t392 + t130 * t393 + t88 * t394;
     out[3] = t395;
     if (!(t395 >= IIWA14_C(-1.0e15) && t395 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t396 = t264 * t285 + t286 * t392 + t361 * t393 + t327 * t394;
-    const iiwa14_real_t t397 = t294 * t395 - t396;
+    const iiwa14_real_t t396 = t374 * t67 + t166 * t392 + t127 * t393 + t98 * t394;
+    const iiwa14_real_t t397 = t68 * t395 - t396;
     out[4] = t397;
     if (!(t397 >= IIWA14_C(-1.0e15) && t397 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t398 = t232 * t256 + t257 * t392 + t358 * t393 + t324 * t394;
-    const iiwa14_real_t t399 = t291 * t395 - t398 + t263 * t397;
+    const iiwa14_real_t t398 = t370 * t30 + t165 * t392 + t122 * t393 + t96 * t394;
+    const iiwa14_real_t t399 = t57 * t395 - t398 + t31 * t397;
     out[5] = t399;
     if (!(t399 >= IIWA14_C(-1.0e15) && t399 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t400 = t209 * t227 + t228 * t392 + t354 * t393 + t322 * t394;
-    const iiwa14_real_t t401 = t289 * t395 - t400 + t261 * t397 + t231 * t399;
+    const iiwa14_real_t t400 = t367 * t5 + t163 * t392 + t116 * t393 + t95 * t394;
+    const iiwa14_real_t t401 = t53 * t395 - t400 + t25 * t397 + t6 * t399;
     out[6] = t401;
     if (!(t401 >= IIWA14_C(-1.0e15) && t401 <= IIWA14_C(1.0e15))) {
         iiwa14_zero(out, 7);

@@ -117,7 +117,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -142,67 +142,67 @@ int iiwa14_gravity_standard(
         return status;
     }
 
-    iiwa14_real_t t0, t1;
-    IIWA14_SINCOS(q[1], &t0, &t1);
-    iiwa14_real_t t4, t3;
-    IIWA14_SINCOS(q[2], &t4, &t3);
-    iiwa14_real_t t8, t7;
-    IIWA14_SINCOS(q[3], &t8, &t7);
-    iiwa14_real_t t12, t11;
-    IIWA14_SINCOS(q[4], &t12, &t11);
-    iiwa14_real_t t16, t15;
-    IIWA14_SINCOS(q[5], &t16, &t15);
-    iiwa14_real_t t20, t19;
-    IIWA14_SINCOS(q[6], &t20, &t19);
-    const iiwa14_real_t t2 = IIWA14_C(-9.81) * t1;
-    const iiwa14_real_t t5 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t9 = t3 * t5;
-    const iiwa14_real_t t10 = t7 * t2 - t8 * t9;
-    const iiwa14_real_t t13 = t7 * t9 + t8 * t2;
-    const iiwa14_real_t t14 = t12 * t13 + t11 * t6;
-    const iiwa14_real_t t17 = t11 * t13 - t12 * t6;
-    const iiwa14_real_t t18 = t16 * t17 + t15 * t10;
-    const iiwa14_real_t t21 = t15 * t17 - t16 * t10;
-    const iiwa14_real_t t22 = t20 * t21 + t19 * t14;
-    const iiwa14_real_t t23 = t18 * parameters[MY7] + t22 * parameters[MZ7];
-    const iiwa14_real_t t24 = t19 * t21 - t20 * t14;
-    const iiwa14_real_t t25 = t18 * parameters[MX7] - t24 * parameters[MZ7];
+    iiwa14_real_t t0, t5;
+    IIWA14_SINCOS(q[1], &t0, &t5);
+    iiwa14_real_t t10, t2;
+    IIWA14_SINCOS(q[2], &t10, &t2);
+    iiwa14_real_t t7, t4;
+    IIWA14_SINCOS(q[3], &t7, &t4);
+    iiwa14_real_t t12, t9;
+    IIWA14_SINCOS(q[4], &t12, &t9);
+    iiwa14_real_t t14, t16;
+    IIWA14_SINCOS(q[5], &t14, &t16);
+    iiwa14_real_t t19, t21;
+    IIWA14_SINCOS(q[6], &t19, &t21);
+    const iiwa14_real_t t1 = IIWA14_C(9.81) * t0;
+    const iiwa14_real_t t3 = t2 * t1;
+    const iiwa14_real_t t6 = IIWA14_C(-9.81) * t5;
+    const iiwa14_real_t t8 = t4 * t3 + t7 * t6;
+    const iiwa14_real_t t11 = t10 * t1;
+    const iiwa14_real_t t13 = t9 * t8 - t12 * t11;
+    const iiwa14_real_t t15 = t4 * t6 - t7 * t3;
+    const iiwa14_real_t t17 = t14 * t13 + t16 * t15;
+    const iiwa14_real_t t18 = t16 * t13 - t14 * t15;
+    const iiwa14_real_t t20 = t12 * t8 + t9 * t11;
+    const iiwa14_real_t t22 = t19 * t18 + t21 * t20;
+    const iiwa14_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7];
+    const iiwa14_real_t t24 = t21 * t18 - t19 * t20;
+    const iiwa14_real_t t25 = t17 * parameters[MX7] - t24 * parameters[MZ7];
     const iiwa14_real_t t26 = t24 * parameters[M7];
     const iiwa14_real_t t27 = t22 * parameters[M7];
-    const iiwa14_real_t t28 = t20 * t26 - t19 * t27;
-    const iiwa14_real_t t29 = t14 * parameters[MY6] - t18 * parameters[MZ6] - (t19 * t23 + t20 * t25
+    const iiwa14_real_t t28 = t19 * t26 - t21 * t27;
+    const iiwa14_real_t t29 = t20 * parameters[MY6] - t17 * parameters[MZ6] - (t21 * t23 + t19 * t25
         - IIWA14_C(0.126) * t28);
     const iiwa14_real_t t30 = t22 * parameters[MX7] + t24 * parameters[MY7];
-    const iiwa14_real_t t31 = t21 * parameters[MZ6] + t14 * parameters[MX6] + t30;
-    const iiwa14_real_t t32 = t15 * t29 + t16 * t31 - (t10 * parameters[MY5] + t14 * parameters[MZ5]);
-    const iiwa14_real_t t33 = t19 * t26 + t20 * t27;
-    const iiwa14_real_t t34 = t18 * parameters[MX6] + t21 * parameters[MY6] + (t19 * t25 - t20 * t23
+    const iiwa14_real_t t31 = t18 * parameters[MZ6] + t20 * parameters[MX6] + t30;
+    const iiwa14_real_t t32 = t16 * t29 + t14 * t31 - (t15 * parameters[MY5] + t20 * parameters[MZ5]);
+    const iiwa14_real_t t33 = t21 * t26 + t19 * t27;
+    const iiwa14_real_t t34 = t17 * parameters[MX6] + t18 * parameters[MY6] + (t21 * t25 - t19 * t23
         + IIWA14_C(-0.126) * t33);
-    const iiwa14_real_t t35 = t17 * parameters[MZ5] - t10 * parameters[MX5] - t34;
-    const iiwa14_real_t t36 = t21 * parameters[M6] + t33;
-    const iiwa14_real_t t37 = t18 * parameters[M6] + t18 * parameters[M7];
-    const iiwa14_real_t t38 = t17 * parameters[M5] + (t15 * t36 + t16 * t37);
-    const iiwa14_real_t t39 = t28 - t14 * parameters[M6] - t14 * parameters[M5];
-    const iiwa14_real_t t40 = t12 * t38 + t11 * t39;
-    const iiwa14_real_t t41 = t10 * parameters[MZ4] - t6 * parameters[MY4] + (t11 * t32 + t12 * t35
+    const iiwa14_real_t t35 = t13 * parameters[MZ5] - t15 * parameters[MX5] - t34;
+    const iiwa14_real_t t36 = t18 * parameters[M6] + t33;
+    const iiwa14_real_t t37 = t17 * parameters[M6] + t17 * parameters[M7];
+    const iiwa14_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37);
+    const iiwa14_real_t t39 = t28 - t20 * parameters[M6] - t20 * parameters[M5];
+    const iiwa14_real_t t40 = t12 * t38 + t9 * t39;
+    const iiwa14_real_t t41 = t15 * parameters[MZ4] - t11 * parameters[MY4] + (t9 * t32 + t12 * t35
         + IIWA14_C(0.4) * t40);
-    const iiwa14_real_t t42 = t14 * parameters[MX5] + t17 * parameters[MY5] + (t15 * t31 - t16 * t29);
-    const iiwa14_real_t t43 = t6 * parameters[MX4] - t13 * parameters[MZ4] + t42;
-    const iiwa14_real_t t44 = t2 * parameters[MY3] + t6 * parameters[MZ3] + (t8 * t43 - t7 * t41);
-    const iiwa14_real_t t45 = t12 * t39 - t11 * t38;
-    const iiwa14_real_t t46 = t10 * parameters[MX4] - t13 * parameters[MY4] + (t12 * t32 - t11 * t35
+    const iiwa14_real_t t42 = t20 * parameters[MX5] + t13 * parameters[MY5] + (t16 * t31 - t14 * t29);
+    const iiwa14_real_t t43 = t11 * parameters[MX4] - t8 * parameters[MZ4] + t42;
+    const iiwa14_real_t t44 = t6 * parameters[MY3] + t11 * parameters[MZ3] + (t7 * t43 - t4 * t41);
+    const iiwa14_real_t t45 = t12 * t39 - t9 * t38;
+    const iiwa14_real_t t46 = t15 * parameters[MX4] - t8 * parameters[MY4] + (t12 * t32 - t9 * t35
         + IIWA14_C(0.4) * t45);
-    const iiwa14_real_t t47 = t2 * parameters[MX3] - t9 * parameters[MZ3] + t46;
-    const iiwa14_real_t t48 = t10 * parameters[M4] + (t10 * parameters[M5] + (t15 * t37 - t16 * t36));
-    const iiwa14_real_t t49 = t7 * (t45 - t13 * parameters[M4]) + t8 * t48 - t9 * parameters[M3];
-    const iiwa14_real_t t50 = t6 * parameters[M3] + (t6 * parameters[M4] - t40);
-    const iiwa14_real_t t51 = t3 * t44 + t4 * t47 + IIWA14_C(0.42) * (t4 * t49 + t3 * t50);
-    const iiwa14_real_t t52 = t6 * parameters[MX3] + t9 * parameters[MY3] + (t8 * t41 + t7 * t43);
-    const iiwa14_real_t t53 = t0 * (t2 * parameters[MZ2] + t51) + t1 * (t5 * parameters[MZ2] + t52);
+    const iiwa14_real_t t47 = t6 * parameters[MX3] - t3 * parameters[MZ3] + t46;
+    const iiwa14_real_t t48 = t15 * parameters[M4] + (t15 * parameters[M5] + (t16 * t37 - t14 * t36));
+    const iiwa14_real_t t49 = t4 * (t45 - t8 * parameters[M4]) + t7 * t48 - t3 * parameters[M3];
+    const iiwa14_real_t t50 = t11 * parameters[M3] + (t11 * parameters[M4] - t40);
+    const iiwa14_real_t t51 = t2 * t44 + t10 * t47 + IIWA14_C(0.42) * (t10 * t49 + t2 * t50);
+    const iiwa14_real_t t52 = t11 * parameters[MX3] + t3 * parameters[MY3] + (t7 * t41 + t4 * t43);
+    const iiwa14_real_t t53 = t0 * (t6 * parameters[MZ2] + t51) + t5 * (t1 * parameters[MZ2] + t52);
     out[0] = IIWA14_C(0.0625) * t53;
-    const iiwa14_real_t t54 = t3 * t47 - t4 * t44 + IIWA14_C(0.42) * (t3 * t49 - t4 * t50);
-    out[1] = IIWA14_C(0.0625) * (t2 * parameters[MX2] + t5 * parameters[MY2] + t54);
+    const iiwa14_real_t t54 = t2 * t47 - t10 * t44 + IIWA14_C(0.42) * (t2 * t49 - t10 * t50);
+    out[1] = IIWA14_C(0.0625) * (t6 * parameters[MX2] + t1 * parameters[MY2] + t54);
     out[2] = IIWA14_C(0.0625) * t52;
     out[3] = IIWA14_C(-0.0625) * t46;
     out[4] = IIWA14_C(0.125) * t42;

@@ -119,7 +119,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -148,295 +148,297 @@ int iiwa14_inverse_dynamics_standard(
         return status;
     }
 
-    iiwa14_real_t t2, t3;
-    IIWA14_SINCOS(q[1], &t2, &t3);
-    iiwa14_real_t t19, t18;
-    IIWA14_SINCOS(q[2], &t19, &t18);
-    iiwa14_real_t t45, t44;
-    IIWA14_SINCOS(q[3], &t45, &t44);
-    iiwa14_real_t t68, t67;
-    IIWA14_SINCOS(q[4], &t68, &t67);
-    iiwa14_real_t t96, t95;
-    IIWA14_SINCOS(q[5], &t96, &t95);
-    iiwa14_real_t t119, t118;
-    IIWA14_SINCOS(q[6], &t119, &t118);
-    const iiwa14_real_t t0 = iiwa14_sign(dq[0]);
-    const iiwa14_real_t t1 = IIWA14_C(160.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
+    iiwa14_real_t t0, t7;
+    IIWA14_SINCOS(q[1], &t0, &t7);
+    iiwa14_real_t t3, t2;
+    IIWA14_SINCOS(q[2], &t3, &t2);
+    iiwa14_real_t t26, t13;
+    IIWA14_SINCOS(q[3], &t26, &t13);
+    iiwa14_real_t t34, t33;
+    IIWA14_SINCOS(q[4], &t34, &t33);
+    iiwa14_real_t t39, t56;
+    IIWA14_SINCOS(q[5], &t39, &t56);
+    iiwa14_real_t t71, t63;
+    IIWA14_SINCOS(q[6], &t71, &t63);
+    const iiwa14_real_t t1 = t0 * dq[0];
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_real_t t6 = t4 * t5;
+    const iiwa14_real_t t8 = t7 * ddq[0];
+    const iiwa14_real_t t9 = dq[1] * t1;
+    const iiwa14_real_t t10 = t8 - t9;
+    const iiwa14_real_t t11 = ddq[2] + t10;
+    const iiwa14_real_t t12 = t11 + t6;
+    const iiwa14_real_t t14 = t7 * dq[0];
+    const iiwa14_real_t t15 = t1 * t14;
+    const iiwa14_real_t t16 = ddq[1] - t15;
+    const iiwa14_real_t t17 = t0 * ddq[0];
+    const iiwa14_real_t t18 = dq[1] * t14;
+    const iiwa14_real_t t19 = t17 + t18;
+    const iiwa14_real_t t20 = t18 + t19;
+    const iiwa14_real_t t21 = t3 * t16 - t2 * t20;
+    const iiwa14_real_t t22 = dq[2] + t14;
+    const iiwa14_real_t t23 = t5 * t22;
+    const iiwa14_real_t t24 = t21 + t23;
+    const iiwa14_real_t t25 = t23 + t24;
+    const iiwa14_real_t t27 = t13 * t12 - t26 * t25;
+    const iiwa14_real_t t28 = t26 * t22 - t13 * t4;
+    const iiwa14_real_t t29 = dq[3] - t5;
+    const iiwa14_real_t t30 = t28 * t29;
+    const iiwa14_real_t t31 = t27 - t30;
+    const iiwa14_real_t t32 = ddq[4] + t31;
+    const iiwa14_real_t t35 = t34 * t29 - t33 * t28;
+    const iiwa14_real_t t36 = t34 * t28 + t33 * t29;
+    const iiwa14_real_t t37 = t35 * t36;
+    const iiwa14_real_t t38 = t32 - t37;
+    const iiwa14_real_t t40 = t2 * t16 + t3 * t20;
+    const iiwa14_real_t t41 = t4 * t22;
+    const iiwa14_real_t t42 = t40 + t41;
+    const iiwa14_real_t t43 = t42 - ddq[3];
+    const iiwa14_real_t t44 = t26 * t4 + t13 * t22;
+    const iiwa14_real_t t45 = t28 * t44;
+    const iiwa14_real_t t46 = t43 + t45;
+    const iiwa14_real_t t47 = t26 * t12 + t13 * t25;
+    const iiwa14_real_t t48 = t44 * t29;
+    const iiwa14_real_t t49 = t47 + t48;
+    const iiwa14_real_t t50 = t48 + t49;
+    const iiwa14_real_t t51 = t34 * t46 + t33 * t50;
+    const iiwa14_real_t t52 = dq[4] + t44;
+    const iiwa14_real_t t53 = t36 * t52;
+    const iiwa14_real_t t54 = t53 - t51;
+    const iiwa14_real_t t55 = t53 + t54;
+    const iiwa14_real_t t57 = t39 * t38 + t56 * t55;
+    const iiwa14_real_t t58 = t56 * t52 - t39 * t35;
+    const iiwa14_real_t t59 = t36 - dq[5];
+    const iiwa14_real_t t60 = t58 * t59;
+    const iiwa14_real_t t61 = t57 - t60;
+    const iiwa14_real_t t62 = t61 - t60;
+    const iiwa14_real_t t64 = t33 * t46 - t34 * t50;
+    const iiwa14_real_t t65 = t35 * t52;
+    const iiwa14_real_t t66 = t64 + t65;
+    const iiwa14_real_t t67 = ddq[5] + t66;
+    const iiwa14_real_t t68 = t56 * t35 + t39 * t52;
+    const iiwa14_real_t t69 = t68 * t58;
+    const iiwa14_real_t t70 = t67 - t69;
+    const iiwa14_real_t t72 = t71 * t70 - t63 * t62;
+    const iiwa14_real_t t73 = t71 * t68 - t63 * t59;
+    const iiwa14_real_t t74 = dq[6] + t58;
+    const iiwa14_real_t t75 = t73 * t74;
+    const iiwa14_real_t t76 = t72 + t75;
+    const iiwa14_real_t t77 = t63 * t70 + t71 * t62;
+    const iiwa14_real_t t78 = t63 * t68 + t71 * t59;
+    const iiwa14_real_t t79 = t78 * t74;
+    const iiwa14_real_t t80 = t77 + t79;
+    const iiwa14_real_t t81 = t79 + t80;
+    const iiwa14_real_t t82 = t75 * (parameters[ZZ7] - parameters[YY7]) + t76 * parameters[XX7]
+        + t81 * parameters[XY7];
+    const iiwa14_real_t t83 = t56 * t38 - t39 * t55;
+    const iiwa14_real_t t84 = t68 * t59;
+    const iiwa14_real_t t85 = t83 + t84;
+    const iiwa14_real_t t86 = ddq[6] + t85;
+    const iiwa14_real_t t87 = t78 * t73;
+    const iiwa14_real_t t88 = t86 - t87;
+    const iiwa14_real_t t89 = t73 * t73;
+    const iiwa14_real_t t90 = t74 * t74;
+    const iiwa14_real_t t91 = IIWA14_C(9.81) * t0;
+    const iiwa14_real_t t92 = IIWA14_C(0.42) * t16 - t91;
+    const iiwa14_real_t t93 = IIWA14_C(0.42) * t20;
+    const iiwa14_real_t t94 = t2 * t92 + t3 * t93;
+    const iiwa14_real_t t95 = t1 * t1;
+    const iiwa14_real_t t96 = dq[1] * dq[1];
+    const iiwa14_real_t t97 = IIWA14_C(-9.81) * t7;
+    const iiwa14_real_t t98 = t97 + IIWA14_C(0.42) * (t95 + t96);
+    const iiwa14_real_t t99 = t13 * t94 - t26 * t98;
+    const iiwa14_real_t t100 = IIWA14_C(-0.4) * t46 - t99;
+    const iiwa14_real_t t101 = t3 * t92 - t2 * t93;
+    const iiwa14_real_t t102 = t101 + IIWA14_C(0.4) * t50;
+    const iiwa14_real_t t103 = t33 * t100 + t34 * t102;
+    const iiwa14_real_t t104 = t28 * t28;
+    const iiwa14_real_t t105 = t29 * t29;
+    const iiwa14_real_t t106 = t104 + t105;
+    const iiwa14_real_t t107 = t26 * t94 + t13 * t98;
+    const iiwa14_real_t t108 = t107 + IIWA14_C(0.4) * t106;
+    const iiwa14_real_t t109 = t39 * t108 - t56 * t103;
+    const iiwa14_real_t t110 = t109 + IIWA14_C(0.126) * t70;
+    const iiwa14_real_t t111 = t33 * t102 - t34 * t100;
+    const iiwa14_real_t t112 = t111 + IIWA14_C(-0.126) * t62;
+    const iiwa14_real_t t113 = t71 * t110 + t63 * t112;
+    const iiwa14_real_t t114 = t39 * t103 + t56 * t108;
+    const iiwa14_real_t t115 = t68 * t68;
+    const iiwa14_real_t t116 = t59 * t59;
+    const iiwa14_real_t t117 = t115 + t116;
+    const iiwa14_real_t t118 = t114 + IIWA14_C(0.126) * t117;
+    const iiwa14_real_t t119 = (t89 - t90) * parameters[YZ7] + (t82 + t88 * parameters[XZ7])
+        + (t113 * parameters[MZ7] - t118 * parameters[MY7]);
+    const iiwa14_real_t t120 = t75 + t76;
+    const iiwa14_real_t t121 = t79 * (parameters[ZZ7] - parameters[XX7]) + t80 * parameters[YY7]
+        + t120 * parameters[XY7];
+    const iiwa14_real_t t122 = t86 + t87;
+    const iiwa14_real_t t123 = t78 * t78;
+    const iiwa14_real_t t124 = t71 * t112 - t63 * t110;
+    const iiwa14_real_t t125 = (t90 - t123) * parameters[XZ7] + (t121 + t122 * parameters[YZ7])
+        + (t118 * parameters[MX7] - t124 * parameters[MZ7]);
+    const iiwa14_real_t t126 = (t89 + t90) * parameters[MX7] + t122 * parameters[MY7] - t77 * parameters[MZ7];
+    const iiwa14_real_t t127 = t124 * parameters[M7] + t126;
+    const iiwa14_real_t t128 = (t123 + t90) * parameters[MY7] - t88 * parameters[MX7] + t72 * parameters[MZ7];
+    const iiwa14_real_t t129 = t113 * parameters[M7] + t128;
+    const iiwa14_real_t t130 = t71 * t127 + t63 * t129;
+    const iiwa14_real_t t131 = t84 + t85;
+    const iiwa14_real_t t132 = t60 * (parameters[YY6] - parameters[ZZ6]) + t61 * parameters[XX6]
+        + t131 * parameters[XY6];
+    const iiwa14_real_t t133 = t67 + t69;
+    const iiwa14_real_t t134 = t58 * t58;
+    const iiwa14_real_t t135 = (t134 - t116) * parameters[YZ6] - (t132 - t133 * parameters[XZ6])
+        - (t111 * parameters[MY6] + t114 * parameters[MZ6]);
+    const iiwa14_real_t t136 = t135 + (t63 * t119 - t71 * t125 + IIWA14_C(0.126) * t130);
+    const iiwa14_real_t t137 = t87 * (parameters[XX7] - parameters[YY7]) + t86 * parameters[ZZ7]
+        + t77 * parameters[YZ7];
+    const iiwa14_real_t t138 = (t123 - t89) * parameters[XY7] + (t137 + t72 * parameters[XZ7])
+        + (t124 * parameters[MY7] - t113 * parameters[MX7]);
+    const iiwa14_real_t t139 = t85 * parameters[YY6] - t84 * (parameters[XX6] - parameters[ZZ6])
+        + t62 * parameters[XY6];
+    const iiwa14_real_t t140 = (t115 - t116) * parameters[XZ6] + (t139 - t70 * parameters[YZ6])
+        - (t109 * parameters[MZ6] + t111 * parameters[MX6]);
+    const iiwa14_real_t t141 = t140 + t138;
+    const iiwa14_real_t t142 = t65 + t66;
+    const iiwa14_real_t t143 = t142 * parameters[XY5] - (t53 * (parameters[ZZ5] - parameters[YY5])
+        + t54 * parameters[XX5]);
+    const iiwa14_real_t t144 = t32 + t37;
+    const iiwa14_real_t t145 = t36 * t36;
+    const iiwa14_real_t t146 = t52 * t52;
+    const iiwa14_real_t t147 = (t145 - t146) * parameters[YZ5] + (t143 + t144 * parameters[XZ5])
+        + (t111 * parameters[MZ5] - t108 * parameters[MY5]);
+    const iiwa14_real_t t148 = t147 + (t56 * t136 + t39 * t141);
+    const iiwa14_real_t t149 = t71 * t129 - t63 * t127;
+    const iiwa14_real_t t150 = t67 * parameters[ZZ6] - t69 * (parameters[XX6] - parameters[YY6])
+        - t83 * parameters[YZ6];
+    const iiwa14_real_t t151 = (t115 - t134) * parameters[XY6] + (t150 - t57 * parameters[XZ6])
+        + (t114 * parameters[MX6] - t109 * parameters[MY6]);
+    const iiwa14_real_t t152 = t151 + (t71 * t119 + t63 * t125 + IIWA14_C(0.126) * t149);
+    const iiwa14_real_t t153 = t65 * (parameters[XX5] - parameters[ZZ5]) - t66 * parameters[YY5]
+        + t55 * parameters[XY5];
+    const iiwa14_real_t t154 = t35 * t35;
+    const iiwa14_real_t t155 = (t154 - t146) * parameters[XZ5] + (t153 - t38 * parameters[YZ5])
+        + (t103 * parameters[MZ5] - t108 * parameters[MX5]);
+    const iiwa14_real_t t156 = t155 - t152;
+    const iiwa14_real_t t157 = (t134 + t116) * parameters[MX6] + t70 * parameters[MY6]
+        + t83 * parameters[MZ6];
+    const iiwa14_real_t t158 = t109 * parameters[M6] - t157 + t149;
+    const iiwa14_real_t t159 = t114 * parameters[M6] + (t133 * parameters[MX6] - t117 * parameters[MY6]
+        + t57 * parameters[MZ6]);
+    const iiwa14_real_t t160 = (t123 + t89) * parameters[MZ7] + (t81 * parameters[MX7]
+        - t120 * parameters[MY7]);
+    const iiwa14_real_t t161 = t159 + (t118 * parameters[M7] + t160);
+    const iiwa14_real_t t162 = (t145 + t146) * parameters[MX5] + t38 * parameters[MY5]
+        - t64 * parameters[MZ5];
+    const iiwa14_real_t t163 = t103 * parameters[M5] + t162 + (t39 * t161 - t56 * t158);
+    const iiwa14_real_t t164 = (t115 + t134) * parameters[MZ6] + (t62 * parameters[MY6]
+        - t131 * parameters[MX6]);
+    const iiwa14_real_t t165 = (t154 + t146) * parameters[MY5] - t144 * parameters[MX5]
+        + t51 * parameters[MZ5];
+    const iiwa14_real_t t166 = t111 * parameters[M5] + t165 + (t111 * parameters[M6] + t164 + t130);
+    const iiwa14_real_t t167 = t34 * t163 + t33 * t166;
+    const iiwa14_real_t t168 = t31 - t30;
+    const iiwa14_real_t t169 = t48 * (parameters[ZZ4] - parameters[YY4]) + t49 * parameters[XX4]
+        + t168 * parameters[XY4];
+    const iiwa14_real_t t170 = t45 - t43;
+    const iiwa14_real_t t171 = t44 * t44;
+    const iiwa14_real_t t172 = (t171 - t105) * parameters[YZ4] + (t169 + t170 * parameters[XZ4])
+        + (t101 * parameters[MY4] + t107 * parameters[MZ4]);
+    const iiwa14_real_t t173 = t172 + (t33 * t148 + t34 * t156 + IIWA14_C(0.4) * t167);
+    const iiwa14_real_t t174 = t32 * parameters[ZZ5] - t37 * (parameters[XX5] - parameters[YY5])
+        + t64 * parameters[YZ5];
+    const iiwa14_real_t t175 = (t154 - t145) * parameters[XY5] + (t174 + t51 * parameters[XZ5])
+        + (t103 * parameters[MY5] - t111 * parameters[MX5]);
+    const iiwa14_real_t t176 = t175 + (t56 * t141 - t39 * t136);
+    const iiwa14_real_t t177 = t31 * parameters[YY4] - t30 * (parameters[ZZ4] - parameters[XX4])
+        + t50 * parameters[XY4];
+    const iiwa14_real_t t178 = (t105 - t104) * parameters[XZ4] + (t177 - t46 * parameters[YZ4])
+        + (t99 * parameters[MZ4] - t101 * parameters[MX4]);
+    const iiwa14_real_t t179 = t178 + t176;
+    const iiwa14_real_t t180 = t23 * (parameters[YY3] - parameters[ZZ3]) - t24 * parameters[XX3] - (t41
+        + t42) * parameters[XY3];
+    const iiwa14_real_t t181 = t11 - t6;
+    const iiwa14_real_t t182 = t5 * t5;
+    const iiwa14_real_t t183 = t22 * t22;
+    const iiwa14_real_t t184 = (t182 - t183) * parameters[YZ3] - (t180 - t181 * parameters[XZ3])
+        + (t101 * parameters[MZ3] - t98 * parameters[MY3]);
+    const iiwa14_real_t t185 = t184 + (t13 * t173 - t26 * t179);
+    const iiwa14_real_t t186 = t34 * t166 - t33 * t163;
+    const iiwa14_real_t t187 = t43 * parameters[ZZ4] - t45 * (parameters[YY4] - parameters[XX4])
+        - t27 * parameters[YZ4];
+    const iiwa14_real_t t188 = (t171 - t104) * parameters[XY4] + (t187 - t47 * parameters[XZ4])
+        + (t107 * parameters[MX4] + t99 * parameters[MY4]);
+    const iiwa14_real_t t189 = t188 + (t34 * t148 - t33 * t156 + IIWA14_C(0.4) * t186);
+    const iiwa14_real_t t190 = t41 * (parameters[ZZ3] - parameters[XX3]) + t42 * parameters[YY3]
+        + t25 * parameters[XY3];
+    const iiwa14_real_t t191 = t4 * t4;
+    const iiwa14_real_t t192 = (t183 - t191) * parameters[XZ3] + (t190 + t12 * parameters[YZ3])
+        + (t98 * parameters[MX3] + t94 * parameters[MZ3]);
+    const iiwa14_real_t t193 = t192 + t189;
+    const iiwa14_real_t t194 = t46 * parameters[MY4] - (t171 + t105) * parameters[MX4]
+        + t27 * parameters[MZ4];
+    const iiwa14_real_t t195 = (t154 + t145) * parameters[MZ5] + (t142 * parameters[MX5]
+        + t55 * parameters[MY5]);
+    const iiwa14_real_t t196 = t108 * parameters[M5] + t195 + (t39 * t158 + t56 * t161);
+    const iiwa14_real_t t197 = t107 * parameters[M4] + (t106 * parameters[MY4] - t170 * parameters[MX4]
+        + t47 * parameters[MZ4]);
+    const iiwa14_real_t t198 = t13 * (t99 * parameters[M4] + t194 + t186) + t26 * (t197 + t196);
+    const iiwa14_real_t t199 = t40 * parameters[MZ3] - ((t182 + t183) * parameters[MX3]
+        + t12 * parameters[MY3]);
+    const iiwa14_real_t t200 = t94 * parameters[M3] + t199 + t198;
+    const iiwa14_real_t t201 = (t104 + t171) * parameters[MZ4] + (t168 * parameters[MX4]
+        - t50 * parameters[MY4]);
+    const iiwa14_real_t t202 = (t191 + t183) * parameters[MY3] - t181 * parameters[MX3]
+        + t21 * parameters[MZ3];
+    const iiwa14_real_t t203 = t201 - t101 * parameters[M4] - t167 - (t101 * parameters[M3] + t202);
+    const iiwa14_real_t t204 = t3 * t193 - t2 * t185 + IIWA14_C(0.42) * (t3 * t200 + t2 * t203);
+    const iiwa14_real_t t205 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] + (t10
+        - t9) * parameters[XY2];
+    const iiwa14_real_t t206 = t14 * t14;
+    const iiwa14_real_t t207 = (t96 - t206) * parameters[YZ2] + (t205 - (ddq[1] + t15) * parameters[XZ2]);
+    const iiwa14_real_t t208 = t6 * (parameters[XX3] - parameters[YY3]) + t11 * parameters[ZZ3]
+        + t40 * parameters[YZ3];
+    const iiwa14_real_t t209 = (t191 - t182) * parameters[XY3] + (t208 + t21 * parameters[XZ3])
+        - (t101 * parameters[MX3] + t94 * parameters[MY3]);
+    const iiwa14_real_t t210 = t209 + (t26 * t173 + t13 * t179);
+    const iiwa14_real_t t211 = t9 * (parameters[XX2] - parameters[ZZ2]) + t10 * parameters[YY2]
+        + t20 * parameters[XY2];
+    const iiwa14_real_t t212 = t91 * parameters[MZ2] + ((t95 - t96) * parameters[XZ2] + (t211
+        - t16 * parameters[YZ2]));
+    const iiwa14_real_t t213 = t0 * (t97 * parameters[MZ2] + t207 + t204) + t7 * (t212 + t210);
+    const iiwa14_real_t t214 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t215 = IIWA14_C(160.0) * dq[0] * parameters[FV1] + t214 * parameters[FC1]
         + IIWA14_C(160.0) * ddq[0] * parameters[IA1];
-    const iiwa14_real_t t4 = IIWA14_C(-9.81) * t3;
-    const iiwa14_real_t t5 = t3 * dq[0];
-    const iiwa14_real_t t6 = t5 * t5;
-    const iiwa14_real_t t7 = dq[1] * dq[1];
-    const iiwa14_real_t t8 = dq[1] * t5;
-    const iiwa14_real_t t9 = t2 * ddq[0];
-    const iiwa14_real_t t10 = t9 + t8;
-    const iiwa14_real_t t11 = t2 * dq[0];
-    const iiwa14_real_t t12 = dq[1] * t11;
-    const iiwa14_real_t t13 = t3 * ddq[0];
-    const iiwa14_real_t t14 = t13 - t12;
-    const iiwa14_real_t t15 = t8 * (parameters[ZZ2] - parameters[YY2]) + t10 * parameters[XX2] + (t14
-        - t12) * parameters[XY2];
-    const iiwa14_real_t t16 = t11 * t5;
-    const iiwa14_real_t t17 = (t7 - t6) * parameters[YZ2] + (t15 - (ddq[1] + t16) * parameters[XZ2]);
-    const iiwa14_real_t t20 = t19 * t11 + t18 * dq[1];
-    const iiwa14_real_t t21 = t20 * t20;
-    const iiwa14_real_t t22 = dq[2] + t5;
-    const iiwa14_real_t t23 = t22 * t22;
-    const iiwa14_real_t t24 = t20 * t22;
-    const iiwa14_real_t t25 = ddq[1] - t16;
-    const iiwa14_real_t t26 = t8 + t10;
-    const iiwa14_real_t t27 = t19 * t25 - t18 * t26;
-    const iiwa14_real_t t28 = t27 + t24;
-    const iiwa14_real_t t29 = t18 * t11 - t19 * dq[1];
-    const iiwa14_real_t t30 = t29 * t22;
-    const iiwa14_real_t t31 = t18 * t25 + t19 * t26;
-    const iiwa14_real_t t32 = t31 + t30;
-    const iiwa14_real_t t33 = t24 * (parameters[YY3] - parameters[ZZ3]) - t28 * parameters[XX3] - (t30
-        + t32) * parameters[XY3];
-    const iiwa14_real_t t34 = ddq[2] + t14;
-    const iiwa14_real_t t35 = t29 * t20;
-    const iiwa14_real_t t36 = t34 - t35;
-    const iiwa14_real_t t37 = t11 * t11;
-    const iiwa14_real_t t38 = t4 + IIWA14_C(0.42) * (t37 + t7);
-    const iiwa14_real_t t39 = IIWA14_C(9.81) * t2;
-    const iiwa14_real_t t40 = IIWA14_C(0.42) * t25 - t39;
-    const iiwa14_real_t t41 = IIWA14_C(0.42) * t26;
-    const iiwa14_real_t t42 = t19 * t40 - t18 * t41;
-    const iiwa14_real_t t43 = (t21 - t23) * parameters[YZ3] - (t33 - t36 * parameters[XZ3])
-        + (t42 * parameters[MZ3] - t38 * parameters[MY3]);
-    const iiwa14_real_t t46 = t45 * t29 + t44 * t22;
-    const iiwa14_real_t t47 = t46 * t46;
-    const iiwa14_real_t t48 = dq[3] - t20;
-    const iiwa14_real_t t49 = t48 * t48;
-    const iiwa14_real_t t50 = t46 * t48;
-    const iiwa14_real_t t51 = t34 + t35;
-    const iiwa14_real_t t52 = t24 + t28;
-    const iiwa14_real_t t53 = t45 * t51 + t44 * t52;
-    const iiwa14_real_t t54 = t53 + t50;
-    const iiwa14_real_t t55 = t45 * t22 - t44 * t29;
-    const iiwa14_real_t t56 = t55 * t48;
-    const iiwa14_real_t t57 = t44 * t51 - t45 * t52;
-    const iiwa14_real_t t58 = t57 - t56;
-    const iiwa14_real_t t59 = t58 - t56;
-    const iiwa14_real_t t60 = t50 * (parameters[ZZ4] - parameters[YY4]) + t54 * parameters[XX4]
-        + t59 * parameters[XY4];
-    const iiwa14_real_t t61 = t32 - ddq[3];
-    const iiwa14_real_t t62 = t55 * t46;
-    const iiwa14_real_t t63 = t62 - t61;
-    const iiwa14_real_t t64 = t18 * t40 + t19 * t41;
-    const iiwa14_real_t t65 = t45 * t64 + t44 * t38;
-    const iiwa14_real_t t66 = (t47 - t49) * parameters[YZ4] + (t60 + t63 * parameters[XZ4])
-        + (t42 * parameters[MY4] + t65 * parameters[MZ4]);
-    const iiwa14_real_t t69 = t68 * t55 + t67 * t48;
-    const iiwa14_real_t t70 = t69 * t69;
-    const iiwa14_real_t t71 = dq[4] + t46;
-    const iiwa14_real_t t72 = t71 * t71;
-    const iiwa14_real_t t73 = t69 * t71;
-    const iiwa14_real_t t74 = t61 + t62;
-    const iiwa14_real_t t75 = t50 + t54;
-    const iiwa14_real_t t76 = t68 * t74 + t67 * t75;
-    const iiwa14_real_t t77 = t73 - t76;
-    const iiwa14_real_t t78 = t68 * t48 - t67 * t55;
-    const iiwa14_real_t t79 = t78 * t71;
-    const iiwa14_real_t t80 = t67 * t74 - t68 * t75;
-    const iiwa14_real_t t81 = t80 + t79;
-    const iiwa14_real_t t82 = t79 + t81;
-    const iiwa14_real_t t83 = t82 * parameters[XY5] - (t73 * (parameters[ZZ5] - parameters[YY5])
-        + t77 * parameters[XX5]);
-    const iiwa14_real_t t84 = ddq[4] + t58;
-    const iiwa14_real_t t85 = t78 * t69;
-    const iiwa14_real_t t86 = t84 + t85;
-    const iiwa14_real_t t87 = t55 * t55;
-    const iiwa14_real_t t88 = t87 + t49;
-    const iiwa14_real_t t89 = t65 + IIWA14_C(0.4) * t88;
-    const iiwa14_real_t t90 = t44 * t64 - t45 * t38;
-    const iiwa14_real_t t91 = IIWA14_C(-0.4) * t74 - t90;
-    const iiwa14_real_t t92 = t42 + IIWA14_C(0.4) * t75;
-    const iiwa14_real_t t93 = t67 * t92 - t68 * t91;
-    const iiwa14_real_t t94 = (t70 - t72) * parameters[YZ5] + (t83 + t86 * parameters[XZ5])
-        + (t93 * parameters[MZ5] - t89 * parameters[MY5]);
-    const iiwa14_real_t t97 = t95 * t71 - t96 * t78;
-    const iiwa14_real_t t98 = t97 * t97;
-    const iiwa14_real_t t99 = t69 - dq[5];
-    const iiwa14_real_t t100 = t99 * t99;
-    const iiwa14_real_t t101 = t97 * t99;
-    const iiwa14_real_t t102 = t84 - t85;
-    const iiwa14_real_t t103 = t73 + t77;
-    const iiwa14_real_t t104 = t96 * t102 + t95 * t103;
-    const iiwa14_real_t t105 = t104 - t101;
-    const iiwa14_real_t t106 = t95 * t78 + t96 * t71;
-    const iiwa14_real_t t107 = t106 * t99;
-    const iiwa14_real_t t108 = t95 * t102 - t96 * t103;
-    const iiwa14_real_t t109 = t108 + t107;
-    const iiwa14_real_t t110 = t107 + t109;
-    const iiwa14_real_t t111 = t101 * (parameters[YY6] - parameters[ZZ6]) + t105 * parameters[XX6]
-        + t110 * parameters[XY6];
-    const iiwa14_real_t t112 = ddq[5] + t81;
-    const iiwa14_real_t t113 = t106 * t97;
-    const iiwa14_real_t t114 = t112 + t113;
-    const iiwa14_real_t t115 = t67 * t91 + t68 * t92;
-    const iiwa14_real_t t116 = t96 * t115 + t95 * t89;
-    const iiwa14_real_t t117 = (t98 - t100) * parameters[YZ6] - (t111 - t114 * parameters[XZ6])
-        - (t93 * parameters[MY6] + t116 * parameters[MZ6]);
-    const iiwa14_real_t t120 = t119 * t106 - t118 * t99;
-    const iiwa14_real_t t121 = t120 * t120;
-    const iiwa14_real_t t122 = dq[6] + t97;
-    const iiwa14_real_t t123 = t122 * t122;
-    const iiwa14_real_t t124 = t120 * t122;
-    const iiwa14_real_t t125 = t112 - t113;
-    const iiwa14_real_t t126 = t105 - t101;
-    const iiwa14_real_t t127 = t119 * t125 - t118 * t126;
-    const iiwa14_real_t t128 = t127 + t124;
-    const iiwa14_real_t t129 = t118 * t106 + t119 * t99;
-    const iiwa14_real_t t130 = t129 * t122;
-    const iiwa14_real_t t131 = t118 * t125 + t119 * t126;
-    const iiwa14_real_t t132 = t131 + t130;
-    const iiwa14_real_t t133 = t130 + t132;
-    const iiwa14_real_t t134 = t124 * (parameters[ZZ7] - parameters[YY7]) + t128 * parameters[XX7]
-        + t133 * parameters[XY7];
-    const iiwa14_real_t t135 = ddq[6] + t109;
-    const iiwa14_real_t t136 = t129 * t120;
-    const iiwa14_real_t t137 = t135 - t136;
-    const iiwa14_real_t t138 = t106 * t106;
-    const iiwa14_real_t t139 = t138 + t100;
-    const iiwa14_real_t t140 = t116 + IIWA14_C(0.126) * t139;
-    const iiwa14_real_t t141 = t96 * t89 - t95 * t115;
-    const iiwa14_real_t t142 = t141 + IIWA14_C(0.126) * t125;
-    const iiwa14_real_t t143 = t93 + IIWA14_C(-0.126) * t126;
-    const iiwa14_real_t t144 = t119 * t142 + t118 * t143;
-    const iiwa14_real_t t145 = (t121 - t123) * parameters[YZ7] + (t134 + t137 * parameters[XZ7])
-        + (t144 * parameters[MZ7] - t140 * parameters[MY7]);
-    const iiwa14_real_t t146 = t129 * t129;
-    const iiwa14_real_t t147 = t124 + t128;
-    const iiwa14_real_t t148 = t130 * (parameters[ZZ7] - parameters[XX7]) + t132 * parameters[YY7]
-        + t147 * parameters[XY7];
-    const iiwa14_real_t t149 = t135 + t136;
-    const iiwa14_real_t t150 = t119 * t143 - t118 * t142;
-    const iiwa14_real_t t151 = (t123 - t146) * parameters[XZ7] + (t148 + t149 * parameters[YZ7])
-        + (t140 * parameters[MX7] - t150 * parameters[MZ7]);
-    const iiwa14_real_t t152 = (t121 + t123) * parameters[MX7] + t149 * parameters[MY7]
-        - t131 * parameters[MZ7];
-    const iiwa14_real_t t153 = t150 * parameters[M7] + t152;
-    const iiwa14_real_t t154 = (t146 + t123) * parameters[MY7] - t137 * parameters[MX7]
-        + t127 * parameters[MZ7];
-    const iiwa14_real_t t155 = t144 * parameters[M7] + t154;
-    const iiwa14_real_t t156 = t119 * t153 + t118 * t155;
-    const iiwa14_real_t t157 = t117 + (t118 * t145 - t119 * t151 + IIWA14_C(0.126) * t156);
-    const iiwa14_real_t t158 = t109 * parameters[YY6] - t107 * (parameters[XX6] - parameters[ZZ6])
-        + t126 * parameters[XY6];
-    const iiwa14_real_t t159 = (t138 - t100) * parameters[XZ6] + (t158 - t125 * parameters[YZ6])
-        - (t141 * parameters[MZ6] + t93 * parameters[MX6]);
-    const iiwa14_real_t t160 = t136 * (parameters[XX7] - parameters[YY7]) + t135 * parameters[ZZ7]
-        + t131 * parameters[YZ7];
-    const iiwa14_real_t t161 = (t146 - t121) * parameters[XY7] + (t160 + t127 * parameters[XZ7])
-        + (t150 * parameters[MY7] - t144 * parameters[MX7]);
-    const iiwa14_real_t t162 = t159 + t161;
-    const iiwa14_real_t t163 = t94 + (t95 * t157 + t96 * t162);
-    const iiwa14_real_t t164 = t78 * t78;
-    const iiwa14_real_t t165 = t79 * (parameters[XX5] - parameters[ZZ5]) - t81 * parameters[YY5]
-        + t103 * parameters[XY5];
-    const iiwa14_real_t t166 = (t164 - t72) * parameters[XZ5] + (t165 - t102 * parameters[YZ5])
-        + (t115 * parameters[MZ5] - t89 * parameters[MX5]);
-    const iiwa14_real_t t167 = t112 * parameters[ZZ6] - t113 * (parameters[XX6] - parameters[YY6])
-        - t108 * parameters[YZ6];
-    const iiwa14_real_t t168 = (t138 - t98) * parameters[XY6] + (t167 - t104 * parameters[XZ6])
-        + (t116 * parameters[MX6] - t141 * parameters[MY6]);
-    const iiwa14_real_t t169 = t119 * t155 - t118 * t153;
-    const iiwa14_real_t t170 = t168 + (t119 * t145 + t118 * t151 + IIWA14_C(0.126) * t169);
-    const iiwa14_real_t t171 = t166 - t170;
-    const iiwa14_real_t t172 = (t70 + t72) * parameters[MX5] + t102 * parameters[MY5] - t80 * parameters[MZ5];
-    const iiwa14_real_t t173 = (t98 + t100) * parameters[MX6] + t125 * parameters[MY6]
-        + t108 * parameters[MZ6];
-    const iiwa14_real_t t174 = t141 * parameters[M6] - t173 + t169;
-    const iiwa14_real_t t175 = t116 * parameters[M6] + (t114 * parameters[MX6] - t139 * parameters[MY6]
-        + t104 * parameters[MZ6]);
-    const iiwa14_real_t t176 = (t146 + t121) * parameters[MZ7] + (t133 * parameters[MX7]
-        - t147 * parameters[MY7]);
-    const iiwa14_real_t t177 = t175 + (t140 * parameters[M7] + t176);
-    const iiwa14_real_t t178 = t115 * parameters[M5] + t172 + (t96 * t177 - t95 * t174);
-    const iiwa14_real_t t179 = (t164 + t72) * parameters[MY5] - t86 * parameters[MX5] + t76 * parameters[MZ5];
-    const iiwa14_real_t t180 = (t138 + t98) * parameters[MZ6] + (t126 * parameters[MY6]
-        - t110 * parameters[MX6]);
-    const iiwa14_real_t t181 = t93 * parameters[M5] + t179 + (t93 * parameters[M6] + t180 + t156);
-    const iiwa14_real_t t182 = t68 * t178 + t67 * t181;
-    const iiwa14_real_t t183 = t66 + (t67 * t163 + t68 * t171 + IIWA14_C(0.4) * t182);
-    const iiwa14_real_t t184 = t58 * parameters[YY4] - t56 * (parameters[ZZ4] - parameters[XX4])
-        + t75 * parameters[XY4];
-    const iiwa14_real_t t185 = (t49 - t87) * parameters[XZ4] + (t184 - t74 * parameters[YZ4])
-        + (t90 * parameters[MZ4] - t42 * parameters[MX4]);
-    const iiwa14_real_t t186 = t84 * parameters[ZZ5] - t85 * (parameters[XX5] - parameters[YY5])
-        + t80 * parameters[YZ5];
-    const iiwa14_real_t t187 = (t164 - t70) * parameters[XY5] + (t186 + t76 * parameters[XZ5])
-        + (t115 * parameters[MY5] - t93 * parameters[MX5]);
-    const iiwa14_real_t t188 = t187 + (t95 * t162 - t96 * t157);
-    const iiwa14_real_t t189 = t185 + t188;
-    const iiwa14_real_t t190 = t43 + (t44 * t183 - t45 * t189);
-    const iiwa14_real_t t191 = t29 * t29;
-    const iiwa14_real_t t192 = t30 * (parameters[ZZ3] - parameters[XX3]) + t32 * parameters[YY3]
-        + t52 * parameters[XY3];
-    const iiwa14_real_t t193 = (t23 - t191) * parameters[XZ3] + (t192 + t51 * parameters[YZ3])
-        + (t38 * parameters[MX3] + t64 * parameters[MZ3]);
-    const iiwa14_real_t t194 = t61 * parameters[ZZ4] - t62 * (parameters[YY4] - parameters[XX4])
-        - t57 * parameters[YZ4];
-    const iiwa14_real_t t195 = (t47 - t87) * parameters[XY4] + (t194 - t53 * parameters[XZ4])
-        + (t65 * parameters[MX4] + t90 * parameters[MY4]);
-    const iiwa14_real_t t196 = t68 * t181 - t67 * t178;
-    const iiwa14_real_t t197 = t195 + (t68 * t163 - t67 * t171 + IIWA14_C(0.4) * t196);
-    const iiwa14_real_t t198 = t193 + t197;
-    const iiwa14_real_t t199 = t31 * parameters[MZ3] - ((t21 + t23) * parameters[MX3]
-        + t51 * parameters[MY3]);
-    const iiwa14_real_t t200 = t74 * parameters[MY4] - (t47 + t49) * parameters[MX4] + t57 * parameters[MZ4];
-    const iiwa14_real_t t201 = t65 * parameters[M4] + (t88 * parameters[MY4] - t63 * parameters[MX4]
-        + t53 * parameters[MZ4]);
-    const iiwa14_real_t t202 = (t164 + t70) * parameters[MZ5] + (t82 * parameters[MX5]
-        + t103 * parameters[MY5]);
-    const iiwa14_real_t t203 = t89 * parameters[M5] + t202 + (t96 * t174 + t95 * t177);
-    const iiwa14_real_t t204 = t44 * (t90 * parameters[M4] + t200 + t196) + t45 * (t201 + t203);
-    const iiwa14_real_t t205 = t64 * parameters[M3] + t199 + t204;
-    const iiwa14_real_t t206 = (t191 + t23) * parameters[MY3] - t36 * parameters[MX3] + t27 * parameters[MZ3];
-    const iiwa14_real_t t207 = (t87 + t47) * parameters[MZ4] + (t59 * parameters[MX4]
-        - t75 * parameters[MY4]);
-    const iiwa14_real_t t208 = t207 - t42 * parameters[M4] - t182 - (t42 * parameters[M3] + t206);
-    const iiwa14_real_t t209 = t19 * t198 - t18 * t190 + IIWA14_C(0.42) * (t19 * t205 + t18 * t208);
-    const iiwa14_real_t t210 = t12 * (parameters[XX2] - parameters[ZZ2]) + t14 * parameters[YY2]
-        + t26 * parameters[XY2];
-    const iiwa14_real_t t211 = t39 * parameters[MZ2] + ((t37 - t7) * parameters[XZ2] + (t210
-        - t25 * parameters[YZ2]));
-    const iiwa14_real_t t212 = t35 * (parameters[XX3] - parameters[YY3]) + t34 * parameters[ZZ3]
-        + t31 * parameters[YZ3];
-    const iiwa14_real_t t213 = (t191 - t21) * parameters[XY3] + (t212 + t27 * parameters[XZ3])
-        - (t42 * parameters[MX3] + t64 * parameters[MY3]);
-    const iiwa14_real_t t214 = t213 + (t45 * t183 + t44 * t189);
-    const iiwa14_real_t t215 = t2 * (t4 * parameters[MZ2] + t17 + t209) + t3 * (t211 + t214);
-    out[0] = IIWA14_C(10.0) * t1 + IIWA14_C(0.0625) * (ddq[0] * parameters[ZZ1] + t215);
-    const iiwa14_real_t t216 = iiwa14_sign(dq[1]);
-    const iiwa14_real_t t217 = IIWA14_C(160.0) * dq[1] * parameters[FV2] + t216 * parameters[FC2]
+    out[0] = IIWA14_C(10.0) * t215 + IIWA14_C(0.0625) * (ddq[0] * parameters[ZZ1] + t213);
+    const iiwa14_real_t t216 = t3 * t185 + t2 * t193 + IIWA14_C(0.42) * (t2 * t200 - t3 * t203);
+    const iiwa14_real_t t217 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        - t8 * parameters[YZ2];
+    const iiwa14_real_t t218 = t97 * parameters[MX2] + t91 * parameters[MY2] + ((t95 - t206) * parameters[XY2]
+        + (t217 - t17 * parameters[XZ2]));
+    const iiwa14_real_t t219 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t220 = IIWA14_C(160.0) * dq[1] * parameters[FV2] + t219 * parameters[FC2]
         + IIWA14_C(160.0) * ddq[1] * parameters[IA2];
-    const iiwa14_real_t t218 = t16 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        - t13 * parameters[YZ2];
-    const iiwa14_real_t t219 = t4 * parameters[MX2] + t39 * parameters[MY2] + ((t37 - t6) * parameters[XY2]
-        + (t218 - t9 * parameters[XZ2]));
-    const iiwa14_real_t t220 = t19 * t190 + t18 * t198 + IIWA14_C(0.42) * (t18 * t205 - t19 * t208);
-    out[1] = IIWA14_C(10.0) * t217 + IIWA14_C(0.0625) * (t219 + t220);
+    out[1] = IIWA14_C(10.0) * t220 + IIWA14_C(0.0625) * (t218 + t216);
     const iiwa14_real_t t221 = iiwa14_sign(dq[2]);
     const iiwa14_real_t t222 = IIWA14_C(160.0) * dq[2] * parameters[FV3] + t221 * parameters[FC3]
         + IIWA14_C(160.0) * ddq[2] * parameters[IA3];
-    out[2] = IIWA14_C(10.0) * t222 + IIWA14_C(0.0625) * t214;
+    out[2] = IIWA14_C(10.0) * t222 + IIWA14_C(0.0625) * t210;
     const iiwa14_real_t t223 = iiwa14_sign(dq[3]);
     const iiwa14_real_t t224 = IIWA14_C(160.0) * dq[3] * parameters[FV4] + t223 * parameters[FC4]
         + IIWA14_C(160.0) * ddq[3] * parameters[IA4];
-    out[3] = IIWA14_C(10.0) * t224 + IIWA14_C(-0.0625) * t197;
+    out[3] = IIWA14_C(10.0) * t224 + IIWA14_C(-0.0625) * t189;
     const iiwa14_real_t t225 = iiwa14_sign(dq[4]);
     const iiwa14_real_t t226 = IIWA14_C(1.0e2) * dq[4] * parameters[FV5] + t225 * parameters[FC5]
         + IIWA14_C(1.0e2) * ddq[4] * parameters[IA5];
-    out[4] = IIWA14_C(12.5) * t226 + IIWA14_C(0.125) * t188;
+    out[4] = IIWA14_C(12.5) * t226 + IIWA14_C(0.125) * t176;
     const iiwa14_real_t t227 = iiwa14_sign(dq[5]);
     const iiwa14_real_t t228 = IIWA14_C(160.0) * dq[5] * parameters[FV6] + t227 * parameters[FC6]
         + IIWA14_C(160.0) * ddq[5] * parameters[IA6];
-    out[5] = IIWA14_C(20.0) * t228 + IIWA14_C(0.125) * t170;
+    out[5] = IIWA14_C(20.0) * t228 + IIWA14_C(0.125) * t152;
     const iiwa14_real_t t229 = iiwa14_sign(dq[6]);
     const iiwa14_real_t t230 = IIWA14_C(160.0) * dq[6] * parameters[FV7] + t229 * parameters[FC7]
         + IIWA14_C(160.0) * ddq[6] * parameters[IA7];
-    out[6] = IIWA14_C(20.0) * t230 + IIWA14_C(0.125) * t161;
+    out[6] = IIWA14_C(20.0) * t230 + IIWA14_C(0.125) * t138;
     return IIWA14_STATUS_OK;
 }

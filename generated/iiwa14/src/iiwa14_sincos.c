@@ -11,7 +11,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xAF7D4BC0UL
+#if IIWA14_GENERATION != 0xCED26AECUL
 #error "iiwa14.h and iiwa14_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 iiwa14_pair_t iiwa14_sincos(iiwa14_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * IIWA14_C(0.636619772) + IIWA14_C(16384.5));
+    const iiwa14_real_t turns = x * IIWA14_C(0.636619772) + IIWA14_C(16384.5);
+    const long quarter = (long)turns;
     const iiwa14_real_t k = (iiwa14_real_t)quarter - IIWA14_C(16384.0);
     const iiwa14_real_t r = x - k * IIWA14_C(1.5703125) - k * IIWA14_C(4.83826792e-4);
     const iiwa14_real_t z = r * r;

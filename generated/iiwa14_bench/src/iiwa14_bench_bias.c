@@ -70,7 +70,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -95,225 +95,223 @@ int iiwa14_bench_bias(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t11, t10;
-    IIWA14_BENCH_SINCOS(q[2], &t11, &t10);
-    iiwa14_bench_real_t t32, t31;
-    IIWA14_BENCH_SINCOS(q[3], &t32, &t31);
-    iiwa14_bench_real_t t55, t54;
-    IIWA14_BENCH_SINCOS(q[4], &t55, &t54);
-    iiwa14_bench_real_t t79, t78;
-    IIWA14_BENCH_SINCOS(q[5], &t79, &t78);
-    iiwa14_bench_real_t t102, t101;
-    IIWA14_BENCH_SINCOS(q[6], &t102, &t101);
-    const iiwa14_bench_real_t t2 = t1 * dq[0];
-    const iiwa14_bench_real_t t3 = dq[1] * t2;
-    const iiwa14_bench_real_t t4 = t0 * dq[0];
-    const iiwa14_bench_real_t t5 = dq[1] * t4;
-    const iiwa14_bench_real_t t6 = parameters[XX2R] * t3 + parameters[ZZ2R] * t3
-        + parameters[XY2] * (IIWA14_BENCH_C(-2.0) * t5);
-    const iiwa14_bench_real_t t7 = t4 * t2;
-    const iiwa14_bench_real_t t8 = t2 * t2;
-    const iiwa14_bench_real_t t9 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_C(2.0) * t3;
-    const iiwa14_bench_real_t t13 = t11 * t7 + t10 * t12;
-    const iiwa14_bench_real_t t14 = t11 * t4 + t10 * dq[1];
-    const iiwa14_bench_real_t t15 = dq[2] + t2;
-    const iiwa14_bench_real_t t16 = t14 * t15;
-    const iiwa14_bench_real_t t17 = t13 - t16;
-    const iiwa14_bench_real_t t18 = t10 * t4 - t11 * dq[1];
-    const iiwa14_bench_real_t t19 = t18 * t15;
-    const iiwa14_bench_real_t t20 = t10 * t7 - t11 * t12;
-    const iiwa14_bench_real_t t21 = t20 - t19;
-    const iiwa14_bench_real_t t22 = parameters[XX3R] * t17 - parameters[ZZ3R] * t16 - parameters[XY3] * (t19
-        - t21);
-    const iiwa14_bench_real_t t23 = t18 * t14;
-    const iiwa14_bench_real_t t24 = t5 + t23;
-    const iiwa14_bench_real_t t25 = t14 * t14;
-    const iiwa14_bench_real_t t26 = t15 * t15;
-    const iiwa14_bench_real_t t27 = IIWA14_BENCH_C(-9.81) * t1;
-    const iiwa14_bench_real_t t28 = t4 * t4;
-    const iiwa14_bench_real_t t29 = t27 + IIWA14_BENCH_C(0.4) * (t28 + t9);
-    const iiwa14_bench_real_t t30 = t22 + parameters[XZ3] * t24 - parameters[YZ3] * (t25 - t26)
-        + parameters[MY3R] * t29;
-    const iiwa14_bench_real_t t33 = t5 - t23;
-    const iiwa14_bench_real_t t34 = t17 - t16;
-    const iiwa14_bench_real_t t35 = t32 * t33 + t31 * t34;
-    const iiwa14_bench_real_t t36 = t32 * t18 + t31 * t15;
-    const iiwa14_bench_real_t t37 = dq[3] - t14;
-    const iiwa14_bench_real_t t38 = t36 * t37;
-    const iiwa14_bench_real_t t39 = t35 - t38;
-    const iiwa14_bench_real_t t40 = t31 * t18 - t32 * t15;
-    const iiwa14_bench_real_t t41 = t40 * t37;
-    const iiwa14_bench_real_t t42 = t32 * t34 - t31 * t33;
-    const iiwa14_bench_real_t t43 = t42 + t41;
-    const iiwa14_bench_real_t t44 = t41 + t43;
-    const iiwa14_bench_real_t t45 = t40 * t36;
-    const iiwa14_bench_real_t t46 = t21 - t45;
-    const iiwa14_bench_real_t t47 = parameters[ZZ4R] * t38 - parameters[XX4R] * t39 + parameters[XY4] * t44
-        + parameters[XZ4] * t46;
-    const iiwa14_bench_real_t t48 = t36 * t36;
-    const iiwa14_bench_real_t t49 = t37 * t37;
-    const iiwa14_bench_real_t t50 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t51 = t50 + IIWA14_BENCH_C(0.4) * t7;
-    const iiwa14_bench_real_t t52 = IIWA14_BENCH_C(0.8) * t3;
-    const iiwa14_bench_real_t t53 = t11 * t51 + t10 * t52;
-    const iiwa14_bench_real_t t56 = t21 + t45;
-    const iiwa14_bench_real_t t57 = t39 - t38;
-    const iiwa14_bench_real_t t58 = t55 * t56 + t54 * t57;
-    const iiwa14_bench_real_t t59 = t54 * t37 - t55 * t40;
-    const iiwa14_bench_real_t t60 = dq[4] + t36;
-    const iiwa14_bench_real_t t61 = t59 * t60;
-    const iiwa14_bench_real_t t62 = t58 + t61;
-    const iiwa14_bench_real_t t63 = t54 * t40 + t55 * t37;
-    const iiwa14_bench_real_t t64 = t63 * t60;
-    const iiwa14_bench_real_t t65 = t55 * t57 - t54 * t56;
-    const iiwa14_bench_real_t t66 = t65 + t64;
-    const iiwa14_bench_real_t t67 = t64 + t66;
-    const iiwa14_bench_real_t t68 = t63 * t59;
-    const iiwa14_bench_real_t t69 = t43 + t68;
-    const iiwa14_bench_real_t t70 = parameters[XX5R] * t62 + parameters[ZZ5R] * t61 - parameters[XY5] * t67
-        - parameters[XZ5] * t69;
-    const iiwa14_bench_real_t t71 = t59 * t59;
-    const iiwa14_bench_real_t t72 = t60 * t60;
-    const iiwa14_bench_real_t t73 = t10 * t51 - t11 * t52;
-    const iiwa14_bench_real_t t74 = t32 * t73 - t31 * t29;
-    const iiwa14_bench_real_t t75 = t40 * t40;
-    const iiwa14_bench_real_t t76 = t75 + t49;
-    const iiwa14_bench_real_t t77 = t74 + IIWA14_BENCH_C(-0.4) * t76;
-    const iiwa14_bench_real_t t80 = t43 - t68;
-    const iiwa14_bench_real_t t81 = t61 + t62;
-    const iiwa14_bench_real_t t82 = t79 * t80 + t78 * t81;
-    const iiwa14_bench_real_t t83 = t78 * t60 - t79 * t63;
-    const iiwa14_bench_real_t t84 = t59 - dq[5];
-    const iiwa14_bench_real_t t85 = t83 * t84;
-    const iiwa14_bench_real_t t86 = t82 - t85;
-    const iiwa14_bench_real_t t87 = t78 * t63 + t79 * t60;
-    const iiwa14_bench_real_t t88 = t87 * t84;
-    const iiwa14_bench_real_t t89 = t78 * t80 - t79 * t81;
-    const iiwa14_bench_real_t t90 = t89 + t88;
-    const iiwa14_bench_real_t t91 = t88 + t90;
-    const iiwa14_bench_real_t t92 = t87 * t83;
-    const iiwa14_bench_real_t t93 = t66 + t92;
-    const iiwa14_bench_real_t t94 = parameters[XX6R] * t86 - parameters[ZZ6R] * t85 + parameters[XY6] * t91
-        - parameters[XZ6] * t93;
-    const iiwa14_bench_real_t t95 = t83 * t83;
-    const iiwa14_bench_real_t t96 = t84 * t84;
-    const iiwa14_bench_real_t t97 = t31 * t73 + t32 * t29;
-    const iiwa14_bench_real_t t98 = t97 + IIWA14_BENCH_C(0.4) * t56;
-    const iiwa14_bench_real_t t99 = t53 - IIWA14_BENCH_C(-0.4) * t57;
-    const iiwa14_bench_real_t t100 = t55 * t98 + t54 * t99;
-    const iiwa14_bench_real_t t103 = t92 - t66;
-    const iiwa14_bench_real_t t104 = t86 - t85;
-    const iiwa14_bench_real_t t105 = t102 * t103 + t101 * t104;
-    const iiwa14_bench_real_t t106 = t101 * t84 - t102 * t87;
-    const iiwa14_bench_real_t t107 = dq[6] + t83;
-    const iiwa14_bench_real_t t108 = t106 * t107;
-    const iiwa14_bench_real_t t109 = t105 + t108;
-    const iiwa14_bench_real_t t110 = t101 * t87 + t102 * t84;
-    const iiwa14_bench_real_t t111 = t110 * t107;
-    const iiwa14_bench_real_t t112 = t102 * t104 - t101 * t103;
-    const iiwa14_bench_real_t t113 = t111 + (t112 + t111);
-    const iiwa14_bench_real_t t114 = t110 * t106;
-    const iiwa14_bench_real_t t115 = t90 + t114;
-    const iiwa14_bench_real_t t116 = parameters[XX7R] * t109 + parameters[ZZ7] * t108 - parameters[XY7] * t113
-        - parameters[XZ7R] * t115;
-    const iiwa14_bench_real_t t117 = t106 * t106;
-    const iiwa14_bench_real_t t118 = t107 * t107;
-    const iiwa14_bench_real_t t119 = t54 * t98 - t55 * t99;
-    const iiwa14_bench_real_t t120 = t79 * t119 - t78 * t77;
-    const iiwa14_bench_real_t t121 = t116 - parameters[YZ7R] * (t117 - t118) + parameters[MY7] * t120;
-    const iiwa14_bench_real_t t122 = t108 + t109;
-    const iiwa14_bench_real_t t123 = t90 - t114;
-    const iiwa14_bench_real_t t124 = t111 * (parameters[ZZ7] - parameters[XX7R]) - parameters[XY7] * t122
-        + parameters[YZ7R] * t123;
-    const iiwa14_bench_real_t t125 = t110 * t110;
-    const iiwa14_bench_real_t t126 = t124 + parameters[XZ7R] * (t118 - t125) + parameters[MX7] * t120;
-    const iiwa14_bench_real_t t127 = t94 + parameters[YZ6] * (t96 - t95) - parameters[MY6R] * t100
-        + (t101 * t121 + t102 * t126);
-    const iiwa14_bench_real_t t128 = parameters[XY6] * t104 - t88 * (parameters[XX6R] - parameters[ZZ6R])
-        + parameters[YZ6] * t103;
-    const iiwa14_bench_real_t t129 = t87 * t87;
-    const iiwa14_bench_real_t t130 = parameters[ZZ7] * t90 - parameters[XX7R] * t114 + parameters[YZ7R] * t112
-        - parameters[XZ7R] * t105;
-    const iiwa14_bench_real_t t131 = t78 * t119 + t79 * t77;
-    const iiwa14_bench_real_t t132 = parameters[MX7] * (t102 * t131 + t101 * t100)
-        + parameters[MY7] * (t101 * t131 - t102 * t100);
-    const iiwa14_bench_real_t t133 = t130 + parameters[XY7] * (t125 - t117) + t132;
-    const iiwa14_bench_real_t t134 = t128 + parameters[XZ6] * (t129 - t96) + parameters[MX6] * t100 + t133;
-    const iiwa14_bench_real_t t135 = t70 - parameters[YZ5] * (t71 - t72) - parameters[MY5R] * t77
-        - (t79 * t134 - t78 * t127);
-    const iiwa14_bench_real_t t136 = t64 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t81
-        - parameters[YZ5] * t80;
-    const iiwa14_bench_real_t t137 = t63 * t63;
-    const iiwa14_bench_real_t t138 = parameters[ZZ6R] * t66 - parameters[XX6R] * t92 - parameters[YZ6] * t89
-        - parameters[XZ6] * t82;
-    const iiwa14_bench_real_t t139 = t138 + parameters[XY6] * (t129 - t95) + (parameters[MX6] * t120
-        + parameters[MY6R] * t131);
-    const iiwa14_bench_real_t t140 = t139 + (t101 * t126 - t102 * t121);
-    const iiwa14_bench_real_t t141 = t136 + parameters[XZ5] * (t137 - t72) + parameters[MX5] * t77 - t140;
-    const iiwa14_bench_real_t t142 = parameters[MX7] * (t117 + t118) + parameters[MY7] * t123;
-    const iiwa14_bench_real_t t143 = parameters[MY7] * (t125 + t118) - parameters[MX7] * t115;
-    const iiwa14_bench_real_t t144 = parameters[MY6R] * t103 - parameters[MX6] * (t95 + t96) + (t102 * t143
-        - t101 * t142);
-    const iiwa14_bench_real_t t145 = parameters[MX6] * t93 - parameters[MY6R] * (t129 + t96)
-        + (parameters[MX7] * t113 + parameters[MY7] * t122);
-    const iiwa14_bench_real_t t146 = parameters[MX5] * (t71 + t72) + parameters[MY5R] * t80 + (t79 * t145
-        - t78 * t144);
-    const iiwa14_bench_real_t t147 = parameters[MY6R] * t104 - parameters[MX6] * t91 + (t102 * t142
-        + t101 * t143);
-    const iiwa14_bench_real_t t148 = parameters[MY5R] * (t137 + t72) - parameters[MX5] * t69 + t147;
-    const iiwa14_bench_real_t t149 = t55 * t146 + t54 * t148;
-    const iiwa14_bench_real_t t150 = t47 + parameters[YZ4] * (t48 - t49) - parameters[MY4R] * t53
-        + (t55 * t141 - t54 * t135 + IIWA14_BENCH_C(0.4) * t149);
-    const iiwa14_bench_real_t t151 = t41 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t57
-        + parameters[YZ4] * t56;
-    const iiwa14_bench_real_t t152 = parameters[ZZ5R] * t43 - parameters[XX5R] * t68 + parameters[YZ5] * t65
-        - parameters[XZ5] * t58;
-    const iiwa14_bench_real_t t153 = t152 + parameters[XY5] * (t137 - t71) + (parameters[MX5] * t100
-        + parameters[MY5R] * t119);
-    const iiwa14_bench_real_t t154 = t153 + (t79 * t127 + t78 * t134);
-    const iiwa14_bench_real_t t155 = t151 + parameters[XZ4] * (t49 - t75) + parameters[MX4] * t53 + t154;
-    const iiwa14_bench_real_t t156 = t30 + (t32 * t155 - t31 * t150);
-    const iiwa14_bench_real_t t157 = t19 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t34
-        - parameters[YZ3] * t33;
-    const iiwa14_bench_real_t t158 = t18 * t18;
-    const iiwa14_bench_real_t t159 = parameters[ZZ4R] * t21 + parameters[XX4R] * t45 + parameters[YZ4] * t42
-        - parameters[XZ4] * t35;
-    const iiwa14_bench_real_t t160 = t159 + parameters[XY4] * (t75 - t48) + (parameters[MX4] * t74
-        + parameters[MY4R] * t97);
-    const iiwa14_bench_real_t t161 = t55 * t148 - t54 * t146;
-    const iiwa14_bench_real_t t162 = t160 + (t55 * t135 + t54 * t141 + IIWA14_BENCH_C(-0.4) * t161);
-    const iiwa14_bench_real_t t163 = t157 + parameters[XZ3] * (t26 - t158) + parameters[MX3] * t29 - t162;
-    const iiwa14_bench_real_t t164 = t31 * (t161 - (parameters[MX4] * (t48 + t49) + parameters[MY4R] * t56));
-    const iiwa14_bench_real_t t165 = parameters[MX5] * t67 + parameters[MY5R] * t81 + (t79 * t144
-        + t78 * t145);
-    const iiwa14_bench_real_t t166 = t164 + t32 * (parameters[MY4R] * t76 - parameters[MX4] * t46 + t165);
-    const iiwa14_bench_real_t t167 = parameters[MY3R] * t33 - parameters[MX3] * (t25 + t26) + t166;
-    const iiwa14_bench_real_t t168 = parameters[MX3] * t24 + parameters[MY3R] * (t158 + t26)
-        - (parameters[MX4] * t44 + parameters[MY4R] * t57 - t149);
-    const iiwa14_bench_real_t t169 = t10 * t156 + t11 * t163 + IIWA14_BENCH_C(0.4) * (t11 * t167
-        - t10 * t168);
-    const iiwa14_bench_real_t t170 = t6 - parameters[XZ2] * t7 + parameters[YZ2] * (t9 - t8) + t169;
-    const iiwa14_bench_real_t t171 = t5 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t12
-        + parameters[YZ2] * t7;
-    const iiwa14_bench_real_t t172 = parameters[XX3R] * t23 - parameters[ZZ3R] * t5 - parameters[YZ3] * t20
-        - parameters[XZ3] * t13;
-    const iiwa14_bench_real_t t173 = t172 + parameters[XY3] * (t158 - t25) + (parameters[MX3] * t53
-        + parameters[MY3R] * t73);
-    const iiwa14_bench_real_t t174 = t173 + (t32 * t150 + t31 * t155);
-    const iiwa14_bench_real_t t175 = t0 * t170 + t1 * (t171 + parameters[XZ2] * (t28 - t9) + t174);
+    iiwa14_bench_real_t t0, t10;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t10);
+    iiwa14_bench_real_t t3, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t3, &t2);
+    iiwa14_bench_real_t t20, t9;
+    IIWA14_BENCH_SINCOS(q[3], &t20, &t9);
+    iiwa14_bench_real_t t27, t26;
+    IIWA14_BENCH_SINCOS(q[4], &t27, &t26);
+    iiwa14_bench_real_t t32, t48;
+    IIWA14_BENCH_SINCOS(q[5], &t32, &t48);
+    iiwa14_bench_real_t t62, t55;
+    IIWA14_BENCH_SINCOS(q[6], &t62, &t55);
+    const iiwa14_bench_real_t t1 = t0 * dq[0];
+    const iiwa14_bench_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_bench_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_bench_real_t t6 = t4 * t5;
+    const iiwa14_bench_real_t t7 = dq[1] * t1;
+    const iiwa14_bench_real_t t8 = t7 - t6;
+    const iiwa14_bench_real_t t11 = t10 * dq[0];
+    const iiwa14_bench_real_t t12 = t1 * t11;
+    const iiwa14_bench_real_t t13 = dq[1] * t11;
+    const iiwa14_bench_real_t t14 = IIWA14_BENCH_C(2.0) * t13;
+    const iiwa14_bench_real_t t15 = t3 * t12 + t2 * t14;
+    const iiwa14_bench_real_t t16 = dq[2] + t11;
+    const iiwa14_bench_real_t t17 = t5 * t16;
+    const iiwa14_bench_real_t t18 = t15 - t17;
+    const iiwa14_bench_real_t t19 = t18 - t17;
+    const iiwa14_bench_real_t t21 = t20 * t19 - t9 * t8;
+    const iiwa14_bench_real_t t22 = t9 * t4 - t20 * t16;
+    const iiwa14_bench_real_t t23 = dq[3] - t5;
+    const iiwa14_bench_real_t t24 = t22 * t23;
+    const iiwa14_bench_real_t t25 = t21 + t24;
+    const iiwa14_bench_real_t t28 = t26 * t22 + t27 * t23;
+    const iiwa14_bench_real_t t29 = t26 * t23 - t27 * t22;
+    const iiwa14_bench_real_t t30 = t28 * t29;
+    const iiwa14_bench_real_t t31 = t25 - t30;
+    const iiwa14_bench_real_t t33 = t2 * t12 - t3 * t14;
+    const iiwa14_bench_real_t t34 = t4 * t16;
+    const iiwa14_bench_real_t t35 = t33 - t34;
+    const iiwa14_bench_real_t t36 = t20 * t4 + t9 * t16;
+    const iiwa14_bench_real_t t37 = t22 * t36;
+    const iiwa14_bench_real_t t38 = t35 + t37;
+    const iiwa14_bench_real_t t39 = t20 * t8 + t9 * t19;
+    const iiwa14_bench_real_t t40 = t36 * t23;
+    const iiwa14_bench_real_t t41 = t39 - t40;
+    const iiwa14_bench_real_t t42 = t41 - t40;
+    const iiwa14_bench_real_t t43 = t27 * t38 + t26 * t42;
+    const iiwa14_bench_real_t t44 = dq[4] + t36;
+    const iiwa14_bench_real_t t45 = t29 * t44;
+    const iiwa14_bench_real_t t46 = t43 + t45;
+    const iiwa14_bench_real_t t47 = t45 + t46;
+    const iiwa14_bench_real_t t49 = t32 * t31 + t48 * t47;
+    const iiwa14_bench_real_t t50 = t48 * t44 - t32 * t28;
+    const iiwa14_bench_real_t t51 = t29 - dq[5];
+    const iiwa14_bench_real_t t52 = t50 * t51;
+    const iiwa14_bench_real_t t53 = t49 - t52;
+    const iiwa14_bench_real_t t54 = t53 - t52;
+    const iiwa14_bench_real_t t56 = t27 * t42 - t26 * t38;
+    const iiwa14_bench_real_t t57 = t28 * t44;
+    const iiwa14_bench_real_t t58 = t56 + t57;
+    const iiwa14_bench_real_t t59 = t48 * t28 + t32 * t44;
+    const iiwa14_bench_real_t t60 = t59 * t50;
+    const iiwa14_bench_real_t t61 = t60 - t58;
+    const iiwa14_bench_real_t t63 = t62 * t61 + t55 * t54;
+    const iiwa14_bench_real_t t64 = t55 * t51 - t62 * t59;
+    const iiwa14_bench_real_t t65 = dq[6] + t50;
+    const iiwa14_bench_real_t t66 = t64 * t65;
+    const iiwa14_bench_real_t t67 = t63 + t66;
+    const iiwa14_bench_real_t t68 = t62 * t54 - t55 * t61;
+    const iiwa14_bench_real_t t69 = t55 * t59 + t62 * t51;
+    const iiwa14_bench_real_t t70 = t69 * t65;
+    const iiwa14_bench_real_t t71 = t70 + (t68 + t70);
+    const iiwa14_bench_real_t t72 = t48 * t31 - t32 * t47;
+    const iiwa14_bench_real_t t73 = t59 * t51;
+    const iiwa14_bench_real_t t74 = t72 + t73;
+    const iiwa14_bench_real_t t75 = t69 * t64;
+    const iiwa14_bench_real_t t76 = t74 + t75;
+    const iiwa14_bench_real_t t77 = parameters[XX7R] * t67 + parameters[ZZ7] * t66 - parameters[XY7] * t71
+        - parameters[XZ7R] * t76;
+    const iiwa14_bench_real_t t78 = t64 * t64;
+    const iiwa14_bench_real_t t79 = t65 * t65;
+    const iiwa14_bench_real_t t80 = IIWA14_BENCH_C(9.81) * t0;
+    const iiwa14_bench_real_t t81 = t80 + IIWA14_BENCH_C(0.4) * t12;
+    const iiwa14_bench_real_t t82 = IIWA14_BENCH_C(0.8) * t13;
+    const iiwa14_bench_real_t t83 = t2 * t81 - t3 * t82;
+    const iiwa14_bench_real_t t84 = t1 * t1;
+    const iiwa14_bench_real_t t85 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t86 = IIWA14_BENCH_C(-9.81) * t10;
+    const iiwa14_bench_real_t t87 = t86 + IIWA14_BENCH_C(0.4) * (t84 + t85);
+    const iiwa14_bench_real_t t88 = t9 * t83 + t20 * t87;
+    const iiwa14_bench_real_t t89 = t88 + IIWA14_BENCH_C(0.4) * t38;
+    const iiwa14_bench_real_t t90 = t3 * t81 + t2 * t82;
+    const iiwa14_bench_real_t t91 = t90 - IIWA14_BENCH_C(-0.4) * t42;
+    const iiwa14_bench_real_t t92 = t26 * t89 - t27 * t91;
+    const iiwa14_bench_real_t t93 = t22 * t22;
+    const iiwa14_bench_real_t t94 = t23 * t23;
+    const iiwa14_bench_real_t t95 = t93 + t94;
+    const iiwa14_bench_real_t t96 = t20 * t83 - t9 * t87;
+    const iiwa14_bench_real_t t97 = t96 + IIWA14_BENCH_C(-0.4) * t95;
+    const iiwa14_bench_real_t t98 = t32 * t92 - t48 * t97;
+    const iiwa14_bench_real_t t99 = t77 - parameters[YZ7R] * (t78 - t79) + parameters[MY7] * t98;
+    const iiwa14_bench_real_t t100 = t66 + t67;
+    const iiwa14_bench_real_t t101 = t74 - t75;
+    const iiwa14_bench_real_t t102 = t70 * (parameters[ZZ7] - parameters[XX7R]) - parameters[XY7] * t100
+        + parameters[YZ7R] * t101;
+    const iiwa14_bench_real_t t103 = t69 * t69;
+    const iiwa14_bench_real_t t104 = t102 + parameters[XZ7R] * (t79 - t103) + parameters[MX7] * t98;
+    const iiwa14_bench_real_t t105 = t73 + t74;
+    const iiwa14_bench_real_t t106 = t58 + t60;
+    const iiwa14_bench_real_t t107 = parameters[XX6R] * t53 - parameters[ZZ6R] * t52 + parameters[XY6] * t105
+        - parameters[XZ6] * t106;
+    const iiwa14_bench_real_t t108 = t50 * t50;
+    const iiwa14_bench_real_t t109 = t51 * t51;
+    const iiwa14_bench_real_t t110 = t27 * t89 + t26 * t91;
+    const iiwa14_bench_real_t t111 = t107 + parameters[YZ6] * (t109 - t108) - parameters[MY6R] * t110
+        + (t55 * t99 + t62 * t104);
+    const iiwa14_bench_real_t t112 = parameters[ZZ7] * t74 - parameters[XX7R] * t75 + parameters[YZ7R] * t68
+        - parameters[XZ7R] * t63;
+    const iiwa14_bench_real_t t113 = t48 * t92 + t32 * t97;
+    const iiwa14_bench_real_t t114 = parameters[MX7] * (t62 * t113 + t55 * t110)
+        + parameters[MY7] * (t55 * t113 - t62 * t110);
+    const iiwa14_bench_real_t t115 = t112 + parameters[XY7] * (t103 - t78) + t114;
+    const iiwa14_bench_real_t t116 = parameters[XY6] * t54 - t73 * (parameters[XX6R] - parameters[ZZ6R])
+        + parameters[YZ6] * t61;
+    const iiwa14_bench_real_t t117 = t59 * t59;
+    const iiwa14_bench_real_t t118 = t116 + parameters[XZ6] * (t117 - t109) + parameters[MX6] * t110 + t115;
+    const iiwa14_bench_real_t t119 = t57 + t58;
+    const iiwa14_bench_real_t t120 = t25 + t30;
+    const iiwa14_bench_real_t t121 = parameters[XX5R] * t46 + parameters[ZZ5R] * t45 - parameters[XY5] * t119
+        - parameters[XZ5] * t120;
+    const iiwa14_bench_real_t t122 = t29 * t29;
+    const iiwa14_bench_real_t t123 = t44 * t44;
+    const iiwa14_bench_real_t t124 = t121 - parameters[YZ5] * (t122 - t123) - parameters[MY5R] * t97
+        - (t32 * t118 - t48 * t111);
+    const iiwa14_bench_real_t t125 = parameters[ZZ6R] * t58 - parameters[XX6R] * t60 - parameters[YZ6] * t72
+        - parameters[XZ6] * t49;
+    const iiwa14_bench_real_t t126 = t125 + parameters[XY6] * (t117 - t108) + (parameters[MX6] * t98
+        + parameters[MY6R] * t113);
+    const iiwa14_bench_real_t t127 = t126 + (t55 * t104 - t62 * t99);
+    const iiwa14_bench_real_t t128 = t57 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t47
+        - parameters[YZ5] * t31;
+    const iiwa14_bench_real_t t129 = t28 * t28;
+    const iiwa14_bench_real_t t130 = t128 + parameters[XZ5] * (t129 - t123) + parameters[MX5] * t97 - t127;
+    const iiwa14_bench_real_t t131 = parameters[MX7] * (t78 + t79) + parameters[MY7] * t101;
+    const iiwa14_bench_real_t t132 = parameters[MY7] * (t103 + t79) - parameters[MX7] * t76;
+    const iiwa14_bench_real_t t133 = parameters[MY6R] * t61 - parameters[MX6] * (t108 + t109) + (t62 * t132
+        - t55 * t131);
+    const iiwa14_bench_real_t t134 = parameters[MX6] * t106 - parameters[MY6R] * (t117 + t109)
+        + (parameters[MX7] * t71 + parameters[MY7] * t100);
+    const iiwa14_bench_real_t t135 = parameters[MX5] * (t122 + t123) + parameters[MY5R] * t31 + (t32 * t134
+        - t48 * t133);
+    const iiwa14_bench_real_t t136 = parameters[MY6R] * t54 - parameters[MX6] * t105 + (t62 * t131
+        + t55 * t132);
+    const iiwa14_bench_real_t t137 = parameters[MY5R] * (t129 + t123) - parameters[MX5] * t120 + t136;
+    const iiwa14_bench_real_t t138 = t27 * t135 + t26 * t137;
+    const iiwa14_bench_real_t t139 = t24 + t25;
+    const iiwa14_bench_real_t t140 = t35 - t37;
+    const iiwa14_bench_real_t t141 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4] * t139
+        + parameters[XZ4] * t140;
+    const iiwa14_bench_real_t t142 = t36 * t36;
+    const iiwa14_bench_real_t t143 = t141 + parameters[YZ4] * (t142 - t94) - parameters[MY4R] * t90
+        + (t27 * t130 - t26 * t124 + IIWA14_BENCH_C(0.4) * t138);
+    const iiwa14_bench_real_t t144 = parameters[ZZ5R] * t25 - parameters[XX5R] * t30 + parameters[YZ5] * t56
+        - parameters[XZ5] * t43;
+    const iiwa14_bench_real_t t145 = t144 + parameters[XY5] * (t129 - t122) + (parameters[MX5] * t110
+        + parameters[MY5R] * t92);
+    const iiwa14_bench_real_t t146 = t145 + (t32 * t111 + t48 * t118);
+    const iiwa14_bench_real_t t147 = t24 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t42
+        + parameters[YZ4] * t38;
+    const iiwa14_bench_real_t t148 = t147 + parameters[XZ4] * (t94 - t93) + parameters[MX4] * t90 + t146;
+    const iiwa14_bench_real_t t149 = parameters[XX3R] * t18 - parameters[ZZ3R] * t17 - parameters[XY3] * (t34
+        - t35);
+    const iiwa14_bench_real_t t150 = t7 + t6;
+    const iiwa14_bench_real_t t151 = t5 * t5;
+    const iiwa14_bench_real_t t152 = t16 * t16;
+    const iiwa14_bench_real_t t153 = t149 + parameters[XZ3] * t150 - parameters[YZ3] * (t151 - t152)
+        + parameters[MY3R] * t87;
+    const iiwa14_bench_real_t t154 = t153 + (t20 * t148 - t9 * t143);
+    const iiwa14_bench_real_t t155 = t27 * t137 - t26 * t135;
+    const iiwa14_bench_real_t t156 = parameters[ZZ4R] * t35 + parameters[XX4R] * t37 + parameters[YZ4] * t21
+        - parameters[XZ4] * t39;
+    const iiwa14_bench_real_t t157 = t156 + parameters[XY4] * (t93 - t142) + (parameters[MX4] * t96
+        + parameters[MY4R] * t88);
+    const iiwa14_bench_real_t t158 = t157 + (t27 * t124 + t26 * t130 + IIWA14_BENCH_C(-0.4) * t155);
+    const iiwa14_bench_real_t t159 = t34 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t19
+        - parameters[YZ3] * t8;
+    const iiwa14_bench_real_t t160 = t4 * t4;
+    const iiwa14_bench_real_t t161 = t159 + parameters[XZ3] * (t152 - t160) + parameters[MX3] * t87 - t158;
+    const iiwa14_bench_real_t t162 = t9 * (t155 - (parameters[MX4] * (t142 + t94) + parameters[MY4R] * t38));
+    const iiwa14_bench_real_t t163 = parameters[MX5] * t119 + parameters[MY5R] * t47 + (t32 * t133
+        + t48 * t134);
+    const iiwa14_bench_real_t t164 = t162 + t20 * (parameters[MY4R] * t95 - parameters[MX4] * t140 + t163);
+    const iiwa14_bench_real_t t165 = parameters[MY3R] * t8 - parameters[MX3] * (t151 + t152) + t164;
+    const iiwa14_bench_real_t t166 = parameters[MX3] * t150 + parameters[MY3R] * (t160 + t152)
+        - (parameters[MX4] * t139 + parameters[MY4R] * t42 - t138);
+    const iiwa14_bench_real_t t167 = t2 * t154 + t3 * t161 + IIWA14_BENCH_C(0.4) * (t3 * t165 - t2 * t166);
+    const iiwa14_bench_real_t t168 = parameters[XX2R] * t13 + parameters[ZZ2R] * t13
+        + parameters[XY2] * (IIWA14_BENCH_C(-2.0) * t7);
+    const iiwa14_bench_real_t t169 = t11 * t11;
+    const iiwa14_bench_real_t t170 = t168 - parameters[XZ2] * t12 + parameters[YZ2] * (t85 - t169) + t167;
+    const iiwa14_bench_real_t t171 = parameters[XX3R] * t6 - parameters[ZZ3R] * t7 - parameters[YZ3] * t33
+        - parameters[XZ3] * t15;
+    const iiwa14_bench_real_t t172 = t171 + parameters[XY3] * (t160 - t151) + (parameters[MX3] * t90
+        + parameters[MY3R] * t83);
+    const iiwa14_bench_real_t t173 = t172 + (t20 * t143 + t9 * t148);
+    const iiwa14_bench_real_t t174 = t7 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t14
+        + parameters[YZ2] * t12;
+    const iiwa14_bench_real_t t175 = t0 * t170 + t10 * (t174 + parameters[XZ2] * (t84 - t85) + t173);
     out[0] = t175;
-    const iiwa14_bench_real_t t176 = parameters[XY2] * (t28 - t8) - parameters[XX2R] * t7
-        + (parameters[MX2] * t27 + parameters[MY2R] * t50);
-    const iiwa14_bench_real_t t177 = t10 * t163 - t11 * t156 + IIWA14_BENCH_C(0.4) * (t10 * t167
-        + t11 * t168);
-    out[1] = t176 + t177;
-    out[2] = t174;
-    out[3] = t162;
-    out[4] = t154;
-    out[5] = t140;
-    out[6] = t133;
+    const iiwa14_bench_real_t t176 = t2 * t161 - t3 * t154 + IIWA14_BENCH_C(0.4) * (t2 * t165 + t3 * t166);
+    const iiwa14_bench_real_t t177 = parameters[XY2] * (t84 - t169) - parameters[XX2R] * t12
+        + (parameters[MX2] * t86 + parameters[MY2R] * t80);
+    out[1] = t177 + t176;
+    out[2] = t173;
+    out[3] = t158;
+    out[4] = t146;
+    out[5] = t127;
+    out[6] = t115;
     return IIWA14_BENCH_STATUS_OK;
 }

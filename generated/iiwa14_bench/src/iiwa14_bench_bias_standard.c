@@ -97,7 +97,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,268 +123,266 @@ int iiwa14_bench_bias_standard(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t13, t12;
-    IIWA14_BENCH_SINCOS(q[2], &t13, &t12);
-    iiwa14_bench_real_t t37, t36;
-    IIWA14_BENCH_SINCOS(q[3], &t37, &t36);
-    iiwa14_bench_real_t t59, t58;
-    IIWA14_BENCH_SINCOS(q[4], &t59, &t58);
-    iiwa14_bench_real_t t86, t85;
-    IIWA14_BENCH_SINCOS(q[5], &t86, &t85);
-    iiwa14_bench_real_t t108, t107;
-    IIWA14_BENCH_SINCOS(q[6], &t108, &t107);
-    const iiwa14_bench_real_t t2 = t1 * dq[0];
-    const iiwa14_bench_real_t t3 = dq[1] * t2;
-    const iiwa14_bench_real_t t4 = t0 * dq[0];
-    const iiwa14_bench_real_t t5 = dq[1] * t4;
-    const iiwa14_bench_real_t t6 = t3 * parameters[XX2] + t3 * (parameters[ZZ2] - parameters[YY2])
-        + IIWA14_BENCH_C(-2.0) * t5 * parameters[XY2];
-    const iiwa14_bench_real_t t7 = t4 * t2;
-    const iiwa14_bench_real_t t8 = t2 * t2;
-    const iiwa14_bench_real_t t9 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t10 = IIWA14_BENCH_C(-9.81) * t1;
-    const iiwa14_bench_real_t t11 = t6 - t7 * parameters[XZ2] + (t9 - t8) * parameters[YZ2]
-        + t10 * parameters[MZ2];
-    const iiwa14_bench_real_t t14 = t13 * t4 + t12 * dq[1];
-    const iiwa14_bench_real_t t15 = dq[2] + t2;
-    const iiwa14_bench_real_t t16 = t14 * t15;
-    const iiwa14_bench_real_t t17 = IIWA14_BENCH_C(2.0) * t3;
-    const iiwa14_bench_real_t t18 = t13 * t7 + t12 * t17;
-    const iiwa14_bench_real_t t19 = t16 - t18;
-    const iiwa14_bench_real_t t20 = t12 * t4 - t13 * dq[1];
-    const iiwa14_bench_real_t t21 = t20 * t15;
-    const iiwa14_bench_real_t t22 = t13 * t17 - t12 * t7;
-    const iiwa14_bench_real_t t23 = t21 + t22;
-    const iiwa14_bench_real_t t24 = parameters[XX3] * t19 - t16 * (parameters[YY3] - parameters[ZZ3])
-        + parameters[XY3] * (t21 + t23);
-    const iiwa14_bench_real_t t25 = t20 * t14;
-    const iiwa14_bench_real_t t26 = t5 + t25;
-    const iiwa14_bench_real_t t27 = t14 * t14;
-    const iiwa14_bench_real_t t28 = t15 * t15;
-    const iiwa14_bench_real_t t29 = t4 * t4;
-    const iiwa14_bench_real_t t30 = t10 + IIWA14_BENCH_C(0.4) * (t29 + t9);
-    const iiwa14_bench_real_t t31 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t32 = IIWA14_BENCH_C(-0.4) * t7 - t31;
-    const iiwa14_bench_real_t t33 = IIWA14_BENCH_C(0.8) * t3;
-    const iiwa14_bench_real_t t34 = t13 * t32 - t12 * t33;
-    const iiwa14_bench_real_t t35 = t24 - parameters[XZ3] * t26 + (t27 - t28) * parameters[YZ3]
-        + (parameters[MZ3] * t34 - t30 * parameters[MY3]);
-    const iiwa14_bench_real_t t38 = t37 * t20 + t36 * t15;
-    const iiwa14_bench_real_t t39 = dq[3] - t14;
-    const iiwa14_bench_real_t t40 = t38 * t39;
-    const iiwa14_bench_real_t t41 = t25 - t5;
-    const iiwa14_bench_real_t t42 = t16 + t19;
-    const iiwa14_bench_real_t t43 = t37 * t41 + t36 * t42;
-    const iiwa14_bench_real_t t44 = t40 + t43;
-    const iiwa14_bench_real_t t45 = t36 * t20 - t37 * t15;
-    const iiwa14_bench_real_t t46 = t45 * t39;
-    const iiwa14_bench_real_t t47 = t36 * t41 - t37 * t42;
-    const iiwa14_bench_real_t t48 = t46 + t47;
-    const iiwa14_bench_real_t t49 = t46 + t48;
-    const iiwa14_bench_real_t t50 = parameters[XX4] * t44 + t40 * (parameters[ZZ4] - parameters[YY4])
-        + parameters[XY4] * t49;
-    const iiwa14_bench_real_t t51 = t45 * t38;
-    const iiwa14_bench_real_t t52 = t51 + t23;
-    const iiwa14_bench_real_t t53 = t38 * t38;
-    const iiwa14_bench_real_t t54 = t39 * t39;
-    const iiwa14_bench_real_t t55 = t12 * t32 + t13 * t33;
-    const iiwa14_bench_real_t t56 = t36 * t30 + t37 * t55;
-    const iiwa14_bench_real_t t57 = t50 - parameters[XZ4] * t52 + (t53 - t54) * parameters[YZ4]
-        + (parameters[MY4] * t34 + parameters[MZ4] * t56);
-    const iiwa14_bench_real_t t60 = t58 * t39 - t59 * t45;
-    const iiwa14_bench_real_t t61 = dq[4] + t38;
-    const iiwa14_bench_real_t t62 = t60 * t61;
-    const iiwa14_bench_real_t t63 = t23 - t51;
-    const iiwa14_bench_real_t t64 = t40 + t44;
-    const iiwa14_bench_real_t t65 = t59 * t63 + t58 * t64;
-    const iiwa14_bench_real_t t66 = t62 - t65;
-    const iiwa14_bench_real_t t67 = t58 * t45 + t59 * t39;
-    const iiwa14_bench_real_t t68 = t67 * t61;
-    const iiwa14_bench_real_t t69 = t58 * t63 - t59 * t64;
-    const iiwa14_bench_real_t t70 = t68 + t69;
-    const iiwa14_bench_real_t t71 = t68 + t70;
-    const iiwa14_bench_real_t t72 = t62 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t66
-        + parameters[XY5] * t71;
-    const iiwa14_bench_real_t t73 = t67 * t60;
-    const iiwa14_bench_real_t t74 = t73 + t48;
-    const iiwa14_bench_real_t t75 = t60 * t60;
-    const iiwa14_bench_real_t t76 = t61 * t61;
-    const iiwa14_bench_real_t t77 = t45 * t45;
-    const iiwa14_bench_real_t t78 = t77 + t54;
-    const iiwa14_bench_real_t t79 = IIWA14_BENCH_C(0.4) * t78 + t56;
-    const iiwa14_bench_real_t t80 = t36 * t55 - t37 * t30;
-    const iiwa14_bench_real_t t81 = t80 - IIWA14_BENCH_C(-0.4) * t63;
-    const iiwa14_bench_real_t t82 = t34 + IIWA14_BENCH_C(0.4) * t64;
-    const iiwa14_bench_real_t t83 = t59 * t81 + t58 * t82;
-    const iiwa14_bench_real_t t84 = t72 + parameters[XZ5] * t74 + (t75 - t76) * parameters[YZ5]
-        - (parameters[MY5] * t79 - parameters[MZ5] * t83);
-    const iiwa14_bench_real_t t87 = t85 * t61 - t86 * t67;
-    const iiwa14_bench_real_t t88 = t60 - dq[5];
-    const iiwa14_bench_real_t t89 = t87 * t88;
-    const iiwa14_bench_real_t t90 = t48 - t73;
-    const iiwa14_bench_real_t t91 = t62 + t66;
-    const iiwa14_bench_real_t t92 = t86 * t90 + t85 * t91;
-    const iiwa14_bench_real_t t93 = t92 - t89;
-    const iiwa14_bench_real_t t94 = t85 * t67 + t86 * t61;
-    const iiwa14_bench_real_t t95 = t94 * t88;
-    const iiwa14_bench_real_t t96 = t85 * t90 - t86 * t91;
-    const iiwa14_bench_real_t t97 = t95 + t96;
-    const iiwa14_bench_real_t t98 = t95 + t97;
-    const iiwa14_bench_real_t t99 = parameters[XX6] * t93 + t89 * (parameters[YY6] - parameters[ZZ6])
-        + parameters[XY6] * t98;
-    const iiwa14_bench_real_t t100 = t94 * t87;
-    const iiwa14_bench_real_t t101 = t100 + t70;
-    const iiwa14_bench_real_t t102 = t87 * t87;
-    const iiwa14_bench_real_t t103 = t88 * t88;
-    const iiwa14_bench_real_t t104 = t59 * t82 - t58 * t81;
-    const iiwa14_bench_real_t t105 = t86 * t104 + t85 * t79;
-    const iiwa14_bench_real_t t106 = t99 - parameters[XZ6] * t101 + (t103 - t102) * parameters[YZ6]
-        + (parameters[MY6] * t83 + parameters[MZ6] * t105);
-    const iiwa14_bench_real_t t109 = t108 * t94 - t107 * t88;
-    const iiwa14_bench_real_t t110 = dq[6] + t87;
-    const iiwa14_bench_real_t t111 = t109 * t110;
-    const iiwa14_bench_real_t t112 = t70 - t100;
-    const iiwa14_bench_real_t t113 = t93 - t89;
-    const iiwa14_bench_real_t t114 = t108 * t112 - t107 * t113;
-    const iiwa14_bench_real_t t115 = t111 + t114;
-    const iiwa14_bench_real_t t116 = t107 * t94 + t108 * t88;
-    const iiwa14_bench_real_t t117 = t116 * t110;
-    const iiwa14_bench_real_t t118 = t107 * t112 + t108 * t113;
-    const iiwa14_bench_real_t t119 = t117 + t118;
-    const iiwa14_bench_real_t t120 = t117 + t119;
-    const iiwa14_bench_real_t t121 = parameters[XX7] * t115 - t111 * (parameters[YY7] - parameters[ZZ7])
-        + parameters[XY7] * t120;
-    const iiwa14_bench_real_t t122 = t116 * t109;
-    const iiwa14_bench_real_t t123 = t122 - t97;
-    const iiwa14_bench_real_t t124 = t109 * t109;
-    const iiwa14_bench_real_t t125 = t110 * t110;
-    const iiwa14_bench_real_t t126 = t94 * t94;
-    const iiwa14_bench_real_t t127 = t126 + t103;
-    const iiwa14_bench_real_t t128 = IIWA14_BENCH_C(0.126) * t127 + t105;
-    const iiwa14_bench_real_t t129 = t85 * t104 - t86 * t79;
-    const iiwa14_bench_real_t t130 = IIWA14_BENCH_C(0.126) * t112 - t129;
-    const iiwa14_bench_real_t t131 = t83 + IIWA14_BENCH_C(-0.126) * t113;
-    const iiwa14_bench_real_t t132 = t108 * t130 + t107 * t131;
-    const iiwa14_bench_real_t t133 = t121 - parameters[XZ7] * t123 + (t124 - t125) * parameters[YZ7]
-        - (parameters[MY7] * t128 - parameters[MZ7] * t132);
-    const iiwa14_bench_real_t t134 = t111 + t115;
-    const iiwa14_bench_real_t t135 = parameters[YY7] * t119 + t117 * (parameters[ZZ7] - parameters[XX7])
-        + parameters[XY7] * t134;
-    const iiwa14_bench_real_t t136 = t122 + t97;
-    const iiwa14_bench_real_t t137 = t116 * t116;
-    const iiwa14_bench_real_t t138 = t107 * t130 - t108 * t131;
-    const iiwa14_bench_real_t t139 = t135 + parameters[YZ7] * t136 + (t125 - t137) * parameters[XZ7]
-        + (parameters[MZ7] * t138 + parameters[MX7] * t128);
-    const iiwa14_bench_real_t t140 = (t124 + t125) * parameters[MX7] + parameters[MY7] * t136
-        - parameters[MZ7] * t118;
-    const iiwa14_bench_real_t t141 = parameters[M7] * t138 - t140;
-    const iiwa14_bench_real_t t142 = parameters[MX7] * t123 + (t137 + t125) * parameters[MY7]
-        + parameters[MZ7] * t114;
-    const iiwa14_bench_real_t t143 = parameters[M7] * t132 + t142;
-    const iiwa14_bench_real_t t144 = t107 * t143 - t108 * t141;
-    const iiwa14_bench_real_t t145 = t106 + (t108 * t139 - t107 * t133 + IIWA14_BENCH_C(-0.126) * t144);
-    const iiwa14_bench_real_t t146 = parameters[YY6] * t97 - t95 * (parameters[XX6] - parameters[ZZ6])
-        + parameters[XY6] * t113;
-    const iiwa14_bench_real_t t147 = t146 - parameters[YZ6] * t112 + (t126 - t103) * parameters[XZ6]
-        + (parameters[MZ6] * t129 - parameters[MX6] * t83);
-    const iiwa14_bench_real_t t148 = parameters[ZZ7] * t97 + t122 * (parameters[XX7] - parameters[YY7])
-        + parameters[YZ7] * t118;
-    const iiwa14_bench_real_t t149 = t148 + parameters[XZ7] * t114 + (t137 - t124) * parameters[XY7]
-        - (parameters[MX7] * t132 + parameters[MY7] * t138);
-    const iiwa14_bench_real_t t150 = t147 + t149;
-    const iiwa14_bench_real_t t151 = t84 + (t86 * t150 - t85 * t145);
-    const iiwa14_bench_real_t t152 = t68 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t70
-        + parameters[XY5] * t91;
-    const iiwa14_bench_real_t t153 = t67 * t67;
-    const iiwa14_bench_real_t t154 = t152 - parameters[YZ5] * t90 + (t153 - t76) * parameters[XZ5]
-        + (parameters[MZ5] * t104 - parameters[MX5] * t79);
-    const iiwa14_bench_real_t t155 = parameters[ZZ6] * t70 - t100 * (parameters[XX6] - parameters[YY6])
-        - parameters[YZ6] * t96;
-    const iiwa14_bench_real_t t156 = t155 - parameters[XZ6] * t92 + (t126 - t102) * parameters[XY6]
-        + (parameters[MX6] * t105 + parameters[MY6] * t129);
-    const iiwa14_bench_real_t t157 = t107 * t141 + t108 * t143;
-    const iiwa14_bench_real_t t158 = t156 + (t108 * t133 + t107 * t139 + IIWA14_BENCH_C(0.126) * t157);
-    const iiwa14_bench_real_t t159 = t154 - t158;
-    const iiwa14_bench_real_t t160 = (t75 + t76) * parameters[MX5] + parameters[MY5] * t90
-        - parameters[MZ5] * t69;
-    const iiwa14_bench_real_t t161 = (t102 + t103) * parameters[MX6] + parameters[MY6] * t112
-        + parameters[MZ6] * t96;
-    const iiwa14_bench_real_t t162 = t157 - (parameters[M6] * t129 + t161);
-    const iiwa14_bench_real_t t163 = parameters[M6] * t105 + (parameters[MX6] * t101 - t127 * parameters[MY6]
-        + parameters[MZ6] * t92);
-    const iiwa14_bench_real_t t164 = parameters[MX7] * t120 - parameters[MY7] * t134 + (t137
-        + t124) * parameters[MZ7];
-    const iiwa14_bench_real_t t165 = t163 + (parameters[M7] * t128 + t164);
-    const iiwa14_bench_real_t t166 = t85 * t162 - t86 * t165 - (parameters[M5] * t104 + t160);
-    const iiwa14_bench_real_t t167 = (t153 + t76) * parameters[MY5] - parameters[MX5] * t74
-        + parameters[MZ5] * t65;
-    const iiwa14_bench_real_t t168 = parameters[MY6] * t113 - parameters[MX6] * t98 + (t126
-        + t102) * parameters[MZ6];
-    const iiwa14_bench_real_t t169 = parameters[M5] * t83 + t167 + (parameters[M6] * t83 + t168 + t144);
-    const iiwa14_bench_real_t t170 = t58 * t169 - t59 * t166;
-    const iiwa14_bench_real_t t171 = t57 + (t58 * t151 + t59 * t159 + IIWA14_BENCH_C(0.4) * t170);
-    const iiwa14_bench_real_t t172 = parameters[YY4] * t48 + t46 * (parameters[ZZ4] - parameters[XX4])
-        + parameters[XY4] * t64;
-    const iiwa14_bench_real_t t173 = t172 - parameters[YZ4] * t63 + (t54 - t77) * parameters[XZ4]
-        + (parameters[MZ4] * t80 - parameters[MX4] * t34);
-    const iiwa14_bench_real_t t174 = parameters[ZZ5] * t48 - t73 * (parameters[XX5] - parameters[YY5])
-        + parameters[YZ5] * t69;
-    const iiwa14_bench_real_t t175 = t174 + parameters[XZ5] * t65 + (t153 - t75) * parameters[XY5]
-        + (parameters[MY5] * t104 - parameters[MX5] * t83);
-    const iiwa14_bench_real_t t176 = t175 + (t86 * t145 + t85 * t150);
-    const iiwa14_bench_real_t t177 = t173 + t176;
-    const iiwa14_bench_real_t t178 = t35 + (t36 * t171 - t37 * t177);
-    const iiwa14_bench_real_t t179 = parameters[YY3] * t23 + t21 * (parameters[ZZ3] - parameters[XX3])
-        + parameters[XY3] * t42;
-    const iiwa14_bench_real_t t180 = t20 * t20;
-    const iiwa14_bench_real_t t181 = t179 + parameters[YZ3] * t41 + (t28 - t180) * parameters[XZ3]
-        + (parameters[MZ3] * t55 + t30 * parameters[MX3]);
-    const iiwa14_bench_real_t t182 = t51 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t23
-        + parameters[YZ4] * t47;
-    const iiwa14_bench_real_t t183 = t182 + parameters[XZ4] * t43 + (t77 - t53) * parameters[XY4]
-        - (parameters[MX4] * t56 + parameters[MY4] * t80);
-    const iiwa14_bench_real_t t184 = t58 * t166 + t59 * t169;
-    const iiwa14_bench_real_t t185 = t183 + (t58 * t159 - t59 * t151 + IIWA14_BENCH_C(-0.4) * t184);
-    const iiwa14_bench_real_t t186 = t181 - t185;
-    const iiwa14_bench_real_t t187 = parameters[MZ3] * t22 - ((t27 + t28) * parameters[MX3]
-        + parameters[MY3] * t41);
-    const iiwa14_bench_real_t t188 = parameters[MY4] * t63 - (t53 + t54) * parameters[MX4]
-        + parameters[MZ4] * t47;
-    const iiwa14_bench_real_t t189 = parameters[M4] * t56 + (parameters[MX4] * t52 + t78 * parameters[MY4]
-        + parameters[MZ4] * t43);
-    const iiwa14_bench_real_t t190 = parameters[MX5] * t71 + parameters[MY5] * t91 + (t153
-        + t75) * parameters[MZ5];
-    const iiwa14_bench_real_t t191 = parameters[M5] * t79 + t190 + (t86 * t162 + t85 * t165);
-    const iiwa14_bench_real_t t192 = t36 * (parameters[M4] * t80 + t188 + t184) + t37 * (t189 + t191);
-    const iiwa14_bench_real_t t193 = parameters[M3] * t55 + t187 + t192;
-    const iiwa14_bench_real_t t194 = parameters[MX3] * t26 + (t180 + t28) * parameters[MY3]
-        - parameters[MZ3] * t18;
-    const iiwa14_bench_real_t t195 = parameters[MX4] * t49 - parameters[MY4] * t64 + (t77
-        + t53) * parameters[MZ4];
-    const iiwa14_bench_real_t t196 = t195 - parameters[M4] * t34 - t170 - (parameters[M3] * t34 + t194);
-    const iiwa14_bench_real_t t197 = t13 * t186 - t12 * t178 + IIWA14_BENCH_C(0.4) * (t13 * t193
-        + t12 * t196);
-    const iiwa14_bench_real_t t198 = t5 * (parameters[XX2] - parameters[ZZ2]) - t5 * parameters[YY2]
-        + t17 * parameters[XY2];
-    const iiwa14_bench_real_t t199 = t198 + t7 * parameters[YZ2] + (t29 - t9) * parameters[XZ2]
-        + t31 * parameters[MZ2];
-    const iiwa14_bench_real_t t200 = t25 * (parameters[XX3] - parameters[YY3]) - t5 * parameters[ZZ3]
-        + parameters[YZ3] * t22;
-    const iiwa14_bench_real_t t201 = t200 - parameters[XZ3] * t18 + (t180 - t27) * parameters[XY3]
-        - (parameters[MX3] * t34 + parameters[MY3] * t55);
-    const iiwa14_bench_real_t t202 = t201 + (t37 * t171 + t36 * t177);
-    out[0] = t0 * (t11 + t197) + t1 * (t199 + t202);
-    const iiwa14_bench_real_t t203 = t7 * (parameters[YY2] - parameters[XX2]) + (t29 - t8) * parameters[XY2]
-        + (t10 * parameters[MX2] + t31 * parameters[MY2]);
-    const iiwa14_bench_real_t t204 = t13 * t178 + t12 * t186 + IIWA14_BENCH_C(0.4) * (t12 * t193
-        - t13 * t196);
-    out[1] = t203 + t204;
-    out[2] = t202;
-    out[3] = t185;
-    out[4] = t176;
-    out[5] = t158;
-    out[6] = t149;
+    iiwa14_bench_real_t t0, t6;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t6);
+    iiwa14_bench_real_t t3, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t3, &t2);
+    iiwa14_bench_real_t t9, t5;
+    IIWA14_BENCH_SINCOS(q[3], &t9, &t5);
+    iiwa14_bench_real_t t14, t11;
+    IIWA14_BENCH_SINCOS(q[4], &t14, &t11);
+    iiwa14_bench_real_t t32, t48;
+    IIWA14_BENCH_SINCOS(q[5], &t32, &t48);
+    iiwa14_bench_real_t t62, t55;
+    IIWA14_BENCH_SINCOS(q[6], &t62, &t55);
+    const iiwa14_bench_real_t t1 = t0 * dq[0];
+    const iiwa14_bench_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_bench_real_t t7 = t6 * dq[0];
+    const iiwa14_bench_real_t t8 = dq[2] + t7;
+    const iiwa14_bench_real_t t10 = t5 * t4 - t9 * t8;
+    const iiwa14_bench_real_t t12 = t3 * t1 + t2 * dq[1];
+    const iiwa14_bench_real_t t13 = dq[3] - t12;
+    const iiwa14_bench_real_t t15 = t11 * t10 + t14 * t13;
+    const iiwa14_bench_real_t t16 = t11 * t13 - t14 * t10;
+    const iiwa14_bench_real_t t17 = t15 * t16;
+    const iiwa14_bench_real_t t18 = t4 * t12;
+    const iiwa14_bench_real_t t19 = dq[1] * t1;
+    const iiwa14_bench_real_t t20 = t18 - t19;
+    const iiwa14_bench_real_t t21 = t12 * t8;
+    const iiwa14_bench_real_t t22 = t1 * t7;
+    const iiwa14_bench_real_t t23 = dq[1] * t7;
+    const iiwa14_bench_real_t t24 = IIWA14_BENCH_C(2.0) * t23;
+    const iiwa14_bench_real_t t25 = t3 * t22 + t2 * t24;
+    const iiwa14_bench_real_t t26 = t21 - t25;
+    const iiwa14_bench_real_t t27 = t21 + t26;
+    const iiwa14_bench_real_t t28 = t5 * t20 - t9 * t27;
+    const iiwa14_bench_real_t t29 = t10 * t13;
+    const iiwa14_bench_real_t t30 = t29 + t28;
+    const iiwa14_bench_real_t t31 = t30 - t17;
+    const iiwa14_bench_real_t t33 = t9 * t4 + t5 * t8;
+    const iiwa14_bench_real_t t34 = t10 * t33;
+    const iiwa14_bench_real_t t35 = t4 * t8;
+    const iiwa14_bench_real_t t36 = t3 * t24 - t2 * t22;
+    const iiwa14_bench_real_t t37 = t35 + t36;
+    const iiwa14_bench_real_t t38 = t37 - t34;
+    const iiwa14_bench_real_t t39 = t9 * t20 + t5 * t27;
+    const iiwa14_bench_real_t t40 = t33 * t13;
+    const iiwa14_bench_real_t t41 = t40 + t39;
+    const iiwa14_bench_real_t t42 = t40 + t41;
+    const iiwa14_bench_real_t t43 = t14 * t38 + t11 * t42;
+    const iiwa14_bench_real_t t44 = dq[4] + t33;
+    const iiwa14_bench_real_t t45 = t16 * t44;
+    const iiwa14_bench_real_t t46 = t45 - t43;
+    const iiwa14_bench_real_t t47 = t45 + t46;
+    const iiwa14_bench_real_t t49 = t32 * t31 + t48 * t47;
+    const iiwa14_bench_real_t t50 = t48 * t44 - t32 * t15;
+    const iiwa14_bench_real_t t51 = t16 - dq[5];
+    const iiwa14_bench_real_t t52 = t50 * t51;
+    const iiwa14_bench_real_t t53 = t49 - t52;
+    const iiwa14_bench_real_t t54 = t53 - t52;
+    const iiwa14_bench_real_t t56 = t11 * t38 - t14 * t42;
+    const iiwa14_bench_real_t t57 = t15 * t44;
+    const iiwa14_bench_real_t t58 = t57 + t56;
+    const iiwa14_bench_real_t t59 = t48 * t15 + t32 * t44;
+    const iiwa14_bench_real_t t60 = t59 * t50;
+    const iiwa14_bench_real_t t61 = t58 - t60;
+    const iiwa14_bench_real_t t63 = t62 * t61 - t55 * t54;
+    const iiwa14_bench_real_t t64 = t62 * t59 - t55 * t51;
+    const iiwa14_bench_real_t t65 = dq[6] + t50;
+    const iiwa14_bench_real_t t66 = t64 * t65;
+    const iiwa14_bench_real_t t67 = t66 + t63;
+    const iiwa14_bench_real_t t68 = t55 * t61 + t62 * t54;
+    const iiwa14_bench_real_t t69 = t55 * t59 + t62 * t51;
+    const iiwa14_bench_real_t t70 = t69 * t65;
+    const iiwa14_bench_real_t t71 = t70 + t68;
+    const iiwa14_bench_real_t t72 = t70 + t71;
+    const iiwa14_bench_real_t t73 = parameters[XX7] * t67 - t66 * (parameters[YY7] - parameters[ZZ7])
+        + parameters[XY7] * t72;
+    const iiwa14_bench_real_t t74 = t48 * t31 - t32 * t47;
+    const iiwa14_bench_real_t t75 = t59 * t51;
+    const iiwa14_bench_real_t t76 = t75 + t74;
+    const iiwa14_bench_real_t t77 = t69 * t64;
+    const iiwa14_bench_real_t t78 = t77 - t76;
+    const iiwa14_bench_real_t t79 = t64 * t64;
+    const iiwa14_bench_real_t t80 = t65 * t65;
+    const iiwa14_bench_real_t t81 = t1 * t1;
+    const iiwa14_bench_real_t t82 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t83 = IIWA14_BENCH_C(-9.81) * t6;
+    const iiwa14_bench_real_t t84 = t83 + IIWA14_BENCH_C(0.4) * (t81 + t82);
+    const iiwa14_bench_real_t t85 = IIWA14_BENCH_C(9.81) * t0;
+    const iiwa14_bench_real_t t86 = IIWA14_BENCH_C(-0.4) * t22 - t85;
+    const iiwa14_bench_real_t t87 = IIWA14_BENCH_C(0.8) * t23;
+    const iiwa14_bench_real_t t88 = t2 * t86 + t3 * t87;
+    const iiwa14_bench_real_t t89 = t5 * t88 - t9 * t84;
+    const iiwa14_bench_real_t t90 = t89 - IIWA14_BENCH_C(-0.4) * t38;
+    const iiwa14_bench_real_t t91 = t3 * t86 - t2 * t87;
+    const iiwa14_bench_real_t t92 = t91 + IIWA14_BENCH_C(0.4) * t42;
+    const iiwa14_bench_real_t t93 = t14 * t92 - t11 * t90;
+    const iiwa14_bench_real_t t94 = t10 * t10;
+    const iiwa14_bench_real_t t95 = t13 * t13;
+    const iiwa14_bench_real_t t96 = t94 + t95;
+    const iiwa14_bench_real_t t97 = t5 * t84 + t9 * t88;
+    const iiwa14_bench_real_t t98 = IIWA14_BENCH_C(0.4) * t96 + t97;
+    const iiwa14_bench_real_t t99 = t48 * t93 - t32 * t98;
+    const iiwa14_bench_real_t t100 = IIWA14_BENCH_C(0.126) * t61 - t99;
+    const iiwa14_bench_real_t t101 = t14 * t90 + t11 * t92;
+    const iiwa14_bench_real_t t102 = t101 + IIWA14_BENCH_C(-0.126) * t54;
+    const iiwa14_bench_real_t t103 = t62 * t100 + t55 * t102;
+    const iiwa14_bench_real_t t104 = t59 * t59;
+    const iiwa14_bench_real_t t105 = t51 * t51;
+    const iiwa14_bench_real_t t106 = t104 + t105;
+    const iiwa14_bench_real_t t107 = t32 * t93 + t48 * t98;
+    const iiwa14_bench_real_t t108 = IIWA14_BENCH_C(0.126) * t106 + t107;
+    const iiwa14_bench_real_t t109 = t73 - parameters[XZ7] * t78 + (t79 - t80) * parameters[YZ7]
+        - (parameters[MY7] * t108 - parameters[MZ7] * t103);
+    const iiwa14_bench_real_t t110 = t66 + t67;
+    const iiwa14_bench_real_t t111 = parameters[YY7] * t71 + t70 * (parameters[ZZ7] - parameters[XX7])
+        + parameters[XY7] * t110;
+    const iiwa14_bench_real_t t112 = t77 + t76;
+    const iiwa14_bench_real_t t113 = t69 * t69;
+    const iiwa14_bench_real_t t114 = t55 * t100 - t62 * t102;
+    const iiwa14_bench_real_t t115 = t111 + parameters[YZ7] * t112 + (t80 - t113) * parameters[XZ7]
+        + (parameters[MZ7] * t114 + parameters[MX7] * t108);
+    const iiwa14_bench_real_t t116 = (t79 + t80) * parameters[MX7] + parameters[MY7] * t112
+        - parameters[MZ7] * t68;
+    const iiwa14_bench_real_t t117 = parameters[M7] * t114 - t116;
+    const iiwa14_bench_real_t t118 = parameters[MX7] * t78 + (t113 + t80) * parameters[MY7]
+        + parameters[MZ7] * t63;
+    const iiwa14_bench_real_t t119 = parameters[M7] * t103 + t118;
+    const iiwa14_bench_real_t t120 = t55 * t119 - t62 * t117;
+    const iiwa14_bench_real_t t121 = t75 + t76;
+    const iiwa14_bench_real_t t122 = parameters[XX6] * t53 + t52 * (parameters[YY6] - parameters[ZZ6])
+        + parameters[XY6] * t121;
+    const iiwa14_bench_real_t t123 = t60 + t58;
+    const iiwa14_bench_real_t t124 = t50 * t50;
+    const iiwa14_bench_real_t t125 = t122 - parameters[XZ6] * t123 + (t105 - t124) * parameters[YZ6]
+        + (parameters[MY6] * t101 + parameters[MZ6] * t107);
+    const iiwa14_bench_real_t t126 = t125 + (t62 * t115 - t55 * t109 + IIWA14_BENCH_C(-0.126) * t120);
+    const iiwa14_bench_real_t t127 = parameters[ZZ7] * t76 + t77 * (parameters[XX7] - parameters[YY7])
+        + parameters[YZ7] * t68;
+    const iiwa14_bench_real_t t128 = t127 + parameters[XZ7] * t63 + (t113 - t79) * parameters[XY7]
+        - (parameters[MX7] * t103 + parameters[MY7] * t114);
+    const iiwa14_bench_real_t t129 = parameters[YY6] * t76 - t75 * (parameters[XX6] - parameters[ZZ6])
+        + parameters[XY6] * t54;
+    const iiwa14_bench_real_t t130 = t129 - parameters[YZ6] * t61 + (t104 - t105) * parameters[XZ6]
+        + (parameters[MZ6] * t99 - parameters[MX6] * t101);
+    const iiwa14_bench_real_t t131 = t130 + t128;
+    const iiwa14_bench_real_t t132 = t57 + t58;
+    const iiwa14_bench_real_t t133 = t45 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t46
+        + parameters[XY5] * t132;
+    const iiwa14_bench_real_t t134 = t17 + t30;
+    const iiwa14_bench_real_t t135 = t16 * t16;
+    const iiwa14_bench_real_t t136 = t44 * t44;
+    const iiwa14_bench_real_t t137 = t133 + parameters[XZ5] * t134 + (t135 - t136) * parameters[YZ5]
+        - (parameters[MY5] * t98 - parameters[MZ5] * t101);
+    const iiwa14_bench_real_t t138 = t137 + (t32 * t131 - t48 * t126);
+    const iiwa14_bench_real_t t139 = t55 * t117 + t62 * t119;
+    const iiwa14_bench_real_t t140 = parameters[ZZ6] * t58 - t60 * (parameters[XX6] - parameters[YY6])
+        - parameters[YZ6] * t74;
+    const iiwa14_bench_real_t t141 = t140 - parameters[XZ6] * t49 + (t104 - t124) * parameters[XY6]
+        + (parameters[MX6] * t107 + parameters[MY6] * t99);
+    const iiwa14_bench_real_t t142 = t141 + (t62 * t109 + t55 * t115 + IIWA14_BENCH_C(0.126) * t139);
+    const iiwa14_bench_real_t t143 = t57 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t58
+        + parameters[XY5] * t47;
+    const iiwa14_bench_real_t t144 = t15 * t15;
+    const iiwa14_bench_real_t t145 = t143 - parameters[YZ5] * t31 + (t144 - t136) * parameters[XZ5]
+        + (parameters[MZ5] * t93 - parameters[MX5] * t98);
+    const iiwa14_bench_real_t t146 = t145 - t142;
+    const iiwa14_bench_real_t t147 = (t124 + t105) * parameters[MX6] + parameters[MY6] * t61
+        + parameters[MZ6] * t74;
+    const iiwa14_bench_real_t t148 = t139 - (parameters[M6] * t99 + t147);
+    const iiwa14_bench_real_t t149 = parameters[M6] * t107 + (parameters[MX6] * t123 - t106 * parameters[MY6]
+        + parameters[MZ6] * t49);
+    const iiwa14_bench_real_t t150 = parameters[MX7] * t72 - parameters[MY7] * t110 + (t113
+        + t79) * parameters[MZ7];
+    const iiwa14_bench_real_t t151 = t149 + (parameters[M7] * t108 + t150);
+    const iiwa14_bench_real_t t152 = (t135 + t136) * parameters[MX5] + parameters[MY5] * t31
+        - parameters[MZ5] * t56;
+    const iiwa14_bench_real_t t153 = t48 * t148 - t32 * t151 - (parameters[M5] * t93 + t152);
+    const iiwa14_bench_real_t t154 = parameters[MY6] * t54 - parameters[MX6] * t121 + (t104
+        + t124) * parameters[MZ6];
+    const iiwa14_bench_real_t t155 = (t144 + t136) * parameters[MY5] - parameters[MX5] * t134
+        + parameters[MZ5] * t43;
+    const iiwa14_bench_real_t t156 = parameters[M5] * t101 + t155 + (parameters[M6] * t101 + t154 + t120);
+    const iiwa14_bench_real_t t157 = t11 * t156 - t14 * t153;
+    const iiwa14_bench_real_t t158 = t29 + t30;
+    const iiwa14_bench_real_t t159 = parameters[XX4] * t41 + t40 * (parameters[ZZ4] - parameters[YY4])
+        + parameters[XY4] * t158;
+    const iiwa14_bench_real_t t160 = t34 + t37;
+    const iiwa14_bench_real_t t161 = t33 * t33;
+    const iiwa14_bench_real_t t162 = t159 - parameters[XZ4] * t160 + (t161 - t95) * parameters[YZ4]
+        + (parameters[MY4] * t91 + parameters[MZ4] * t97);
+    const iiwa14_bench_real_t t163 = t162 + (t11 * t138 + t14 * t146 + IIWA14_BENCH_C(0.4) * t157);
+    const iiwa14_bench_real_t t164 = parameters[ZZ5] * t30 - t17 * (parameters[XX5] - parameters[YY5])
+        + parameters[YZ5] * t56;
+    const iiwa14_bench_real_t t165 = t164 + parameters[XZ5] * t43 + (t144 - t135) * parameters[XY5]
+        + (parameters[MY5] * t93 - parameters[MX5] * t101);
+    const iiwa14_bench_real_t t166 = t165 + (t32 * t126 + t48 * t131);
+    const iiwa14_bench_real_t t167 = parameters[YY4] * t30 + t29 * (parameters[ZZ4] - parameters[XX4])
+        + parameters[XY4] * t42;
+    const iiwa14_bench_real_t t168 = t167 - parameters[YZ4] * t38 + (t95 - t94) * parameters[XZ4]
+        + (parameters[MZ4] * t89 - parameters[MX4] * t91);
+    const iiwa14_bench_real_t t169 = t168 + t166;
+    const iiwa14_bench_real_t t170 = parameters[XX3] * t26 - t21 * (parameters[YY3] - parameters[ZZ3])
+        + parameters[XY3] * (t35 + t37);
+    const iiwa14_bench_real_t t171 = t19 + t18;
+    const iiwa14_bench_real_t t172 = t12 * t12;
+    const iiwa14_bench_real_t t173 = t8 * t8;
+    const iiwa14_bench_real_t t174 = t170 - parameters[XZ3] * t171 + (t172 - t173) * parameters[YZ3]
+        + (parameters[MZ3] * t91 - t84 * parameters[MY3]);
+    const iiwa14_bench_real_t t175 = t174 + (t5 * t163 - t9 * t169);
+    const iiwa14_bench_real_t t176 = t11 * t153 + t14 * t156;
+    const iiwa14_bench_real_t t177 = t34 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t37
+        + parameters[YZ4] * t28;
+    const iiwa14_bench_real_t t178 = t177 + parameters[XZ4] * t39 + (t94 - t161) * parameters[XY4]
+        - (parameters[MX4] * t97 + parameters[MY4] * t89);
+    const iiwa14_bench_real_t t179 = t178 + (t11 * t146 - t14 * t138 + IIWA14_BENCH_C(-0.4) * t176);
+    const iiwa14_bench_real_t t180 = parameters[YY3] * t37 + t35 * (parameters[ZZ3] - parameters[XX3])
+        + parameters[XY3] * t27;
+    const iiwa14_bench_real_t t181 = t4 * t4;
+    const iiwa14_bench_real_t t182 = t180 + parameters[YZ3] * t20 + (t173 - t181) * parameters[XZ3]
+        + (parameters[MZ3] * t88 + t84 * parameters[MX3]);
+    const iiwa14_bench_real_t t183 = t182 - t179;
+    const iiwa14_bench_real_t t184 = parameters[MY4] * t38 - (t161 + t95) * parameters[MX4]
+        + parameters[MZ4] * t28;
+    const iiwa14_bench_real_t t185 = parameters[MX5] * t132 + parameters[MY5] * t47 + (t144
+        + t135) * parameters[MZ5];
+    const iiwa14_bench_real_t t186 = parameters[M5] * t98 + t185 + (t32 * t148 + t48 * t151);
+    const iiwa14_bench_real_t t187 = parameters[M4] * t97 + (parameters[MX4] * t160 + t96 * parameters[MY4]
+        + parameters[MZ4] * t39);
+    const iiwa14_bench_real_t t188 = t5 * (parameters[M4] * t89 + t184 + t176) + t9 * (t187 + t186);
+    const iiwa14_bench_real_t t189 = parameters[MZ3] * t36 - ((t172 + t173) * parameters[MX3]
+        + parameters[MY3] * t20);
+    const iiwa14_bench_real_t t190 = parameters[M3] * t88 + t189 + t188;
+    const iiwa14_bench_real_t t191 = parameters[MX4] * t158 - parameters[MY4] * t42 + (t94
+        + t161) * parameters[MZ4];
+    const iiwa14_bench_real_t t192 = parameters[MX3] * t171 + (t181 + t173) * parameters[MY3]
+        - parameters[MZ3] * t25;
+    const iiwa14_bench_real_t t193 = t191 - parameters[M4] * t91 - t157 - (parameters[M3] * t91 + t192);
+    const iiwa14_bench_real_t t194 = t3 * t183 - t2 * t175 + IIWA14_BENCH_C(0.4) * (t3 * t190 + t2 * t193);
+    const iiwa14_bench_real_t t195 = t23 * parameters[XX2] + t23 * (parameters[ZZ2] - parameters[YY2])
+        + IIWA14_BENCH_C(-2.0) * t19 * parameters[XY2];
+    const iiwa14_bench_real_t t196 = t7 * t7;
+    const iiwa14_bench_real_t t197 = t195 - t22 * parameters[XZ2] + (t82 - t196) * parameters[YZ2]
+        + t83 * parameters[MZ2];
+    const iiwa14_bench_real_t t198 = t18 * (parameters[XX3] - parameters[YY3]) - t19 * parameters[ZZ3]
+        + parameters[YZ3] * t36;
+    const iiwa14_bench_real_t t199 = t198 - parameters[XZ3] * t25 + (t181 - t172) * parameters[XY3]
+        - (parameters[MX3] * t91 + parameters[MY3] * t88);
+    const iiwa14_bench_real_t t200 = t199 + (t9 * t163 + t5 * t169);
+    const iiwa14_bench_real_t t201 = t19 * (parameters[XX2] - parameters[ZZ2]) - t19 * parameters[YY2]
+        + t24 * parameters[XY2];
+    const iiwa14_bench_real_t t202 = t201 + t22 * parameters[YZ2] + (t81 - t82) * parameters[XZ2]
+        + t85 * parameters[MZ2];
+    out[0] = t0 * (t197 + t194) + t6 * (t202 + t200);
+    const iiwa14_bench_real_t t203 = t3 * t175 + t2 * t183 + IIWA14_BENCH_C(0.4) * (t2 * t190 - t3 * t193);
+    const iiwa14_bench_real_t t204 = t22 * (parameters[YY2] - parameters[XX2]) + (t81
+        - t196) * parameters[XY2] + (t83 * parameters[MX2] + t85 * parameters[MY2]);
+    out[1] = t204 + t203;
+    out[2] = t200;
+    out[3] = t179;
+    out[4] = t166;
+    out[5] = t142;
+    out[6] = t128;
     return IIWA14_BENCH_STATUS_OK;
 }

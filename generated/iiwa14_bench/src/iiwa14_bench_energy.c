@@ -71,7 +71,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -98,10 +98,10 @@ int iiwa14_bench_energy(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t2;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
-    iiwa14_bench_real_t t8, t7;
-    IIWA14_BENCH_SINCOS(q[2], &t8, &t7);
+    iiwa14_bench_real_t t0, t6;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t6);
+    iiwa14_bench_real_t t3, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t3, &t2);
     iiwa14_bench_real_t t22, t21;
     IIWA14_BENCH_SINCOS(q[3], &t22, &t21);
     iiwa14_bench_real_t t33, t32;
@@ -111,30 +111,29 @@ int iiwa14_bench_energy(
     iiwa14_bench_real_t t58, t57;
     IIWA14_BENCH_SINCOS(q[6], &t58, &t57);
     const iiwa14_bench_real_t t1 = t0 * dq[0];
-    const iiwa14_bench_real_t t3 = t2 * dq[0];
-    const iiwa14_bench_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
+    const iiwa14_bench_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_bench_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_bench_real_t t7 = t6 * dq[0];
+    const iiwa14_bench_real_t t8 = dq[2] + t7;
+    const iiwa14_bench_real_t t9 = t4 * (parameters[XX3R] * t4 + parameters[XY3] * t5 + parameters[XZ3] * t8);
+    const iiwa14_bench_real_t t10 = t8 * (parameters[XZ3] * t4 + parameters[YZ3] * t5
+        + parameters[ZZ3R] * t8);
+    const iiwa14_bench_real_t t11 = t9 + t5 * (parameters[XY3] * t4 + parameters[YZ3] * t8) + t10;
+    const iiwa14_bench_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t7
         - parameters[XZ2] * dq[1]);
-    const iiwa14_bench_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
-        + parameters[YZ2] * t3));
-    const iiwa14_bench_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const iiwa14_bench_real_t t9 = t8 * dq[1] - t7 * t1;
-    const iiwa14_bench_real_t t10 = t8 * t1 + t7 * dq[1];
-    const iiwa14_bench_real_t t11 = dq[2] + t3;
-    const iiwa14_bench_real_t t12 = t9 * (parameters[XX3R] * t9 + parameters[XY3] * t10
-        + parameters[XZ3] * t11);
-    const iiwa14_bench_real_t t13 = t11 * (parameters[XZ3] * t9 + parameters[YZ3] * t10
-        + parameters[ZZ3R] * t11);
-    const iiwa14_bench_real_t t14 = t12 + t10 * (parameters[XY3] * t9 + parameters[YZ3] * t11) + t13;
+    const iiwa14_bench_real_t t13 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
+        + parameters[YZ2] * t7));
+    const iiwa14_bench_real_t t14 = t12 + t7 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
     const iiwa14_bench_real_t t15 = IIWA14_BENCH_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
-        + IIWA14_BENCH_C(0.5) * t6 + IIWA14_BENCH_C(0.5) * t14;
+        + IIWA14_BENCH_C(0.5) * t14 + IIWA14_BENCH_C(0.5) * t11;
     const iiwa14_bench_real_t t16 = IIWA14_BENCH_C(-0.4) * dq[1];
     const iiwa14_bench_real_t t17 = IIWA14_BENCH_C(0.4) * t1;
-    const iiwa14_bench_real_t t18 = t8 * t16 + t7 * t17;
-    const iiwa14_bench_real_t t19 = t7 * t16 - t8 * t17;
-    const iiwa14_bench_real_t t20 = t15 + (parameters[MX3] * (t11 * t18) + parameters[MY3R] * (t11 * t19));
-    const iiwa14_bench_real_t t23 = t21 * t9 + t22 * t11;
-    const iiwa14_bench_real_t t24 = t22 * t9 - t21 * t11;
-    const iiwa14_bench_real_t t25 = dq[3] - t10;
+    const iiwa14_bench_real_t t18 = t3 * t16 + t2 * t17;
+    const iiwa14_bench_real_t t19 = t2 * t16 - t3 * t17;
+    const iiwa14_bench_real_t t20 = t15 + (parameters[MX3] * (t8 * t18) + parameters[MY3R] * (t8 * t19));
+    const iiwa14_bench_real_t t23 = t21 * t4 + t22 * t8;
+    const iiwa14_bench_real_t t24 = t22 * t4 - t21 * t8;
+    const iiwa14_bench_real_t t25 = dq[3] - t5;
     const iiwa14_bench_real_t t26 = t23 * (parameters[XY4] * t24 - parameters[XX4R] * t23
         - parameters[XZ4] * t25);
     const iiwa14_bench_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24
@@ -185,9 +184,9 @@ int iiwa14_bench_energy(
         - (parameters[MX7] * t65 + parameters[MY7] * t66);
     kinetic[0] = t67;
     const iiwa14_bench_real_t t68 = IIWA14_BENCH_C(-9.81) * t0;
-    const iiwa14_bench_real_t t69 = IIWA14_BENCH_C(-9.81) * t2;
-    const iiwa14_bench_real_t t70 = t7 * t68;
-    const iiwa14_bench_real_t t71 = t8 * t68;
+    const iiwa14_bench_real_t t69 = IIWA14_BENCH_C(-9.81) * t6;
+    const iiwa14_bench_real_t t70 = t2 * t68;
+    const iiwa14_bench_real_t t71 = t3 * t68;
     const iiwa14_bench_real_t t72 = parameters[MX2] * t68 + parameters[MY2R] * t69 + (parameters[MX3] * t70
         - parameters[MY3R] * t71);
     const iiwa14_bench_real_t t73 = t21 * t70 - t22 * t69;

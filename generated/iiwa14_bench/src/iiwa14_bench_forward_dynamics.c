@@ -72,7 +72,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -99,452 +99,444 @@ int iiwa14_bench_forward_dynamics(
         return status;
     }
 
+    iiwa14_bench_real_t t130, t128;
+    IIWA14_BENCH_SINCOS(q[1], &t130, &t128);
+    iiwa14_bench_real_t t89, t91;
+    IIWA14_BENCH_SINCOS(q[2], &t89, &t91);
+    iiwa14_bench_real_t t64, t60;
+    IIWA14_BENCH_SINCOS(q[3], &t64, &t60);
+    iiwa14_bench_real_t t27, t29;
+    IIWA14_BENCH_SINCOS(q[4], &t27, &t29);
+    iiwa14_bench_real_t t10, t12;
+    IIWA14_BENCH_SINCOS(q[5], &t10, &t12);
     iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t11, t10;
-    IIWA14_BENCH_SINCOS(q[2], &t11, &t10);
-    iiwa14_bench_real_t t32, t31;
-    IIWA14_BENCH_SINCOS(q[3], &t32, &t31);
-    iiwa14_bench_real_t t55, t54;
-    IIWA14_BENCH_SINCOS(q[4], &t55, &t54);
-    iiwa14_bench_real_t t79, t78;
-    IIWA14_BENCH_SINCOS(q[5], &t79, &t78);
-    iiwa14_bench_real_t t102, t101;
-    IIWA14_BENCH_SINCOS(q[6], &t102, &t101);
-    const iiwa14_bench_real_t t2 = t1 * dq[0];
-    const iiwa14_bench_real_t t3 = dq[1] * t2;
-    const iiwa14_bench_real_t t4 = t0 * dq[0];
-    const iiwa14_bench_real_t t5 = dq[1] * t4;
-    const iiwa14_bench_real_t t6 = parameters[XY2] * (IIWA14_BENCH_C(2.0) * t5) - (parameters[XX2R] * t3
-        + parameters[ZZ2R] * t3);
-    const iiwa14_bench_real_t t7 = t4 * t2;
-    const iiwa14_bench_real_t t8 = t2 * t2;
-    const iiwa14_bench_real_t t9 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t12 = IIWA14_BENCH_C(-2.0) * t3;
-    const iiwa14_bench_real_t t13 = t10 * t12 - t11 * t7;
-    const iiwa14_bench_real_t t14 = t11 * t4 + t10 * dq[1];
-    const iiwa14_bench_real_t t15 = dq[2] + t2;
-    const iiwa14_bench_real_t t16 = t14 * t15;
-    const iiwa14_bench_real_t t17 = t13 + t16;
-    const iiwa14_bench_real_t t18 = t11 * dq[1] - t10 * t4;
-    const iiwa14_bench_real_t t19 = t18 * t15;
-    const iiwa14_bench_real_t t20 = t10 * t7 + t11 * t12;
-    const iiwa14_bench_real_t t21 = t20 + t19;
-    const iiwa14_bench_real_t t22 = parameters[XY3] * (t19 + t21) - (parameters[XX3R] * t17
-        + parameters[ZZ3R] * t16);
-    const iiwa14_bench_real_t t23 = t18 * t14;
-    const iiwa14_bench_real_t t24 = t5 - t23;
-    const iiwa14_bench_real_t t25 = t14 * t14;
-    const iiwa14_bench_real_t t26 = t15 * t15;
-    const iiwa14_bench_real_t t27 = IIWA14_BENCH_C(9.81) * t1;
-    const iiwa14_bench_real_t t28 = t4 * t4;
-    const iiwa14_bench_real_t t29 = t27 + IIWA14_BENCH_C(-0.4) * (t28 + t9);
-    const iiwa14_bench_real_t t30 = t22 + parameters[XZ3] * t24 - parameters[YZ3] * (t25 - t26)
-        - parameters[MY3R] * t29;
-    const iiwa14_bench_real_t t33 = t5 + t23;
-    const iiwa14_bench_real_t t34 = t16 + t17;
-    const iiwa14_bench_real_t t35 = t31 * t34 - t32 * t33;
-    const iiwa14_bench_real_t t36 = t32 * t18 - t31 * t15;
-    const iiwa14_bench_real_t t37 = dq[3] - t14;
-    const iiwa14_bench_real_t t38 = t36 * t37;
-    const iiwa14_bench_real_t t39 = t35 - t38;
-    const iiwa14_bench_real_t t40 = t31 * t18 + t32 * t15;
-    const iiwa14_bench_real_t t41 = t40 * t37;
-    const iiwa14_bench_real_t t42 = t31 * t33 + t32 * t34;
-    const iiwa14_bench_real_t t43 = t42 + t41;
-    const iiwa14_bench_real_t t44 = t41 + t43;
-    const iiwa14_bench_real_t t45 = t40 * t36;
-    const iiwa14_bench_real_t t46 = t21 - t45;
-    const iiwa14_bench_real_t t47 = parameters[ZZ4R] * t38 - parameters[XX4R] * t39 + parameters[XY4] * t44
-        - parameters[XZ4] * t46;
-    const iiwa14_bench_real_t t48 = t36 * t36;
-    const iiwa14_bench_real_t t49 = t37 * t37;
-    const iiwa14_bench_real_t t50 = IIWA14_BENCH_C(-9.81) * t0;
-    const iiwa14_bench_real_t t51 = t50 + IIWA14_BENCH_C(-0.4) * t7;
-    const iiwa14_bench_real_t t52 = IIWA14_BENCH_C(0.8) * t3;
-    const iiwa14_bench_real_t t53 = t11 * t51 - t10 * t52;
-    const iiwa14_bench_real_t t56 = t21 + t45;
-    const iiwa14_bench_real_t t57 = t39 - t38;
-    const iiwa14_bench_real_t t58 = t54 * t57 - t55 * t56;
-    const iiwa14_bench_real_t t59 = t55 * t40 + t54 * t37;
-    const iiwa14_bench_real_t t60 = t36 - dq[4];
-    const iiwa14_bench_real_t t61 = t59 * t60;
-    const iiwa14_bench_real_t t62 = t58 + t61;
-    const iiwa14_bench_real_t t63 = t54 * t40 - t55 * t37;
-    const iiwa14_bench_real_t t64 = t63 * t60;
-    const iiwa14_bench_real_t t65 = t54 * t56 + t55 * t57;
-    const iiwa14_bench_real_t t66 = t65 - t64;
-    const iiwa14_bench_real_t t67 = t66 - t64;
-    const iiwa14_bench_real_t t68 = t63 * t59;
-    const iiwa14_bench_real_t t69 = t43 + t68;
-    const iiwa14_bench_real_t t70 = parameters[XY5] * t67 - (parameters[XX5R] * t62 + parameters[ZZ5R] * t61)
-        + parameters[XZ5] * t69;
-    const iiwa14_bench_real_t t71 = t59 * t59;
-    const iiwa14_bench_real_t t72 = t60 * t60;
-    const iiwa14_bench_real_t t73 = t10 * t51 + t11 * t52;
-    const iiwa14_bench_real_t t74 = t32 * t73 - t31 * t29;
-    const iiwa14_bench_real_t t75 = t40 * t40;
-    const iiwa14_bench_real_t t76 = t75 + t49;
-    const iiwa14_bench_real_t t77 = t74 + IIWA14_BENCH_C(0.4) * t76;
-    const iiwa14_bench_real_t t80 = t43 - t68;
-    const iiwa14_bench_real_t t81 = t61 + t62;
-    const iiwa14_bench_real_t t82 = t79 * t80 + t78 * t81;
-    const iiwa14_bench_real_t t83 = t78 * t60 - t79 * t63;
-    const iiwa14_bench_real_t t84 = dq[5] - t59;
-    const iiwa14_bench_real_t t85 = t83 * t84;
-    const iiwa14_bench_real_t t86 = t82 + t85;
-    const iiwa14_bench_real_t t87 = t78 * t63 + t79 * t60;
-    const iiwa14_bench_real_t t88 = t87 * t84;
-    const iiwa14_bench_real_t t89 = t79 * t81 - t78 * t80;
-    const iiwa14_bench_real_t t90 = t89 + t88;
-    const iiwa14_bench_real_t t91 = t88 + t90;
-    const iiwa14_bench_real_t t92 = t87 * t83;
-    const iiwa14_bench_real_t t93 = t66 - t92;
-    const iiwa14_bench_real_t t94 = parameters[XX6R] * t86 + parameters[ZZ6R] * t85 - parameters[XY6] * t91
-        - parameters[XZ6] * t93;
-    const iiwa14_bench_real_t t95 = t83 * t83;
-    const iiwa14_bench_real_t t96 = t84 * t84;
-    const iiwa14_bench_real_t t97 = t31 * t73 + t32 * t29;
-    const iiwa14_bench_real_t t98 = t97 + IIWA14_BENCH_C(-0.4) * t56;
-    const iiwa14_bench_real_t t99 = t53 + IIWA14_BENCH_C(0.4) * t57;
-    const iiwa14_bench_real_t t100 = t55 * t98 + t54 * t99;
-    const iiwa14_bench_real_t t103 = t66 + t92;
-    const iiwa14_bench_real_t t104 = t85 + t86;
-    const iiwa14_bench_real_t t105 = t101 * t104 - t102 * t103;
-    const iiwa14_bench_real_t t106 = t101 * t84 - t102 * t87;
-    const iiwa14_bench_real_t t107 = t83 - dq[6];
-    const iiwa14_bench_real_t t108 = t106 * t107;
-    const iiwa14_bench_real_t t109 = t105 - t108;
+    IIWA14_BENCH_SINCOS(q[6], &t0, &t1);
     if (!(parameters[ZZ7] > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t110 = t101 * t87 + t102 * t84;
-    const iiwa14_bench_real_t t111 = t110 * t107;
-    const iiwa14_bench_real_t t112 = t101 * t103 + t102 * t104;
-    const iiwa14_bench_real_t t113 = t112 - t111 - t111;
-    const iiwa14_bench_real_t t114 = t110 * t106;
-    const iiwa14_bench_real_t t115 = t90 + t114;
-    const iiwa14_bench_real_t t116 = parameters[ZZ7] * t108 - parameters[XX7R] * t109 + parameters[XY7] * t113
-        - parameters[XZ7R] * t115;
-    const iiwa14_bench_real_t t117 = t106 * t106;
-    const iiwa14_bench_real_t t118 = t107 * t107;
-    const iiwa14_bench_real_t t119 = t54 * t98 - t55 * t99;
-    const iiwa14_bench_real_t t120 = t78 * t77 - t79 * t119;
-    const iiwa14_bench_real_t t121 = t116 - parameters[YZ7R] * (t117 - t118) + parameters[MY7] * t120;
-    const iiwa14_bench_real_t t122 = t109 - t108;
-    const iiwa14_bench_real_t t123 = t114 - t90;
-    const iiwa14_bench_real_t t124 = t111 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t122
-        + parameters[YZ7R] * t123;
-    const iiwa14_bench_real_t t125 = t110 * t110;
-    const iiwa14_bench_real_t t126 = t124 + parameters[XZ7R] * (t125 - t118) - parameters[MX7] * t120;
-    const iiwa14_bench_real_t t127 = t94 + parameters[YZ6] * (t95 - t96) - parameters[MY6R] * t100
-        - (t101 * t121 - t102 * t126);
-    const iiwa14_bench_real_t t128 = parameters[XY6] * t104 - t88 * (parameters[ZZ6R] - parameters[XX6R])
-        - parameters[YZ6] * t103;
-    const iiwa14_bench_real_t t129 = t87 * t87;
-    const iiwa14_bench_real_t t130 = parameters[XX7R] * t114 - parameters[ZZ7] * t90 + parameters[YZ7R] * t112
-        - parameters[XZ7R] * t105;
-    const iiwa14_bench_real_t t131 = t78 * t119 + t79 * t77;
-    const iiwa14_bench_real_t t132 = parameters[MX7] * (t102 * t131 + t101 * t100)
-        + parameters[MY7] * (t101 * t131 - t102 * t100);
-    const iiwa14_bench_real_t t133 = t130 + parameters[XY7] * (t117 - t125) + t132;
-    const iiwa14_bench_real_t t134 = t128 + parameters[XZ6] * (t96 - t129) + parameters[MX6] * t100 + t133;
-    const iiwa14_bench_real_t t135 = t70 + parameters[YZ5] * (t72 - t71) + parameters[MY5R] * t77
-        + (t79 * t134 - t78 * t127);
-    const iiwa14_bench_real_t t136 = t64 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t81
-        + parameters[YZ5] * t80;
-    const iiwa14_bench_real_t t137 = t63 * t63;
-    const iiwa14_bench_real_t t138 = parameters[ZZ6R] * t66 + parameters[XX6R] * t92 + parameters[YZ6] * t89
-        - parameters[XZ6] * t82;
-    const iiwa14_bench_real_t t139 = t138 - parameters[XY6] * (t129 - t95) - (parameters[MX6] * t120
-        - parameters[MY6R] * t131);
-    const iiwa14_bench_real_t t140 = t139 + (t102 * t121 + t101 * t126);
-    const iiwa14_bench_real_t t141 = t136 + parameters[XZ5] * (t137 - t72) - parameters[MX5] * t77 + t140;
-    const iiwa14_bench_real_t t142 = parameters[MX7] * (t117 + t118) - parameters[MY7] * t123;
-    const iiwa14_bench_real_t t143 = parameters[MX7] * t115 - parameters[MY7] * (t125 + t118);
-    const iiwa14_bench_real_t t144 = parameters[MX6] * (t95 + t96) - parameters[MY6R] * t103 + (t101 * t142
-        + t102 * t143);
-    const iiwa14_bench_real_t t145 = parameters[MX6] * t93 + parameters[MY6R] * (t129 + t96)
-        + (parameters[MX7] * t113 + parameters[MY7] * t122);
-    const iiwa14_bench_real_t t146 = parameters[MX5] * (t71 + t72) - parameters[MY5R] * t80 + (t78 * t144
-        - t79 * t145);
-    const iiwa14_bench_real_t t147 = parameters[MX6] * t91 + parameters[MY6R] * t104 + (t101 * t143
-        - t102 * t142);
-    const iiwa14_bench_real_t t148 = t147 - (parameters[MX5] * t69 + parameters[MY5R] * (t137 + t72));
-    const iiwa14_bench_real_t t149 = t54 * t148 - t55 * t146;
-    const iiwa14_bench_real_t t150 = t47 + parameters[YZ4] * (t49 - t48) - parameters[MY4R] * t53
-        + (t54 * t135 - t55 * t141 + IIWA14_BENCH_C(0.4) * t149);
-    const iiwa14_bench_real_t t151 = t41 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t57
-        + parameters[YZ4] * t56;
-    const iiwa14_bench_real_t t152 = parameters[ZZ5R] * t43 - parameters[XX5R] * t68 + parameters[YZ5] * t65
-        - parameters[XZ5] * t58;
-    const iiwa14_bench_real_t t153 = t152 + parameters[XY5] * (t71 - t137) + (parameters[MX5] * t100
-        + parameters[MY5R] * t119);
-    const iiwa14_bench_real_t t154 = t153 + (t79 * t127 + t78 * t134);
-    const iiwa14_bench_real_t t155 = parameters[XZ4] * (t75 - t49) - t151 + parameters[MX4] * t53 + t154;
-    const iiwa14_bench_real_t t156 = t30 + (t31 * t150 - t32 * t155);
-    const iiwa14_bench_real_t t157 = parameters[YZ3] * t33 - (t19 * (parameters[XX3R] - parameters[ZZ3R])
-        + parameters[XY3] * t34);
-    const iiwa14_bench_real_t t158 = t18 * t18;
-    const iiwa14_bench_real_t t159 = parameters[ZZ4R] * t21 + parameters[XX4R] * t45 - parameters[YZ4] * t42
-        + parameters[XZ4] * t35;
-    const iiwa14_bench_real_t t160 = t159 + parameters[XY4] * (t75 - t48) - (parameters[MX4] * t74
-        + parameters[MY4R] * t97);
-    const iiwa14_bench_real_t t161 = t54 * t146 + t55 * t148;
-    const iiwa14_bench_real_t t162 = t160 + (t55 * t135 + t54 * t141 + IIWA14_BENCH_C(0.4) * t161);
-    const iiwa14_bench_real_t t163 = t157 + parameters[XZ3] * (t158 - t26) + parameters[MX3] * t29 + t162;
-    const iiwa14_bench_real_t t164 = t31 * (parameters[MX4] * (t48 + t49) + parameters[MY4R] * t56 + t161);
-    const iiwa14_bench_real_t t165 = parameters[MX5] * t67 + parameters[MY5R] * t81 + (t79 * t144
-        + t78 * t145);
-    const iiwa14_bench_real_t t166 = t164 + t32 * (parameters[MX4] * t46 - parameters[MY4R] * t76 + t165);
-    const iiwa14_bench_real_t t167 = parameters[MX3] * (t25 + t26) - parameters[MY3R] * t33 + t166;
-    const iiwa14_bench_real_t t168 = parameters[MX3] * t24 + parameters[MY3R] * (t158 + t26) - (t149
-        - (parameters[MX4] * t44 + parameters[MY4R] * t57));
-    const iiwa14_bench_real_t t169 = t11 * t163 - t10 * t156 + IIWA14_BENCH_C(0.4) * (t11 * t167
-        + t10 * t168);
-    const iiwa14_bench_real_t t170 = t6 + parameters[XZ2] * t7 + parameters[YZ2] * (t8 - t9) + t169;
-    const iiwa14_bench_real_t t171 = t5 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t12
-        - parameters[YZ2] * t7;
-    const iiwa14_bench_real_t t172 = parameters[ZZ3R] * t5 + parameters[XX3R] * t23 + parameters[YZ3] * t20
-        - parameters[XZ3] * t13;
-    const iiwa14_bench_real_t t173 = t172 + parameters[XY3] * (t25 - t158) + (parameters[MX3] * t53
-        + parameters[MY3R] * t73);
-    const iiwa14_bench_real_t t174 = t173 + (t32 * t150 + t31 * t155);
-    const iiwa14_bench_real_t t175 = t0 * t170 + t1 * (t171 + parameters[XZ2] * (t9 - t28) + t174);
-    const iiwa14_bench_real_t t176 = input[6] + t133;
-    const iiwa14_bench_real_t t177 = t102 * parameters[YZ7R] - t101 * parameters[XZ7R];
-    const iiwa14_bench_real_t t178 = t78 * t177 - t79 * parameters[ZZ7];
-    const iiwa14_bench_real_t t179 = t102 * parameters[XZ7R] + t101 * parameters[YZ7R];
-    const iiwa14_bench_real_t t180 = t101 * parameters[MY7] + t102 * parameters[MX7];
-    const iiwa14_bench_real_t t181 = t78 * t180;
-    const iiwa14_bench_real_t t182 = t101 * parameters[MX7] - t102 * parameters[MY7];
-    const iiwa14_bench_real_t t183 = t54 * t182 - t55 * t181;
-    const iiwa14_bench_real_t t184 = t54 * t178 + t55 * t179 + IIWA14_BENCH_C(0.4) * t183;
-    const iiwa14_bench_real_t t185 = t79 * t177 + t78 * parameters[ZZ7];
-    const iiwa14_bench_real_t t186 = t31 * t184 + t32 * t185;
-    const iiwa14_bench_real_t t187 = t54 * t181 + t55 * t182;
-    const iiwa14_bench_real_t t188 = t55 * t178 - t54 * t179 + IIWA14_BENCH_C(0.4) * t187;
-    const iiwa14_bench_real_t t189 = t31 * t187 + t32 * (t79 * t180);
-    const iiwa14_bench_real_t t190 = t11 * t188 - t10 * t186 + IIWA14_BENCH_C(0.4) * (t11 * t189
-        - t10 * t183);
-    const iiwa14_bench_real_t t191 = t32 * t184 - t31 * t185;
-    const iiwa14_bench_real_t t192 = t0 * t190 + t1 * t191;
-    const iiwa14_bench_real_t t193 = IIWA14_BENCH_C(-1.0) / parameters[ZZ7];
-    const iiwa14_bench_real_t t194 = t192 * t193;
-    const iiwa14_bench_real_t t195 = t179 * t193;
-    const iiwa14_bench_real_t t196 = input[5] + t140 + t176 * t195;
-    const iiwa14_bench_real_t t197 = parameters[XY7] * (IIWA14_BENCH_C(2.0) * t102) - t101 * parameters[XX7R];
-    const iiwa14_bench_real_t t198 = t102 * t197 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_bench_real_t t199 = t179 - parameters[YZ6];
-    const iiwa14_bench_real_t t200 = t79 * t199 - t78 * t198;
-    const iiwa14_bench_real_t t201 = t101 * t197;
-    const iiwa14_bench_real_t t202 = parameters[ZZ6R] + (parameters[XX7R] + t201);
-    const iiwa14_bench_real_t t203 = parameters[MX6] + t182;
-    const iiwa14_bench_real_t t204 = t78 * parameters[MY6R] + t79 * t203;
-    const iiwa14_bench_real_t t205 = t55 * t204;
-    const iiwa14_bench_real_t t206 = t55 * t202 - t54 * t200 + IIWA14_BENCH_C(-0.4) * t205;
-    const iiwa14_bench_real_t t207 = t79 * t198 + t78 * t199;
-    const iiwa14_bench_real_t t208 = t31 * t206 + t32 * t207;
-    const iiwa14_bench_real_t t209 = t54 * t204;
-    const iiwa14_bench_real_t t210 = IIWA14_BENCH_C(0.4) * t209 - (t55 * t200 + t54 * t202);
-    const iiwa14_bench_real_t t211 = t78 * t203 - t79 * parameters[MY6R];
-    const iiwa14_bench_real_t t212 = t31 * t209 - t32 * t211;
-    const iiwa14_bench_real_t t213 = t11 * t210 - t10 * t208 + IIWA14_BENCH_C(0.4) * (t11 * t212
-        + t10 * t205);
-    const iiwa14_bench_real_t t214 = t32 * t206 - t31 * t207;
-    const iiwa14_bench_real_t t215 = t0 * t213 + t1 * t214 + t192 * t195;
-    const iiwa14_bench_real_t t216 = t202 + t179 * t195;
-    if (!(t216 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t2 = t0 * parameters[XZ7R] + t1 * parameters[YZ7R];
+    const iiwa14_bench_real_t t3 = IIWA14_BENCH_C(-1.0) / parameters[ZZ7];
+    const iiwa14_bench_real_t t4 = t2 * t3;
+    const iiwa14_bench_real_t t5 = parameters[XY7] * (IIWA14_BENCH_C(2.0) * t0) - t1 * parameters[XX7R];
+    const iiwa14_bench_real_t t6 = t1 * t5;
+    const iiwa14_bench_real_t t7 = parameters[ZZ6R] + (parameters[XX7R] + t6);
+    const iiwa14_bench_real_t t8 = t7 + t2 * t4;
+    if (!(t8 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t217 = IIWA14_BENCH_C(-1.0) / t216;
-    const iiwa14_bench_real_t t218 = t215 * t217;
-    const iiwa14_bench_real_t t219 = t185 * t193;
-    const iiwa14_bench_real_t t220 = t207 + t185 * t195;
-    const iiwa14_bench_real_t t221 = t220 * t217;
-    const iiwa14_bench_real_t t222 = input[4] + t154 + t176 * t219 + t196 * t221;
-    const iiwa14_bench_real_t t223 = parameters[XY6] + t177;
-    const iiwa14_bench_real_t t224 = parameters[XX6R] - t201;
-    const iiwa14_bench_real_t t225 = t78 * (t224 - parameters[ZZ7]) + t223 * (IIWA14_BENCH_C(-2.0) * t79);
-    const iiwa14_bench_real_t t226 = t223 + t79 * t225 - parameters[XZ5];
-    const iiwa14_bench_real_t t227 = parameters[YZ5] + t207;
-    const iiwa14_bench_real_t t228 = parameters[MY5R] + t180;
-    const iiwa14_bench_real_t t229 = parameters[MX5] + t211;
-    const iiwa14_bench_real_t t230 = t54 * t229 - t55 * t228;
-    const iiwa14_bench_real_t t231 = t54 * t226 + t55 * t227 + IIWA14_BENCH_C(0.4) * t230;
-    const iiwa14_bench_real_t t232 = t78 * t225;
-    const iiwa14_bench_real_t t233 = parameters[ZZ5R] + (t224 - t232);
-    const iiwa14_bench_real_t t234 = t31 * t231 + t32 * t233;
-    const iiwa14_bench_real_t t235 = t54 * t228 + t55 * t229;
-    const iiwa14_bench_real_t t236 = t55 * t226 - t54 * t227 + IIWA14_BENCH_C(0.4) * t235;
-    const iiwa14_bench_real_t t237 = t31 * t235;
-    const iiwa14_bench_real_t t238 = t11 * t236 - t10 * t234 + IIWA14_BENCH_C(0.4) * (t11 * t237
-        - t10 * t230);
-    const iiwa14_bench_real_t t239 = t32 * t231 - t31 * t233;
-    const iiwa14_bench_real_t t240 = t0 * t238 + t1 * t239 + t192 * t219 + t215 * t221;
-    const iiwa14_bench_real_t t241 = t233 + t185 * t219 + t220 * t221;
-    if (!(t241 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t9 = t0 * t5 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_bench_real_t t11 = t2 - parameters[YZ6];
+    const iiwa14_bench_real_t t13 = t10 * t9 + t12 * t11;
+    const iiwa14_bench_real_t t14 = t0 * parameters[YZ7R] - t1 * parameters[XZ7R];
+    const iiwa14_bench_real_t t15 = t10 * t14 + t12 * parameters[ZZ7];
+    const iiwa14_bench_real_t t16 = t13 + t15 * t4;
+    const iiwa14_bench_real_t t17 = IIWA14_BENCH_C(-1.0) / t8;
+    const iiwa14_bench_real_t t18 = t16 * t17;
+    const iiwa14_bench_real_t t19 = parameters[XX6R] - t6;
+    const iiwa14_bench_real_t t20 = parameters[XY6] + t14;
+    const iiwa14_bench_real_t t21 = t12 * (t19 - parameters[ZZ7]) + t20 * (IIWA14_BENCH_C(-2.0) * t10);
+    const iiwa14_bench_real_t t22 = t12 * t21;
+    const iiwa14_bench_real_t t23 = parameters[ZZ5R] + (t19 - t22);
+    const iiwa14_bench_real_t t24 = t15 * t3;
+    const iiwa14_bench_real_t t25 = t23 + t15 * t24 + t16 * t18;
+    if (!(t25 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t242 = IIWA14_BENCH_C(-1.0) / t241;
-    const iiwa14_bench_real_t t243 = t240 * t242;
-    const iiwa14_bench_real_t t244 = input[0] + t175 - t176 * t194 - t196 * t218 - t222 * t243;
-    const iiwa14_bench_real_t t245 = t188 * t193;
-    const iiwa14_bench_real_t t246 = t210 + t188 * t195;
-    const iiwa14_bench_real_t t247 = t246 * t217;
-    const iiwa14_bench_real_t t248 = t236 + t188 * t219 + t246 * t221;
-    const iiwa14_bench_real_t t249 = t248 * t242;
-    const iiwa14_bench_real_t t250 = input[3] - t162 + t176 * t245 + t196 * t247 + t222 * t249;
-    const iiwa14_bench_real_t t251 = parameters[XY5] + t200;
-    const iiwa14_bench_real_t t252 = parameters[XX5R] + (parameters[ZZ7] + t232);
-    const iiwa14_bench_real_t t253 = t54 * (t202 - t252) + t251 * (IIWA14_BENCH_C(2.0) * t55);
-    const iiwa14_bench_real_t t254 = t251 - t55 * t253 - parameters[XZ4];
-    const iiwa14_bench_real_t t255 = parameters[YZ4] + t236;
-    const iiwa14_bench_real_t t256 = t31 * t254 + t32 * t255;
-    const iiwa14_bench_real_t t257 = t54 * t253;
-    const iiwa14_bench_real_t t258 = IIWA14_BENCH_C(-0.8) * t204;
-    const iiwa14_bench_real_t t259 = parameters[ZZ4R] + (t252 + t257 + t258);
-    const iiwa14_bench_real_t t260 = parameters[MY4R] - t204;
-    const iiwa14_bench_real_t t261 = parameters[MX4] + t230;
-    const iiwa14_bench_real_t t262 = t31 * t260 + t32 * t261;
-    const iiwa14_bench_real_t t263 = t11 * t259 - t10 * t256 + IIWA14_BENCH_C(0.4) * (t11 * t262);
-    const iiwa14_bench_real_t t264 = t32 * t254 - t31 * t255;
-    const iiwa14_bench_real_t t265 = t0 * t263 + t1 * t264 + t192 * t245 + t215 * t247;
-    const iiwa14_bench_real_t t266 = t265 + t240 * t249;
-    const iiwa14_bench_real_t t267 = t259 + t188 * t245 + t246 * t247 + t248 * t249;
-    if (!(t267 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t26 = t20 + t10 * t21 - parameters[XZ5];
+    const iiwa14_bench_real_t t28 = parameters[YZ5] + t13;
+    const iiwa14_bench_real_t t30 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const iiwa14_bench_real_t t31 = parameters[MY5R] + t30;
+    const iiwa14_bench_real_t t32 = t1 * parameters[MX7] - t0 * parameters[MY7];
+    const iiwa14_bench_real_t t33 = parameters[MX6] + t32;
+    const iiwa14_bench_real_t t34 = t12 * t33 - t10 * parameters[MY6R];
+    const iiwa14_bench_real_t t35 = parameters[MX5] + t34;
+    const iiwa14_bench_real_t t36 = t29 * t31 + t27 * t35;
+    const iiwa14_bench_real_t t37 = t27 * t26 - t29 * t28 + IIWA14_BENCH_C(0.4) * t36;
+    const iiwa14_bench_real_t t38 = t12 * t14 - t10 * parameters[ZZ7];
+    const iiwa14_bench_real_t t39 = t12 * t30;
+    const iiwa14_bench_real_t t40 = t29 * t39 + t27 * t32;
+    const iiwa14_bench_real_t t41 = t27 * t38 - t29 * t2 + IIWA14_BENCH_C(0.4) * t40;
+    const iiwa14_bench_real_t t42 = t10 * t11 - t12 * t9;
+    const iiwa14_bench_real_t t43 = t12 * parameters[MY6R] + t10 * t33;
+    const iiwa14_bench_real_t t44 = t29 * t43;
+    const iiwa14_bench_real_t t45 = IIWA14_BENCH_C(0.4) * t44 - (t27 * t42 + t29 * t7);
+    const iiwa14_bench_real_t t46 = t45 + t41 * t4;
+    const iiwa14_bench_real_t t47 = t37 + t41 * t24 + t46 * t18;
+    const iiwa14_bench_real_t t48 = IIWA14_BENCH_C(-1.0) / t25;
+    const iiwa14_bench_real_t t49 = t47 * t48;
+    const iiwa14_bench_real_t t50 = t41 * t3;
+    const iiwa14_bench_real_t t51 = parameters[XX5R] + (parameters[ZZ7] + t22);
+    const iiwa14_bench_real_t t52 = parameters[XY5] + t42;
+    const iiwa14_bench_real_t t53 = t29 * (t7 - t51) + t52 * (IIWA14_BENCH_C(2.0) * t27);
+    const iiwa14_bench_real_t t54 = t29 * t53;
+    const iiwa14_bench_real_t t55 = IIWA14_BENCH_C(-0.8) * t43;
+    const iiwa14_bench_real_t t56 = parameters[ZZ4R] + (t51 + t54 + t55);
+    const iiwa14_bench_real_t t57 = t46 * t17;
+    const iiwa14_bench_real_t t58 = t56 + t41 * t50 + t46 * t57 + t47 * t49;
+    if (!(t58 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t268 = IIWA14_BENCH_C(1.0) / t267;
-    const iiwa14_bench_real_t t269 = t266 * t268;
-    const iiwa14_bench_real_t t270 = t191 * t193;
-    const iiwa14_bench_real_t t271 = t214 + t191 * t195;
-    const iiwa14_bench_real_t t272 = t271 * t217;
-    const iiwa14_bench_real_t t273 = t239 + t191 * t219 + t271 * t221;
-    const iiwa14_bench_real_t t274 = t273 * t242;
-    const iiwa14_bench_real_t t275 = input[2] + t174 - t176 * t270 - t196 * t272 - t222 * t274;
-    const iiwa14_bench_real_t t276 = t264 + t191 * t245 + t271 * t247 + t273 * t249;
-    const iiwa14_bench_real_t t277 = t276 * t268;
-    const iiwa14_bench_real_t t278 = t275 + t250 * t277;
-    const iiwa14_bench_real_t t279 = t231 - parameters[XY4];
-    const iiwa14_bench_real_t t280 = parameters[XX4R] + (t202 - t257 + t258);
-    const iiwa14_bench_real_t t281 = t31 * (t233 - t280) - t279 * (IIWA14_BENCH_C(2.0) * t32);
-    const iiwa14_bench_real_t t282 = t279 + t32 * t281 - parameters[XZ3];
-    const iiwa14_bench_real_t t283 = parameters[YZ3] + t264;
-    const iiwa14_bench_real_t t284 = parameters[MY3R] + t235;
-    const iiwa14_bench_real_t t285 = parameters[MX3] + (t31 * t261 - t32 * t260);
-    const iiwa14_bench_real_t t286 = t10 * t282 + t11 * t283 + IIWA14_BENCH_C(0.4) * (t10 * t285
-        - t11 * t284);
-    const iiwa14_bench_real_t t287 = t31 * t281;
-    const iiwa14_bench_real_t t288 = parameters[ZZ3R] + (t280 + t287);
-    const iiwa14_bench_real_t t289 = t0 * t286 + t1 * t288 + t192 * t270 + t215 * t272;
-    const iiwa14_bench_real_t t290 = t266 * t277 - (t289 + t240 * t274);
-    const iiwa14_bench_real_t t291 = t288 + t191 * t270 + t271 * t272 + t273 * t274;
-    const iiwa14_bench_real_t t292 = t291 - t276 * t277;
-    if (!(t292 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t59 = parameters[XX4R] + (t7 - t54 + t55);
+    const iiwa14_bench_real_t t61 = t29 * t35 - t27 * t31;
+    const iiwa14_bench_real_t t62 = t29 * t26 + t27 * t28 + IIWA14_BENCH_C(0.4) * t61;
+    const iiwa14_bench_real_t t63 = t62 - parameters[XY4];
+    const iiwa14_bench_real_t t65 = t60 * (t23 - t59) - t63 * (IIWA14_BENCH_C(2.0) * t64);
+    const iiwa14_bench_real_t t66 = t60 * t65;
+    const iiwa14_bench_real_t t67 = parameters[ZZ3R] + (t59 + t66);
+    const iiwa14_bench_real_t t68 = t29 * t32 - t27 * t39;
+    const iiwa14_bench_real_t t69 = t29 * t38 + t27 * t2 + IIWA14_BENCH_C(0.4) * t68;
+    const iiwa14_bench_real_t t70 = t64 * t69 - t60 * t15;
+    const iiwa14_bench_real_t t71 = t70 * t3;
+    const iiwa14_bench_real_t t72 = t27 * t43;
+    const iiwa14_bench_real_t t73 = t27 * t7 - t29 * t42 + IIWA14_BENCH_C(-0.4) * t72;
+    const iiwa14_bench_real_t t74 = t64 * t73 - t60 * t13;
+    const iiwa14_bench_real_t t75 = t74 + t70 * t4;
+    const iiwa14_bench_real_t t76 = t75 * t17;
+    const iiwa14_bench_real_t t77 = t64 * t62 - t60 * t23;
+    const iiwa14_bench_real_t t78 = t77 + t70 * t24 + t75 * t18;
+    const iiwa14_bench_real_t t79 = t78 * t48;
+    const iiwa14_bench_real_t t80 = t67 + t70 * t71 + t75 * t76 + t78 * t79;
+    const iiwa14_bench_real_t t81 = t52 - t27 * t53 - parameters[XZ4];
+    const iiwa14_bench_real_t t82 = parameters[YZ4] + t37;
+    const iiwa14_bench_real_t t83 = t64 * t81 - t60 * t82;
+    const iiwa14_bench_real_t t84 = t83 + t70 * t50 + t75 * t57 + t78 * t49;
+    const iiwa14_bench_real_t t85 = IIWA14_BENCH_C(1.0) / t58;
+    const iiwa14_bench_real_t t86 = t84 * t85;
+    const iiwa14_bench_real_t t87 = t80 - t84 * t86;
+    if (!(t87 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t293 = IIWA14_BENCH_C(1.0) / t292;
-    const iiwa14_bench_real_t t294 = t290 * t293;
-    const iiwa14_bench_real_t t295 = parameters[XX2R] * t7 + parameters[XY2] * (t8 - t28)
-        + (parameters[MX2] * t27 + parameters[MY2R] * t50);
-    const iiwa14_bench_real_t t296 = t11 * t156 + t10 * t163 + IIWA14_BENCH_C(0.4) * (t10 * t167
-        - t11 * t168);
-    const iiwa14_bench_real_t t297 = t11 * t186 + t10 * t188 + IIWA14_BENCH_C(0.4) * (t10 * t189
-        + t11 * t183);
-    const iiwa14_bench_real_t t298 = t297 * t193;
-    const iiwa14_bench_real_t t299 = t11 * t208 + t10 * t210 + IIWA14_BENCH_C(0.4) * (t10 * t212
-        - t11 * t205);
-    const iiwa14_bench_real_t t300 = t299 + t297 * t195;
-    const iiwa14_bench_real_t t301 = t300 * t217;
-    const iiwa14_bench_real_t t302 = input[1] + (t295 + t296) - t176 * t298 - t196 * t301;
-    const iiwa14_bench_real_t t303 = t11 * t234 + t10 * t236 + IIWA14_BENCH_C(0.4) * (t10 * t237
-        + t11 * t230);
-    const iiwa14_bench_real_t t304 = t303 + t297 * t219 + t300 * t221;
-    const iiwa14_bench_real_t t305 = t304 * t242;
-    const iiwa14_bench_real_t t306 = t11 * t256 + t10 * t259 + IIWA14_BENCH_C(0.4) * (t10 * t262);
-    const iiwa14_bench_real_t t307 = t306 + t297 * t245 + t300 * t247 + t304 * t249;
-    const iiwa14_bench_real_t t308 = t307 * t268;
-    const iiwa14_bench_real_t t309 = t11 * t282 - t10 * t283 + IIWA14_BENCH_C(0.4) * (t10 * t284
-        + t11 * t285);
-    const iiwa14_bench_real_t t310 = t309 - t297 * t270 - t300 * t272 - t304 * t274;
-    const iiwa14_bench_real_t t311 = t310 + t307 * t277;
-    const iiwa14_bench_real_t t312 = t311 * t293;
-    const iiwa14_bench_real_t t313 = t302 - t222 * t305 + t250 * t308 + t278 * t312;
-    const iiwa14_bench_real_t t314 = parameters[XY3] + t256;
-    const iiwa14_bench_real_t t315 = parameters[XX3R] + (t233 - t287);
-    const iiwa14_bench_real_t t316 = t10 * (t259 - t315) + t314 * (IIWA14_BENCH_C(2.0) * t11);
-    const iiwa14_bench_real_t t317 = t0 * (parameters[XZ2] + (t314 - t11 * t316)) + t1 * (parameters[YZ2]
-        + t309);
-    const iiwa14_bench_real_t t318 = t317 - t192 * t298 - t215 * t301 - t240 * t305;
-    const iiwa14_bench_real_t t319 = t318 + t266 * t308 + t290 * t312;
-    const iiwa14_bench_real_t t320 = t10 * t316;
-    const iiwa14_bench_real_t t321 = IIWA14_BENCH_C(0.8) * t262;
-    const iiwa14_bench_real_t t322 = parameters[ZZ2R] + (t315 + t320 + t321) + t297 * t298 + t300 * t301;
-    const iiwa14_bench_real_t t323 = t322 + t304 * t305 - t307 * t308 - t311 * t312;
-    if (!(t323 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t88 = t63 + t64 * t65 - parameters[XZ3];
+    const iiwa14_bench_real_t t90 = parameters[YZ3] + t83;
+    const iiwa14_bench_real_t t92 = parameters[MY3R] + t36;
+    const iiwa14_bench_real_t t93 = parameters[MX4] + t61;
+    const iiwa14_bench_real_t t94 = parameters[MY4R] - t43;
+    const iiwa14_bench_real_t t95 = parameters[MX3] + (t60 * t93 - t64 * t94);
+    const iiwa14_bench_real_t t96 = t89 * t88 - t91 * t90 + IIWA14_BENCH_C(0.4) * (t91 * t92 + t89 * t95);
+    const iiwa14_bench_real_t t97 = t60 * t69 + t64 * t15;
+    const iiwa14_bench_real_t t98 = t60 * t40 + t64 * (t10 * t30);
+    const iiwa14_bench_real_t t99 = t89 * t97 + t91 * t41 + IIWA14_BENCH_C(0.4) * (t91 * t98 + t89 * t68);
+    const iiwa14_bench_real_t t100 = t60 * t73 + t64 * t13;
+    const iiwa14_bench_real_t t101 = t60 * t44 - t64 * t34;
+    const iiwa14_bench_real_t t102 = t89 * t100 + t91 * t45 + IIWA14_BENCH_C(0.4) * (t91 * t101 - t89 * t72);
+    const iiwa14_bench_real_t t103 = t102 + t99 * t4;
+    const iiwa14_bench_real_t t104 = t60 * t62 + t64 * t23;
+    const iiwa14_bench_real_t t105 = t60 * t36;
+    const iiwa14_bench_real_t t106 = t89 * t104 + t91 * t37 + IIWA14_BENCH_C(0.4) * (t91 * t105 + t89 * t61);
+    const iiwa14_bench_real_t t107 = t106 + t99 * t24 + t103 * t18;
+    const iiwa14_bench_real_t t108 = t96 - t99 * t71 - t103 * t76 - t107 * t79;
+    const iiwa14_bench_real_t t109 = t60 * t81 + t64 * t82;
+    const iiwa14_bench_real_t t110 = t60 * t94 + t64 * t93;
+    const iiwa14_bench_real_t t111 = t89 * t109 + t91 * t56 + IIWA14_BENCH_C(0.4) * (t91 * t110);
+    const iiwa14_bench_real_t t112 = t111 + t99 * t50 + t103 * t57 + t107 * t49;
+    const iiwa14_bench_real_t t113 = t108 + t112 * t86;
+    const iiwa14_bench_real_t t114 = IIWA14_BENCH_C(1.0) / t87;
+    const iiwa14_bench_real_t t115 = t113 * t114;
+    const iiwa14_bench_real_t t116 = parameters[XX3R] + (t23 - t66);
+    const iiwa14_bench_real_t t117 = parameters[XY3] + t109;
+    const iiwa14_bench_real_t t118 = t91 * (t56 - t116) + t117 * (IIWA14_BENCH_C(2.0) * t89);
+    const iiwa14_bench_real_t t119 = t91 * t118;
+    const iiwa14_bench_real_t t120 = IIWA14_BENCH_C(0.8) * t110;
+    const iiwa14_bench_real_t t121 = t99 * t3;
+    const iiwa14_bench_real_t t122 = t103 * t17;
+    const iiwa14_bench_real_t t123 = parameters[ZZ2R] + (t116 + t119 + t120) + t99 * t121 + t103 * t122;
+    const iiwa14_bench_real_t t124 = t107 * t48;
+    const iiwa14_bench_real_t t125 = t112 * t85;
+    const iiwa14_bench_real_t t126 = t123 + t107 * t124 - t112 * t125 - t113 * t115;
+    if (!(t126 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t324 = IIWA14_BENCH_C(1.0) / t323;
-    const iiwa14_bench_real_t t325 = t319 * t324;
-    const iiwa14_bench_real_t t326 = t244 + t250 * t269 + t278 * t294 + t313 * t325;
-    const iiwa14_bench_real_t t327 = parameters[XX2R] + (t259 - t320 + t321);
-    const iiwa14_bench_real_t t328 = t1 * (t288 - t327) + (parameters[XY2]
-        + t286) * (IIWA14_BENCH_C(2.0) * t0);
-    const iiwa14_bench_real_t t329 = parameters[ZZ1R] + (t327 + t1 * t328) + t192 * t194 + t215 * t218;
-    const iiwa14_bench_real_t t330 = t329 + t240 * t243 - t266 * t269 - t290 * t294;
-    const iiwa14_bench_real_t t331 = t330 - t319 * t325;
-    if (!(t331 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t127 = parameters[XX2R] + (t56 - t119 + t120);
+    const iiwa14_bench_real_t t129 = t91 * t88 + t89 * t90 + IIWA14_BENCH_C(0.4) * (t91 * t95 - t89 * t92);
+    const iiwa14_bench_real_t t131 = t128 * (t67 - t127) + (parameters[XY2]
+        + t129) * (IIWA14_BENCH_C(2.0) * t130);
+    const iiwa14_bench_real_t t132 = t89 * t41 - t91 * t97 + IIWA14_BENCH_C(0.4) * (t89 * t98 - t91 * t68);
+    const iiwa14_bench_real_t t133 = t130 * t132 + t128 * t70;
+    const iiwa14_bench_real_t t134 = t133 * t3;
+    const iiwa14_bench_real_t t135 = t89 * t45 - t91 * t100 + IIWA14_BENCH_C(0.4) * (t89 * t101 + t91 * t72);
+    const iiwa14_bench_real_t t136 = t130 * t135 + t128 * t74 + t133 * t4;
+    const iiwa14_bench_real_t t137 = t136 * t17;
+    const iiwa14_bench_real_t t138 = parameters[ZZ1R] + (t127 + t128 * t131) + t133 * t134 + t136 * t137;
+    const iiwa14_bench_real_t t139 = t89 * t37 - t91 * t104 + IIWA14_BENCH_C(0.4) * (t89 * t105 - t91 * t61);
+    const iiwa14_bench_real_t t140 = t130 * t139 + t128 * t77 + t133 * t24 + t136 * t18;
+    const iiwa14_bench_real_t t141 = t140 * t48;
+    const iiwa14_bench_real_t t142 = t89 * t56 - t91 * t109 + IIWA14_BENCH_C(0.4) * (t89 * t110);
+    const iiwa14_bench_real_t t143 = t130 * t142 + t128 * t83 + t133 * t50 + t136 * t57;
+    const iiwa14_bench_real_t t144 = t143 + t140 * t49;
+    const iiwa14_bench_real_t t145 = t144 * t85;
+    const iiwa14_bench_real_t t146 = t130 * t129 + t128 * t67 + t133 * t71 + t136 * t76;
+    const iiwa14_bench_real_t t147 = t144 * t86 - (t146 + t140 * t79);
+    const iiwa14_bench_real_t t148 = t147 * t114;
+    const iiwa14_bench_real_t t149 = t138 + t140 * t141 - t144 * t145 - t147 * t148;
+    const iiwa14_bench_real_t t150 = t130 * (parameters[XZ2] + (t117 - t89 * t118)) + t128 * (parameters[YZ2]
+        + t96);
+    const iiwa14_bench_real_t t151 = t150 - t133 * t121 - t136 * t122 - t140 * t124;
+    const iiwa14_bench_real_t t152 = t151 + t144 * t125 + t147 * t115;
+    const iiwa14_bench_real_t t153 = IIWA14_BENCH_C(1.0) / t126;
+    const iiwa14_bench_real_t t154 = t152 * t153;
+    const iiwa14_bench_real_t t155 = t149 - t152 * t154;
+    if (!(t155 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t332 = IIWA14_BENCH_C(1.0) / t331;
-    const iiwa14_bench_real_t t333 = t326 * t332;
+    const iiwa14_bench_real_t t156 = t130 * dq[0];
+    const iiwa14_bench_real_t t157 = t89 * dq[1] - t91 * t156;
+    const iiwa14_bench_real_t t158 = t89 * t156 + t91 * dq[1];
+    const iiwa14_bench_real_t t159 = t157 * t158;
+    const iiwa14_bench_real_t t160 = dq[1] * t156;
+    const iiwa14_bench_real_t t161 = t160 + t159;
+    const iiwa14_bench_real_t t162 = t128 * dq[0];
+    const iiwa14_bench_real_t t163 = t156 * t162;
+    const iiwa14_bench_real_t t164 = dq[1] * t162;
+    const iiwa14_bench_real_t t165 = IIWA14_BENCH_C(-2.0) * t164;
+    const iiwa14_bench_real_t t166 = t91 * t165 - t89 * t163;
+    const iiwa14_bench_real_t t167 = dq[2] + t162;
+    const iiwa14_bench_real_t t168 = t158 * t167;
+    const iiwa14_bench_real_t t169 = t166 + t168;
+    const iiwa14_bench_real_t t170 = t168 + t169;
+    const iiwa14_bench_real_t t171 = t60 * t161 + t64 * t170;
+    const iiwa14_bench_real_t t172 = t60 * t157 + t64 * t167;
+    const iiwa14_bench_real_t t173 = dq[3] - t158;
+    const iiwa14_bench_real_t t174 = t172 * t173;
+    const iiwa14_bench_real_t t175 = t171 + t174;
+    const iiwa14_bench_real_t t176 = t29 * t172 - t27 * t173;
+    const iiwa14_bench_real_t t177 = t27 * t172 + t29 * t173;
+    const iiwa14_bench_real_t t178 = t176 * t177;
+    const iiwa14_bench_real_t t179 = t175 - t178;
+    const iiwa14_bench_real_t t180 = t91 * t163 + t89 * t165;
+    const iiwa14_bench_real_t t181 = t157 * t167;
+    const iiwa14_bench_real_t t182 = t180 + t181;
+    const iiwa14_bench_real_t t183 = t64 * t157 - t60 * t167;
+    const iiwa14_bench_real_t t184 = t172 * t183;
+    const iiwa14_bench_real_t t185 = t182 + t184;
+    const iiwa14_bench_real_t t186 = t60 * t170 - t64 * t161;
+    const iiwa14_bench_real_t t187 = t183 * t173;
+    const iiwa14_bench_real_t t188 = t186 - t187;
+    const iiwa14_bench_real_t t189 = t188 - t187;
+    const iiwa14_bench_real_t t190 = t29 * t189 - t27 * t185;
+    const iiwa14_bench_real_t t191 = t183 - dq[4];
+    const iiwa14_bench_real_t t192 = t177 * t191;
+    const iiwa14_bench_real_t t193 = t190 + t192;
+    const iiwa14_bench_real_t t194 = t192 + t193;
+    const iiwa14_bench_real_t t195 = t10 * t179 + t12 * t194;
+    const iiwa14_bench_real_t t196 = t12 * t191 - t10 * t176;
+    const iiwa14_bench_real_t t197 = dq[5] - t177;
+    const iiwa14_bench_real_t t198 = t196 * t197;
+    const iiwa14_bench_real_t t199 = t195 + t198;
+    const iiwa14_bench_real_t t200 = t198 + t199;
+    const iiwa14_bench_real_t t201 = t29 * t185 + t27 * t189;
+    const iiwa14_bench_real_t t202 = t176 * t191;
+    const iiwa14_bench_real_t t203 = t201 - t202;
+    const iiwa14_bench_real_t t204 = t12 * t176 + t10 * t191;
+    const iiwa14_bench_real_t t205 = t204 * t196;
+    const iiwa14_bench_real_t t206 = t203 + t205;
+    const iiwa14_bench_real_t t207 = t1 * t200 - t0 * t206;
+    const iiwa14_bench_real_t t208 = t1 * t197 - t0 * t204;
+    const iiwa14_bench_real_t t209 = t196 - dq[6];
+    const iiwa14_bench_real_t t210 = t208 * t209;
+    const iiwa14_bench_real_t t211 = t207 - t210;
+    const iiwa14_bench_real_t t212 = t1 * t206 + t0 * t200;
+    const iiwa14_bench_real_t t213 = t1 * t204 + t0 * t197;
+    const iiwa14_bench_real_t t214 = t213 * t209;
+    const iiwa14_bench_real_t t215 = t212 - t214 - t214;
+    const iiwa14_bench_real_t t216 = t10 * t194 - t12 * t179;
+    const iiwa14_bench_real_t t217 = t204 * t197;
+    const iiwa14_bench_real_t t218 = t216 + t217;
+    const iiwa14_bench_real_t t219 = t213 * t208;
+    const iiwa14_bench_real_t t220 = t218 + t219;
+    const iiwa14_bench_real_t t221 = parameters[ZZ7] * t210 - parameters[XX7R] * t211 + parameters[XY7] * t215
+        - parameters[XZ7R] * t220;
+    const iiwa14_bench_real_t t222 = t208 * t208;
+    const iiwa14_bench_real_t t223 = t209 * t209;
+    const iiwa14_bench_real_t t224 = IIWA14_BENCH_C(-9.81) * t130;
+    const iiwa14_bench_real_t t225 = t224 + IIWA14_BENCH_C(-0.4) * t163;
+    const iiwa14_bench_real_t t226 = IIWA14_BENCH_C(0.8) * t164;
+    const iiwa14_bench_real_t t227 = t91 * t225 + t89 * t226;
+    const iiwa14_bench_real_t t228 = t156 * t156;
+    const iiwa14_bench_real_t t229 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t230 = IIWA14_BENCH_C(9.81) * t128;
+    const iiwa14_bench_real_t t231 = t230 + IIWA14_BENCH_C(-0.4) * (t228 + t229);
+    const iiwa14_bench_real_t t232 = t60 * t227 + t64 * t231;
+    const iiwa14_bench_real_t t233 = t232 + IIWA14_BENCH_C(-0.4) * t185;
+    const iiwa14_bench_real_t t234 = t89 * t225 - t91 * t226;
+    const iiwa14_bench_real_t t235 = t234 + IIWA14_BENCH_C(0.4) * t189;
+    const iiwa14_bench_real_t t236 = t29 * t233 - t27 * t235;
+    const iiwa14_bench_real_t t237 = t172 * t172;
+    const iiwa14_bench_real_t t238 = t173 * t173;
+    const iiwa14_bench_real_t t239 = t237 + t238;
+    const iiwa14_bench_real_t t240 = t64 * t227 - t60 * t231;
+    const iiwa14_bench_real_t t241 = t240 + IIWA14_BENCH_C(0.4) * t239;
+    const iiwa14_bench_real_t t242 = t12 * t241 - t10 * t236;
+    const iiwa14_bench_real_t t243 = t221 - parameters[YZ7R] * (t222 - t223) + parameters[MY7] * t242;
+    const iiwa14_bench_real_t t244 = t211 - t210;
+    const iiwa14_bench_real_t t245 = t219 - t218;
+    const iiwa14_bench_real_t t246 = t214 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t244
+        + parameters[YZ7R] * t245;
+    const iiwa14_bench_real_t t247 = t213 * t213;
+    const iiwa14_bench_real_t t248 = t246 + parameters[XZ7R] * (t247 - t223) - parameters[MX7] * t242;
+    const iiwa14_bench_real_t t249 = t217 + t218;
+    const iiwa14_bench_real_t t250 = t203 - t205;
+    const iiwa14_bench_real_t t251 = parameters[XX6R] * t199 + parameters[ZZ6R] * t198
+        - parameters[XY6] * t249 - parameters[XZ6] * t250;
+    const iiwa14_bench_real_t t252 = t196 * t196;
+    const iiwa14_bench_real_t t253 = t197 * t197;
+    const iiwa14_bench_real_t t254 = t27 * t233 + t29 * t235;
+    const iiwa14_bench_real_t t255 = t251 + parameters[YZ6] * (t252 - t253) - parameters[MY6R] * t254
+        - (t1 * t243 - t0 * t248);
+    const iiwa14_bench_real_t t256 = parameters[XX7R] * t219 - parameters[ZZ7] * t218
+        + parameters[YZ7R] * t212 - parameters[XZ7R] * t207;
+    const iiwa14_bench_real_t t257 = t12 * t236 + t10 * t241;
+    const iiwa14_bench_real_t t258 = parameters[MX7] * (t0 * t257 + t1 * t254) + parameters[MY7] * (t1 * t257
+        - t0 * t254);
+    const iiwa14_bench_real_t t259 = t256 + parameters[XY7] * (t222 - t247) + t258;
+    const iiwa14_bench_real_t t260 = parameters[XY6] * t200 - t217 * (parameters[ZZ6R] - parameters[XX6R])
+        - parameters[YZ6] * t206;
+    const iiwa14_bench_real_t t261 = t204 * t204;
+    const iiwa14_bench_real_t t262 = t260 + parameters[XZ6] * (t253 - t261) + parameters[MX6] * t254 + t259;
+    const iiwa14_bench_real_t t263 = t203 - t202;
+    const iiwa14_bench_real_t t264 = t175 + t178;
+    const iiwa14_bench_real_t t265 = parameters[XY5] * t263 - (parameters[XX5R] * t193
+        + parameters[ZZ5R] * t192) + parameters[XZ5] * t264;
+    const iiwa14_bench_real_t t266 = t177 * t177;
+    const iiwa14_bench_real_t t267 = t191 * t191;
+    const iiwa14_bench_real_t t268 = t265 + parameters[YZ5] * (t267 - t266) + parameters[MY5R] * t241
+        + (t10 * t262 - t12 * t255);
+    const iiwa14_bench_real_t t269 = parameters[ZZ6R] * t203 + parameters[XX6R] * t205
+        + parameters[YZ6] * t216 - parameters[XZ6] * t195;
+    const iiwa14_bench_real_t t270 = t269 - parameters[XY6] * (t261 - t252) - (parameters[MX6] * t242
+        - parameters[MY6R] * t257);
+    const iiwa14_bench_real_t t271 = t270 + (t0 * t243 + t1 * t248);
+    const iiwa14_bench_real_t t272 = t202 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t194
+        + parameters[YZ5] * t179;
+    const iiwa14_bench_real_t t273 = t176 * t176;
+    const iiwa14_bench_real_t t274 = t272 + parameters[XZ5] * (t273 - t267) - parameters[MX5] * t241 + t271;
+    const iiwa14_bench_real_t t275 = parameters[MX7] * (t222 + t223) - parameters[MY7] * t245;
+    const iiwa14_bench_real_t t276 = parameters[MX7] * t220 - parameters[MY7] * (t247 + t223);
+    const iiwa14_bench_real_t t277 = parameters[MX6] * (t252 + t253) - parameters[MY6R] * t206 + (t1 * t275
+        + t0 * t276);
+    const iiwa14_bench_real_t t278 = parameters[MX6] * t250 + parameters[MY6R] * (t261 + t253)
+        + (parameters[MX7] * t215 + parameters[MY7] * t244);
+    const iiwa14_bench_real_t t279 = parameters[MX5] * (t266 + t267) - parameters[MY5R] * t179 + (t12 * t277
+        - t10 * t278);
+    const iiwa14_bench_real_t t280 = parameters[MX6] * t249 + parameters[MY6R] * t200 + (t1 * t276
+        - t0 * t275);
+    const iiwa14_bench_real_t t281 = t280 - (parameters[MX5] * t264 + parameters[MY5R] * (t273 + t267));
+    const iiwa14_bench_real_t t282 = t29 * t281 - t27 * t279;
+    const iiwa14_bench_real_t t283 = t174 + t175;
+    const iiwa14_bench_real_t t284 = t182 - t184;
+    const iiwa14_bench_real_t t285 = parameters[ZZ4R] * t187 - parameters[XX4R] * t188
+        + parameters[XY4] * t283 - parameters[XZ4] * t284;
+    const iiwa14_bench_real_t t286 = t183 * t183;
+    const iiwa14_bench_real_t t287 = t285 + parameters[YZ4] * (t238 - t286) - parameters[MY4R] * t234
+        + (t29 * t268 - t27 * t274 + IIWA14_BENCH_C(0.4) * t282);
+    const iiwa14_bench_real_t t288 = parameters[ZZ5R] * t175 - parameters[XX5R] * t178
+        + parameters[YZ5] * t201 - parameters[XZ5] * t190;
+    const iiwa14_bench_real_t t289 = t288 + parameters[XY5] * (t266 - t273) + (parameters[MX5] * t254
+        + parameters[MY5R] * t236);
+    const iiwa14_bench_real_t t290 = t289 + (t10 * t255 + t12 * t262);
+    const iiwa14_bench_real_t t291 = t174 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t189
+        + parameters[YZ4] * t185;
+    const iiwa14_bench_real_t t292 = parameters[XZ4] * (t237 - t238) - t291 + parameters[MX4] * t234 + t290;
+    const iiwa14_bench_real_t t293 = parameters[XY3] * (t181 + t182) - (parameters[XX3R] * t169
+        + parameters[ZZ3R] * t168);
+    const iiwa14_bench_real_t t294 = t160 - t159;
+    const iiwa14_bench_real_t t295 = t158 * t158;
+    const iiwa14_bench_real_t t296 = t167 * t167;
+    const iiwa14_bench_real_t t297 = t293 + parameters[XZ3] * t294 - parameters[YZ3] * (t295 - t296)
+        - parameters[MY3R] * t231;
+    const iiwa14_bench_real_t t298 = t297 + (t60 * t287 - t64 * t292);
+    const iiwa14_bench_real_t t299 = t29 * t279 + t27 * t281;
+    const iiwa14_bench_real_t t300 = parameters[ZZ4R] * t182 + parameters[XX4R] * t184
+        - parameters[YZ4] * t171 + parameters[XZ4] * t186;
+    const iiwa14_bench_real_t t301 = t300 + parameters[XY4] * (t237 - t286) - (parameters[MX4] * t240
+        + parameters[MY4R] * t232);
+    const iiwa14_bench_real_t t302 = t301 + (t27 * t268 + t29 * t274 + IIWA14_BENCH_C(0.4) * t299);
+    const iiwa14_bench_real_t t303 = parameters[YZ3] * t161 - (t181 * (parameters[XX3R] - parameters[ZZ3R])
+        + parameters[XY3] * t170);
+    const iiwa14_bench_real_t t304 = t157 * t157;
+    const iiwa14_bench_real_t t305 = t303 + parameters[XZ3] * (t304 - t296) + parameters[MX3] * t231 + t302;
+    const iiwa14_bench_real_t t306 = t60 * (parameters[MX4] * (t286 + t238) + parameters[MY4R] * t185 + t299);
+    const iiwa14_bench_real_t t307 = parameters[MX5] * t263 + parameters[MY5R] * t194 + (t10 * t277
+        + t12 * t278);
+    const iiwa14_bench_real_t t308 = t306 + t64 * (parameters[MX4] * t284 - parameters[MY4R] * t239 + t307);
+    const iiwa14_bench_real_t t309 = parameters[MX3] * (t295 + t296) - parameters[MY3R] * t161 + t308;
+    const iiwa14_bench_real_t t310 = parameters[MX3] * t294 + parameters[MY3R] * (t304 + t296) - (t282
+        - (parameters[MX4] * t283 + parameters[MY4R] * t189));
+    const iiwa14_bench_real_t t311 = t89 * t305 - t91 * t298 + IIWA14_BENCH_C(0.4) * (t89 * t309
+        + t91 * t310);
+    const iiwa14_bench_real_t t312 = parameters[XY2] * (IIWA14_BENCH_C(2.0) * t160) - (parameters[XX2R] * t164
+        + parameters[ZZ2R] * t164);
+    const iiwa14_bench_real_t t313 = t162 * t162;
+    const iiwa14_bench_real_t t314 = t312 + parameters[XZ2] * t163 + parameters[YZ2] * (t313 - t229) + t311;
+    const iiwa14_bench_real_t t315 = parameters[ZZ3R] * t160 + parameters[XX3R] * t159
+        + parameters[YZ3] * t180 - parameters[XZ3] * t166;
+    const iiwa14_bench_real_t t316 = t315 + parameters[XY3] * (t295 - t304) + (parameters[MX3] * t234
+        + parameters[MY3R] * t227);
+    const iiwa14_bench_real_t t317 = t316 + (t64 * t287 + t60 * t292);
+    const iiwa14_bench_real_t t318 = t160 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t165
+        - parameters[YZ2] * t163;
+    const iiwa14_bench_real_t t319 = t130 * t314 + t128 * (t318 + parameters[XZ2] * (t229 - t228) + t317);
+    const iiwa14_bench_real_t t320 = input[6] + t259;
+    const iiwa14_bench_real_t t321 = input[5] + t271 + t320 * t4;
+    const iiwa14_bench_real_t t322 = input[4] + t290 + t320 * t24 + t321 * t18;
+    const iiwa14_bench_real_t t323 = input[0] + t319 - t320 * t134 - t321 * t137 - t322 * t141;
+    const iiwa14_bench_real_t t324 = input[3] - t302 + t320 * t50 + t321 * t57 + t322 * t49;
+    const iiwa14_bench_real_t t325 = input[2] + t317 - t320 * t71 - t321 * t76 - t322 * t79;
+    const iiwa14_bench_real_t t326 = t325 + t324 * t86;
+    const iiwa14_bench_real_t t327 = t89 * t298 + t91 * t305 + IIWA14_BENCH_C(0.4) * (t91 * t309
+        - t89 * t310);
+    const iiwa14_bench_real_t t328 = parameters[XX2R] * t163 + parameters[XY2] * (t313 - t228)
+        + (parameters[MX2] * t230 + parameters[MY2R] * t224);
+    const iiwa14_bench_real_t t329 = input[1] + (t328 + t327) - t320 * t121 - t321 * t122;
+    const iiwa14_bench_real_t t330 = t329 - t322 * t124 + t324 * t125 + t326 * t115;
+    const iiwa14_bench_real_t t331 = t323 + t324 * t145 + t326 * t148 + t330 * t154;
+    const iiwa14_bench_real_t t332 = IIWA14_BENCH_C(1.0) / t155;
+    const iiwa14_bench_real_t t333 = t331 * t332;
     out[0] = t333;
     if (!(t333 >= IIWA14_BENCH_C(-1.0e15) && t333 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t334 = t313 * t324 + t325 * t333;
+    const iiwa14_bench_real_t t334 = t330 * t153 + t154 * t333;
     out[1] = t334;
     if (!(t334 >= IIWA14_BENCH_C(-1.0e15) && t334 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t335 = t278 * t293 + t294 * t333 + t312 * t334;
+    const iiwa14_bench_real_t t335 = t326 * t114 + t148 * t333 + t115 * t334;
     out[2] = t335;
     if (!(t335 >= IIWA14_BENCH_C(-1.0e15) && t335 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t336 = t250 * t268 + t269 * t333 + t308 * t334 + t277 * t335;
+    const iiwa14_bench_real_t t336 = t324 * t85 + t145 * t333 + t125 * t334 + t86 * t335;
     out[3] = t336;
     if (!(t336 >= IIWA14_BENCH_C(-1.0e15) && t336 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t337 = t222 * t242 + t243 * t333 + t305 * t334 + t274 * t335;
-    const iiwa14_bench_real_t t338 = t249 * t336 - t337;
+    const iiwa14_bench_real_t t337 = t322 * t48 + t141 * t333 + t124 * t334 + t79 * t335;
+    const iiwa14_bench_real_t t338 = t49 * t336 - t337;
     out[4] = t338;
     if (!(t338 >= IIWA14_BENCH_C(-1.0e15) && t338 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t339 = t196 * t217 + t218 * t333 + t301 * t334 + t272 * t335;
-    const iiwa14_bench_real_t t340 = t247 * t336 - t339 + t221 * t338;
+    const iiwa14_bench_real_t t339 = t321 * t17 + t137 * t333 + t122 * t334 + t76 * t335;
+    const iiwa14_bench_real_t t340 = t57 * t336 - t339 + t18 * t338;
     out[5] = t340;
     if (!(t340 >= IIWA14_BENCH_C(-1.0e15) && t340 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t341 = t176 * t193 + t194 * t333 + t298 * t334 + t270 * t335;
-    const iiwa14_bench_real_t t342 = t245 * t336 - t341 + t219 * t338 + t195 * t340;
+    const iiwa14_bench_real_t t341 = t320 * t3 + t134 * t333 + t121 * t334 + t71 * t335;
+    const iiwa14_bench_real_t t342 = t50 * t336 - t341 + t24 * t338 + t4 * t340;
     out[6] = t342;
     if (!(t342 >= IIWA14_BENCH_C(-1.0e15) && t342 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);

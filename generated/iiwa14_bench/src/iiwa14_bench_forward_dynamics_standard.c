@@ -99,7 +99,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -127,511 +127,509 @@ int iiwa14_bench_forward_dynamics_standard(
         return status;
     }
 
+    iiwa14_bench_real_t t139, t140;
+    IIWA14_BENCH_SINCOS(q[1], &t139, &t140);
+    iiwa14_bench_real_t t103, t100;
+    IIWA14_BENCH_SINCOS(q[2], &t103, &t100);
+    iiwa14_bench_real_t t69, t71;
+    IIWA14_BENCH_SINCOS(q[3], &t69, &t71);
+    iiwa14_bench_real_t t37, t34;
+    IIWA14_BENCH_SINCOS(q[4], &t37, &t34);
+    iiwa14_bench_real_t t19, t15;
+    IIWA14_BENCH_SINCOS(q[5], &t19, &t15);
     iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t13, t12;
-    IIWA14_BENCH_SINCOS(q[2], &t13, &t12);
-    iiwa14_bench_real_t t37, t36;
-    IIWA14_BENCH_SINCOS(q[3], &t37, &t36);
-    iiwa14_bench_real_t t59, t58;
-    IIWA14_BENCH_SINCOS(q[4], &t59, &t58);
-    iiwa14_bench_real_t t86, t85;
-    IIWA14_BENCH_SINCOS(q[5], &t86, &t85);
-    iiwa14_bench_real_t t108, t107;
-    IIWA14_BENCH_SINCOS(q[6], &t108, &t107);
-    const iiwa14_bench_real_t t2 = t1 * dq[0];
-    const iiwa14_bench_real_t t3 = dq[1] * t2;
-    const iiwa14_bench_real_t t4 = t0 * dq[0];
-    const iiwa14_bench_real_t t5 = dq[1] * t4;
-    const iiwa14_bench_real_t t6 = t3 * (parameters[YY2] - parameters[ZZ2]) - t3 * parameters[XX2]
-        + IIWA14_BENCH_C(2.0) * t5 * parameters[XY2];
-    const iiwa14_bench_real_t t7 = t4 * t2;
-    const iiwa14_bench_real_t t8 = t2 * t2;
-    const iiwa14_bench_real_t t9 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t10 = IIWA14_BENCH_C(9.81) * t1;
-    const iiwa14_bench_real_t t11 = t6 + t7 * parameters[XZ2] + (t8 - t9) * parameters[YZ2]
-        + t10 * parameters[MZ2];
-    const iiwa14_bench_real_t t14 = t13 * t4 + t12 * dq[1];
-    const iiwa14_bench_real_t t15 = dq[2] + t2;
-    const iiwa14_bench_real_t t16 = t14 * t15;
-    const iiwa14_bench_real_t t17 = IIWA14_BENCH_C(-2.0) * t3;
-    const iiwa14_bench_real_t t18 = t13 * t7 - t12 * t17;
-    const iiwa14_bench_real_t t19 = t18 - t16;
-    const iiwa14_bench_real_t t20 = t13 * dq[1] - t12 * t4;
-    const iiwa14_bench_real_t t21 = t20 * t15;
-    const iiwa14_bench_real_t t22 = t12 * t7 + t13 * t17;
-    const iiwa14_bench_real_t t23 = t21 + t22;
-    const iiwa14_bench_real_t t24 = parameters[XX3] * t19 + t16 * (parameters[YY3] - parameters[ZZ3])
-        + parameters[XY3] * (t21 + t23);
-    const iiwa14_bench_real_t t25 = t20 * t14;
-    const iiwa14_bench_real_t t26 = t5 - t25;
-    const iiwa14_bench_real_t t27 = t14 * t14;
-    const iiwa14_bench_real_t t28 = t15 * t15;
-    const iiwa14_bench_real_t t29 = t4 * t4;
-    const iiwa14_bench_real_t t30 = t10 + IIWA14_BENCH_C(-0.4) * (t29 + t9);
-    const iiwa14_bench_real_t t31 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t32 = t31 + IIWA14_BENCH_C(0.4) * t7;
-    const iiwa14_bench_real_t t33 = IIWA14_BENCH_C(0.8) * t3;
-    const iiwa14_bench_real_t t34 = t13 * t32 + t12 * t33;
-    const iiwa14_bench_real_t t35 = (t27 - t28) * parameters[YZ3] - (t24 + parameters[XZ3] * t26)
-        + (t30 * parameters[MY3] - parameters[MZ3] * t34);
-    const iiwa14_bench_real_t t38 = t37 * t20 - t36 * t15;
-    const iiwa14_bench_real_t t39 = t14 - dq[3];
-    const iiwa14_bench_real_t t40 = t38 * t39;
-    const iiwa14_bench_real_t t41 = t5 + t25;
-    const iiwa14_bench_real_t t42 = t19 - t16;
-    const iiwa14_bench_real_t t43 = t37 * t41 + t36 * t42;
-    const iiwa14_bench_real_t t44 = t43 - t40;
-    const iiwa14_bench_real_t t45 = t36 * t20 + t37 * t15;
-    const iiwa14_bench_real_t t46 = t45 * t39;
-    const iiwa14_bench_real_t t47 = t36 * t41 - t37 * t42;
-    const iiwa14_bench_real_t t48 = t47 - t46;
-    const iiwa14_bench_real_t t49 = t48 - t46;
-    const iiwa14_bench_real_t t50 = parameters[XX4] * t44 + t40 * (parameters[YY4] - parameters[ZZ4])
-        + parameters[XY4] * t49;
-    const iiwa14_bench_real_t t51 = t45 * t38;
-    const iiwa14_bench_real_t t52 = t51 - t23;
-    const iiwa14_bench_real_t t53 = t38 * t38;
-    const iiwa14_bench_real_t t54 = t39 * t39;
-    const iiwa14_bench_real_t t55 = t12 * t32 - t13 * t33;
-    const iiwa14_bench_real_t t56 = t36 * t30 + t37 * t55;
-    const iiwa14_bench_real_t t57 = t50 + parameters[XZ4] * t52 + (t54 - t53) * parameters[YZ4]
-        + (parameters[MY4] * t34 + parameters[MZ4] * t56);
-    const iiwa14_bench_real_t t60 = t58 * t39 - t59 * t45;
-    const iiwa14_bench_real_t t61 = t38 - dq[4];
-    const iiwa14_bench_real_t t62 = t60 * t61;
-    const iiwa14_bench_real_t t63 = t51 + t23;
-    const iiwa14_bench_real_t t64 = t44 - t40;
-    const iiwa14_bench_real_t t65 = t59 * t63 + t58 * t64;
-    const iiwa14_bench_real_t t66 = t62 + t65;
-    const iiwa14_bench_real_t t67 = t58 * t45 + t59 * t39;
-    const iiwa14_bench_real_t t68 = t67 * t61;
-    const iiwa14_bench_real_t t69 = t58 * t63 - t59 * t64;
-    const iiwa14_bench_real_t t70 = t69 - t68;
-    const iiwa14_bench_real_t t71 = t70 - t68;
-    const iiwa14_bench_real_t t72 = parameters[XX5] * t66 - t62 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t71;
-    const iiwa14_bench_real_t t73 = t67 * t60;
-    const iiwa14_bench_real_t t74 = t48 - t73;
-    const iiwa14_bench_real_t t75 = t60 * t60;
-    const iiwa14_bench_real_t t76 = t61 * t61;
-    const iiwa14_bench_real_t t77 = t45 * t45;
-    const iiwa14_bench_real_t t78 = t77 + t54;
-    const iiwa14_bench_real_t t79 = IIWA14_BENCH_C(0.4) * t78 - t56;
-    const iiwa14_bench_real_t t80 = t36 * t55 - t37 * t30;
-    const iiwa14_bench_real_t t81 = t80 + IIWA14_BENCH_C(0.4) * t63;
-    const iiwa14_bench_real_t t82 = t34 + IIWA14_BENCH_C(0.4) * t64;
-    const iiwa14_bench_real_t t83 = t59 * t81 + t58 * t82;
-    const iiwa14_bench_real_t t84 = t72 + parameters[XZ5] * t74 + (t76 - t75) * parameters[YZ5]
-        + (parameters[MY5] * t79 + parameters[MZ5] * t83);
-    const iiwa14_bench_real_t t87 = t85 * t61 - t86 * t67;
-    const iiwa14_bench_real_t t88 = dq[5] + t60;
-    const iiwa14_bench_real_t t89 = t87 * t88;
-    const iiwa14_bench_real_t t90 = t73 + t48;
-    const iiwa14_bench_real_t t91 = t62 + t66;
-    const iiwa14_bench_real_t t92 = t86 * t90 - t85 * t91;
-    const iiwa14_bench_real_t t93 = t89 + t92;
-    const iiwa14_bench_real_t t94 = t85 * t67 + t86 * t61;
-    const iiwa14_bench_real_t t95 = t94 * t88;
-    const iiwa14_bench_real_t t96 = t85 * t90 + t86 * t91;
-    const iiwa14_bench_real_t t97 = t95 - t96;
-    const iiwa14_bench_real_t t98 = t95 + t97;
-    const iiwa14_bench_real_t t99 = parameters[XX6] * t93 - t89 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t98;
-    const iiwa14_bench_real_t t100 = t94 * t87;
-    const iiwa14_bench_real_t t101 = t70 - t100;
-    const iiwa14_bench_real_t t102 = t87 * t87;
-    const iiwa14_bench_real_t t103 = t88 * t88;
-    const iiwa14_bench_real_t t104 = t59 * t82 - t58 * t81;
-    const iiwa14_bench_real_t t105 = t86 * t104 - t85 * t79;
-    const iiwa14_bench_real_t t106 = t99 - parameters[XZ6] * t101 + (t102 - t103) * parameters[YZ6]
-        + (parameters[MY6] * t83 + parameters[MZ6] * t105);
-    const iiwa14_bench_real_t t109 = t107 * t88 - t108 * t94;
-    const iiwa14_bench_real_t t110 = t87 - dq[6];
-    const iiwa14_bench_real_t t111 = t109 * t110;
-    const iiwa14_bench_real_t t112 = t100 + t70;
-    const iiwa14_bench_real_t t113 = t89 + t93;
-    const iiwa14_bench_real_t t114 = t107 * t113 - t108 * t112;
-    const iiwa14_bench_real_t t115 = t114 - t111;
+    IIWA14_BENCH_SINCOS(q[6], &t0, &t1);
     if (!(parameters[ZZ7] > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t116 = t107 * t94 + t108 * t88;
-    const iiwa14_bench_real_t t117 = t116 * t110;
-    const iiwa14_bench_real_t t118 = t107 * t112 + t108 * t113;
-    const iiwa14_bench_real_t t119 = t118 - t117;
-    const iiwa14_bench_real_t t120 = t119 - t117;
-    const iiwa14_bench_real_t t121 = parameters[XX7] * t115 + t111 * (parameters[YY7] - parameters[ZZ7])
-        - parameters[XY7] * t120;
-    const iiwa14_bench_real_t t122 = t116 * t109;
-    const iiwa14_bench_real_t t123 = t122 + t97;
-    const iiwa14_bench_real_t t124 = t109 * t109;
-    const iiwa14_bench_real_t t125 = t110 * t110;
-    const iiwa14_bench_real_t t126 = t94 * t94;
-    const iiwa14_bench_real_t t127 = t126 + t103;
-    const iiwa14_bench_real_t t128 = IIWA14_BENCH_C(-0.126) * t127 + t105;
-    const iiwa14_bench_real_t t129 = t85 * t104 + t86 * t79;
-    const iiwa14_bench_real_t t130 = t129 + IIWA14_BENCH_C(-0.126) * t112;
-    const iiwa14_bench_real_t t131 = t83 + IIWA14_BENCH_C(-0.126) * t113;
-    const iiwa14_bench_real_t t132 = t108 * t130 - t107 * t131;
-    const iiwa14_bench_real_t t133 = t121 + parameters[XZ7] * t123 + (t124 - t125) * parameters[YZ7]
-        + (parameters[MY7] * t128 + parameters[MZ7] * t132);
-    const iiwa14_bench_real_t t134 = t115 - t111;
-    const iiwa14_bench_real_t t135 = parameters[XY7] * t134 - (parameters[YY7] * t119
-        + t117 * (parameters[XX7] - parameters[ZZ7]));
-    const iiwa14_bench_real_t t136 = t97 - t122;
-    const iiwa14_bench_real_t t137 = t116 * t116;
-    const iiwa14_bench_real_t t138 = t107 * t130 + t108 * t131;
-    const iiwa14_bench_real_t t139 = t135 + parameters[YZ7] * t136 - (t137 - t125) * parameters[XZ7]
-        + (parameters[MZ7] * t138 - parameters[MX7] * t128);
-    const iiwa14_bench_real_t t140 = (t124 + t125) * parameters[MX7] + parameters[MY7] * t136
-        + parameters[MZ7] * t118;
-    const iiwa14_bench_real_t t141 = parameters[M7] * t138 - t140;
-    const iiwa14_bench_real_t t142 = parameters[MX7] * t123 - (t137 + t125) * parameters[MY7]
-        - parameters[MZ7] * t114;
-    const iiwa14_bench_real_t t143 = t142 - parameters[M7] * t132;
-    const iiwa14_bench_real_t t144 = t108 * t141 + t107 * t143;
-    const iiwa14_bench_real_t t145 = t106 + (t107 * t133 - t108 * t139 - IIWA14_BENCH_C(0.126) * t144);
-    const iiwa14_bench_real_t t146 = parameters[XY6] * t113 - (parameters[YY6] * t97 + t95 * (parameters[ZZ6]
-        - parameters[XX6]));
-    const iiwa14_bench_real_t t147 = t146 - parameters[YZ6] * t112 + (t103 - t126) * parameters[XZ6]
-        + (parameters[MZ6] * t129 - parameters[MX6] * t83);
-    const iiwa14_bench_real_t t148 = parameters[YY7] - parameters[XX7];
-    const iiwa14_bench_real_t t149 = parameters[YZ7] * t118 - (parameters[ZZ7] * t97 + t122 * t148)
-        - parameters[XZ7] * t114;
-    const iiwa14_bench_real_t t150 = t149 + (t124 - t137) * parameters[XY7] + (parameters[MX7] * t132
-        + parameters[MY7] * t138);
-    const iiwa14_bench_real_t t151 = t147 + t150;
-    const iiwa14_bench_real_t t152 = t84 + (t86 * t151 - t85 * t145);
-    const iiwa14_bench_real_t t153 = parameters[YY5] * t70 + t68 * (parameters[XX5] - parameters[ZZ5])
-        + parameters[XY5] * t91;
-    const iiwa14_bench_real_t t154 = t67 * t67;
-    const iiwa14_bench_real_t t155 = parameters[MZ5] * t104 + parameters[MX5] * t79 - (t153
-        + parameters[YZ5] * t90 + (t154 - t76) * parameters[XZ5]);
-    const iiwa14_bench_real_t t156 = parameters[YZ6] * t96 - (parameters[ZZ6] * t70 + t100 * (parameters[XX6]
-        - parameters[YY6]));
-    const iiwa14_bench_real_t t157 = t156 + parameters[XZ6] * t92 + (t126 - t102) * parameters[XY6]
-        - (parameters[MX6] * t105 + parameters[MY6] * t129);
-    const iiwa14_bench_real_t t158 = t108 * t143 - t107 * t141;
-    const iiwa14_bench_real_t t159 = t157 + (t108 * t133 + t107 * t139 + IIWA14_BENCH_C(-0.126) * t158);
-    const iiwa14_bench_real_t t160 = t155 + t159;
-    const iiwa14_bench_real_t t161 = (t75 + t76) * parameters[MX5] - parameters[MY5] * t90
-        + parameters[MZ5] * t69;
-    const iiwa14_bench_real_t t162 = (t102 + t103) * parameters[MX6] - parameters[MY6] * t112
-        - parameters[MZ6] * t96;
-    const iiwa14_bench_real_t t163 = t162 - parameters[M6] * t129 + t158;
-    const iiwa14_bench_real_t t164 = parameters[M6] * t105 + (parameters[MX6] * t101 + t127 * parameters[MY6]
-        + parameters[MZ6] * t92);
-    const iiwa14_bench_real_t t165 = parameters[MX7] * t120 + parameters[MY7] * t134 - (t137
-        + t124) * parameters[MZ7];
-    const iiwa14_bench_real_t t166 = t164 + (parameters[M7] * t128 + t165);
-    const iiwa14_bench_real_t t167 = parameters[M5] * t104 - t161 + (t86 * t166 - t85 * t163);
-    const iiwa14_bench_real_t t168 = parameters[MZ5] * t65 - (parameters[MX5] * t74 + (t154
-        + t76) * parameters[MY5]);
-    const iiwa14_bench_real_t t169 = parameters[MX6] * t98 + parameters[MY6] * t113 - (t126
-        + t102) * parameters[MZ6];
-    const iiwa14_bench_real_t t170 = parameters[M5] * t83 + t168 + (parameters[M6] * t83 + t169 + t144);
-    const iiwa14_bench_real_t t171 = t59 * t167 + t58 * t170;
-    const iiwa14_bench_real_t t172 = t57 + (t58 * t152 + t59 * t160 + IIWA14_BENCH_C(0.4) * t171);
-    const iiwa14_bench_real_t t173 = parameters[YY4] * t48 + t46 * (parameters[XX4] - parameters[ZZ4])
-        + parameters[XY4] * t64;
-    const iiwa14_bench_real_t t174 = t173 - parameters[YZ4] * t63 + (t77 - t54) * parameters[XZ4]
-        + (parameters[MZ4] * t80 - parameters[MX4] * t34);
-    const iiwa14_bench_real_t t175 = parameters[ZZ5] * t48 - t73 * (parameters[YY5] - parameters[XX5])
-        + parameters[YZ5] * t69;
-    const iiwa14_bench_real_t t176 = t175 + parameters[XZ5] * t65 + (t75 - t154) * parameters[XY5]
-        + (parameters[MY5] * t104 - parameters[MX5] * t83);
-    const iiwa14_bench_real_t t177 = t176 + (t86 * t145 + t85 * t151);
-    const iiwa14_bench_real_t t178 = t174 + t177;
-    const iiwa14_bench_real_t t179 = t35 + (t37 * t178 - t36 * t172);
-    const iiwa14_bench_real_t t180 = parameters[YY3] * t23 - t21 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t42;
-    const iiwa14_bench_real_t t181 = t20 * t20;
-    const iiwa14_bench_real_t t182 = t180 + parameters[YZ3] * t41 + (t181 - t28) * parameters[XZ3]
-        + (parameters[MZ3] * t55 + t30 * parameters[MX3]);
-    const iiwa14_bench_real_t t183 = parameters[ZZ4] * t23 + t51 * (parameters[XX4] - parameters[YY4])
-        - parameters[YZ4] * t47;
-    const iiwa14_bench_real_t t184 = t183 - parameters[XZ4] * t43 + (t77 - t53) * parameters[XY4]
-        + (parameters[MX4] * t56 + parameters[MY4] * t80);
-    const iiwa14_bench_real_t t185 = t59 * t170 - t58 * t167;
-    const iiwa14_bench_real_t t186 = t184 + (t59 * t152 - t58 * t160 + IIWA14_BENCH_C(0.4) * t185);
-    const iiwa14_bench_real_t t187 = t182 + t186;
-    const iiwa14_bench_real_t t188 = (t27 + t28) * parameters[MX3] - parameters[MY3] * t41
-        + parameters[MZ3] * t22;
-    const iiwa14_bench_real_t t189 = (t53 + t54) * parameters[MX4] + parameters[MY4] * t63
-        + parameters[MZ4] * t47;
-    const iiwa14_bench_real_t t190 = parameters[M4] * t56 + (parameters[MZ4] * t43 - (parameters[MX4] * t52
-        + t78 * parameters[MY4]));
-    const iiwa14_bench_real_t t191 = parameters[MX5] * t71 - parameters[MY5] * t91 - (t154
-        + t75) * parameters[MZ5];
-    const iiwa14_bench_real_t t192 = t191 - parameters[M5] * t79 + (t86 * t163 + t85 * t166);
-    const iiwa14_bench_real_t t193 = t36 * (parameters[M4] * t80 + t189 + t185) + t37 * (t190 + t192);
-    const iiwa14_bench_real_t t194 = parameters[M3] * t55 + t188 + t193;
-    const iiwa14_bench_real_t t195 = parameters[MX3] * t26 + (t181 + t28) * parameters[MY3]
-        - parameters[MZ3] * t18;
-    const iiwa14_bench_real_t t196 = parameters[MY4] * t64 - parameters[MX4] * t49 + (t77
-        + t53) * parameters[MZ4];
-    const iiwa14_bench_real_t t197 = parameters[M3] * t34 - t195 + (parameters[M4] * t34 + t196 + t171);
-    const iiwa14_bench_real_t t198 = t12 * t179 + t13 * t187 + IIWA14_BENCH_C(0.4) * (t13 * t194
-        - t12 * t197);
-    const iiwa14_bench_real_t t199 = t5 * parameters[YY2] + t5 * (parameters[ZZ2] - parameters[XX2])
-        + t17 * parameters[XY2];
-    const iiwa14_bench_real_t t200 = t199 - t7 * parameters[YZ2] + (t9 - t29) * parameters[XZ2]
-        - t31 * parameters[MZ2];
-    const iiwa14_bench_real_t t201 = t5 * parameters[ZZ3] - t25 * (parameters[YY3] - parameters[XX3])
-        + parameters[YZ3] * t22;
-    const iiwa14_bench_real_t t202 = t201 + parameters[XZ3] * t18 + (t27 - t181) * parameters[XY3]
-        - (parameters[MX3] * t34 + parameters[MY3] * t55);
-    const iiwa14_bench_real_t t203 = t202 + (t37 * t172 + t36 * t178);
-    const iiwa14_bench_real_t t204 = input[0] + (t0 * (t11 + t198) + t1 * (t200 + t203));
-    const iiwa14_bench_real_t t205 = input[6] + t150;
-    const iiwa14_bench_real_t t206 = t107 * parameters[MX7] - t108 * parameters[MY7];
-    const iiwa14_bench_real_t t207 = t108 * parameters[YZ7] - t107 * parameters[XZ7]
-        + IIWA14_BENCH_C(0.126) * t206;
-    const iiwa14_bench_real_t t208 = t85 * t207 - t86 * parameters[ZZ7];
-    const iiwa14_bench_real_t t209 = t107 * parameters[MY7] + t108 * parameters[MX7];
-    const iiwa14_bench_real_t t210 = t108 * parameters[XZ7] + t107 * parameters[YZ7]
-        + IIWA14_BENCH_C(-0.126) * t209;
-    const iiwa14_bench_real_t t211 = t85 * t209;
-    const iiwa14_bench_real_t t212 = t58 * t206 - t59 * t211;
-    const iiwa14_bench_real_t t213 = t58 * t208 + t59 * t210 + IIWA14_BENCH_C(0.4) * t212;
-    const iiwa14_bench_real_t t214 = t86 * t207 + t85 * parameters[ZZ7];
-    const iiwa14_bench_real_t t215 = t36 * t213 + t37 * t214;
-    const iiwa14_bench_real_t t216 = t58 * t211 + t59 * t206;
-    const iiwa14_bench_real_t t217 = t59 * t208 - t58 * t210 + IIWA14_BENCH_C(0.4) * t216;
-    const iiwa14_bench_real_t t218 = t36 * t216 + t37 * (t86 * t209);
-    const iiwa14_bench_real_t t219 = t13 * t217 - t12 * t215 + IIWA14_BENCH_C(0.4) * (t13 * t218
-        - t12 * t212);
-    const iiwa14_bench_real_t t220 = t37 * t213 - t36 * t214;
-    const iiwa14_bench_real_t t221 = t0 * t219 + t1 * t220;
-    const iiwa14_bench_real_t t222 = IIWA14_BENCH_C(-1.0) / parameters[ZZ7];
-    const iiwa14_bench_real_t t223 = t221 * t222;
-    const iiwa14_bench_real_t t224 = t210 * t222;
-    const iiwa14_bench_real_t t225 = input[5] - t159 + t205 * t224;
-    const iiwa14_bench_real_t t226 = t107 * t148 + parameters[XY7] * (IIWA14_BENCH_C(2.0) * t108);
-    const iiwa14_bench_real_t t227 = t108 * t226 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_bench_real_t t228 = t210 - parameters[YZ6];
-    const iiwa14_bench_real_t t229 = t86 * t228 - t85 * t227;
-    const iiwa14_bench_real_t t230 = t107 * t226;
-    const iiwa14_bench_real_t t231 = IIWA14_BENCH_C(0.126) * parameters[M7];
-    const iiwa14_bench_real_t t232 = IIWA14_BENCH_C(0.126) * (t231 + IIWA14_BENCH_C(2.0) * parameters[MZ7]);
-    const iiwa14_bench_real_t t233 = parameters[ZZ6] + (parameters[XX7] + t230 + t232);
-    const iiwa14_bench_real_t t234 = parameters[MZ7] + t231 - parameters[MY6];
-    const iiwa14_bench_real_t t235 = parameters[MX6] + t206;
-    const iiwa14_bench_real_t t236 = t85 * t234 - t86 * t235;
-    const iiwa14_bench_real_t t237 = t59 * t236;
-    const iiwa14_bench_real_t t238 = t59 * t233 - t58 * t229 + IIWA14_BENCH_C(0.4) * t237;
-    const iiwa14_bench_real_t t239 = t86 * t227 + t85 * t228;
-    const iiwa14_bench_real_t t240 = t36 * t238 + t37 * t239;
-    const iiwa14_bench_real_t t241 = t58 * t236;
-    const iiwa14_bench_real_t t242 = IIWA14_BENCH_C(-0.4) * t241 - (t59 * t229 + t58 * t233);
-    const iiwa14_bench_real_t t243 = t86 * t234 + t85 * t235;
-    const iiwa14_bench_real_t t244 = t36 * t241 + t37 * t243;
-    const iiwa14_bench_real_t t245 = t13 * t242 - t12 * t240 + IIWA14_BENCH_C(-0.4) * (t13 * t244
-        + t12 * t237);
-    const iiwa14_bench_real_t t246 = t37 * t238 - t36 * t239;
-    const iiwa14_bench_real_t t247 = t0 * t245 + t1 * t246 + t221 * t224;
-    const iiwa14_bench_real_t t248 = t233 + t210 * t224;
-    if (!(t248 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t2 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const iiwa14_bench_real_t t3 = t0 * parameters[XZ7] + t1 * parameters[YZ7] + IIWA14_BENCH_C(-0.126) * t2;
+    const iiwa14_bench_real_t t4 = IIWA14_BENCH_C(-1.0) / parameters[ZZ7];
+    const iiwa14_bench_real_t t5 = t3 * t4;
+    const iiwa14_bench_real_t t6 = parameters[YY7] - parameters[XX7];
+    const iiwa14_bench_real_t t7 = t1 * t6 + parameters[XY7] * (IIWA14_BENCH_C(2.0) * t0);
+    const iiwa14_bench_real_t t8 = t1 * t7;
+    const iiwa14_bench_real_t t9 = IIWA14_BENCH_C(0.126) * parameters[M7];
+    const iiwa14_bench_real_t t10 = IIWA14_BENCH_C(0.126) * (t9 + IIWA14_BENCH_C(2.0) * parameters[MZ7]);
+    const iiwa14_bench_real_t t11 = parameters[ZZ6] + (parameters[XX7] + t8 + t10);
+    const iiwa14_bench_real_t t12 = t11 + t3 * t5;
+    if (!(t12 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t249 = IIWA14_BENCH_C(-1.0) / t248;
-    const iiwa14_bench_real_t t250 = t247 * t249;
-    const iiwa14_bench_real_t t251 = t214 * t222;
-    const iiwa14_bench_real_t t252 = t239 + t214 * t224;
-    const iiwa14_bench_real_t t253 = t252 * t249;
-    const iiwa14_bench_real_t t254 = input[4] + t177 + t205 * t251 + t225 * t253;
-    const iiwa14_bench_real_t t255 = parameters[XY6] + t207;
-    const iiwa14_bench_real_t t256 = parameters[XX6] + (parameters[YY7] - t230 + t232);
-    const iiwa14_bench_real_t t257 = parameters[YY6] + parameters[ZZ7];
-    const iiwa14_bench_real_t t258 = t85 * (t256 - t257) + t255 * (IIWA14_BENCH_C(-2.0) * t86);
-    const iiwa14_bench_real_t t259 = t255 + t86 * t258 - parameters[XZ5];
-    const iiwa14_bench_real_t t260 = parameters[YZ5] + t239;
-    const iiwa14_bench_real_t t261 = parameters[MY5] + (parameters[MZ6] + t209);
-    const iiwa14_bench_real_t t262 = parameters[MX5] + t243;
-    const iiwa14_bench_real_t t263 = t58 * t262 - t59 * t261;
-    const iiwa14_bench_real_t t264 = t58 * t259 + t59 * t260 + IIWA14_BENCH_C(0.4) * t263;
-    const iiwa14_bench_real_t t265 = t85 * t258;
-    const iiwa14_bench_real_t t266 = parameters[ZZ5] + (t256 - t265);
-    const iiwa14_bench_real_t t267 = t36 * t264 + t37 * t266;
-    const iiwa14_bench_real_t t268 = t58 * t261 + t59 * t262;
-    const iiwa14_bench_real_t t269 = t59 * t259 - t58 * t260 + IIWA14_BENCH_C(0.4) * t268;
-    const iiwa14_bench_real_t t270 = t36 * t268;
-    const iiwa14_bench_real_t t271 = t13 * t269 - t12 * t267 + IIWA14_BENCH_C(0.4) * (t13 * t270
-        - t12 * t263);
-    const iiwa14_bench_real_t t272 = t37 * t264 - t36 * t266;
-    const iiwa14_bench_real_t t273 = t0 * t271 + t1 * t272 + t221 * t251 + t247 * t253;
-    const iiwa14_bench_real_t t274 = t266 + t214 * t251 + t252 * t253;
-    if (!(t274 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t13 = parameters[XX6] + (parameters[YY7] - t8 + t10);
+    const iiwa14_bench_real_t t14 = parameters[YY6] + parameters[ZZ7];
+    const iiwa14_bench_real_t t16 = t1 * parameters[MX7] - t0 * parameters[MY7];
+    const iiwa14_bench_real_t t17 = t0 * parameters[YZ7] - t1 * parameters[XZ7] + IIWA14_BENCH_C(0.126) * t16;
+    const iiwa14_bench_real_t t18 = parameters[XY6] + t17;
+    const iiwa14_bench_real_t t20 = t15 * (t13 - t14) + t18 * (IIWA14_BENCH_C(-2.0) * t19);
+    const iiwa14_bench_real_t t21 = t15 * t20;
+    const iiwa14_bench_real_t t22 = parameters[ZZ5] + (t13 - t21);
+    const iiwa14_bench_real_t t23 = t19 * t17 + t15 * parameters[ZZ7];
+    const iiwa14_bench_real_t t24 = t23 * t4;
+    const iiwa14_bench_real_t t25 = t3 - parameters[YZ6];
+    const iiwa14_bench_real_t t26 = t0 * t7 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_bench_real_t t27 = t19 * t26 + t15 * t25;
+    const iiwa14_bench_real_t t28 = t27 + t23 * t5;
+    const iiwa14_bench_real_t t29 = IIWA14_BENCH_C(-1.0) / t12;
+    const iiwa14_bench_real_t t30 = t28 * t29;
+    const iiwa14_bench_real_t t31 = t22 + t23 * t24 + t28 * t30;
+    if (!(t31 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t275 = IIWA14_BENCH_C(-1.0) / t274;
-    const iiwa14_bench_real_t t276 = t273 * t275;
-    const iiwa14_bench_real_t t277 = t204 - t205 * t223 - t225 * t250 - t254 * t276;
-    const iiwa14_bench_real_t t278 = t217 * t222;
-    const iiwa14_bench_real_t t279 = t242 + t217 * t224;
-    const iiwa14_bench_real_t t280 = t279 * t249;
-    const iiwa14_bench_real_t t281 = t269 + t217 * t251 + t279 * t253;
-    const iiwa14_bench_real_t t282 = t281 * t275;
-    const iiwa14_bench_real_t t283 = input[3] - t186 + t205 * t278 + t225 * t280 + t254 * t282;
-    const iiwa14_bench_real_t t284 = parameters[XY5] + t229;
-    const iiwa14_bench_real_t t285 = parameters[XX5] + (t257 + t265);
-    const iiwa14_bench_real_t t286 = parameters[YY5] + t233;
-    const iiwa14_bench_real_t t287 = t58 * (t285 - t286) - t284 * (IIWA14_BENCH_C(2.0) * t59);
-    const iiwa14_bench_real_t t288 = t284 + t59 * t287 - parameters[XZ4];
-    const iiwa14_bench_real_t t289 = parameters[YZ4] + t269;
-    const iiwa14_bench_real_t t290 = t36 * t288 + t37 * t289;
-    const iiwa14_bench_real_t t291 = t58 * t287;
-    const iiwa14_bench_real_t t292 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_bench_real_t t293 = IIWA14_BENCH_C(0.4) * t292;
-    const iiwa14_bench_real_t t294 = parameters[MZ5] + t236;
-    const iiwa14_bench_real_t t295 = IIWA14_BENCH_C(0.4) * (t293 + IIWA14_BENCH_C(2.0) * t294);
-    const iiwa14_bench_real_t t296 = parameters[ZZ4] + (t285 - t291 + t295);
-    const iiwa14_bench_real_t t297 = parameters[MY4] + (t294 + t293);
-    const iiwa14_bench_real_t t298 = parameters[MX4] + t263;
-    const iiwa14_bench_real_t t299 = t36 * t297 + t37 * t298;
-    const iiwa14_bench_real_t t300 = t13 * t296 - t12 * t290 + IIWA14_BENCH_C(0.4) * (t13 * t299);
-    const iiwa14_bench_real_t t301 = t37 * t288 - t36 * t289;
-    const iiwa14_bench_real_t t302 = t0 * t300 + t1 * t301 + t221 * t278 + t247 * t280;
-    const iiwa14_bench_real_t t303 = t302 + t273 * t282;
-    const iiwa14_bench_real_t t304 = t296 + t217 * t278 + t279 * t280 + t281 * t282;
-    if (!(t304 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t32 = parameters[XX5] + (t14 + t21);
+    const iiwa14_bench_real_t t33 = parameters[YY5] + t11;
+    const iiwa14_bench_real_t t35 = t19 * t25 - t15 * t26;
+    const iiwa14_bench_real_t t36 = parameters[XY5] + t35;
+    const iiwa14_bench_real_t t38 = t34 * (t32 - t33) - t36 * (IIWA14_BENCH_C(2.0) * t37);
+    const iiwa14_bench_real_t t39 = t34 * t38;
+    const iiwa14_bench_real_t t40 = parameters[MX6] + t16;
+    const iiwa14_bench_real_t t41 = parameters[MZ7] + t9 - parameters[MY6];
+    const iiwa14_bench_real_t t42 = t15 * t41 - t19 * t40;
+    const iiwa14_bench_real_t t43 = parameters[MZ5] + t42;
+    const iiwa14_bench_real_t t44 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const iiwa14_bench_real_t t45 = IIWA14_BENCH_C(0.4) * t44;
+    const iiwa14_bench_real_t t46 = IIWA14_BENCH_C(0.4) * (t45 + IIWA14_BENCH_C(2.0) * t43);
+    const iiwa14_bench_real_t t47 = parameters[ZZ4] + (t32 - t39 + t46);
+    const iiwa14_bench_real_t t48 = t15 * t17 - t19 * parameters[ZZ7];
+    const iiwa14_bench_real_t t49 = t15 * t2;
+    const iiwa14_bench_real_t t50 = t34 * t49 + t37 * t16;
+    const iiwa14_bench_real_t t51 = t37 * t48 - t34 * t3 + IIWA14_BENCH_C(0.4) * t50;
+    const iiwa14_bench_real_t t52 = t51 * t4;
+    const iiwa14_bench_real_t t53 = t34 * t42;
+    const iiwa14_bench_real_t t54 = IIWA14_BENCH_C(-0.4) * t53 - (t37 * t35 + t34 * t11);
+    const iiwa14_bench_real_t t55 = t54 + t51 * t5;
+    const iiwa14_bench_real_t t56 = t55 * t29;
+    const iiwa14_bench_real_t t57 = t18 + t19 * t20 - parameters[XZ5];
+    const iiwa14_bench_real_t t58 = parameters[YZ5] + t27;
+    const iiwa14_bench_real_t t59 = parameters[MY5] + (parameters[MZ6] + t2);
+    const iiwa14_bench_real_t t60 = t19 * t41 + t15 * t40;
+    const iiwa14_bench_real_t t61 = parameters[MX5] + t60;
+    const iiwa14_bench_real_t t62 = t34 * t59 + t37 * t61;
+    const iiwa14_bench_real_t t63 = t37 * t57 - t34 * t58 + IIWA14_BENCH_C(0.4) * t62;
+    const iiwa14_bench_real_t t64 = t63 + t51 * t24 + t55 * t30;
+    const iiwa14_bench_real_t t65 = IIWA14_BENCH_C(-1.0) / t31;
+    const iiwa14_bench_real_t t66 = t64 * t65;
+    const iiwa14_bench_real_t t67 = t47 + t51 * t52 + t55 * t56 + t64 * t66;
+    if (!(t67 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t305 = IIWA14_BENCH_C(1.0) / t304;
-    const iiwa14_bench_real_t t306 = t303 * t305;
-    const iiwa14_bench_real_t t307 = t220 * t222;
-    const iiwa14_bench_real_t t308 = t246 + t220 * t224;
-    const iiwa14_bench_real_t t309 = t308 * t249;
-    const iiwa14_bench_real_t t310 = t272 + t220 * t251 + t308 * t253;
-    const iiwa14_bench_real_t t311 = t310 * t275;
-    const iiwa14_bench_real_t t312 = input[2] + t203 - t205 * t307 - t225 * t309 - t254 * t311;
-    const iiwa14_bench_real_t t313 = t301 + t220 * t278 + t308 * t280 + t310 * t282;
-    const iiwa14_bench_real_t t314 = t313 * t305;
-    const iiwa14_bench_real_t t315 = t312 + t283 * t314;
-    const iiwa14_bench_real_t t316 = t264 - parameters[XY4];
-    const iiwa14_bench_real_t t317 = parameters[XX4] + (t286 + t291 + t295);
-    const iiwa14_bench_real_t t318 = parameters[YY4] + t266;
-    const iiwa14_bench_real_t t319 = t36 * (t318 - t317) - t316 * (IIWA14_BENCH_C(2.0) * t37);
-    const iiwa14_bench_real_t t320 = t316 + t37 * t319 - parameters[XZ3];
-    const iiwa14_bench_real_t t321 = parameters[YZ3] + t301;
-    const iiwa14_bench_real_t t322 = parameters[MY3] - (parameters[MZ4] - t268);
-    const iiwa14_bench_real_t t323 = parameters[MX3] + (t36 * t298 - t37 * t297);
-    const iiwa14_bench_real_t t324 = t12 * t320 + t13 * t321 + IIWA14_BENCH_C(0.4) * (t12 * t323
-        - t13 * t322);
-    const iiwa14_bench_real_t t325 = t36 * t319;
-    const iiwa14_bench_real_t t326 = parameters[ZZ3] + (t317 + t325);
-    const iiwa14_bench_real_t t327 = t0 * t324 + t1 * t326 + t221 * t307 + t247 * t309;
-    const iiwa14_bench_real_t t328 = t303 * t314 - (t327 + t273 * t311);
-    const iiwa14_bench_real_t t329 = t326 + t220 * t307 + t308 * t309 + t310 * t311;
-    const iiwa14_bench_real_t t330 = t329 - t313 * t314;
-    if (!(t330 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t68 = t36 + t37 * t38 - parameters[XZ4];
+    const iiwa14_bench_real_t t70 = parameters[YZ4] + t63;
+    const iiwa14_bench_real_t t72 = t69 * t68 - t71 * t70;
+    const iiwa14_bench_real_t t73 = t34 * t16 - t37 * t49;
+    const iiwa14_bench_real_t t74 = t34 * t48 + t37 * t3 + IIWA14_BENCH_C(0.4) * t73;
+    const iiwa14_bench_real_t t75 = t69 * t74 - t71 * t23;
+    const iiwa14_bench_real_t t76 = t37 * t42;
+    const iiwa14_bench_real_t t77 = t37 * t11 - t34 * t35 + IIWA14_BENCH_C(0.4) * t76;
+    const iiwa14_bench_real_t t78 = t69 * t77 - t71 * t27;
+    const iiwa14_bench_real_t t79 = t78 + t75 * t5;
+    const iiwa14_bench_real_t t80 = t34 * t61 - t37 * t59;
+    const iiwa14_bench_real_t t81 = t34 * t57 + t37 * t58 + IIWA14_BENCH_C(0.4) * t80;
+    const iiwa14_bench_real_t t82 = t69 * t81 - t71 * t22;
+    const iiwa14_bench_real_t t83 = t82 + t75 * t24 + t79 * t30;
+    const iiwa14_bench_real_t t84 = t72 + t75 * t52 + t79 * t56 + t83 * t66;
+    const iiwa14_bench_real_t t85 = IIWA14_BENCH_C(1.0) / t67;
+    const iiwa14_bench_real_t t86 = t84 * t85;
+    const iiwa14_bench_real_t t87 = parameters[XX4] + (t33 + t39 + t46);
+    const iiwa14_bench_real_t t88 = parameters[YY4] + t22;
+    const iiwa14_bench_real_t t89 = t81 - parameters[XY4];
+    const iiwa14_bench_real_t t90 = t71 * (t88 - t87) - t89 * (IIWA14_BENCH_C(2.0) * t69);
+    const iiwa14_bench_real_t t91 = t71 * t90;
+    const iiwa14_bench_real_t t92 = parameters[ZZ3] + (t87 + t91);
+    const iiwa14_bench_real_t t93 = t75 * t4;
+    const iiwa14_bench_real_t t94 = t79 * t29;
+    const iiwa14_bench_real_t t95 = t83 * t65;
+    const iiwa14_bench_real_t t96 = t92 + t75 * t93 + t79 * t94 + t83 * t95;
+    const iiwa14_bench_real_t t97 = t96 - t84 * t86;
+    if (!(t97 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t331 = IIWA14_BENCH_C(1.0) / t330;
-    const iiwa14_bench_real_t t332 = t328 * t331;
-    const iiwa14_bench_real_t t333 = t7 * (parameters[XX2] - parameters[YY2]) + (t8 - t29) * parameters[XY2]
-        + (t10 * parameters[MX2] - t31 * parameters[MY2]);
-    const iiwa14_bench_real_t t334 = t12 * t187 - t13 * t179 + IIWA14_BENCH_C(0.4) * (t12 * t194
-        + t13 * t197);
-    const iiwa14_bench_real_t t335 = t13 * t215 + t12 * t217 + IIWA14_BENCH_C(0.4) * (t12 * t218
-        + t13 * t212);
-    const iiwa14_bench_real_t t336 = t335 * t222;
-    const iiwa14_bench_real_t t337 = t13 * t240 + t12 * t242 + IIWA14_BENCH_C(0.4) * (t13 * t237
-        - t12 * t244);
-    const iiwa14_bench_real_t t338 = t337 + t335 * t224;
-    const iiwa14_bench_real_t t339 = t338 * t249;
-    const iiwa14_bench_real_t t340 = input[1] + (t333 + t334) - t205 * t336 - t225 * t339;
-    const iiwa14_bench_real_t t341 = t13 * t267 + t12 * t269 + IIWA14_BENCH_C(0.4) * (t12 * t270
-        + t13 * t263);
-    const iiwa14_bench_real_t t342 = t341 + t335 * t251 + t338 * t253;
-    const iiwa14_bench_real_t t343 = t342 * t275;
-    const iiwa14_bench_real_t t344 = t13 * t290 + t12 * t296 + IIWA14_BENCH_C(0.4) * (t12 * t299);
-    const iiwa14_bench_real_t t345 = t344 + t335 * t278 + t338 * t280 + t342 * t282;
-    const iiwa14_bench_real_t t346 = t345 * t305;
-    const iiwa14_bench_real_t t347 = t13 * t320 - t12 * t321 + IIWA14_BENCH_C(0.4) * (t12 * t322
-        + t13 * t323);
-    const iiwa14_bench_real_t t348 = t347 - t335 * t307 - t338 * t309 - t342 * t311;
-    const iiwa14_bench_real_t t349 = t348 + t345 * t314;
-    const iiwa14_bench_real_t t350 = t349 * t331;
-    const iiwa14_bench_real_t t351 = t340 - t254 * t343 + t283 * t346 + t315 * t350;
-    const iiwa14_bench_real_t t352 = parameters[XY3] + t290;
-    const iiwa14_bench_real_t t353 = parameters[XX3] + (t318 - t325);
-    const iiwa14_bench_real_t t354 = parameters[YY3] + t296;
-    const iiwa14_bench_real_t t355 = t12 * (t354 - t353) + t352 * (IIWA14_BENCH_C(2.0) * t13);
-    const iiwa14_bench_real_t t356 = t0 * (parameters[XZ2] + (t352 - t13 * t355)) + t1 * (parameters[YZ2]
-        + t347);
-    const iiwa14_bench_real_t t357 = t356 - t221 * t336 - t247 * t339 - t273 * t343;
-    const iiwa14_bench_real_t t358 = t357 + t303 * t346 + t328 * t350;
-    const iiwa14_bench_real_t t359 = t12 * t355;
-    const iiwa14_bench_real_t t360 = IIWA14_BENCH_C(0.4) * (parameters[M3] + (parameters[M4] + t292))
-        + IIWA14_BENCH_C(2.0) * (parameters[MZ3] + t299);
-    const iiwa14_bench_real_t t361 = IIWA14_BENCH_C(0.4) * t360;
-    const iiwa14_bench_real_t t362 = parameters[ZZ2] + (t353 + t359 + t361) + t335 * t336 + t338 * t339;
-    const iiwa14_bench_real_t t363 = t362 + t342 * t343 - t345 * t346 - t349 * t350;
-    if (!(t363 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t98 = parameters[XX3] + (t88 - t91);
+    const iiwa14_bench_real_t t99 = parameters[YY3] + t47;
+    const iiwa14_bench_real_t t101 = t71 * t68 + t69 * t70;
+    const iiwa14_bench_real_t t102 = parameters[XY3] + t101;
+    const iiwa14_bench_real_t t104 = t100 * (t99 - t98) + t102 * (IIWA14_BENCH_C(2.0) * t103);
+    const iiwa14_bench_real_t t105 = t100 * t104;
+    const iiwa14_bench_real_t t106 = parameters[MX4] + t80;
+    const iiwa14_bench_real_t t107 = parameters[MY4] + (t43 + t45);
+    const iiwa14_bench_real_t t108 = t71 * t107 + t69 * t106;
+    const iiwa14_bench_real_t t109 = IIWA14_BENCH_C(0.4) * (parameters[M3] + (parameters[M4] + t44))
+        + IIWA14_BENCH_C(2.0) * (parameters[MZ3] + t108);
+    const iiwa14_bench_real_t t110 = IIWA14_BENCH_C(0.4) * t109;
+    const iiwa14_bench_real_t t111 = t71 * t74 + t69 * t23;
+    const iiwa14_bench_real_t t112 = t71 * t50 + t69 * (t19 * t2);
+    const iiwa14_bench_real_t t113 = t103 * t111 + t100 * t51 + IIWA14_BENCH_C(0.4) * (t100 * t112
+        + t103 * t73);
+    const iiwa14_bench_real_t t114 = t113 * t4;
+    const iiwa14_bench_real_t t115 = t71 * t77 + t69 * t27;
+    const iiwa14_bench_real_t t116 = t71 * t53 + t69 * t60;
+    const iiwa14_bench_real_t t117 = t103 * t115 + t100 * t54 + IIWA14_BENCH_C(0.4) * (t103 * t76
+        - t100 * t116);
+    const iiwa14_bench_real_t t118 = t117 + t113 * t5;
+    const iiwa14_bench_real_t t119 = t118 * t29;
+    const iiwa14_bench_real_t t120 = parameters[ZZ2] + (t98 + t105 + t110) + t113 * t114 + t118 * t119;
+    const iiwa14_bench_real_t t121 = t71 * t81 + t69 * t22;
+    const iiwa14_bench_real_t t122 = t71 * t62;
+    const iiwa14_bench_real_t t123 = t103 * t121 + t100 * t63 + IIWA14_BENCH_C(0.4) * (t100 * t122
+        + t103 * t80);
+    const iiwa14_bench_real_t t124 = t123 + t113 * t24 + t118 * t30;
+    const iiwa14_bench_real_t t125 = t124 * t65;
+    const iiwa14_bench_real_t t126 = t103 * t101 + t100 * t47 + IIWA14_BENCH_C(0.4) * (t100 * t108);
+    const iiwa14_bench_real_t t127 = t126 + t113 * t52 + t118 * t56 + t124 * t66;
+    const iiwa14_bench_real_t t128 = t127 * t85;
+    const iiwa14_bench_real_t t129 = t89 + t69 * t90 - parameters[XZ3];
+    const iiwa14_bench_real_t t130 = parameters[YZ3] + t72;
+    const iiwa14_bench_real_t t131 = parameters[MY3] - (parameters[MZ4] - t62);
+    const iiwa14_bench_real_t t132 = parameters[MX3] + (t71 * t106 - t69 * t107);
+    const iiwa14_bench_real_t t133 = t103 * t129 - t100 * t130 + IIWA14_BENCH_C(0.4) * (t100 * t131
+        + t103 * t132);
+    const iiwa14_bench_real_t t134 = t133 - t113 * t93 - t118 * t94 - t124 * t95;
+    const iiwa14_bench_real_t t135 = t134 + t127 * t86;
+    const iiwa14_bench_real_t t136 = IIWA14_BENCH_C(1.0) / t97;
+    const iiwa14_bench_real_t t137 = t135 * t136;
+    const iiwa14_bench_real_t t138 = t120 + t124 * t125 - t127 * t128 - t135 * t137;
+    if (!(t138 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t364 = IIWA14_BENCH_C(1.0) / t363;
-    const iiwa14_bench_real_t t365 = t358 * t364;
-    const iiwa14_bench_real_t t366 = t277 + t283 * t306 + t315 * t332 + t351 * t365;
-    const iiwa14_bench_real_t t367 = parameters[XX2] + (t354 - t359 + t361);
-    const iiwa14_bench_real_t t368 = t1 * (parameters[YY2] + t326 - t367) + (parameters[XY2]
-        + t324) * (IIWA14_BENCH_C(2.0) * t0);
-    const iiwa14_bench_real_t t369 = parameters[ZZ1] + (t367 + t1 * t368) + t221 * t223 + t247 * t250;
-    const iiwa14_bench_real_t t370 = t369 + t273 * t276 - t303 * t306 - t328 * t332;
-    const iiwa14_bench_real_t t371 = t370 - t358 * t365;
-    if (!(t371 > IIWA14_BENCH_C(1.0e-9))) {
+    const iiwa14_bench_real_t t141 = t139 * (parameters[XZ2] + (t102 - t103 * t104)) + t140 * (parameters[YZ2]
+        + t133);
+    const iiwa14_bench_real_t t142 = t103 * t51 - t100 * t111 + IIWA14_BENCH_C(0.4) * (t103 * t112
+        - t100 * t73);
+    const iiwa14_bench_real_t t143 = t139 * t142 + t140 * t75;
+    const iiwa14_bench_real_t t144 = t103 * t54 - t100 * t115 + IIWA14_BENCH_C(-0.4) * (t103 * t116
+        + t100 * t76);
+    const iiwa14_bench_real_t t145 = t139 * t144 + t140 * t78 + t143 * t5;
+    const iiwa14_bench_real_t t146 = t103 * t63 - t100 * t121 + IIWA14_BENCH_C(0.4) * (t103 * t122
+        - t100 * t80);
+    const iiwa14_bench_real_t t147 = t139 * t146 + t140 * t82 + t143 * t24 + t145 * t30;
+    const iiwa14_bench_real_t t148 = t141 - t143 * t114 - t145 * t119 - t147 * t125;
+    const iiwa14_bench_real_t t149 = t103 * t47 - t100 * t101 + IIWA14_BENCH_C(0.4) * (t103 * t108);
+    const iiwa14_bench_real_t t150 = t139 * t149 + t140 * t72 + t143 * t52 + t145 * t56;
+    const iiwa14_bench_real_t t151 = t150 + t147 * t66;
+    const iiwa14_bench_real_t t152 = t100 * t129 + t103 * t130 + IIWA14_BENCH_C(0.4) * (t100 * t132
+        - t103 * t131);
+    const iiwa14_bench_real_t t153 = t139 * t152 + t140 * t92 + t143 * t93 + t145 * t94;
+    const iiwa14_bench_real_t t154 = t151 * t86 - (t153 + t147 * t95);
+    const iiwa14_bench_real_t t155 = t148 + t151 * t128 + t154 * t137;
+    const iiwa14_bench_real_t t156 = IIWA14_BENCH_C(1.0) / t138;
+    const iiwa14_bench_real_t t157 = t155 * t156;
+    const iiwa14_bench_real_t t158 = parameters[XX2] + (t99 - t105 + t110);
+    const iiwa14_bench_real_t t159 = t140 * (parameters[YY2] + t92 - t158) + (parameters[XY2]
+        + t152) * (IIWA14_BENCH_C(2.0) * t139);
+    const iiwa14_bench_real_t t160 = t143 * t4;
+    const iiwa14_bench_real_t t161 = t145 * t29;
+    const iiwa14_bench_real_t t162 = parameters[ZZ1] + (t158 + t140 * t159) + t143 * t160 + t145 * t161;
+    const iiwa14_bench_real_t t163 = t147 * t65;
+    const iiwa14_bench_real_t t164 = t151 * t85;
+    const iiwa14_bench_real_t t165 = t154 * t136;
+    const iiwa14_bench_real_t t166 = t162 + t147 * t163 - t151 * t164 - t154 * t165;
+    const iiwa14_bench_real_t t167 = t166 - t155 * t157;
+    if (!(t167 > IIWA14_BENCH_C(1.0e-9))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t372 = IIWA14_BENCH_C(1.0) / t371;
-    const iiwa14_bench_real_t t373 = t366 * t372;
+    const iiwa14_bench_real_t t168 = t139 * dq[0];
+    const iiwa14_bench_real_t t169 = t103 * dq[1] - t100 * t168;
+    const iiwa14_bench_real_t t170 = t140 * dq[0];
+    const iiwa14_bench_real_t t171 = dq[2] + t170;
+    const iiwa14_bench_real_t t172 = t71 * t169 + t69 * t171;
+    const iiwa14_bench_real_t t173 = t103 * t168 + t100 * dq[1];
+    const iiwa14_bench_real_t t174 = t173 - dq[3];
+    const iiwa14_bench_real_t t175 = t34 * t172 + t37 * t174;
+    const iiwa14_bench_real_t t176 = t34 * t174 - t37 * t172;
+    const iiwa14_bench_real_t t177 = t175 * t176;
+    const iiwa14_bench_real_t t178 = t169 * t173;
+    const iiwa14_bench_real_t t179 = dq[1] * t168;
+    const iiwa14_bench_real_t t180 = t179 + t178;
+    const iiwa14_bench_real_t t181 = t173 * t171;
+    const iiwa14_bench_real_t t182 = t168 * t170;
+    const iiwa14_bench_real_t t183 = dq[1] * t170;
+    const iiwa14_bench_real_t t184 = IIWA14_BENCH_C(-2.0) * t183;
+    const iiwa14_bench_real_t t185 = t103 * t182 - t100 * t184;
+    const iiwa14_bench_real_t t186 = t185 - t181;
+    const iiwa14_bench_real_t t187 = t186 - t181;
+    const iiwa14_bench_real_t t188 = t71 * t180 - t69 * t187;
+    const iiwa14_bench_real_t t189 = t172 * t174;
+    const iiwa14_bench_real_t t190 = t188 - t189;
+    const iiwa14_bench_real_t t191 = t177 + t190;
+    const iiwa14_bench_real_t t192 = t69 * t169 - t71 * t171;
+    const iiwa14_bench_real_t t193 = t172 * t192;
+    const iiwa14_bench_real_t t194 = t169 * t171;
+    const iiwa14_bench_real_t t195 = t100 * t182 + t103 * t184;
+    const iiwa14_bench_real_t t196 = t194 + t195;
+    const iiwa14_bench_real_t t197 = t193 + t196;
+    const iiwa14_bench_real_t t198 = t69 * t180 + t71 * t187;
+    const iiwa14_bench_real_t t199 = t192 * t174;
+    const iiwa14_bench_real_t t200 = t198 - t199;
+    const iiwa14_bench_real_t t201 = t200 - t199;
+    const iiwa14_bench_real_t t202 = t37 * t197 + t34 * t201;
+    const iiwa14_bench_real_t t203 = t192 - dq[4];
+    const iiwa14_bench_real_t t204 = t176 * t203;
+    const iiwa14_bench_real_t t205 = t204 + t202;
+    const iiwa14_bench_real_t t206 = t204 + t205;
+    const iiwa14_bench_real_t t207 = t19 * t191 - t15 * t206;
+    const iiwa14_bench_real_t t208 = t15 * t203 - t19 * t175;
+    const iiwa14_bench_real_t t209 = dq[5] + t176;
+    const iiwa14_bench_real_t t210 = t208 * t209;
+    const iiwa14_bench_real_t t211 = t210 + t207;
+    const iiwa14_bench_real_t t212 = t210 + t211;
+    const iiwa14_bench_real_t t213 = t34 * t197 - t37 * t201;
+    const iiwa14_bench_real_t t214 = t175 * t203;
+    const iiwa14_bench_real_t t215 = t213 - t214;
+    const iiwa14_bench_real_t t216 = t15 * t175 + t19 * t203;
+    const iiwa14_bench_real_t t217 = t216 * t208;
+    const iiwa14_bench_real_t t218 = t217 + t215;
+    const iiwa14_bench_real_t t219 = t1 * t212 - t0 * t218;
+    const iiwa14_bench_real_t t220 = t1 * t209 - t0 * t216;
+    const iiwa14_bench_real_t t221 = t208 - dq[6];
+    const iiwa14_bench_real_t t222 = t220 * t221;
+    const iiwa14_bench_real_t t223 = t219 - t222;
+    const iiwa14_bench_real_t t224 = t1 * t218 + t0 * t212;
+    const iiwa14_bench_real_t t225 = t1 * t216 + t0 * t209;
+    const iiwa14_bench_real_t t226 = t225 * t221;
+    const iiwa14_bench_real_t t227 = t224 - t226;
+    const iiwa14_bench_real_t t228 = t227 - t226;
+    const iiwa14_bench_real_t t229 = parameters[XX7] * t223 + t222 * (parameters[YY7] - parameters[ZZ7])
+        - parameters[XY7] * t228;
+    const iiwa14_bench_real_t t230 = t15 * t191 + t19 * t206;
+    const iiwa14_bench_real_t t231 = t216 * t209;
+    const iiwa14_bench_real_t t232 = t231 - t230;
+    const iiwa14_bench_real_t t233 = t225 * t220;
+    const iiwa14_bench_real_t t234 = t233 + t232;
+    const iiwa14_bench_real_t t235 = t220 * t220;
+    const iiwa14_bench_real_t t236 = t221 * t221;
+    const iiwa14_bench_real_t t237 = t168 * t168;
+    const iiwa14_bench_real_t t238 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t239 = IIWA14_BENCH_C(9.81) * t140;
+    const iiwa14_bench_real_t t240 = t239 + IIWA14_BENCH_C(-0.4) * (t237 + t238);
+    const iiwa14_bench_real_t t241 = IIWA14_BENCH_C(9.81) * t139;
+    const iiwa14_bench_real_t t242 = t241 + IIWA14_BENCH_C(0.4) * t182;
+    const iiwa14_bench_real_t t243 = IIWA14_BENCH_C(0.8) * t183;
+    const iiwa14_bench_real_t t244 = t100 * t242 - t103 * t243;
+    const iiwa14_bench_real_t t245 = t71 * t244 - t69 * t240;
+    const iiwa14_bench_real_t t246 = t245 + IIWA14_BENCH_C(0.4) * t197;
+    const iiwa14_bench_real_t t247 = t103 * t242 + t100 * t243;
+    const iiwa14_bench_real_t t248 = t247 + IIWA14_BENCH_C(0.4) * t201;
+    const iiwa14_bench_real_t t249 = t37 * t248 - t34 * t246;
+    const iiwa14_bench_real_t t250 = t172 * t172;
+    const iiwa14_bench_real_t t251 = t174 * t174;
+    const iiwa14_bench_real_t t252 = t250 + t251;
+    const iiwa14_bench_real_t t253 = t71 * t240 + t69 * t244;
+    const iiwa14_bench_real_t t254 = IIWA14_BENCH_C(0.4) * t252 - t253;
+    const iiwa14_bench_real_t t255 = t15 * t249 + t19 * t254;
+    const iiwa14_bench_real_t t256 = t255 + IIWA14_BENCH_C(-0.126) * t218;
+    const iiwa14_bench_real_t t257 = t37 * t246 + t34 * t248;
+    const iiwa14_bench_real_t t258 = t257 + IIWA14_BENCH_C(-0.126) * t212;
+    const iiwa14_bench_real_t t259 = t0 * t256 - t1 * t258;
+    const iiwa14_bench_real_t t260 = t216 * t216;
+    const iiwa14_bench_real_t t261 = t209 * t209;
+    const iiwa14_bench_real_t t262 = t260 + t261;
+    const iiwa14_bench_real_t t263 = t19 * t249 - t15 * t254;
+    const iiwa14_bench_real_t t264 = IIWA14_BENCH_C(-0.126) * t262 + t263;
+    const iiwa14_bench_real_t t265 = t229 + parameters[XZ7] * t234 + (t235 - t236) * parameters[YZ7]
+        + (parameters[MY7] * t264 + parameters[MZ7] * t259);
+    const iiwa14_bench_real_t t266 = t223 - t222;
+    const iiwa14_bench_real_t t267 = parameters[XY7] * t266 - (parameters[YY7] * t227
+        + t226 * (parameters[XX7] - parameters[ZZ7]));
+    const iiwa14_bench_real_t t268 = t232 - t233;
+    const iiwa14_bench_real_t t269 = t225 * t225;
+    const iiwa14_bench_real_t t270 = t1 * t256 + t0 * t258;
+    const iiwa14_bench_real_t t271 = t267 + parameters[YZ7] * t268 - (t269 - t236) * parameters[XZ7]
+        + (parameters[MZ7] * t270 - parameters[MX7] * t264);
+    const iiwa14_bench_real_t t272 = (t235 + t236) * parameters[MX7] + parameters[MY7] * t268
+        + parameters[MZ7] * t224;
+    const iiwa14_bench_real_t t273 = parameters[M7] * t270 - t272;
+    const iiwa14_bench_real_t t274 = parameters[MX7] * t234 - (t269 + t236) * parameters[MY7]
+        - parameters[MZ7] * t219;
+    const iiwa14_bench_real_t t275 = t274 - parameters[M7] * t259;
+    const iiwa14_bench_real_t t276 = t0 * t273 + t1 * t275;
+    const iiwa14_bench_real_t t277 = t231 + t232;
+    const iiwa14_bench_real_t t278 = parameters[XX6] * t211 - t210 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t277;
+    const iiwa14_bench_real_t t279 = t215 - t217;
+    const iiwa14_bench_real_t t280 = t208 * t208;
+    const iiwa14_bench_real_t t281 = t278 - parameters[XZ6] * t279 + (t280 - t261) * parameters[YZ6]
+        + (parameters[MY6] * t257 + parameters[MZ6] * t263);
+    const iiwa14_bench_real_t t282 = t281 + (t1 * t265 - t0 * t271 - IIWA14_BENCH_C(0.126) * t276);
+    const iiwa14_bench_real_t t283 = parameters[YZ7] * t224 - (parameters[ZZ7] * t232 + t233 * t6)
+        - parameters[XZ7] * t219;
+    const iiwa14_bench_real_t t284 = t283 + (t235 - t269) * parameters[XY7] + (parameters[MX7] * t259
+        + parameters[MY7] * t270);
+    const iiwa14_bench_real_t t285 = parameters[XY6] * t212 - (parameters[YY6] * t232
+        + t231 * (parameters[ZZ6] - parameters[XX6]));
+    const iiwa14_bench_real_t t286 = t285 - parameters[YZ6] * t218 + (t261 - t260) * parameters[XZ6]
+        + (parameters[MZ6] * t255 - parameters[MX6] * t257);
+    const iiwa14_bench_real_t t287 = t286 + t284;
+    const iiwa14_bench_real_t t288 = t215 - t214;
+    const iiwa14_bench_real_t t289 = parameters[XX5] * t205 - t204 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t288;
+    const iiwa14_bench_real_t t290 = t190 - t177;
+    const iiwa14_bench_real_t t291 = t176 * t176;
+    const iiwa14_bench_real_t t292 = t203 * t203;
+    const iiwa14_bench_real_t t293 = t289 + parameters[XZ5] * t290 + (t292 - t291) * parameters[YZ5]
+        + (parameters[MY5] * t254 + parameters[MZ5] * t257);
+    const iiwa14_bench_real_t t294 = t293 + (t19 * t287 - t15 * t282);
+    const iiwa14_bench_real_t t295 = t0 * t275 - t1 * t273;
+    const iiwa14_bench_real_t t296 = parameters[YZ6] * t230 - (parameters[ZZ6] * t215
+        + t217 * (parameters[XX6] - parameters[YY6]));
+    const iiwa14_bench_real_t t297 = t296 + parameters[XZ6] * t207 + (t260 - t280) * parameters[XY6]
+        - (parameters[MX6] * t263 + parameters[MY6] * t255);
+    const iiwa14_bench_real_t t298 = t297 + (t0 * t265 + t1 * t271 + IIWA14_BENCH_C(-0.126) * t295);
+    const iiwa14_bench_real_t t299 = parameters[YY5] * t215 + t214 * (parameters[XX5] - parameters[ZZ5])
+        + parameters[XY5] * t206;
+    const iiwa14_bench_real_t t300 = t175 * t175;
+    const iiwa14_bench_real_t t301 = parameters[MZ5] * t249 + parameters[MX5] * t254 - (t299
+        + parameters[YZ5] * t191 + (t300 - t292) * parameters[XZ5]);
+    const iiwa14_bench_real_t t302 = t301 + t298;
+    const iiwa14_bench_real_t t303 = (t280 + t261) * parameters[MX6] - parameters[MY6] * t218
+        - parameters[MZ6] * t230;
+    const iiwa14_bench_real_t t304 = t303 - parameters[M6] * t255 + t295;
+    const iiwa14_bench_real_t t305 = parameters[M6] * t263 + (parameters[MX6] * t279 + t262 * parameters[MY6]
+        + parameters[MZ6] * t207);
+    const iiwa14_bench_real_t t306 = parameters[MX7] * t228 + parameters[MY7] * t266 - (t269
+        + t235) * parameters[MZ7];
+    const iiwa14_bench_real_t t307 = t305 + (parameters[M7] * t264 + t306);
+    const iiwa14_bench_real_t t308 = (t291 + t292) * parameters[MX5] - parameters[MY5] * t191
+        + parameters[MZ5] * t213;
+    const iiwa14_bench_real_t t309 = parameters[M5] * t249 - t308 + (t19 * t307 - t15 * t304);
+    const iiwa14_bench_real_t t310 = parameters[MX6] * t277 + parameters[MY6] * t212 - (t260
+        + t280) * parameters[MZ6];
+    const iiwa14_bench_real_t t311 = parameters[MZ5] * t202 - (parameters[MX5] * t290 + (t300
+        + t292) * parameters[MY5]);
+    const iiwa14_bench_real_t t312 = parameters[M5] * t257 + t311 + (parameters[M6] * t257 + t310 + t276);
+    const iiwa14_bench_real_t t313 = t37 * t309 + t34 * t312;
+    const iiwa14_bench_real_t t314 = t190 - t189;
+    const iiwa14_bench_real_t t315 = parameters[XX4] * t200 + t199 * (parameters[YY4] - parameters[ZZ4])
+        + parameters[XY4] * t314;
+    const iiwa14_bench_real_t t316 = t193 - t196;
+    const iiwa14_bench_real_t t317 = t192 * t192;
+    const iiwa14_bench_real_t t318 = t315 + parameters[XZ4] * t316 + (t251 - t317) * parameters[YZ4]
+        + (parameters[MY4] * t247 + parameters[MZ4] * t253);
+    const iiwa14_bench_real_t t319 = t318 + (t34 * t294 + t37 * t302 + IIWA14_BENCH_C(0.4) * t313);
+    const iiwa14_bench_real_t t320 = parameters[ZZ5] * t190 - t177 * (parameters[YY5] - parameters[XX5])
+        + parameters[YZ5] * t213;
+    const iiwa14_bench_real_t t321 = t320 + parameters[XZ5] * t202 + (t291 - t300) * parameters[XY5]
+        + (parameters[MY5] * t249 - parameters[MX5] * t257);
+    const iiwa14_bench_real_t t322 = t321 + (t19 * t282 + t15 * t287);
+    const iiwa14_bench_real_t t323 = parameters[YY4] * t190 + t189 * (parameters[XX4] - parameters[ZZ4])
+        + parameters[XY4] * t201;
+    const iiwa14_bench_real_t t324 = t323 - parameters[YZ4] * t197 + (t250 - t251) * parameters[XZ4]
+        + (parameters[MZ4] * t245 - parameters[MX4] * t247);
+    const iiwa14_bench_real_t t325 = t324 + t322;
+    const iiwa14_bench_real_t t326 = parameters[XX3] * t186 + t181 * (parameters[YY3] - parameters[ZZ3])
+        + parameters[XY3] * (t194 + t196);
+    const iiwa14_bench_real_t t327 = t179 - t178;
+    const iiwa14_bench_real_t t328 = t173 * t173;
+    const iiwa14_bench_real_t t329 = t171 * t171;
+    const iiwa14_bench_real_t t330 = (t328 - t329) * parameters[YZ3] - (t326 + parameters[XZ3] * t327)
+        + (t240 * parameters[MY3] - parameters[MZ3] * t247);
+    const iiwa14_bench_real_t t331 = t330 + (t69 * t325 - t71 * t319);
+    const iiwa14_bench_real_t t332 = t37 * t312 - t34 * t309;
+    const iiwa14_bench_real_t t333 = parameters[ZZ4] * t196 + t193 * (parameters[XX4] - parameters[YY4])
+        - parameters[YZ4] * t188;
+    const iiwa14_bench_real_t t334 = t333 - parameters[XZ4] * t198 + (t250 - t317) * parameters[XY4]
+        + (parameters[MX4] * t253 + parameters[MY4] * t245);
+    const iiwa14_bench_real_t t335 = t334 + (t37 * t294 - t34 * t302 + IIWA14_BENCH_C(0.4) * t332);
+    const iiwa14_bench_real_t t336 = parameters[YY3] * t196 - t194 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t187;
+    const iiwa14_bench_real_t t337 = t169 * t169;
+    const iiwa14_bench_real_t t338 = t336 + parameters[YZ3] * t180 + (t337 - t329) * parameters[XZ3]
+        + (parameters[MZ3] * t244 + t240 * parameters[MX3]);
+    const iiwa14_bench_real_t t339 = t338 + t335;
+    const iiwa14_bench_real_t t340 = (t317 + t251) * parameters[MX4] + parameters[MY4] * t197
+        + parameters[MZ4] * t188;
+    const iiwa14_bench_real_t t341 = parameters[MX5] * t288 - parameters[MY5] * t206 - (t300
+        + t291) * parameters[MZ5];
+    const iiwa14_bench_real_t t342 = t341 - parameters[M5] * t254 + (t19 * t304 + t15 * t307);
+    const iiwa14_bench_real_t t343 = parameters[M4] * t253 + (parameters[MZ4] * t198 - (parameters[MX4] * t316
+        + t252 * parameters[MY4]));
+    const iiwa14_bench_real_t t344 = t71 * (parameters[M4] * t245 + t340 + t332) + t69 * (t343 + t342);
+    const iiwa14_bench_real_t t345 = (t328 + t329) * parameters[MX3] - parameters[MY3] * t180
+        + parameters[MZ3] * t195;
+    const iiwa14_bench_real_t t346 = parameters[M3] * t244 + t345 + t344;
+    const iiwa14_bench_real_t t347 = parameters[MY4] * t201 - parameters[MX4] * t314 + (t250
+        + t317) * parameters[MZ4];
+    const iiwa14_bench_real_t t348 = parameters[MX3] * t327 + (t337 + t329) * parameters[MY3]
+        - parameters[MZ3] * t185;
+    const iiwa14_bench_real_t t349 = parameters[M3] * t247 - t348 + (parameters[M4] * t247 + t347 + t313);
+    const iiwa14_bench_real_t t350 = t100 * t331 + t103 * t339 + IIWA14_BENCH_C(0.4) * (t103 * t346
+        - t100 * t349);
+    const iiwa14_bench_real_t t351 = t183 * (parameters[YY2] - parameters[ZZ2]) - t183 * parameters[XX2]
+        + IIWA14_BENCH_C(2.0) * t179 * parameters[XY2];
+    const iiwa14_bench_real_t t352 = t170 * t170;
+    const iiwa14_bench_real_t t353 = t351 + t182 * parameters[XZ2] + (t352 - t238) * parameters[YZ2]
+        + t239 * parameters[MZ2];
+    const iiwa14_bench_real_t t354 = t179 * parameters[ZZ3] - t178 * (parameters[YY3] - parameters[XX3])
+        + parameters[YZ3] * t195;
+    const iiwa14_bench_real_t t355 = t354 + parameters[XZ3] * t185 + (t328 - t337) * parameters[XY3]
+        - (parameters[MX3] * t247 + parameters[MY3] * t244);
+    const iiwa14_bench_real_t t356 = t355 + (t69 * t319 + t71 * t325);
+    const iiwa14_bench_real_t t357 = t179 * parameters[YY2] + t179 * (parameters[ZZ2] - parameters[XX2])
+        + t184 * parameters[XY2];
+    const iiwa14_bench_real_t t358 = t357 - t182 * parameters[YZ2] + (t238 - t237) * parameters[XZ2]
+        - t241 * parameters[MZ2];
+    const iiwa14_bench_real_t t359 = input[0] + (t139 * (t353 + t350) + t140 * (t358 + t356));
+    const iiwa14_bench_real_t t360 = input[6] + t284;
+    const iiwa14_bench_real_t t361 = input[5] - t298 + t360 * t5;
+    const iiwa14_bench_real_t t362 = input[4] + t322 + t360 * t24 + t361 * t30;
+    const iiwa14_bench_real_t t363 = t359 - t360 * t160 - t361 * t161 - t362 * t163;
+    const iiwa14_bench_real_t t364 = input[3] - t335 + t360 * t52 + t361 * t56 + t362 * t66;
+    const iiwa14_bench_real_t t365 = input[2] + t356 - t360 * t93 - t361 * t94 - t362 * t95;
+    const iiwa14_bench_real_t t366 = t365 + t364 * t86;
+    const iiwa14_bench_real_t t367 = t100 * t339 - t103 * t331 + IIWA14_BENCH_C(0.4) * (t100 * t346
+        + t103 * t349);
+    const iiwa14_bench_real_t t368 = t182 * (parameters[XX2] - parameters[YY2]) + (t352
+        - t237) * parameters[XY2] + (t239 * parameters[MX2] - t241 * parameters[MY2]);
+    const iiwa14_bench_real_t t369 = input[1] + (t368 + t367) - t360 * t114 - t361 * t119;
+    const iiwa14_bench_real_t t370 = t369 - t362 * t125 + t364 * t128 + t366 * t137;
+    const iiwa14_bench_real_t t371 = t363 + t364 * t164 + t366 * t165 + t370 * t157;
+    const iiwa14_bench_real_t t372 = IIWA14_BENCH_C(1.0) / t167;
+    const iiwa14_bench_real_t t373 = t371 * t372;
     out[0] = t373;
     if (!(t373 >= IIWA14_BENCH_C(-1.0e15) && t373 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t374 = t351 * t364 + t365 * t373;
+    const iiwa14_bench_real_t t374 = t370 * t156 + t157 * t373;
     out[1] = t374;
     if (!(t374 >= IIWA14_BENCH_C(-1.0e15) && t374 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t375 = t315 * t331 + t332 * t373 + t350 * t374;
+    const iiwa14_bench_real_t t375 = t366 * t136 + t165 * t373 + t137 * t374;
     out[2] = t375;
     if (!(t375 >= IIWA14_BENCH_C(-1.0e15) && t375 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t376 = t283 * t305 + t306 * t373 + t346 * t374 + t314 * t375;
+    const iiwa14_bench_real_t t376 = t364 * t85 + t164 * t373 + t128 * t374 + t86 * t375;
     out[3] = t376;
     if (!(t376 >= IIWA14_BENCH_C(-1.0e15) && t376 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t377 = t254 * t275 + t276 * t373 + t343 * t374 + t311 * t375;
-    const iiwa14_bench_real_t t378 = t282 * t376 - t377;
+    const iiwa14_bench_real_t t377 = t362 * t65 + t163 * t373 + t125 * t374 + t95 * t375;
+    const iiwa14_bench_real_t t378 = t66 * t376 - t377;
     out[4] = t378;
     if (!(t378 >= IIWA14_BENCH_C(-1.0e15) && t378 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t379 = t225 * t249 + t250 * t373 + t339 * t374 + t309 * t375;
-    const iiwa14_bench_real_t t380 = t280 * t376 - t379 + t253 * t378;
+    const iiwa14_bench_real_t t379 = t361 * t29 + t161 * t373 + t119 * t374 + t94 * t375;
+    const iiwa14_bench_real_t t380 = t56 * t376 - t379 + t30 * t378;
     out[5] = t380;
     if (!(t380 >= IIWA14_BENCH_C(-1.0e15) && t380 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);
         return IIWA14_BENCH_STATUS_PIVOT;
     }
-    const iiwa14_bench_real_t t381 = t205 * t222 + t223 * t373 + t336 * t374 + t307 * t375;
-    const iiwa14_bench_real_t t382 = t278 * t376 - t381 + t251 * t378 + t224 * t380;
+    const iiwa14_bench_real_t t381 = t360 * t4 + t160 * t373 + t114 * t374 + t93 * t375;
+    const iiwa14_bench_real_t t382 = t52 * t376 - t381 + t24 * t378 + t5 * t380;
     out[6] = t382;
     if (!(t382 >= IIWA14_BENCH_C(-1.0e15) && t382 <= IIWA14_BENCH_C(1.0e15))) {
         iiwa14_bench_zero(out, 7);

@@ -69,7 +69,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -92,47 +92,47 @@ int iiwa14_bench_gravity(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t2;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t2);
-    iiwa14_bench_real_t t5, t1;
-    IIWA14_BENCH_SINCOS(q[2], &t5, &t1);
-    iiwa14_bench_real_t t9, t4;
-    IIWA14_BENCH_SINCOS(q[3], &t9, &t4);
-    iiwa14_bench_real_t t13, t8;
-    IIWA14_BENCH_SINCOS(q[4], &t13, &t8);
-    iiwa14_bench_real_t t17, t12;
-    IIWA14_BENCH_SINCOS(q[5], &t17, &t12);
-    iiwa14_bench_real_t t21, t16;
-    IIWA14_BENCH_SINCOS(q[6], &t21, &t16);
-    const iiwa14_bench_real_t t3 = IIWA14_BENCH_C(-9.81) * t2;
-    const iiwa14_bench_real_t t6 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t7 = t5 * t6;
-    const iiwa14_bench_real_t t10 = t1 * t6;
-    const iiwa14_bench_real_t t11 = t9 * t10 - t4 * t3;
-    const iiwa14_bench_real_t t14 = t4 * t10 + t9 * t3;
-    const iiwa14_bench_real_t t15 = t13 * t14 + t8 * t7;
-    const iiwa14_bench_real_t t18 = t8 * t14 - t13 * t7;
-    const iiwa14_bench_real_t t19 = t17 * t18 - t12 * t11;
-    const iiwa14_bench_real_t t20 = parameters[MY7] * t19;
-    const iiwa14_bench_real_t t22 = parameters[MX7] * t19;
-    const iiwa14_bench_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY6R] * t15;
-    const iiwa14_bench_real_t t24 = t12 * t18 + t17 * t11;
-    const iiwa14_bench_real_t t25 = parameters[MX7] * (t21 * t24 + t16 * t15) + parameters[MY7] * (t16 * t24
-        - t21 * t15);
-    const iiwa14_bench_real_t t26 = parameters[MX6] * t15 + t25;
-    const iiwa14_bench_real_t t27 = parameters[MY5R] * t11 + (t17 * t26 - t12 * t23);
-    const iiwa14_bench_real_t t28 = parameters[MX6] * t19 + parameters[MY6R] * t24 + (t16 * t22 - t21 * t20);
-    const iiwa14_bench_real_t t29 = parameters[MX5] * t11 - t28;
-    const iiwa14_bench_real_t t30 = t8 * t27 + t13 * t29 - parameters[MY4R] * t7;
-    const iiwa14_bench_real_t t31 = parameters[MX5] * t15 + parameters[MY5R] * t18 + (t17 * t23 + t12 * t26);
-    const iiwa14_bench_real_t t32 = parameters[MX4] * t7 + t31;
-    const iiwa14_bench_real_t t33 = parameters[MY3R] * t3 + (t9 * t32 - t4 * t30);
-    const iiwa14_bench_real_t t34 = parameters[MX4] * t11 + parameters[MY4R] * t14 + (t8 * t29 - t13 * t27);
-    const iiwa14_bench_real_t t35 = parameters[MX3] * t3 - t34;
-    const iiwa14_bench_real_t t36 = parameters[MX3] * t7 + parameters[MY3R] * t10 + (t9 * t30 + t4 * t32);
-    const iiwa14_bench_real_t t37 = t0 * (t1 * t33 + t5 * t35) + t2 * t36;
+    iiwa14_bench_real_t t0, t5;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t5);
+    iiwa14_bench_real_t t10, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t10, &t2);
+    iiwa14_bench_real_t t7, t4;
+    IIWA14_BENCH_SINCOS(q[3], &t7, &t4);
+    iiwa14_bench_real_t t12, t9;
+    IIWA14_BENCH_SINCOS(q[4], &t12, &t9);
+    iiwa14_bench_real_t t14, t16;
+    IIWA14_BENCH_SINCOS(q[5], &t14, &t16);
+    iiwa14_bench_real_t t21, t19;
+    IIWA14_BENCH_SINCOS(q[6], &t21, &t19);
+    const iiwa14_bench_real_t t1 = IIWA14_BENCH_C(9.81) * t0;
+    const iiwa14_bench_real_t t3 = t2 * t1;
+    const iiwa14_bench_real_t t6 = IIWA14_BENCH_C(-9.81) * t5;
+    const iiwa14_bench_real_t t8 = t4 * t3 + t7 * t6;
+    const iiwa14_bench_real_t t11 = t10 * t1;
+    const iiwa14_bench_real_t t13 = t9 * t8 - t12 * t11;
+    const iiwa14_bench_real_t t15 = t7 * t3 - t4 * t6;
+    const iiwa14_bench_real_t t17 = t14 * t13 - t16 * t15;
+    const iiwa14_bench_real_t t18 = parameters[MY7] * t17;
+    const iiwa14_bench_real_t t20 = parameters[MX7] * t17;
+    const iiwa14_bench_real_t t22 = t12 * t8 + t9 * t11;
+    const iiwa14_bench_real_t t23 = t19 * t18 + t21 * t20 - parameters[MY6R] * t22;
+    const iiwa14_bench_real_t t24 = t16 * t13 + t14 * t15;
+    const iiwa14_bench_real_t t25 = parameters[MX7] * (t21 * t24 + t19 * t22) + parameters[MY7] * (t19 * t24
+        - t21 * t22);
+    const iiwa14_bench_real_t t26 = parameters[MX6] * t22 + t25;
+    const iiwa14_bench_real_t t27 = parameters[MY5R] * t15 + (t14 * t26 - t16 * t23);
+    const iiwa14_bench_real_t t28 = parameters[MX6] * t17 + parameters[MY6R] * t24 + (t19 * t20 - t21 * t18);
+    const iiwa14_bench_real_t t29 = parameters[MX5] * t15 - t28;
+    const iiwa14_bench_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11;
+    const iiwa14_bench_real_t t31 = parameters[MX5] * t22 + parameters[MY5R] * t13 + (t14 * t23 + t16 * t26);
+    const iiwa14_bench_real_t t32 = parameters[MX4] * t11 + t31;
+    const iiwa14_bench_real_t t33 = parameters[MY3R] * t6 + (t7 * t32 - t4 * t30);
+    const iiwa14_bench_real_t t34 = parameters[MX4] * t15 + parameters[MY4R] * t8 + (t9 * t29 - t12 * t27);
+    const iiwa14_bench_real_t t35 = parameters[MX3] * t6 - t34;
+    const iiwa14_bench_real_t t36 = parameters[MX3] * t11 + parameters[MY3R] * t3 + (t7 * t30 + t4 * t32);
+    const iiwa14_bench_real_t t37 = t0 * (t2 * t33 + t10 * t35) + t5 * t36;
     out[0] = t37;
-    const iiwa14_bench_real_t t38 = parameters[MX2] * t3 + parameters[MY2R] * t6 + (t1 * t35 - t5 * t33);
+    const iiwa14_bench_real_t t38 = parameters[MX2] * t6 + parameters[MY2R] * t1 + (t2 * t35 - t10 * t33);
     out[1] = t38;
     out[2] = t36;
     out[3] = t34;

@@ -71,7 +71,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -98,237 +98,236 @@ int iiwa14_bench_inverse_dynamics(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t19, t15;
-    IIWA14_BENCH_SINCOS(q[2], &t19, &t15);
-    iiwa14_bench_real_t t39, t38;
-    IIWA14_BENCH_SINCOS(q[3], &t39, &t38);
-    iiwa14_bench_real_t t63, t62;
-    IIWA14_BENCH_SINCOS(q[4], &t63, &t62);
-    iiwa14_bench_real_t t88, t87;
-    IIWA14_BENCH_SINCOS(q[5], &t88, &t87);
-    iiwa14_bench_real_t t112, t111;
-    IIWA14_BENCH_SINCOS(q[6], &t112, &t111);
-    const iiwa14_bench_real_t t2 = t1 * dq[0];
-    const iiwa14_bench_real_t t3 = t2 * t2;
-    const iiwa14_bench_real_t t4 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t5 = dq[1] * t2;
-    const iiwa14_bench_real_t t6 = t0 * ddq[0];
-    const iiwa14_bench_real_t t7 = t5 + t6;
-    const iiwa14_bench_real_t t8 = t0 * dq[0];
-    const iiwa14_bench_real_t t9 = dq[1] * t8;
-    const iiwa14_bench_real_t t10 = t1 * ddq[0];
-    const iiwa14_bench_real_t t11 = t10 - t9;
-    const iiwa14_bench_real_t t12 = parameters[ZZ2R] * t5 + parameters[XX2R] * t7 + parameters[XY2] * (t11
-        - t9);
-    const iiwa14_bench_real_t t13 = t8 * t2;
-    const iiwa14_bench_real_t t14 = parameters[YZ2] * (t4 - t3) + (t12 - parameters[XZ2] * (ddq[1] + t13));
-    const iiwa14_bench_real_t t16 = IIWA14_BENCH_C(-9.81) * t1;
-    const iiwa14_bench_real_t t17 = t8 * t8;
-    const iiwa14_bench_real_t t18 = t16 + IIWA14_BENCH_C(0.4) * (t17 + t4);
-    const iiwa14_bench_real_t t20 = t19 * t8 + t15 * dq[1];
-    const iiwa14_bench_real_t t21 = t20 * t20;
-    const iiwa14_bench_real_t t22 = dq[2] + t2;
-    const iiwa14_bench_real_t t23 = t22 * t22;
-    const iiwa14_bench_real_t t24 = t20 * t22;
-    const iiwa14_bench_real_t t25 = t13 - ddq[1];
-    const iiwa14_bench_real_t t26 = t5 + t7;
-    const iiwa14_bench_real_t t27 = t19 * t25 + t15 * t26;
-    const iiwa14_bench_real_t t28 = t27 - t24;
-    const iiwa14_bench_real_t t29 = t15 * t8 - t19 * dq[1];
-    const iiwa14_bench_real_t t30 = t29 * t22;
-    const iiwa14_bench_real_t t31 = t15 * t25 - t19 * t26;
-    const iiwa14_bench_real_t t32 = t31 - t30;
-    const iiwa14_bench_real_t t33 = parameters[ZZ3R] * t24 - parameters[XX3R] * t28 + parameters[XY3] * (t30
-        - t32);
-    const iiwa14_bench_real_t t34 = t29 * t20;
-    const iiwa14_bench_real_t t35 = ddq[2] + t11;
-    const iiwa14_bench_real_t t36 = t34 - t35;
-    const iiwa14_bench_real_t t37 = parameters[YZ3] * (t21 - t23) + (t33 - parameters[XZ3] * t36)
-        - parameters[MY3R] * t18;
-    const iiwa14_bench_real_t t40 = t39 * t29 + t38 * t22;
-    const iiwa14_bench_real_t t41 = t40 * t40;
-    const iiwa14_bench_real_t t42 = dq[3] - t20;
-    const iiwa14_bench_real_t t43 = t42 * t42;
-    const iiwa14_bench_real_t t44 = t40 * t42;
-    const iiwa14_bench_real_t t45 = t34 + t35;
-    const iiwa14_bench_real_t t46 = t28 - t24;
-    const iiwa14_bench_real_t t47 = t38 * t46 - t39 * t45;
-    const iiwa14_bench_real_t t48 = t47 - t44;
-    const iiwa14_bench_real_t t49 = t38 * t29 - t39 * t22;
-    const iiwa14_bench_real_t t50 = t49 * t42;
-    const iiwa14_bench_real_t t51 = t38 * t45 + t39 * t46;
-    const iiwa14_bench_real_t t52 = t50 + t51;
-    const iiwa14_bench_real_t t53 = t50 + t52;
-    const iiwa14_bench_real_t t54 = t49 * t40;
-    const iiwa14_bench_real_t t55 = ddq[3] + t32;
-    const iiwa14_bench_real_t t56 = t54 - t55;
-    const iiwa14_bench_real_t t57 = parameters[ZZ4R] * t44 - parameters[XX4R] * t48 + parameters[XY4] * t53
-        - parameters[XZ4] * t56;
-    const iiwa14_bench_real_t t58 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t59 = t58 + IIWA14_BENCH_C(0.4) * t25;
-    const iiwa14_bench_real_t t60 = IIWA14_BENCH_C(0.4) * t26;
-    const iiwa14_bench_real_t t61 = t19 * t59 + t15 * t60;
-    const iiwa14_bench_real_t t64 = t62 * t42 - t63 * t49;
-    const iiwa14_bench_real_t t65 = t64 * t64;
-    const iiwa14_bench_real_t t66 = dq[4] + t40;
-    const iiwa14_bench_real_t t67 = t66 * t66;
-    const iiwa14_bench_real_t t68 = t64 * t66;
-    const iiwa14_bench_real_t t69 = t54 + t55;
-    const iiwa14_bench_real_t t70 = t48 - t44;
-    const iiwa14_bench_real_t t71 = t63 * t69 + t62 * t70;
-    const iiwa14_bench_real_t t72 = t68 + t71;
-    const iiwa14_bench_real_t t73 = t62 * t49 + t63 * t42;
-    const iiwa14_bench_real_t t74 = t73 * t66;
-    const iiwa14_bench_real_t t75 = t63 * t70 - t62 * t69;
-    const iiwa14_bench_real_t t76 = t74 + t75;
-    const iiwa14_bench_real_t t77 = t74 + t76;
-    const iiwa14_bench_real_t t78 = t73 * t64;
-    const iiwa14_bench_real_t t79 = ddq[4] + t52;
-    const iiwa14_bench_real_t t80 = t78 + t79;
-    const iiwa14_bench_real_t t81 = parameters[XY5] * t77 - (parameters[ZZ5R] * t68 + parameters[XX5R] * t72)
-        + parameters[XZ5] * t80;
-    const iiwa14_bench_real_t t82 = t49 * t49;
-    const iiwa14_bench_real_t t83 = t82 + t43;
-    const iiwa14_bench_real_t t84 = t15 * t59 - t19 * t60;
-    const iiwa14_bench_real_t t85 = t39 * t84 - t38 * t18;
-    const iiwa14_bench_real_t t86 = IIWA14_BENCH_C(-0.4) * t83 + t85;
-    const iiwa14_bench_real_t t89 = t87 * t66 - t88 * t73;
-    const iiwa14_bench_real_t t90 = t89 * t89;
-    const iiwa14_bench_real_t t91 = t64 - dq[5];
-    const iiwa14_bench_real_t t92 = t91 * t91;
-    const iiwa14_bench_real_t t93 = t89 * t91;
-    const iiwa14_bench_real_t t94 = t79 - t78;
-    const iiwa14_bench_real_t t95 = t68 + t72;
-    const iiwa14_bench_real_t t96 = t88 * t94 + t87 * t95;
-    const iiwa14_bench_real_t t97 = t96 - t93;
-    const iiwa14_bench_real_t t98 = t87 * t73 + t88 * t66;
-    const iiwa14_bench_real_t t99 = t98 * t91;
-    const iiwa14_bench_real_t t100 = t87 * t94 - t88 * t95;
-    const iiwa14_bench_real_t t101 = t99 + t100;
-    const iiwa14_bench_real_t t102 = t99 + t101;
-    const iiwa14_bench_real_t t103 = t98 * t89;
-    const iiwa14_bench_real_t t104 = ddq[5] + t76;
+    iiwa14_bench_real_t t0, t6;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t6);
+    iiwa14_bench_real_t t3, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t3, &t2);
+    iiwa14_bench_real_t t9, t5;
+    IIWA14_BENCH_SINCOS(q[3], &t9, &t5);
+    iiwa14_bench_real_t t14, t11;
+    IIWA14_BENCH_SINCOS(q[4], &t14, &t11);
+    iiwa14_bench_real_t t39, t56;
+    IIWA14_BENCH_SINCOS(q[5], &t39, &t56);
+    iiwa14_bench_real_t t71, t63;
+    IIWA14_BENCH_SINCOS(q[6], &t71, &t63);
+    const iiwa14_bench_real_t t1 = t0 * dq[0];
+    const iiwa14_bench_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_bench_real_t t7 = t6 * dq[0];
+    const iiwa14_bench_real_t t8 = dq[2] + t7;
+    const iiwa14_bench_real_t t10 = t5 * t4 - t9 * t8;
+    const iiwa14_bench_real_t t12 = t3 * t1 + t2 * dq[1];
+    const iiwa14_bench_real_t t13 = dq[3] - t12;
+    const iiwa14_bench_real_t t15 = t11 * t10 + t14 * t13;
+    const iiwa14_bench_real_t t16 = t11 * t13 - t14 * t10;
+    const iiwa14_bench_real_t t17 = t15 * t16;
+    const iiwa14_bench_real_t t18 = t4 * t12;
+    const iiwa14_bench_real_t t19 = dq[1] * t1;
+    const iiwa14_bench_real_t t20 = t6 * ddq[0];
+    const iiwa14_bench_real_t t21 = t20 - t19;
+    const iiwa14_bench_real_t t22 = ddq[2] + t21;
+    const iiwa14_bench_real_t t23 = t18 + t22;
+    const iiwa14_bench_real_t t24 = t1 * t7;
+    const iiwa14_bench_real_t t25 = t24 - ddq[1];
+    const iiwa14_bench_real_t t26 = dq[1] * t7;
+    const iiwa14_bench_real_t t27 = t0 * ddq[0];
+    const iiwa14_bench_real_t t28 = t26 + t27;
+    const iiwa14_bench_real_t t29 = t26 + t28;
+    const iiwa14_bench_real_t t30 = t3 * t25 + t2 * t29;
+    const iiwa14_bench_real_t t31 = t12 * t8;
+    const iiwa14_bench_real_t t32 = t30 - t31;
+    const iiwa14_bench_real_t t33 = t32 - t31;
+    const iiwa14_bench_real_t t34 = t5 * t23 + t9 * t33;
+    const iiwa14_bench_real_t t35 = t10 * t13;
+    const iiwa14_bench_real_t t36 = t35 + t34;
+    const iiwa14_bench_real_t t37 = ddq[4] + t36;
+    const iiwa14_bench_real_t t38 = t37 - t17;
+    const iiwa14_bench_real_t t40 = t9 * t4 + t5 * t8;
+    const iiwa14_bench_real_t t41 = t10 * t40;
+    const iiwa14_bench_real_t t42 = t2 * t25 - t3 * t29;
+    const iiwa14_bench_real_t t43 = t4 * t8;
+    const iiwa14_bench_real_t t44 = t42 - t43;
+    const iiwa14_bench_real_t t45 = ddq[3] + t44;
+    const iiwa14_bench_real_t t46 = t41 + t45;
+    const iiwa14_bench_real_t t47 = t5 * t33 - t9 * t23;
+    const iiwa14_bench_real_t t48 = t40 * t13;
+    const iiwa14_bench_real_t t49 = t47 - t48;
+    const iiwa14_bench_real_t t50 = t49 - t48;
+    const iiwa14_bench_real_t t51 = t14 * t46 + t11 * t50;
+    const iiwa14_bench_real_t t52 = dq[4] + t40;
+    const iiwa14_bench_real_t t53 = t16 * t52;
+    const iiwa14_bench_real_t t54 = t53 + t51;
+    const iiwa14_bench_real_t t55 = t53 + t54;
+    const iiwa14_bench_real_t t57 = t39 * t38 + t56 * t55;
+    const iiwa14_bench_real_t t58 = t56 * t52 - t39 * t15;
+    const iiwa14_bench_real_t t59 = t16 - dq[5];
+    const iiwa14_bench_real_t t60 = t58 * t59;
+    const iiwa14_bench_real_t t61 = t57 - t60;
+    const iiwa14_bench_real_t t62 = t61 - t60;
+    const iiwa14_bench_real_t t64 = t14 * t50 - t11 * t46;
+    const iiwa14_bench_real_t t65 = t15 * t52;
+    const iiwa14_bench_real_t t66 = t65 + t64;
+    const iiwa14_bench_real_t t67 = ddq[5] + t66;
+    const iiwa14_bench_real_t t68 = t56 * t15 + t39 * t52;
+    const iiwa14_bench_real_t t69 = t68 * t58;
+    const iiwa14_bench_real_t t70 = t67 - t69;
+    const iiwa14_bench_real_t t72 = t71 * t70 - t63 * t62;
+    const iiwa14_bench_real_t t73 = t63 * t59 - t71 * t68;
+    const iiwa14_bench_real_t t74 = dq[6] + t58;
+    const iiwa14_bench_real_t t75 = t73 * t74;
+    const iiwa14_bench_real_t t76 = t72 - t75;
+    const iiwa14_bench_real_t t77 = t63 * t70 + t71 * t62;
+    const iiwa14_bench_real_t t78 = t63 * t68 + t71 * t59;
+    const iiwa14_bench_real_t t79 = t78 * t74;
+    const iiwa14_bench_real_t t80 = t79 + (t79 + t77);
+    const iiwa14_bench_real_t t81 = t56 * t38 - t39 * t55;
+    const iiwa14_bench_real_t t82 = t68 * t59;
+    const iiwa14_bench_real_t t83 = t82 + t81;
+    const iiwa14_bench_real_t t84 = ddq[6] + t83;
+    const iiwa14_bench_real_t t85 = t78 * t73;
+    const iiwa14_bench_real_t t86 = t85 + t84;
+    const iiwa14_bench_real_t t87 = parameters[XX7R] * t76 - parameters[ZZ7] * t75 + parameters[XY7] * t80
+        + parameters[XZ7R] * t86;
+    const iiwa14_bench_real_t t88 = t73 * t73;
+    const iiwa14_bench_real_t t89 = t74 * t74;
+    const iiwa14_bench_real_t t90 = IIWA14_BENCH_C(9.81) * t0;
+    const iiwa14_bench_real_t t91 = t90 + IIWA14_BENCH_C(0.4) * t25;
+    const iiwa14_bench_real_t t92 = IIWA14_BENCH_C(0.4) * t29;
+    const iiwa14_bench_real_t t93 = t2 * t91 - t3 * t92;
+    const iiwa14_bench_real_t t94 = t1 * t1;
+    const iiwa14_bench_real_t t95 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t96 = IIWA14_BENCH_C(-9.81) * t6;
+    const iiwa14_bench_real_t t97 = t96 + IIWA14_BENCH_C(0.4) * (t94 + t95);
+    const iiwa14_bench_real_t t98 = t9 * t97 + t5 * t93;
+    const iiwa14_bench_real_t t99 = t98 + IIWA14_BENCH_C(0.4) * t46;
+    const iiwa14_bench_real_t t100 = t3 * t91 + t2 * t92;
+    const iiwa14_bench_real_t t101 = t100 - IIWA14_BENCH_C(-0.4) * t50;
+    const iiwa14_bench_real_t t102 = t11 * t99 - t14 * t101;
+    const iiwa14_bench_real_t t103 = t10 * t10;
+    const iiwa14_bench_real_t t104 = t13 * t13;
     const iiwa14_bench_real_t t105 = t103 + t104;
-    const iiwa14_bench_real_t t106 = parameters[XX6R] * t97 - parameters[ZZ6R] * t93 + parameters[XY6] * t102
-        - parameters[XZ6] * t105;
-    const iiwa14_bench_real_t t107 = t39 * t18 + t38 * t84;
-    const iiwa14_bench_real_t t108 = t107 + IIWA14_BENCH_C(0.4) * t69;
-    const iiwa14_bench_real_t t109 = t61 - IIWA14_BENCH_C(-0.4) * t70;
-    const iiwa14_bench_real_t t110 = t63 * t108 + t62 * t109;
-    const iiwa14_bench_real_t t113 = t111 * t91 - t112 * t98;
-    const iiwa14_bench_real_t t114 = t113 * t113;
-    const iiwa14_bench_real_t t115 = dq[6] + t89;
-    const iiwa14_bench_real_t t116 = t115 * t115;
-    const iiwa14_bench_real_t t117 = t113 * t115;
-    const iiwa14_bench_real_t t118 = t104 - t103;
-    const iiwa14_bench_real_t t119 = t97 - t93;
-    const iiwa14_bench_real_t t120 = t112 * t118 - t111 * t119;
-    const iiwa14_bench_real_t t121 = t120 - t117;
-    const iiwa14_bench_real_t t122 = t111 * t98 + t112 * t91;
-    const iiwa14_bench_real_t t123 = t122 * t115;
-    const iiwa14_bench_real_t t124 = t111 * t118 + t112 * t119;
-    const iiwa14_bench_real_t t125 = t123 + (t123 + t124);
-    const iiwa14_bench_real_t t126 = t122 * t113;
-    const iiwa14_bench_real_t t127 = ddq[6] + t101;
-    const iiwa14_bench_real_t t128 = t126 + t127;
-    const iiwa14_bench_real_t t129 = parameters[XX7R] * t121 - parameters[ZZ7] * t117 + parameters[XY7] * t125
-        + parameters[XZ7R] * t128;
-    const iiwa14_bench_real_t t130 = t62 * t108 - t63 * t109;
-    const iiwa14_bench_real_t t131 = t88 * t130 - t87 * t86;
-    const iiwa14_bench_real_t t132 = parameters[YZ7R] * (t114 - t116) + t129 - parameters[MY7] * t131;
-    const iiwa14_bench_real_t t133 = t122 * t122;
-    const iiwa14_bench_real_t t134 = t121 - t117;
-    const iiwa14_bench_real_t t135 = t127 - t126;
-    const iiwa14_bench_real_t t136 = t123 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t134
-        + parameters[YZ7R] * t135;
-    const iiwa14_bench_real_t t137 = parameters[XZ7R] * (t116 - t133) + t136 + parameters[MX7] * t131;
-    const iiwa14_bench_real_t t138 = parameters[YZ6] * (t92 - t90) + t106 - parameters[MY6R] * t110
-        + (t112 * t137 - t111 * t132);
-    const iiwa14_bench_real_t t139 = t98 * t98;
-    const iiwa14_bench_real_t t140 = parameters[XY6] * t119 - t99 * (parameters[XX6R] - parameters[ZZ6R])
-        - parameters[YZ6] * t118;
-    const iiwa14_bench_real_t t141 = parameters[ZZ7] * t127 - parameters[XX7R] * t126
-        + parameters[YZ7R] * t124 + parameters[XZ7R] * t120;
-    const iiwa14_bench_real_t t142 = t87 * t130 + t88 * t86;
-    const iiwa14_bench_real_t t143 = parameters[MX7] * (t112 * t142 + t111 * t110)
-        + parameters[MY7] * (t111 * t142 - t112 * t110);
-    const iiwa14_bench_real_t t144 = parameters[XY7] * (t133 - t114) + t141 + t143;
-    const iiwa14_bench_real_t t145 = parameters[XZ6] * (t139 - t92) + t140 + parameters[MX6] * t110 + t144;
-    const iiwa14_bench_real_t t146 = parameters[YZ5] * (t65 - t67) + t81 + parameters[MY5R] * t86
-        + (t88 * t145 - t87 * t138);
-    const iiwa14_bench_real_t t147 = t73 * t73;
-    const iiwa14_bench_real_t t148 = t74 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t95
-        - parameters[YZ5] * t94;
-    const iiwa14_bench_real_t t149 = parameters[ZZ6R] * t104 - parameters[XX6R] * t103
-        - parameters[YZ6] * t100 - parameters[XZ6] * t96;
-    const iiwa14_bench_real_t t150 = parameters[XY6] * (t139 - t90) + t149 + (parameters[MX6] * t131
-        + parameters[MY6R] * t142);
-    const iiwa14_bench_real_t t151 = t150 + (t112 * t132 + t111 * t137);
-    const iiwa14_bench_real_t t152 = parameters[XZ5] * (t147 - t67) + t148 + parameters[MX5] * t86 - t151;
-    const iiwa14_bench_real_t t153 = parameters[MX7] * (t114 + t116) + parameters[MY7] * t135;
-    const iiwa14_bench_real_t t154 = parameters[MY7] * (t133 + t116) - parameters[MX7] * t128;
-    const iiwa14_bench_real_t t155 = t112 * t154 - t111 * t153 - (parameters[MX6] * (t90 + t92)
-        + parameters[MY6R] * t118);
-    const iiwa14_bench_real_t t156 = parameters[MX6] * t105 - parameters[MY6R] * (t139 + t92)
-        + (parameters[MX7] * t125 - parameters[MY7] * t134);
-    const iiwa14_bench_real_t t157 = parameters[MX5] * (t65 + t67) + parameters[MY5R] * t94 + (t88 * t156
-        - t87 * t155);
-    const iiwa14_bench_real_t t158 = parameters[MY6R] * t119 - parameters[MX6] * t102 + (t112 * t153
-        + t111 * t154);
-    const iiwa14_bench_real_t t159 = parameters[MY5R] * (t147 + t67) - parameters[MX5] * t80 + t158;
-    const iiwa14_bench_real_t t160 = t63 * t157 + t62 * t159;
-    const iiwa14_bench_real_t t161 = parameters[YZ4] * (t41 - t43) + t57 - parameters[MY4R] * t61
-        + (t62 * t146 + t63 * t152 + IIWA14_BENCH_C(0.4) * t160);
-    const iiwa14_bench_real_t t162 = t50 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t70
-        + parameters[YZ4] * t69;
-    const iiwa14_bench_real_t t163 = parameters[ZZ5R] * t79 - parameters[XX5R] * t78 + parameters[YZ5] * t75
-        - parameters[XZ5] * t71;
-    const iiwa14_bench_real_t t164 = parameters[XY5] * (t147 - t65) + t163 + (parameters[MX5] * t110
-        + parameters[MY5R] * t130);
-    const iiwa14_bench_real_t t165 = t164 + (t88 * t138 + t87 * t145);
-    const iiwa14_bench_real_t t166 = parameters[XZ4] * (t43 - t82) + t162 + parameters[MX4] * t61 + t165;
-    const iiwa14_bench_real_t t167 = t37 + (t38 * t161 - t39 * t166);
-    const iiwa14_bench_real_t t168 = t29 * t29;
-    const iiwa14_bench_real_t t169 = t30 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t46
-        + parameters[YZ3] * t45;
-    const iiwa14_bench_real_t t170 = parameters[XX4R] * t54 + parameters[ZZ4R] * t55 + parameters[YZ4] * t51
+    const iiwa14_bench_real_t t106 = t9 * t93 - t5 * t97;
+    const iiwa14_bench_real_t t107 = IIWA14_BENCH_C(-0.4) * t105 + t106;
+    const iiwa14_bench_real_t t108 = t39 * t102 - t56 * t107;
+    const iiwa14_bench_real_t t109 = parameters[YZ7R] * (t88 - t89) + t87 - parameters[MY7] * t108;
+    const iiwa14_bench_real_t t110 = t76 - t75;
+    const iiwa14_bench_real_t t111 = t84 - t85;
+    const iiwa14_bench_real_t t112 = t79 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t110
+        + parameters[YZ7R] * t111;
+    const iiwa14_bench_real_t t113 = t78 * t78;
+    const iiwa14_bench_real_t t114 = parameters[XZ7R] * (t89 - t113) + t112 + parameters[MX7] * t108;
+    const iiwa14_bench_real_t t115 = t82 + t83;
+    const iiwa14_bench_real_t t116 = t69 + t67;
+    const iiwa14_bench_real_t t117 = parameters[XX6R] * t61 - parameters[ZZ6R] * t60 + parameters[XY6] * t115
+        - parameters[XZ6] * t116;
+    const iiwa14_bench_real_t t118 = t58 * t58;
+    const iiwa14_bench_real_t t119 = t59 * t59;
+    const iiwa14_bench_real_t t120 = t14 * t99 + t11 * t101;
+    const iiwa14_bench_real_t t121 = parameters[YZ6] * (t119 - t118) + t117 - parameters[MY6R] * t120
+        + (t71 * t114 - t63 * t109);
+    const iiwa14_bench_real_t t122 = parameters[ZZ7] * t84 - parameters[XX7R] * t85 + parameters[YZ7R] * t77
+        + parameters[XZ7R] * t72;
+    const iiwa14_bench_real_t t123 = t56 * t102 + t39 * t107;
+    const iiwa14_bench_real_t t124 = parameters[MX7] * (t71 * t123 + t63 * t120)
+        + parameters[MY7] * (t63 * t123 - t71 * t120);
+    const iiwa14_bench_real_t t125 = parameters[XY7] * (t113 - t88) + t122 + t124;
+    const iiwa14_bench_real_t t126 = parameters[XY6] * t62 - t82 * (parameters[XX6R] - parameters[ZZ6R])
+        - parameters[YZ6] * t70;
+    const iiwa14_bench_real_t t127 = t68 * t68;
+    const iiwa14_bench_real_t t128 = parameters[XZ6] * (t127 - t119) + t126 + parameters[MX6] * t120 + t125;
+    const iiwa14_bench_real_t t129 = t65 + t66;
+    const iiwa14_bench_real_t t130 = t17 + t37;
+    const iiwa14_bench_real_t t131 = parameters[XY5] * t129 - (parameters[ZZ5R] * t53
+        + parameters[XX5R] * t54) + parameters[XZ5] * t130;
+    const iiwa14_bench_real_t t132 = t16 * t16;
+    const iiwa14_bench_real_t t133 = t52 * t52;
+    const iiwa14_bench_real_t t134 = parameters[YZ5] * (t132 - t133) + t131 + parameters[MY5R] * t107
+        + (t39 * t128 - t56 * t121);
+    const iiwa14_bench_real_t t135 = parameters[ZZ6R] * t67 - parameters[XX6R] * t69 - parameters[YZ6] * t81
+        - parameters[XZ6] * t57;
+    const iiwa14_bench_real_t t136 = parameters[XY6] * (t127 - t118) + t135 + (parameters[MX6] * t108
+        + parameters[MY6R] * t123);
+    const iiwa14_bench_real_t t137 = t136 + (t71 * t109 + t63 * t114);
+    const iiwa14_bench_real_t t138 = t65 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t55
+        - parameters[YZ5] * t38;
+    const iiwa14_bench_real_t t139 = t15 * t15;
+    const iiwa14_bench_real_t t140 = parameters[XZ5] * (t139 - t133) + t138 + parameters[MX5] * t107 - t137;
+    const iiwa14_bench_real_t t141 = parameters[MX7] * (t88 + t89) + parameters[MY7] * t111;
+    const iiwa14_bench_real_t t142 = parameters[MY7] * (t113 + t89) - parameters[MX7] * t86;
+    const iiwa14_bench_real_t t143 = t71 * t142 - t63 * t141 - (parameters[MX6] * (t118 + t119)
+        + parameters[MY6R] * t70);
+    const iiwa14_bench_real_t t144 = parameters[MX6] * t116 - parameters[MY6R] * (t127 + t119)
+        + (parameters[MX7] * t80 - parameters[MY7] * t110);
+    const iiwa14_bench_real_t t145 = parameters[MX5] * (t132 + t133) + parameters[MY5R] * t38 + (t39 * t144
+        - t56 * t143);
+    const iiwa14_bench_real_t t146 = parameters[MY6R] * t62 - parameters[MX6] * t115 + (t71 * t141
+        + t63 * t142);
+    const iiwa14_bench_real_t t147 = parameters[MY5R] * (t139 + t133) - parameters[MX5] * t130 + t146;
+    const iiwa14_bench_real_t t148 = t14 * t145 + t11 * t147;
+    const iiwa14_bench_real_t t149 = t35 + t36;
+    const iiwa14_bench_real_t t150 = t41 - t45;
+    const iiwa14_bench_real_t t151 = parameters[ZZ4R] * t48 - parameters[XX4R] * t49 + parameters[XY4] * t149
+        - parameters[XZ4] * t150;
+    const iiwa14_bench_real_t t152 = t40 * t40;
+    const iiwa14_bench_real_t t153 = parameters[YZ4] * (t152 - t104) + t151 - parameters[MY4R] * t100
+        + (t11 * t134 + t14 * t140 + IIWA14_BENCH_C(0.4) * t148);
+    const iiwa14_bench_real_t t154 = parameters[ZZ5R] * t37 - parameters[XX5R] * t17 + parameters[YZ5] * t64
+        - parameters[XZ5] * t51;
+    const iiwa14_bench_real_t t155 = parameters[XY5] * (t139 - t132) + t154 + (parameters[MX5] * t120
+        + parameters[MY5R] * t102);
+    const iiwa14_bench_real_t t156 = t155 + (t39 * t121 + t56 * t128);
+    const iiwa14_bench_real_t t157 = t35 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t50
+        + parameters[YZ4] * t46;
+    const iiwa14_bench_real_t t158 = parameters[XZ4] * (t104 - t103) + t157 + parameters[MX4] * t100 + t156;
+    const iiwa14_bench_real_t t159 = parameters[ZZ3R] * t31 - parameters[XX3R] * t32 + parameters[XY3] * (t43
+        - t44);
+    const iiwa14_bench_real_t t160 = t18 - t22;
+    const iiwa14_bench_real_t t161 = t12 * t12;
+    const iiwa14_bench_real_t t162 = t8 * t8;
+    const iiwa14_bench_real_t t163 = parameters[YZ3] * (t161 - t162) + (t159 - parameters[XZ3] * t160)
+        - parameters[MY3R] * t97;
+    const iiwa14_bench_real_t t164 = t163 + (t5 * t153 - t9 * t158);
+    const iiwa14_bench_real_t t165 = t14 * t147 - t11 * t145;
+    const iiwa14_bench_real_t t166 = parameters[XX4R] * t41 + parameters[ZZ4R] * t45 + parameters[YZ4] * t34
         - parameters[XZ4] * t47;
-    const iiwa14_bench_real_t t171 = parameters[XY4] * (t82 - t41) + t170 + (parameters[MX4] * t85
-        + parameters[MY4R] * t107);
-    const iiwa14_bench_real_t t172 = t63 * t159 - t62 * t157;
-    const iiwa14_bench_real_t t173 = t171 + (t62 * t152 - t63 * t146 + IIWA14_BENCH_C(-0.4) * t172);
-    const iiwa14_bench_real_t t174 = parameters[MX3] * t18 + (parameters[XZ3] * (t23 - t168) + t169) - t173;
-    const iiwa14_bench_real_t t175 = t38 * (t172 - (parameters[MX4] * (t41 + t43) + parameters[MY4R] * t69));
-    const iiwa14_bench_real_t t176 = parameters[MX5] * t77 + parameters[MY5R] * t95 + (t88 * t155
-        + t87 * t156);
-    const iiwa14_bench_real_t t177 = t175 + t39 * (parameters[MY4R] * t83 + parameters[MX4] * t56 + t176);
-    const iiwa14_bench_real_t t178 = t177 - (parameters[MX3] * (t21 + t23) + parameters[MY3R] * t45);
-    const iiwa14_bench_real_t t179 = parameters[MY3R] * (t168 + t23) + parameters[MX3] * t36
-        - (parameters[MX4] * t53 + parameters[MY4R] * t70 - t160);
-    const iiwa14_bench_real_t t180 = t19 * t174 - t15 * t167 + IIWA14_BENCH_C(0.4) * (t19 * t178
-        - t15 * t179);
-    const iiwa14_bench_real_t t181 = t9 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t26
+    const iiwa14_bench_real_t t167 = parameters[XY4] * (t103 - t152) + t166 + (parameters[MX4] * t106
+        + parameters[MY4R] * t98);
+    const iiwa14_bench_real_t t168 = t167 + (t11 * t140 - t14 * t134 + IIWA14_BENCH_C(-0.4) * t165);
+    const iiwa14_bench_real_t t169 = t43 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t33
+        + parameters[YZ3] * t23;
+    const iiwa14_bench_real_t t170 = t4 * t4;
+    const iiwa14_bench_real_t t171 = parameters[MX3] * t97 + (parameters[XZ3] * (t162 - t170) + t169) - t168;
+    const iiwa14_bench_real_t t172 = t5 * (t165 - (parameters[MX4] * (t152 + t104) + parameters[MY4R] * t46));
+    const iiwa14_bench_real_t t173 = parameters[MX5] * t129 + parameters[MY5R] * t55 + (t39 * t143
+        + t56 * t144);
+    const iiwa14_bench_real_t t174 = t172 + t9 * (parameters[MY4R] * t105 + parameters[MX4] * t150 + t173);
+    const iiwa14_bench_real_t t175 = t174 - (parameters[MX3] * (t161 + t162) + parameters[MY3R] * t23);
+    const iiwa14_bench_real_t t176 = parameters[MY3R] * (t170 + t162) + parameters[MX3] * t160
+        - (parameters[MX4] * t149 + parameters[MY4R] * t50 - t148);
+    const iiwa14_bench_real_t t177 = t3 * t171 - t2 * t164 + IIWA14_BENCH_C(0.4) * (t3 * t175 - t2 * t176);
+    const iiwa14_bench_real_t t178 = parameters[ZZ2R] * t26 + parameters[XX2R] * t28 + parameters[XY2] * (t21
+        - t19);
+    const iiwa14_bench_real_t t179 = t7 * t7;
+    const iiwa14_bench_real_t t180 = parameters[YZ2] * (t95 - t179) + (t178 - parameters[XZ2] * (ddq[1]
+        + t24));
+    const iiwa14_bench_real_t t181 = parameters[XX3R] * t18 + parameters[ZZ3R] * t22 - parameters[YZ3] * t42
+        - parameters[XZ3] * t30;
+    const iiwa14_bench_real_t t182 = parameters[XY3] * (t170 - t161) + t181 + (parameters[MX3] * t100
+        + parameters[MY3R] * t93);
+    const iiwa14_bench_real_t t183 = t182 + (t9 * t153 + t5 * t158);
+    const iiwa14_bench_real_t t184 = t19 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t29
         + parameters[YZ2] * t25;
-    const iiwa14_bench_real_t t182 = parameters[XX3R] * t34 + parameters[ZZ3R] * t35 - parameters[YZ3] * t31
-        - parameters[XZ3] * t27;
-    const iiwa14_bench_real_t t183 = parameters[XY3] * (t168 - t21) + t182 + (parameters[MX3] * t61
-        + parameters[MY3R] * t84);
-    const iiwa14_bench_real_t t184 = t183 + (t39 * t161 + t38 * t166);
-    const iiwa14_bench_real_t t185 = t0 * (t14 + t180) + t1 * (parameters[XZ2] * (t17 - t4) + t181 + t184);
+    const iiwa14_bench_real_t t185 = t0 * (t180 + t177) + t6 * (parameters[XZ2] * (t94 - t95) + t184 + t183);
     out[0] = parameters[ZZ1R] * ddq[0] + t185;
-    const iiwa14_bench_real_t t186 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t13
-        - parameters[YZ2] * t10 - parameters[XZ2] * t6;
-    const iiwa14_bench_real_t t187 = parameters[MX2] * t16 + parameters[MY2R] * t58 + (parameters[XY2] * (t17
-        - t3) + t186);
-    const iiwa14_bench_real_t t188 = t19 * t167 + t15 * t174 + IIWA14_BENCH_C(0.4) * (t15 * t178
-        + t19 * t179);
-    out[1] = t187 + t188;
-    out[2] = t184;
-    out[3] = t173;
-    out[4] = t165;
-    out[5] = t151;
-    out[6] = t144;
+    const iiwa14_bench_real_t t186 = t3 * t164 + t2 * t171 + IIWA14_BENCH_C(0.4) * (t2 * t175 + t3 * t176);
+    const iiwa14_bench_real_t t187 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t24
+        - parameters[YZ2] * t20 - parameters[XZ2] * t27;
+    const iiwa14_bench_real_t t188 = parameters[MX2] * t96 + parameters[MY2R] * t90 + (parameters[XY2] * (t94
+        - t179) + t187);
+    out[1] = t188 + t186;
+    out[2] = t183;
+    out[3] = t168;
+    out[4] = t156;
+    out[5] = t137;
+    out[6] = t125;
     return IIWA14_BENCH_STATUS_OK;
 }

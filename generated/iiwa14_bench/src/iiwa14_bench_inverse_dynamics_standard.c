@@ -98,7 +98,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x876A9EC7UL
+#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
 #error "iiwa14_bench.h and iiwa14_bench_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -126,280 +126,279 @@ int iiwa14_bench_inverse_dynamics_standard(
         return status;
     }
 
-    iiwa14_bench_real_t t0, t1;
-    IIWA14_BENCH_SINCOS(q[1], &t0, &t1);
-    iiwa14_bench_real_t t17, t16;
-    IIWA14_BENCH_SINCOS(q[2], &t17, &t16);
-    iiwa14_bench_real_t t43, t42;
-    IIWA14_BENCH_SINCOS(q[3], &t43, &t42);
-    iiwa14_bench_real_t t66, t65;
-    IIWA14_BENCH_SINCOS(q[4], &t66, &t65);
-    iiwa14_bench_real_t t94, t93;
-    IIWA14_BENCH_SINCOS(q[5], &t94, &t93);
-    iiwa14_bench_real_t t117, t116;
-    IIWA14_BENCH_SINCOS(q[6], &t117, &t116);
-    const iiwa14_bench_real_t t2 = IIWA14_BENCH_C(-9.81) * t1;
-    const iiwa14_bench_real_t t3 = t1 * dq[0];
-    const iiwa14_bench_real_t t4 = t3 * t3;
-    const iiwa14_bench_real_t t5 = dq[1] * dq[1];
-    const iiwa14_bench_real_t t6 = dq[1] * t3;
-    const iiwa14_bench_real_t t7 = t0 * ddq[0];
-    const iiwa14_bench_real_t t8 = t7 + t6;
-    const iiwa14_bench_real_t t9 = t0 * dq[0];
-    const iiwa14_bench_real_t t10 = dq[1] * t9;
-    const iiwa14_bench_real_t t11 = t1 * ddq[0];
-    const iiwa14_bench_real_t t12 = t11 - t10;
-    const iiwa14_bench_real_t t13 = t6 * (parameters[ZZ2] - parameters[YY2]) + t8 * parameters[XX2] + (t12
-        - t10) * parameters[XY2];
-    const iiwa14_bench_real_t t14 = t9 * t3;
-    const iiwa14_bench_real_t t15 = (t5 - t4) * parameters[YZ2] + (t13 - (ddq[1] + t14) * parameters[XZ2]);
-    const iiwa14_bench_real_t t18 = t17 * t9 + t16 * dq[1];
-    const iiwa14_bench_real_t t19 = t18 * t18;
-    const iiwa14_bench_real_t t20 = dq[2] + t3;
-    const iiwa14_bench_real_t t21 = t20 * t20;
-    const iiwa14_bench_real_t t22 = t18 * t20;
-    const iiwa14_bench_real_t t23 = ddq[1] - t14;
-    const iiwa14_bench_real_t t24 = t6 + t8;
-    const iiwa14_bench_real_t t25 = t17 * t23 - t16 * t24;
-    const iiwa14_bench_real_t t26 = t25 + t22;
-    const iiwa14_bench_real_t t27 = t16 * t9 - t17 * dq[1];
-    const iiwa14_bench_real_t t28 = t27 * t20;
-    const iiwa14_bench_real_t t29 = t16 * t23 + t17 * t24;
-    const iiwa14_bench_real_t t30 = t29 + t28;
-    const iiwa14_bench_real_t t31 = t22 * (parameters[YY3] - parameters[ZZ3]) - t26 * parameters[XX3] - (t28
-        + t30) * parameters[XY3];
-    const iiwa14_bench_real_t t32 = ddq[2] + t12;
-    const iiwa14_bench_real_t t33 = t27 * t18;
-    const iiwa14_bench_real_t t34 = t32 - t33;
-    const iiwa14_bench_real_t t35 = t9 * t9;
-    const iiwa14_bench_real_t t36 = t2 + IIWA14_BENCH_C(0.4) * (t35 + t5);
-    const iiwa14_bench_real_t t37 = IIWA14_BENCH_C(9.81) * t0;
-    const iiwa14_bench_real_t t38 = IIWA14_BENCH_C(0.4) * t23 - t37;
-    const iiwa14_bench_real_t t39 = IIWA14_BENCH_C(0.4) * t24;
-    const iiwa14_bench_real_t t40 = t17 * t38 - t16 * t39;
-    const iiwa14_bench_real_t t41 = (t19 - t21) * parameters[YZ3] - (t31 - t34 * parameters[XZ3])
-        + (t40 * parameters[MZ3] - t36 * parameters[MY3]);
-    const iiwa14_bench_real_t t44 = t43 * t27 + t42 * t20;
-    const iiwa14_bench_real_t t45 = t44 * t44;
-    const iiwa14_bench_real_t t46 = dq[3] - t18;
-    const iiwa14_bench_real_t t47 = t46 * t46;
-    const iiwa14_bench_real_t t48 = t44 * t46;
-    const iiwa14_bench_real_t t49 = t32 + t33;
-    const iiwa14_bench_real_t t50 = t22 + t26;
-    const iiwa14_bench_real_t t51 = t43 * t49 + t42 * t50;
-    const iiwa14_bench_real_t t52 = t51 + t48;
-    const iiwa14_bench_real_t t53 = t42 * t27 - t43 * t20;
-    const iiwa14_bench_real_t t54 = t53 * t46;
-    const iiwa14_bench_real_t t55 = t42 * t49 - t43 * t50;
-    const iiwa14_bench_real_t t56 = t55 + t54;
-    const iiwa14_bench_real_t t57 = t54 + t56;
-    const iiwa14_bench_real_t t58 = t48 * (parameters[ZZ4] - parameters[YY4]) + t52 * parameters[XX4]
-        + t57 * parameters[XY4];
-    const iiwa14_bench_real_t t59 = t30 - ddq[3];
-    const iiwa14_bench_real_t t60 = t53 * t44;
-    const iiwa14_bench_real_t t61 = t59 + t60;
-    const iiwa14_bench_real_t t62 = t16 * t38 + t17 * t39;
-    const iiwa14_bench_real_t t63 = t43 * t62 + t42 * t36;
-    const iiwa14_bench_real_t t64 = (t45 - t47) * parameters[YZ4] + (t58 - t61 * parameters[XZ4])
-        + (t40 * parameters[MY4] + t63 * parameters[MZ4]);
-    const iiwa14_bench_real_t t67 = t65 * t46 - t66 * t53;
-    const iiwa14_bench_real_t t68 = t67 * t67;
-    const iiwa14_bench_real_t t69 = dq[4] + t44;
-    const iiwa14_bench_real_t t70 = t69 * t69;
-    const iiwa14_bench_real_t t71 = t67 * t69;
-    const iiwa14_bench_real_t t72 = t59 - t60;
-    const iiwa14_bench_real_t t73 = t48 + t52;
-    const iiwa14_bench_real_t t74 = t66 * t72 + t65 * t73;
-    const iiwa14_bench_real_t t75 = t71 - t74;
-    const iiwa14_bench_real_t t76 = t65 * t53 + t66 * t46;
-    const iiwa14_bench_real_t t77 = t76 * t69;
-    const iiwa14_bench_real_t t78 = t65 * t72 - t66 * t73;
-    const iiwa14_bench_real_t t79 = t78 + t77;
+    iiwa14_bench_real_t t0, t7;
+    IIWA14_BENCH_SINCOS(q[1], &t0, &t7);
+    iiwa14_bench_real_t t3, t2;
+    IIWA14_BENCH_SINCOS(q[2], &t3, &t2);
+    iiwa14_bench_real_t t26, t13;
+    IIWA14_BENCH_SINCOS(q[3], &t26, &t13);
+    iiwa14_bench_real_t t34, t33;
+    IIWA14_BENCH_SINCOS(q[4], &t34, &t33);
+    iiwa14_bench_real_t t39, t56;
+    IIWA14_BENCH_SINCOS(q[5], &t39, &t56);
+    iiwa14_bench_real_t t71, t63;
+    IIWA14_BENCH_SINCOS(q[6], &t71, &t63);
+    const iiwa14_bench_real_t t1 = t0 * dq[0];
+    const iiwa14_bench_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_bench_real_t t5 = t3 * t1 + t2 * dq[1];
+    const iiwa14_bench_real_t t6 = t4 * t5;
+    const iiwa14_bench_real_t t8 = t7 * ddq[0];
+    const iiwa14_bench_real_t t9 = dq[1] * t1;
+    const iiwa14_bench_real_t t10 = t8 - t9;
+    const iiwa14_bench_real_t t11 = ddq[2] + t10;
+    const iiwa14_bench_real_t t12 = t11 + t6;
+    const iiwa14_bench_real_t t14 = t7 * dq[0];
+    const iiwa14_bench_real_t t15 = t1 * t14;
+    const iiwa14_bench_real_t t16 = ddq[1] - t15;
+    const iiwa14_bench_real_t t17 = t0 * ddq[0];
+    const iiwa14_bench_real_t t18 = dq[1] * t14;
+    const iiwa14_bench_real_t t19 = t17 + t18;
+    const iiwa14_bench_real_t t20 = t18 + t19;
+    const iiwa14_bench_real_t t21 = t3 * t16 - t2 * t20;
+    const iiwa14_bench_real_t t22 = dq[2] + t14;
+    const iiwa14_bench_real_t t23 = t5 * t22;
+    const iiwa14_bench_real_t t24 = t21 + t23;
+    const iiwa14_bench_real_t t25 = t23 + t24;
+    const iiwa14_bench_real_t t27 = t13 * t12 - t26 * t25;
+    const iiwa14_bench_real_t t28 = t13 * t4 - t26 * t22;
+    const iiwa14_bench_real_t t29 = dq[3] - t5;
+    const iiwa14_bench_real_t t30 = t28 * t29;
+    const iiwa14_bench_real_t t31 = t27 + t30;
+    const iiwa14_bench_real_t t32 = ddq[4] + t31;
+    const iiwa14_bench_real_t t35 = t33 * t28 + t34 * t29;
+    const iiwa14_bench_real_t t36 = t33 * t29 - t34 * t28;
+    const iiwa14_bench_real_t t37 = t35 * t36;
+    const iiwa14_bench_real_t t38 = t32 - t37;
+    const iiwa14_bench_real_t t40 = t2 * t16 + t3 * t20;
+    const iiwa14_bench_real_t t41 = t4 * t22;
+    const iiwa14_bench_real_t t42 = t40 + t41;
+    const iiwa14_bench_real_t t43 = t42 - ddq[3];
+    const iiwa14_bench_real_t t44 = t26 * t4 + t13 * t22;
+    const iiwa14_bench_real_t t45 = t28 * t44;
+    const iiwa14_bench_real_t t46 = t43 - t45;
+    const iiwa14_bench_real_t t47 = t26 * t12 + t13 * t25;
+    const iiwa14_bench_real_t t48 = t44 * t29;
+    const iiwa14_bench_real_t t49 = t47 + t48;
+    const iiwa14_bench_real_t t50 = t48 + t49;
+    const iiwa14_bench_real_t t51 = t34 * t46 + t33 * t50;
+    const iiwa14_bench_real_t t52 = dq[4] + t44;
+    const iiwa14_bench_real_t t53 = t36 * t52;
+    const iiwa14_bench_real_t t54 = t53 - t51;
+    const iiwa14_bench_real_t t55 = t53 + t54;
+    const iiwa14_bench_real_t t57 = t39 * t38 + t56 * t55;
+    const iiwa14_bench_real_t t58 = t56 * t52 - t39 * t35;
+    const iiwa14_bench_real_t t59 = t36 - dq[5];
+    const iiwa14_bench_real_t t60 = t58 * t59;
+    const iiwa14_bench_real_t t61 = t57 - t60;
+    const iiwa14_bench_real_t t62 = t61 - t60;
+    const iiwa14_bench_real_t t64 = t33 * t46 - t34 * t50;
+    const iiwa14_bench_real_t t65 = t35 * t52;
+    const iiwa14_bench_real_t t66 = t64 + t65;
+    const iiwa14_bench_real_t t67 = ddq[5] + t66;
+    const iiwa14_bench_real_t t68 = t56 * t35 + t39 * t52;
+    const iiwa14_bench_real_t t69 = t68 * t58;
+    const iiwa14_bench_real_t t70 = t67 - t69;
+    const iiwa14_bench_real_t t72 = t71 * t70 - t63 * t62;
+    const iiwa14_bench_real_t t73 = t71 * t68 - t63 * t59;
+    const iiwa14_bench_real_t t74 = dq[6] + t58;
+    const iiwa14_bench_real_t t75 = t73 * t74;
+    const iiwa14_bench_real_t t76 = t72 + t75;
+    const iiwa14_bench_real_t t77 = t63 * t70 + t71 * t62;
+    const iiwa14_bench_real_t t78 = t63 * t68 + t71 * t59;
+    const iiwa14_bench_real_t t79 = t78 * t74;
     const iiwa14_bench_real_t t80 = t77 + t79;
-    const iiwa14_bench_real_t t81 = t75 * parameters[XX5] - t71 * (parameters[YY5] - parameters[ZZ5])
-        - t80 * parameters[XY5];
-    const iiwa14_bench_real_t t82 = ddq[4] + t56;
-    const iiwa14_bench_real_t t83 = t76 * t67;
-    const iiwa14_bench_real_t t84 = t82 + t83;
-    const iiwa14_bench_real_t t85 = t53 * t53;
-    const iiwa14_bench_real_t t86 = t85 + t47;
-    const iiwa14_bench_real_t t87 = t63 + IIWA14_BENCH_C(0.4) * t86;
-    const iiwa14_bench_real_t t88 = t42 * t62 - t43 * t36;
-    const iiwa14_bench_real_t t89 = IIWA14_BENCH_C(-0.4) * t72 - t88;
-    const iiwa14_bench_real_t t90 = t40 + IIWA14_BENCH_C(0.4) * t73;
-    const iiwa14_bench_real_t t91 = t65 * t90 - t66 * t89;
-    const iiwa14_bench_real_t t92 = (t68 - t70) * parameters[YZ5] - (t81 - t84 * parameters[XZ5])
-        + (t91 * parameters[MZ5] - t87 * parameters[MY5]);
-    const iiwa14_bench_real_t t95 = t93 * t69 - t94 * t76;
-    const iiwa14_bench_real_t t96 = t95 * t95;
-    const iiwa14_bench_real_t t97 = t67 - dq[5];
-    const iiwa14_bench_real_t t98 = t97 * t97;
-    const iiwa14_bench_real_t t99 = t95 * t97;
-    const iiwa14_bench_real_t t100 = t82 - t83;
-    const iiwa14_bench_real_t t101 = t71 + t75;
-    const iiwa14_bench_real_t t102 = t94 * t100 + t93 * t101;
-    const iiwa14_bench_real_t t103 = t102 - t99;
-    const iiwa14_bench_real_t t104 = t93 * t76 + t94 * t69;
-    const iiwa14_bench_real_t t105 = t104 * t97;
-    const iiwa14_bench_real_t t106 = t93 * t100 - t94 * t101;
-    const iiwa14_bench_real_t t107 = t106 + t105;
-    const iiwa14_bench_real_t t108 = t105 + t107;
-    const iiwa14_bench_real_t t109 = t99 * (parameters[YY6] - parameters[ZZ6]) + t103 * parameters[XX6]
-        + t108 * parameters[XY6];
-    const iiwa14_bench_real_t t110 = ddq[5] + t79;
-    const iiwa14_bench_real_t t111 = t104 * t95;
-    const iiwa14_bench_real_t t112 = t110 + t111;
-    const iiwa14_bench_real_t t113 = t65 * t89 + t66 * t90;
-    const iiwa14_bench_real_t t114 = t94 * t113 + t93 * t87;
-    const iiwa14_bench_real_t t115 = (t98 - t96) * parameters[YZ6] + (t109 - t112 * parameters[XZ6])
-        + (t91 * parameters[MY6] + t114 * parameters[MZ6]);
-    const iiwa14_bench_real_t t118 = t117 * t104 - t116 * t97;
-    const iiwa14_bench_real_t t119 = t118 * t118;
-    const iiwa14_bench_real_t t120 = dq[6] + t95;
-    const iiwa14_bench_real_t t121 = t120 * t120;
-    const iiwa14_bench_real_t t122 = t118 * t120;
-    const iiwa14_bench_real_t t123 = t110 - t111;
-    const iiwa14_bench_real_t t124 = t103 - t99;
-    const iiwa14_bench_real_t t125 = t117 * t123 - t116 * t124;
-    const iiwa14_bench_real_t t126 = t125 + t122;
-    const iiwa14_bench_real_t t127 = t116 * t104 + t117 * t97;
-    const iiwa14_bench_real_t t128 = t127 * t120;
-    const iiwa14_bench_real_t t129 = t116 * t123 + t117 * t124;
-    const iiwa14_bench_real_t t130 = t129 + t128;
-    const iiwa14_bench_real_t t131 = t128 + t130;
-    const iiwa14_bench_real_t t132 = t122 * (parameters[YY7] - parameters[ZZ7]) - t126 * parameters[XX7]
-        - t131 * parameters[XY7];
-    const iiwa14_bench_real_t t133 = ddq[6] + t107;
-    const iiwa14_bench_real_t t134 = t127 * t118;
-    const iiwa14_bench_real_t t135 = t134 - t133;
-    const iiwa14_bench_real_t t136 = t104 * t104;
-    const iiwa14_bench_real_t t137 = t136 + t98;
-    const iiwa14_bench_real_t t138 = t114 + IIWA14_BENCH_C(0.126) * t137;
-    const iiwa14_bench_real_t t139 = t93 * t113 - t94 * t87;
-    const iiwa14_bench_real_t t140 = t139 - IIWA14_BENCH_C(0.126) * t123;
-    const iiwa14_bench_real_t t141 = t91 + IIWA14_BENCH_C(-0.126) * t124;
-    const iiwa14_bench_real_t t142 = t117 * t140 - t116 * t141;
-    const iiwa14_bench_real_t t143 = (t119 - t121) * parameters[YZ7] - (t132 + t135 * parameters[XZ7])
-        - (t138 * parameters[MY7] + t142 * parameters[MZ7]);
-    const iiwa14_bench_real_t t144 = t127 * t127;
-    const iiwa14_bench_real_t t145 = t122 + t126;
-    const iiwa14_bench_real_t t146 = t128 * (parameters[ZZ7] - parameters[XX7]) + t130 * parameters[YY7]
-        + t145 * parameters[XY7];
-    const iiwa14_bench_real_t t147 = t133 + t134;
-    const iiwa14_bench_real_t t148 = t116 * t140 + t117 * t141;
-    const iiwa14_bench_real_t t149 = (t121 - t144) * parameters[XZ7] + (t146 + t147 * parameters[YZ7])
-        + (t138 * parameters[MX7] - t148 * parameters[MZ7]);
-    const iiwa14_bench_real_t t150 = (t119 + t121) * parameters[MX7] + t147 * parameters[MY7]
-        - t129 * parameters[MZ7];
-    const iiwa14_bench_real_t t151 = t148 * parameters[M7] + t150;
-    const iiwa14_bench_real_t t152 = (t144 + t121) * parameters[MY7] + t135 * parameters[MX7]
-        + t125 * parameters[MZ7];
-    const iiwa14_bench_real_t t153 = t152 - t142 * parameters[M7];
-    const iiwa14_bench_real_t t154 = t117 * t151 + t116 * t153;
-    const iiwa14_bench_real_t t155 = t115 + (t117 * t149 - t116 * t143 + IIWA14_BENCH_C(-0.126) * t154);
-    const iiwa14_bench_real_t t156 = t107 * parameters[YY6] - t105 * (parameters[XX6] - parameters[ZZ6])
-        + t124 * parameters[XY6];
-    const iiwa14_bench_real_t t157 = (t136 - t98) * parameters[XZ6] + (t156 - t123 * parameters[YZ6])
-        + (t139 * parameters[MZ6] - t91 * parameters[MX6]);
-    const iiwa14_bench_real_t t158 = t134 * (parameters[XX7] - parameters[YY7]) + t133 * parameters[ZZ7]
-        + t129 * parameters[YZ7];
-    const iiwa14_bench_real_t t159 = (t144 - t119) * parameters[XY7] + (t158 + t125 * parameters[XZ7])
-        + (t142 * parameters[MX7] + t148 * parameters[MY7]);
-    const iiwa14_bench_real_t t160 = t157 + t159;
-    const iiwa14_bench_real_t t161 = t92 + (t94 * t160 - t93 * t155);
-    const iiwa14_bench_real_t t162 = t76 * t76;
-    const iiwa14_bench_real_t t163 = t77 * (parameters[XX5] - parameters[ZZ5]) - t79 * parameters[YY5]
-        + t101 * parameters[XY5];
-    const iiwa14_bench_real_t t164 = (t162 - t70) * parameters[XZ5] + (t163 - t100 * parameters[YZ5])
-        + (t113 * parameters[MZ5] - t87 * parameters[MX5]);
-    const iiwa14_bench_real_t t165 = t110 * parameters[ZZ6] - t111 * (parameters[XX6] - parameters[YY6])
-        - t106 * parameters[YZ6];
-    const iiwa14_bench_real_t t166 = (t136 - t96) * parameters[XY6] + (t165 - t102 * parameters[XZ6])
-        + (t114 * parameters[MX6] + t139 * parameters[MY6]);
-    const iiwa14_bench_real_t t167 = t117 * t153 - t116 * t151;
-    const iiwa14_bench_real_t t168 = t166 + (t117 * t143 + t116 * t149 + IIWA14_BENCH_C(0.126) * t167);
-    const iiwa14_bench_real_t t169 = t164 - t168;
-    const iiwa14_bench_real_t t170 = (t68 + t70) * parameters[MX5] + t100 * parameters[MY5]
-        - t78 * parameters[MZ5];
-    const iiwa14_bench_real_t t171 = (t96 + t98) * parameters[MX6] + t123 * parameters[MY6]
-        + t106 * parameters[MZ6];
-    const iiwa14_bench_real_t t172 = t167 - (t139 * parameters[M6] + t171);
-    const iiwa14_bench_real_t t173 = t114 * parameters[M6] + (t112 * parameters[MX6] - t137 * parameters[MY6]
-        + t102 * parameters[MZ6]);
-    const iiwa14_bench_real_t t174 = (t144 + t119) * parameters[MZ7] + (t131 * parameters[MX7]
-        - t145 * parameters[MY7]);
-    const iiwa14_bench_real_t t175 = t173 + (t138 * parameters[M7] + t174);
-    const iiwa14_bench_real_t t176 = t113 * parameters[M5] + t170 + (t94 * t175 - t93 * t172);
-    const iiwa14_bench_real_t t177 = (t162 + t70) * parameters[MY5] - t84 * parameters[MX5]
-        + t74 * parameters[MZ5];
-    const iiwa14_bench_real_t t178 = (t136 + t96) * parameters[MZ6] + (t124 * parameters[MY6]
-        - t108 * parameters[MX6]);
-    const iiwa14_bench_real_t t179 = t91 * parameters[M5] + t177 + (t91 * parameters[M6] + t178 + t154);
-    const iiwa14_bench_real_t t180 = t66 * t176 + t65 * t179;
-    const iiwa14_bench_real_t t181 = t64 + (t65 * t161 + t66 * t169 + IIWA14_BENCH_C(0.4) * t180);
-    const iiwa14_bench_real_t t182 = t54 * (parameters[ZZ4] - parameters[XX4]) + t56 * parameters[YY4]
-        + t73 * parameters[XY4];
-    const iiwa14_bench_real_t t183 = (t47 - t85) * parameters[XZ4] + (t182 - t72 * parameters[YZ4])
-        + (t88 * parameters[MZ4] - t40 * parameters[MX4]);
-    const iiwa14_bench_real_t t184 = t82 * parameters[ZZ5] - t83 * (parameters[XX5] - parameters[YY5])
-        + t78 * parameters[YZ5];
-    const iiwa14_bench_real_t t185 = (t162 - t68) * parameters[XY5] + (t184 + t74 * parameters[XZ5])
-        + (t113 * parameters[MY5] - t91 * parameters[MX5]);
-    const iiwa14_bench_real_t t186 = t185 + (t94 * t155 + t93 * t160);
-    const iiwa14_bench_real_t t187 = t183 + t186;
-    const iiwa14_bench_real_t t188 = t41 + (t42 * t181 - t43 * t187);
-    const iiwa14_bench_real_t t189 = t27 * t27;
-    const iiwa14_bench_real_t t190 = t28 * (parameters[ZZ3] - parameters[XX3]) + t30 * parameters[YY3]
-        + t50 * parameters[XY3];
-    const iiwa14_bench_real_t t191 = (t21 - t189) * parameters[XZ3] + (t190 + t49 * parameters[YZ3])
-        + (t36 * parameters[MX3] + t62 * parameters[MZ3]);
-    const iiwa14_bench_real_t t192 = t60 * (parameters[XX4] - parameters[YY4]) - t59 * parameters[ZZ4]
-        + t55 * parameters[YZ4];
-    const iiwa14_bench_real_t t193 = (t85 - t45) * parameters[XY4] + (t192 + t51 * parameters[XZ4])
-        - (t63 * parameters[MX4] + t88 * parameters[MY4]);
-    const iiwa14_bench_real_t t194 = t66 * t179 - t65 * t176;
-    const iiwa14_bench_real_t t195 = t193 + (t65 * t169 - t66 * t161 + IIWA14_BENCH_C(-0.4) * t194);
-    const iiwa14_bench_real_t t196 = t191 - t195;
-    const iiwa14_bench_real_t t197 = t29 * parameters[MZ3] - ((t19 + t21) * parameters[MX3]
-        + t49 * parameters[MY3]);
-    const iiwa14_bench_real_t t198 = t72 * parameters[MY4] - (t45 + t47) * parameters[MX4]
-        + t55 * parameters[MZ4];
-    const iiwa14_bench_real_t t199 = t63 * parameters[M4] + (t86 * parameters[MY4] + t61 * parameters[MX4]
-        + t51 * parameters[MZ4]);
-    const iiwa14_bench_real_t t200 = (t162 + t68) * parameters[MZ5] + (t80 * parameters[MX5]
-        + t101 * parameters[MY5]);
-    const iiwa14_bench_real_t t201 = t87 * parameters[M5] + t200 + (t94 * t172 + t93 * t175);
-    const iiwa14_bench_real_t t202 = t42 * (t88 * parameters[M4] + t198 + t194) + t43 * (t199 + t201);
-    const iiwa14_bench_real_t t203 = t62 * parameters[M3] + t197 + t202;
-    const iiwa14_bench_real_t t204 = (t189 + t21) * parameters[MY3] - t34 * parameters[MX3]
-        + t25 * parameters[MZ3];
-    const iiwa14_bench_real_t t205 = (t85 + t45) * parameters[MZ4] + (t57 * parameters[MX4]
-        - t73 * parameters[MY4]);
-    const iiwa14_bench_real_t t206 = t205 - t40 * parameters[M4] - t180 - (t40 * parameters[M3] + t204);
-    const iiwa14_bench_real_t t207 = t17 * t196 - t16 * t188 + IIWA14_BENCH_C(0.4) * (t17 * t203
-        + t16 * t206);
-    const iiwa14_bench_real_t t208 = t10 * (parameters[XX2] - parameters[ZZ2]) + t12 * parameters[YY2]
-        + t24 * parameters[XY2];
-    const iiwa14_bench_real_t t209 = t37 * parameters[MZ2] + ((t35 - t5) * parameters[XZ2] + (t208
-        - t23 * parameters[YZ2]));
-    const iiwa14_bench_real_t t210 = t33 * (parameters[XX3] - parameters[YY3]) + t32 * parameters[ZZ3]
-        + t29 * parameters[YZ3];
-    const iiwa14_bench_real_t t211 = (t189 - t19) * parameters[XY3] + (t210 + t25 * parameters[XZ3])
-        - (t40 * parameters[MX3] + t62 * parameters[MY3]);
-    const iiwa14_bench_real_t t212 = t211 + (t43 * t181 + t42 * t187);
-    const iiwa14_bench_real_t t213 = t0 * (t2 * parameters[MZ2] + t15 + t207) + t1 * (t209 + t212);
+    const iiwa14_bench_real_t t81 = t79 + t80;
+    const iiwa14_bench_real_t t82 = t75 * (parameters[YY7] - parameters[ZZ7]) - t76 * parameters[XX7]
+        - t81 * parameters[XY7];
+    const iiwa14_bench_real_t t83 = t56 * t38 - t39 * t55;
+    const iiwa14_bench_real_t t84 = t68 * t59;
+    const iiwa14_bench_real_t t85 = t83 + t84;
+    const iiwa14_bench_real_t t86 = ddq[6] + t85;
+    const iiwa14_bench_real_t t87 = t78 * t73;
+    const iiwa14_bench_real_t t88 = t87 - t86;
+    const iiwa14_bench_real_t t89 = t73 * t73;
+    const iiwa14_bench_real_t t90 = t74 * t74;
+    const iiwa14_bench_real_t t91 = IIWA14_BENCH_C(9.81) * t0;
+    const iiwa14_bench_real_t t92 = IIWA14_BENCH_C(0.4) * t16 - t91;
+    const iiwa14_bench_real_t t93 = IIWA14_BENCH_C(0.4) * t20;
+    const iiwa14_bench_real_t t94 = t2 * t92 + t3 * t93;
+    const iiwa14_bench_real_t t95 = t1 * t1;
+    const iiwa14_bench_real_t t96 = dq[1] * dq[1];
+    const iiwa14_bench_real_t t97 = IIWA14_BENCH_C(-9.81) * t7;
+    const iiwa14_bench_real_t t98 = t97 + IIWA14_BENCH_C(0.4) * (t95 + t96);
+    const iiwa14_bench_real_t t99 = t13 * t94 - t26 * t98;
+    const iiwa14_bench_real_t t100 = IIWA14_BENCH_C(-0.4) * t46 - t99;
+    const iiwa14_bench_real_t t101 = t3 * t92 - t2 * t93;
+    const iiwa14_bench_real_t t102 = t101 + IIWA14_BENCH_C(0.4) * t50;
+    const iiwa14_bench_real_t t103 = t33 * t100 + t34 * t102;
+    const iiwa14_bench_real_t t104 = t28 * t28;
+    const iiwa14_bench_real_t t105 = t29 * t29;
+    const iiwa14_bench_real_t t106 = t104 + t105;
+    const iiwa14_bench_real_t t107 = t26 * t94 + t13 * t98;
+    const iiwa14_bench_real_t t108 = t107 + IIWA14_BENCH_C(0.4) * t106;
+    const iiwa14_bench_real_t t109 = t56 * t103 - t39 * t108;
+    const iiwa14_bench_real_t t110 = t109 - IIWA14_BENCH_C(0.126) * t70;
+    const iiwa14_bench_real_t t111 = t33 * t102 - t34 * t100;
+    const iiwa14_bench_real_t t112 = t111 + IIWA14_BENCH_C(-0.126) * t62;
+    const iiwa14_bench_real_t t113 = t71 * t110 - t63 * t112;
+    const iiwa14_bench_real_t t114 = t39 * t103 + t56 * t108;
+    const iiwa14_bench_real_t t115 = t68 * t68;
+    const iiwa14_bench_real_t t116 = t59 * t59;
+    const iiwa14_bench_real_t t117 = t115 + t116;
+    const iiwa14_bench_real_t t118 = t114 + IIWA14_BENCH_C(0.126) * t117;
+    const iiwa14_bench_real_t t119 = (t89 - t90) * parameters[YZ7] - (t82 + t88 * parameters[XZ7])
+        - (t118 * parameters[MY7] + t113 * parameters[MZ7]);
+    const iiwa14_bench_real_t t120 = t75 + t76;
+    const iiwa14_bench_real_t t121 = t79 * (parameters[ZZ7] - parameters[XX7]) + t80 * parameters[YY7]
+        + t120 * parameters[XY7];
+    const iiwa14_bench_real_t t122 = t86 + t87;
+    const iiwa14_bench_real_t t123 = t78 * t78;
+    const iiwa14_bench_real_t t124 = t63 * t110 + t71 * t112;
+    const iiwa14_bench_real_t t125 = (t90 - t123) * parameters[XZ7] + (t121 + t122 * parameters[YZ7])
+        + (t118 * parameters[MX7] - t124 * parameters[MZ7]);
+    const iiwa14_bench_real_t t126 = (t89 + t90) * parameters[MX7] + t122 * parameters[MY7]
+        - t77 * parameters[MZ7];
+    const iiwa14_bench_real_t t127 = t124 * parameters[M7] + t126;
+    const iiwa14_bench_real_t t128 = (t123 + t90) * parameters[MY7] + t88 * parameters[MX7]
+        + t72 * parameters[MZ7];
+    const iiwa14_bench_real_t t129 = t128 - t113 * parameters[M7];
+    const iiwa14_bench_real_t t130 = t71 * t127 + t63 * t129;
+    const iiwa14_bench_real_t t131 = t84 + t85;
+    const iiwa14_bench_real_t t132 = t60 * (parameters[YY6] - parameters[ZZ6]) + t61 * parameters[XX6]
+        + t131 * parameters[XY6];
+    const iiwa14_bench_real_t t133 = t67 + t69;
+    const iiwa14_bench_real_t t134 = t58 * t58;
+    const iiwa14_bench_real_t t135 = (t116 - t134) * parameters[YZ6] + (t132 - t133 * parameters[XZ6])
+        + (t111 * parameters[MY6] + t114 * parameters[MZ6]);
+    const iiwa14_bench_real_t t136 = t135 + (t71 * t125 - t63 * t119 + IIWA14_BENCH_C(-0.126) * t130);
+    const iiwa14_bench_real_t t137 = t87 * (parameters[XX7] - parameters[YY7]) + t86 * parameters[ZZ7]
+        + t77 * parameters[YZ7];
+    const iiwa14_bench_real_t t138 = (t123 - t89) * parameters[XY7] + (t137 + t72 * parameters[XZ7])
+        + (t113 * parameters[MX7] + t124 * parameters[MY7]);
+    const iiwa14_bench_real_t t139 = t85 * parameters[YY6] - t84 * (parameters[XX6] - parameters[ZZ6])
+        + t62 * parameters[XY6];
+    const iiwa14_bench_real_t t140 = (t115 - t116) * parameters[XZ6] + (t139 - t70 * parameters[YZ6])
+        + (t109 * parameters[MZ6] - t111 * parameters[MX6]);
+    const iiwa14_bench_real_t t141 = t140 + t138;
+    const iiwa14_bench_real_t t142 = t65 + t66;
+    const iiwa14_bench_real_t t143 = t54 * parameters[XX5] - t53 * (parameters[YY5] - parameters[ZZ5])
+        - t142 * parameters[XY5];
+    const iiwa14_bench_real_t t144 = t32 + t37;
+    const iiwa14_bench_real_t t145 = t36 * t36;
+    const iiwa14_bench_real_t t146 = t52 * t52;
+    const iiwa14_bench_real_t t147 = (t145 - t146) * parameters[YZ5] - (t143 - t144 * parameters[XZ5])
+        + (t111 * parameters[MZ5] - t108 * parameters[MY5]);
+    const iiwa14_bench_real_t t148 = t147 + (t39 * t141 - t56 * t136);
+    const iiwa14_bench_real_t t149 = t71 * t129 - t63 * t127;
+    const iiwa14_bench_real_t t150 = t67 * parameters[ZZ6] - t69 * (parameters[XX6] - parameters[YY6])
+        - t83 * parameters[YZ6];
+    const iiwa14_bench_real_t t151 = (t115 - t134) * parameters[XY6] + (t150 - t57 * parameters[XZ6])
+        + (t114 * parameters[MX6] + t109 * parameters[MY6]);
+    const iiwa14_bench_real_t t152 = t151 + (t71 * t119 + t63 * t125 + IIWA14_BENCH_C(0.126) * t149);
+    const iiwa14_bench_real_t t153 = t65 * (parameters[XX5] - parameters[ZZ5]) - t66 * parameters[YY5]
+        + t55 * parameters[XY5];
+    const iiwa14_bench_real_t t154 = t35 * t35;
+    const iiwa14_bench_real_t t155 = (t154 - t146) * parameters[XZ5] + (t153 - t38 * parameters[YZ5])
+        + (t103 * parameters[MZ5] - t108 * parameters[MX5]);
+    const iiwa14_bench_real_t t156 = t155 - t152;
+    const iiwa14_bench_real_t t157 = (t134 + t116) * parameters[MX6] + t70 * parameters[MY6]
+        + t83 * parameters[MZ6];
+    const iiwa14_bench_real_t t158 = t149 - (t109 * parameters[M6] + t157);
+    const iiwa14_bench_real_t t159 = t114 * parameters[M6] + (t133 * parameters[MX6] - t117 * parameters[MY6]
+        + t57 * parameters[MZ6]);
+    const iiwa14_bench_real_t t160 = (t123 + t89) * parameters[MZ7] + (t81 * parameters[MX7]
+        - t120 * parameters[MY7]);
+    const iiwa14_bench_real_t t161 = t159 + (t118 * parameters[M7] + t160);
+    const iiwa14_bench_real_t t162 = (t145 + t146) * parameters[MX5] + t38 * parameters[MY5]
+        - t64 * parameters[MZ5];
+    const iiwa14_bench_real_t t163 = t103 * parameters[M5] + t162 + (t39 * t161 - t56 * t158);
+    const iiwa14_bench_real_t t164 = (t115 + t134) * parameters[MZ6] + (t62 * parameters[MY6]
+        - t131 * parameters[MX6]);
+    const iiwa14_bench_real_t t165 = (t154 + t146) * parameters[MY5] - t144 * parameters[MX5]
+        + t51 * parameters[MZ5];
+    const iiwa14_bench_real_t t166 = t111 * parameters[M5] + t165 + (t111 * parameters[M6] + t164 + t130);
+    const iiwa14_bench_real_t t167 = t34 * t163 + t33 * t166;
+    const iiwa14_bench_real_t t168 = t30 + t31;
+    const iiwa14_bench_real_t t169 = t48 * (parameters[ZZ4] - parameters[YY4]) + t49 * parameters[XX4]
+        + t168 * parameters[XY4];
+    const iiwa14_bench_real_t t170 = t43 + t45;
+    const iiwa14_bench_real_t t171 = t44 * t44;
+    const iiwa14_bench_real_t t172 = (t171 - t105) * parameters[YZ4] + (t169 - t170 * parameters[XZ4])
+        + (t101 * parameters[MY4] + t107 * parameters[MZ4]);
+    const iiwa14_bench_real_t t173 = t172 + (t33 * t148 + t34 * t156 + IIWA14_BENCH_C(0.4) * t167);
+    const iiwa14_bench_real_t t174 = t32 * parameters[ZZ5] - t37 * (parameters[XX5] - parameters[YY5])
+        + t64 * parameters[YZ5];
+    const iiwa14_bench_real_t t175 = (t154 - t145) * parameters[XY5] + (t174 + t51 * parameters[XZ5])
+        + (t103 * parameters[MY5] - t111 * parameters[MX5]);
+    const iiwa14_bench_real_t t176 = t175 + (t39 * t136 + t56 * t141);
+    const iiwa14_bench_real_t t177 = t30 * (parameters[ZZ4] - parameters[XX4]) + t31 * parameters[YY4]
+        + t50 * parameters[XY4];
+    const iiwa14_bench_real_t t178 = (t105 - t104) * parameters[XZ4] + (t177 - t46 * parameters[YZ4])
+        + (t99 * parameters[MZ4] - t101 * parameters[MX4]);
+    const iiwa14_bench_real_t t179 = t178 + t176;
+    const iiwa14_bench_real_t t180 = t23 * (parameters[YY3] - parameters[ZZ3]) - t24 * parameters[XX3] - (t41
+        + t42) * parameters[XY3];
+    const iiwa14_bench_real_t t181 = t11 - t6;
+    const iiwa14_bench_real_t t182 = t5 * t5;
+    const iiwa14_bench_real_t t183 = t22 * t22;
+    const iiwa14_bench_real_t t184 = (t182 - t183) * parameters[YZ3] - (t180 - t181 * parameters[XZ3])
+        + (t101 * parameters[MZ3] - t98 * parameters[MY3]);
+    const iiwa14_bench_real_t t185 = t184 + (t13 * t173 - t26 * t179);
+    const iiwa14_bench_real_t t186 = t34 * t166 - t33 * t163;
+    const iiwa14_bench_real_t t187 = t45 * (parameters[XX4] - parameters[YY4]) - t43 * parameters[ZZ4]
+        + t27 * parameters[YZ4];
+    const iiwa14_bench_real_t t188 = (t104 - t171) * parameters[XY4] + (t187 + t47 * parameters[XZ4])
+        - (t107 * parameters[MX4] + t99 * parameters[MY4]);
+    const iiwa14_bench_real_t t189 = t188 + (t33 * t156 - t34 * t148 + IIWA14_BENCH_C(-0.4) * t186);
+    const iiwa14_bench_real_t t190 = t41 * (parameters[ZZ3] - parameters[XX3]) + t42 * parameters[YY3]
+        + t25 * parameters[XY3];
+    const iiwa14_bench_real_t t191 = t4 * t4;
+    const iiwa14_bench_real_t t192 = (t183 - t191) * parameters[XZ3] + (t190 + t12 * parameters[YZ3])
+        + (t98 * parameters[MX3] + t94 * parameters[MZ3]);
+    const iiwa14_bench_real_t t193 = t192 - t189;
+    const iiwa14_bench_real_t t194 = t46 * parameters[MY4] - (t171 + t105) * parameters[MX4]
+        + t27 * parameters[MZ4];
+    const iiwa14_bench_real_t t195 = (t154 + t145) * parameters[MZ5] + (t142 * parameters[MX5]
+        + t55 * parameters[MY5]);
+    const iiwa14_bench_real_t t196 = t108 * parameters[M5] + t195 + (t39 * t158 + t56 * t161);
+    const iiwa14_bench_real_t t197 = t107 * parameters[M4] + (t106 * parameters[MY4] + t170 * parameters[MX4]
+        + t47 * parameters[MZ4]);
+    const iiwa14_bench_real_t t198 = t13 * (t99 * parameters[M4] + t194 + t186) + t26 * (t197 + t196);
+    const iiwa14_bench_real_t t199 = t40 * parameters[MZ3] - ((t182 + t183) * parameters[MX3]
+        + t12 * parameters[MY3]);
+    const iiwa14_bench_real_t t200 = t94 * parameters[M3] + t199 + t198;
+    const iiwa14_bench_real_t t201 = (t104 + t171) * parameters[MZ4] + (t168 * parameters[MX4]
+        - t50 * parameters[MY4]);
+    const iiwa14_bench_real_t t202 = (t191 + t183) * parameters[MY3] - t181 * parameters[MX3]
+        + t21 * parameters[MZ3];
+    const iiwa14_bench_real_t t203 = t201 - t101 * parameters[M4] - t167 - (t101 * parameters[M3] + t202);
+    const iiwa14_bench_real_t t204 = t3 * t193 - t2 * t185 + IIWA14_BENCH_C(0.4) * (t3 * t200 + t2 * t203);
+    const iiwa14_bench_real_t t205 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] + (t10
+        - t9) * parameters[XY2];
+    const iiwa14_bench_real_t t206 = t14 * t14;
+    const iiwa14_bench_real_t t207 = (t96 - t206) * parameters[YZ2] + (t205 - (ddq[1]
+        + t15) * parameters[XZ2]);
+    const iiwa14_bench_real_t t208 = t6 * (parameters[XX3] - parameters[YY3]) + t11 * parameters[ZZ3]
+        + t40 * parameters[YZ3];
+    const iiwa14_bench_real_t t209 = (t191 - t182) * parameters[XY3] + (t208 + t21 * parameters[XZ3])
+        - (t101 * parameters[MX3] + t94 * parameters[MY3]);
+    const iiwa14_bench_real_t t210 = t209 + (t26 * t173 + t13 * t179);
+    const iiwa14_bench_real_t t211 = t9 * (parameters[XX2] - parameters[ZZ2]) + t10 * parameters[YY2]
+        + t20 * parameters[XY2];
+    const iiwa14_bench_real_t t212 = t91 * parameters[MZ2] + ((t95 - t96) * parameters[XZ2] + (t211
+        - t16 * parameters[YZ2]));
+    const iiwa14_bench_real_t t213 = t0 * (t97 * parameters[MZ2] + t207 + t204) + t7 * (t212 + t210);
     out[0] = ddq[0] * parameters[ZZ1] + t213;
-    const iiwa14_bench_real_t t214 = t14 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        - t11 * parameters[YZ2];
-    const iiwa14_bench_real_t t215 = t2 * parameters[MX2] + t37 * parameters[MY2] + ((t35
-        - t4) * parameters[XY2] + (t214 - t7 * parameters[XZ2]));
-    const iiwa14_bench_real_t t216 = t17 * t188 + t16 * t196 + IIWA14_BENCH_C(0.4) * (t16 * t203
-        - t17 * t206);
-    out[1] = t215 + t216;
-    out[2] = t212;
-    out[3] = t195;
-    out[4] = t186;
-    out[5] = t168;
-    out[6] = t159;
+    const iiwa14_bench_real_t t214 = t3 * t185 + t2 * t193 + IIWA14_BENCH_C(0.4) * (t2 * t200 - t3 * t203);
+    const iiwa14_bench_real_t t215 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        - t8 * parameters[YZ2];
+    const iiwa14_bench_real_t t216 = t97 * parameters[MX2] + t91 * parameters[MY2] + ((t95
+        - t206) * parameters[XY2] + (t215 - t17 * parameters[XZ2]));
+    out[1] = t216 + t214;
+    out[2] = t210;
+    out[3] = t189;
+    out[4] = t176;
+    out[5] = t152;
+    out[6] = t138;
     return IIWA14_BENCH_STATUS_OK;
 }

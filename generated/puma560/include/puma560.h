@@ -84,7 +84,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0x5A5F931EUL
+#define PUMA560_GENERATION 0xBA0A6069UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef PUMA560_REAL

@@ -79,7 +79,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -104,204 +104,204 @@ int puma560_bias(
         return status;
     }
 
-    puma560_real_t t1, t2;
-    PUMA560_SINCOS(q[1], &t1, &t2);
-    puma560_real_t t12, t11;
-    PUMA560_SINCOS(q[2], &t12, &t11);
-    puma560_real_t t26, t25;
-    PUMA560_SINCOS(q[3], &t26, &t25);
-    puma560_real_t t52, t51;
-    PUMA560_SINCOS(q[4], &t52, &t51);
-    puma560_real_t t76, t75;
-    PUMA560_SINCOS(q[5], &t76, &t75);
-    const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t3 = t2 * dq[0];
-    const puma560_real_t t4 = dq[1] * t3;
-    const puma560_real_t t5 = t1 * dq[0];
-    const puma560_real_t t6 = dq[1] * t5;
-    const puma560_real_t t7 = parameters[XY2] * (PUMA560_C(2.0) * t6) - (parameters[XX2R] * t4
-        + parameters[ZZ2R] * t4);
-    const puma560_real_t t8 = t5 * t3;
-    const puma560_real_t t9 = dq[1] * dq[1];
-    const puma560_real_t t10 = t3 * t3;
-    const puma560_real_t t13 = t12 * t5 - t11 * t3;
-    const puma560_real_t t14 = dq[1] + dq[2];
-    const puma560_real_t t15 = t13 * t14;
-    const puma560_real_t t16 = t11 * t5 + t12 * t3;
-    const puma560_real_t t17 = t16 * t14;
-    const puma560_real_t t18 = PUMA560_C(2.0) * t17;
-    const puma560_real_t t19 = t16 * t13;
-    const puma560_real_t t20 = parameters[XX3R] * t15 + parameters[ZZ3R] * t15 + parameters[XY3R] * t18
-        - parameters[XZ3] * t19;
-    const puma560_real_t t21 = t13 * t13;
-    const puma560_real_t t22 = t14 * t14;
-    const puma560_real_t t23 = t5 * t5;
-    const puma560_real_t t24 = PUMA560_C(-0.8636) * t6 + PUMA560_C(-0.1254) * (t23 + t10);
-    const puma560_real_t t27 = PUMA560_C(-2.0) * t15;
-    const puma560_real_t t28 = t26 * t19 + t25 * t27;
-    const puma560_real_t t29 = t25 * t14 - t26 * t16;
-    const puma560_real_t t30 = dq[3] + t13;
-    const puma560_real_t t31 = t29 * t30;
-    const puma560_real_t t32 = t28 + t31;
-    const puma560_real_t t33 = t25 * t16 + t26 * t14;
-    const puma560_real_t t34 = t33 * t30;
-    const puma560_real_t t35 = t25 * t19 - t26 * t27;
-    const puma560_real_t t36 = t35 - t34;
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t5, t2;
+    PUMA560_SINCOS(q[2], &t5, &t2);
+    puma560_real_t t13, t9;
+    PUMA560_SINCOS(q[3], &t13, &t9);
+    puma560_real_t t20, t19;
+    PUMA560_SINCOS(q[4], &t20, &t19);
+    puma560_real_t t25, t39;
+    PUMA560_SINCOS(q[5], &t25, &t39);
+    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t4 = t3 * dq[0];
+    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t7 = t5 * t1 - t2 * t4;
+    const puma560_real_t t8 = t6 * t7;
+    const puma560_real_t t10 = dq[1] + dq[2];
+    const puma560_real_t t11 = t7 * t10;
+    const puma560_real_t t12 = PUMA560_C(-2.0) * t11;
+    const puma560_real_t t14 = t9 * t8 - t13 * t12;
+    const puma560_real_t t15 = t9 * t6 + t13 * t10;
+    const puma560_real_t t16 = dq[3] + t7;
+    const puma560_real_t t17 = t15 * t16;
+    const puma560_real_t t18 = t14 - t17;
+    const puma560_real_t t21 = t19 * t15 - t20 * t16;
+    const puma560_real_t t22 = t20 * t15 + t19 * t16;
+    const puma560_real_t t23 = t21 * t22;
+    const puma560_real_t t24 = t18 + t23;
+    const puma560_real_t t26 = t13 * t8 + t9 * t12;
+    const puma560_real_t t27 = t9 * t10 - t13 * t6;
+    const puma560_real_t t28 = t27 * t16;
+    const puma560_real_t t29 = t26 + t28;
+    const puma560_real_t t30 = t28 + t29;
+    const puma560_real_t t31 = t15 * t27;
+    const puma560_real_t t32 = t6 * t10;
+    const puma560_real_t t33 = t31 - t32;
+    const puma560_real_t t34 = t20 * t33 + t19 * t30;
+    const puma560_real_t t35 = dq[4] + t27;
+    const puma560_real_t t36 = t22 * t35;
     const puma560_real_t t37 = t34 - t36;
-    const puma560_real_t t38 = t33 * t29;
-    const puma560_real_t t39 = t17 + t38;
-    const puma560_real_t t40 = parameters[XX4R] * t32 + parameters[ZZ4R] * t31 - parameters[XY4] * t37
-        - parameters[XZ4] * t39;
-    const puma560_real_t t41 = t29 * t29;
-    const puma560_real_t t42 = t30 * t30;
-    const puma560_real_t t43 = PUMA560_C(9.81) * t1;
-    const puma560_real_t t44 = t43 + PUMA560_C(0.4318) * (t9 + t10);
-    const puma560_real_t t45 = PUMA560_C(-9.81) * t2;
-    const puma560_real_t t46 = t45 + PUMA560_C(0.4318) * t8;
-    const puma560_real_t t47 = t12 * t44 + t11 * t46;
-    const puma560_real_t t48 = t16 * t16;
-    const puma560_real_t t49 = t48 + t22;
-    const puma560_real_t t50 = t47 + (PUMA560_C(-0.0203) * t19 + PUMA560_C(-0.4318) * t49);
-    const puma560_real_t t53 = t38 - t17;
-    const puma560_real_t t54 = t31 + t32;
-    const puma560_real_t t55 = t52 * t53 + t51 * t54;
-    const puma560_real_t t56 = t52 * t33 + t51 * t30;
-    const puma560_real_t t57 = dq[4] + t29;
-    const puma560_real_t t58 = t56 * t57;
-    const puma560_real_t t59 = t55 - t58;
-    const puma560_real_t t60 = t51 * t33 - t52 * t30;
-    const puma560_real_t t61 = t60 * t57;
-    const puma560_real_t t62 = t52 * t54 - t51 * t53;
-    const puma560_real_t t63 = t62 + t61;
-    const puma560_real_t t64 = t61 + t63;
-    const puma560_real_t t65 = t60 * t56;
-    const puma560_real_t t66 = t36 - t65;
-    const puma560_real_t t67 = parameters[ZZ5R] * t58 - parameters[XX5R] * t59 + parameters[XY5] * t64
-        + parameters[XZ5] * t66;
-    const puma560_real_t t68 = t56 * t56;
-    const puma560_real_t t69 = t57 * t57;
-    const puma560_real_t t70 = t11 * t44 - t12 * t46;
-    const puma560_real_t t71 = t21 + t22;
-    const puma560_real_t t72 = t70 + (PUMA560_C(0.0203) * t71 + PUMA560_C(0.4318) * t19);
-    const puma560_real_t t73 = PUMA560_C(0.0406) * t17 - PUMA560_C(0.8636) * t15 - t24;
-    const puma560_real_t t74 = t26 * t72 + t25 * t73;
-    const puma560_real_t t77 = t36 + t65;
-    const puma560_real_t t78 = t59 - t58;
-    const puma560_real_t t79 = t76 * t77 + t75 * t78;
-    const puma560_real_t t80 = t75 * t57 - t76 * t60;
-    const puma560_real_t t81 = dq[5] + t56;
-    const puma560_real_t t82 = t80 * t81;
-    const puma560_real_t t83 = t79 + t82;
-    const puma560_real_t t84 = t75 * t60 + t76 * t57;
-    const puma560_real_t t85 = t84 * t81;
-    const puma560_real_t t86 = t76 * t78 - t75 * t77;
-    const puma560_real_t t87 = t85 + (t86 + t85);
-    const puma560_real_t t88 = t84 * t80;
-    const puma560_real_t t89 = t63 + t88;
-    const puma560_real_t t90 = parameters[XX6R] * t83 + parameters[ZZ6] * t82 - parameters[XY6] * t87
-        - parameters[XZ6] * t89;
-    const puma560_real_t t91 = t80 * t80;
-    const puma560_real_t t92 = t81 * t81;
-    const puma560_real_t t93 = t25 * t72 - t26 * t73;
-    const puma560_real_t t94 = t52 * t93 + t51 * t50;
-    const puma560_real_t t95 = t90 - parameters[YZ6] * (t91 - t92) - parameters[MY6] * t94;
-    const puma560_real_t t96 = t82 + t83;
-    const puma560_real_t t97 = t88 - t63;
-    const puma560_real_t t98 = t85 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t96
-        + parameters[YZ6] * t97;
-    const puma560_real_t t99 = t84 * t84;
-    const puma560_real_t t100 = t98 + parameters[XZ6] * (t99 - t92) + parameters[MX6] * t94;
-    const puma560_real_t t101 = t67 + parameters[YZ5] * (t68 - t69) - parameters[MY5R] * t74 + (t76 * t100
-        - t75 * t95);
-    const puma560_real_t t102 = t61 * (parameters[ZZ5R] - parameters[XX5R]) - parameters[XY5] * t78
-        + parameters[YZ5] * t77;
-    const puma560_real_t t103 = t60 * t60;
-    const puma560_real_t t104 = parameters[ZZ6] * t63 - parameters[XX6R] * t88 + parameters[YZ6] * t86
-        - parameters[XZ6] * t79;
-    const puma560_real_t t105 = t51 * t93 - t52 * t50;
-    const puma560_real_t t106 = parameters[MX6] * (t76 * t105 + t75 * t74) + parameters[MY6] * (t75 * t105
-        - t76 * t74);
-    const puma560_real_t t107 = t104 + parameters[XY6] * (t99 - t91) + t106;
-    const puma560_real_t t108 = t102 + parameters[XZ5] * (t69 - t103) + parameters[MX5] * t74 + t107;
-    const puma560_real_t t109 = t40 - parameters[YZ4] * (t41 - t42) - parameters[MY4R] * t50 - (t51 * t101
-        - t52 * t108);
-    const puma560_real_t t110 = t34 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t54
-        + parameters[YZ4] * t53;
-    const puma560_real_t t111 = t33 * t33;
-    const puma560_real_t t112 = parameters[ZZ5R] * t36 + parameters[XX5R] * t65 + parameters[YZ5] * t62
-        - parameters[XZ5] * t55;
-    const puma560_real_t t113 = t112 + parameters[XY5] * (t103 - t68) + (parameters[MX5] * t94
-        + parameters[MY5R] * t105);
-    const puma560_real_t t114 = t113 + (t76 * t95 + t75 * t100);
-    const puma560_real_t t115 = t110 + parameters[XZ4] * (t111 - t42) + parameters[MX4] * t50 + t114;
-    const puma560_real_t t116 = parameters[MX6] * (t91 + t92) - parameters[MY6] * t97;
-    const puma560_real_t t117 = parameters[MX6] * t89 - parameters[MY6] * (t99 + t92);
-    const puma560_real_t t118 = parameters[MX5] * (t68 + t69) + parameters[MY5R] * t77 + (t75 * t116
-        + t76 * t117);
-    const puma560_real_t t119 = parameters[MY5R] * (t103 + t69) - parameters[MX5] * t66
-        + (parameters[MX6] * t87 + parameters[MY6] * t96);
-    const puma560_real_t t120 = parameters[MY4R] * t53 - parameters[MX4] * (t41 + t42) + (t52 * t119
-        - t51 * t118);
-    const puma560_real_t t121 = parameters[MX5] * t64 + parameters[MY5R] * t78 - (t76 * t116 - t75 * t117);
-    const puma560_real_t t122 = parameters[MX4] * t39 - parameters[MY4R] * (t111 + t42) + t121;
-    const puma560_real_t t123 = t26 * t120 + t25 * t122;
-    const puma560_real_t t124 = t20 + parameters[YZ3] * (t21 - t22) + parameters[MY3R] * t24 + (t26 * t115
-        - t25 * t109 + PUMA560_C(-0.4318) * t123);
-    const puma560_real_t t125 = t17 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t27
-        - parameters[YZ3] * t19;
-    const puma560_real_t t126 = parameters[ZZ4R] * t17 - parameters[XX4R] * t38 - parameters[YZ4] * t35
-        - parameters[XZ4] * t28;
-    const puma560_real_t t127 = t126 + parameters[XY4] * (t111 - t41) + (parameters[MX4] * t74
-        + parameters[MY4R] * t93);
-    const puma560_real_t t128 = t127 + (t52 * t101 + t51 * t108);
-    const puma560_real_t t129 = t125 + parameters[XZ3] * (t48 - t22) + parameters[MX3R] * t24 - (t128
-        - PUMA560_C(-0.0203) * t123);
-    const puma560_real_t t130 = t25 * t120 - t26 * t122;
-    const puma560_real_t t131 = t130 - (parameters[MX3R] * t71 + parameters[MY3R] * t19);
-    const puma560_real_t t132 = parameters[MX4] * t37 + parameters[MY4R] * t54 + (t52 * t118 + t51 * t119);
-    const puma560_real_t t133 = parameters[MX3R] * t19 + parameters[MY3R] * t49 + t132;
-    const puma560_real_t t134 = t11 * t133 - t12 * t131;
-    const puma560_real_t t135 = t7 + parameters[XZ2R] * t8 + parameters[YZ2] * (t10 - t9) + (t11 * t124
-        + t12 * t129 + PUMA560_C(0.1254) * t134);
-    const puma560_real_t t136 = t6 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (PUMA560_C(-2.0) * t4) - parameters[YZ2] * t8;
-    const puma560_real_t t137 = PUMA560_C(0.1254) * (t11 * t131 + t12 * t133)
-        + PUMA560_C(0.4318) * (parameters[MX3R] * t18 + parameters[MY3R] * t27 + t123);
-    const puma560_real_t t138 = t136 + parameters[XZ2R] * (t9 - t23) + (t12 * t124 - t11 * t129 + t137);
+    const puma560_real_t t38 = t37 - t36;
+    const puma560_real_t t40 = t25 * t24 + t39 * t38;
+    const puma560_real_t t41 = t39 * t35 - t25 * t21;
+    const puma560_real_t t42 = dq[5] + t22;
+    const puma560_real_t t43 = t41 * t42;
+    const puma560_real_t t44 = t40 + t43;
+    const puma560_real_t t45 = t25 * t38 - t39 * t24;
+    const puma560_real_t t46 = t39 * t21 + t25 * t35;
+    const puma560_real_t t47 = t46 * t42;
+    const puma560_real_t t48 = t47 + (t45 + t47);
+    const puma560_real_t t49 = t20 * t30 - t19 * t33;
+    const puma560_real_t t50 = t21 * t35;
+    const puma560_real_t t51 = t49 + t50;
+    const puma560_real_t t52 = t46 * t41;
+    const puma560_real_t t53 = t51 + t52;
+    const puma560_real_t t54 = parameters[XX6R] * t44 + parameters[ZZ6] * t43 - parameters[XY6] * t48
+        - parameters[XZ6] * t53;
+    const puma560_real_t t55 = t41 * t41;
+    const puma560_real_t t56 = t42 * t42;
+    const puma560_real_t t57 = t7 * t7;
+    const puma560_real_t t58 = t10 * t10;
+    const puma560_real_t t59 = t57 + t58;
+    const puma560_real_t t60 = t4 * t4;
+    const puma560_real_t t61 = dq[1] * dq[1];
+    const puma560_real_t t62 = PUMA560_C(9.81) * t0;
+    const puma560_real_t t63 = t62 + PUMA560_C(0.4318) * (t61 + t60);
+    const puma560_real_t t64 = t1 * t4;
+    const puma560_real_t t65 = PUMA560_C(-9.81) * t3;
+    const puma560_real_t t66 = t65 + PUMA560_C(0.4318) * t64;
+    const puma560_real_t t67 = t2 * t63 - t5 * t66;
+    const puma560_real_t t68 = t67 + (PUMA560_C(0.0203) * t59 + PUMA560_C(0.4318) * t8);
+    const puma560_real_t t69 = t1 * t1;
+    const puma560_real_t t70 = dq[1] * t1;
+    const puma560_real_t t71 = PUMA560_C(-0.8636) * t70 + PUMA560_C(-0.1254) * (t69 + t60);
+    const puma560_real_t t72 = PUMA560_C(0.0406) * t32 - PUMA560_C(0.8636) * t11 - t71;
+    const puma560_real_t t73 = t9 * t68 - t13 * t72;
+    const puma560_real_t t74 = t6 * t6;
+    const puma560_real_t t75 = t74 + t58;
+    const puma560_real_t t76 = t5 * t63 + t2 * t66;
+    const puma560_real_t t77 = t76 + (PUMA560_C(-0.0203) * t8 + PUMA560_C(-0.4318) * t75);
+    const puma560_real_t t78 = t20 * t73 + t19 * t77;
+    const puma560_real_t t79 = t54 - parameters[YZ6] * (t55 - t56) - parameters[MY6] * t78;
+    const puma560_real_t t80 = t43 + t44;
+    const puma560_real_t t81 = t52 - t51;
+    const puma560_real_t t82 = t47 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t80
+        + parameters[YZ6] * t81;
+    const puma560_real_t t83 = t46 * t46;
+    const puma560_real_t t84 = t82 + parameters[XZ6] * (t83 - t56) + parameters[MX6] * t78;
+    const puma560_real_t t85 = t50 + t51;
+    const puma560_real_t t86 = t18 - t23;
+    const puma560_real_t t87 = parameters[ZZ5R] * t36 - parameters[XX5R] * t37 + parameters[XY5] * t85
+        + parameters[XZ5] * t86;
+    const puma560_real_t t88 = t22 * t22;
+    const puma560_real_t t89 = t35 * t35;
+    const puma560_real_t t90 = t13 * t68 + t9 * t72;
+    const puma560_real_t t91 = t87 + parameters[YZ5] * (t88 - t89) - parameters[MY5R] * t90 + (t25 * t84
+        - t39 * t79);
+    const puma560_real_t t92 = t19 * t73 - t20 * t77;
+    const puma560_real_t t93 = parameters[MX6] * (t25 * t92 + t39 * t90) + parameters[MY6] * (t39 * t92
+        - t25 * t90);
+    const puma560_real_t t94 = parameters[ZZ6] * t51 - parameters[XX6R] * t52 + parameters[YZ6] * t45
+        - parameters[XZ6] * t40;
+    const puma560_real_t t95 = t94 + parameters[XY6] * (t83 - t55) + t93;
+    const puma560_real_t t96 = t50 * (parameters[ZZ5R] - parameters[XX5R]) - parameters[XY5] * t38
+        + parameters[YZ5] * t24;
+    const puma560_real_t t97 = t21 * t21;
+    const puma560_real_t t98 = t96 + parameters[XZ5] * (t89 - t97) + parameters[MX5] * t90 + t95;
+    const puma560_real_t t99 = t17 - t18;
+    const puma560_real_t t100 = t32 + t31;
+    const puma560_real_t t101 = parameters[XX4R] * t29 + parameters[ZZ4R] * t28 - parameters[XY4] * t99
+        - parameters[XZ4] * t100;
+    const puma560_real_t t102 = t27 * t27;
+    const puma560_real_t t103 = t16 * t16;
+    const puma560_real_t t104 = t101 - parameters[YZ4] * (t102 - t103) - parameters[MY4R] * t77 - (t19 * t91
+        - t20 * t98);
+    const puma560_real_t t105 = parameters[ZZ5R] * t18 + parameters[XX5R] * t23 + parameters[YZ5] * t49
+        - parameters[XZ5] * t34;
+    const puma560_real_t t106 = t105 + parameters[XY5] * (t97 - t88) + (parameters[MX5] * t78
+        + parameters[MY5R] * t92);
+    const puma560_real_t t107 = t106 + (t25 * t79 + t39 * t84);
+    const puma560_real_t t108 = t17 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t30
+        + parameters[YZ4] * t33;
+    const puma560_real_t t109 = t15 * t15;
+    const puma560_real_t t110 = t108 + parameters[XZ4] * (t109 - t103) + parameters[MX4] * t77 + t107;
+    const puma560_real_t t111 = parameters[MX6] * (t55 + t56) - parameters[MY6] * t81;
+    const puma560_real_t t112 = parameters[MX6] * t53 - parameters[MY6] * (t83 + t56);
+    const puma560_real_t t113 = parameters[MX5] * (t88 + t89) + parameters[MY5R] * t24 + (t39 * t111
+        + t25 * t112);
+    const puma560_real_t t114 = parameters[MY5R] * (t97 + t89) - parameters[MX5] * t86
+        + (parameters[MX6] * t48 + parameters[MY6] * t80);
+    const puma560_real_t t115 = parameters[MY4R] * t33 - parameters[MX4] * (t102 + t103) + (t20 * t114
+        - t19 * t113);
+    const puma560_real_t t116 = parameters[MX5] * t85 + parameters[MY5R] * t38 - (t25 * t111 - t39 * t112);
+    const puma560_real_t t117 = parameters[MX4] * t100 - parameters[MY4R] * (t109 + t103) + t116;
+    const puma560_real_t t118 = t13 * t115 + t9 * t117;
+    const puma560_real_t t119 = PUMA560_C(2.0) * t32;
+    const puma560_real_t t120 = parameters[XX3R] * t11 + parameters[ZZ3R] * t11 + parameters[XY3R] * t119
+        - parameters[XZ3] * t8;
+    const puma560_real_t t121 = t120 + parameters[YZ3] * (t57 - t58) + parameters[MY3R] * t71 + (t13 * t110
+        - t9 * t104 + PUMA560_C(-0.4318) * t118);
+    const puma560_real_t t122 = parameters[ZZ4R] * t32 - parameters[XX4R] * t31 - parameters[YZ4] * t14
+        - parameters[XZ4] * t26;
+    const puma560_real_t t123 = t122 + parameters[XY4] * (t109 - t102) + (parameters[MX4] * t90
+        + parameters[MY4R] * t73);
+    const puma560_real_t t124 = t123 + (t20 * t91 + t19 * t98);
+    const puma560_real_t t125 = t32 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
+        - parameters[YZ3] * t8;
+    const puma560_real_t t126 = t125 + parameters[XZ3] * (t74 - t58) + parameters[MX3R] * t71 - (t124
+        - PUMA560_C(-0.0203) * t118);
+    const puma560_real_t t127 = t9 * t115 - t13 * t117;
+    const puma560_real_t t128 = t127 - (parameters[MX3R] * t59 + parameters[MY3R] * t8);
+    const puma560_real_t t129 = parameters[MX4] * t99 + parameters[MY4R] * t30 + (t20 * t113 + t19 * t114);
+    const puma560_real_t t130 = parameters[MX3R] * t8 + parameters[MY3R] * t75 + t129;
+    const puma560_real_t t131 = t2 * t130 - t5 * t128;
+    const puma560_real_t t132 = dq[1] * t4;
+    const puma560_real_t t133 = parameters[XY2] * (PUMA560_C(2.0) * t70) - (parameters[XX2R] * t132
+        + parameters[ZZ2R] * t132);
+    const puma560_real_t t134 = t133 + parameters[XZ2R] * t64 + parameters[YZ2] * (t60 - t61) + (t2 * t121
+        + t5 * t126 + PUMA560_C(0.1254) * t131);
+    const puma560_real_t t135 = PUMA560_C(0.1254) * (t2 * t128 + t5 * t130)
+        + PUMA560_C(0.4318) * (parameters[MX3R] * t119 + parameters[MY3R] * t12 + t118);
+    const puma560_real_t t136 = t70 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (PUMA560_C(-2.0) * t132) - parameters[YZ2] * t64;
+    const puma560_real_t t137 = t136 + parameters[XZ2R] * (t61 - t69) + (t5 * t121 - t2 * t126 + t135);
+    const puma560_real_t t138 = puma560_sign(dq[0]);
     const puma560_real_t
         t139 = PUMA560_C(4.3478260869565215) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
-        - parameters[FC1] * t0) + PUMA560_C(0.06944177768728742) * (t1 * t135 + t2 * t138);
+        - parameters[FC1] * t138) + PUMA560_C(0.06944177768728742) * (t0 * t134 + t3 * t137);
     out[0] = t139;
-    const puma560_real_t t140 = puma560_sign(dq[1]);
-    const puma560_real_t t141 = parameters[XY2] * (t23 - t10) - parameters[XX2R] * t8
-        + (parameters[MX2R] * t45 + parameters[MY2] * t43);
-    const puma560_real_t t142 = parameters[XX3R] * t19 + parameters[XY3R] * (t48 - t21)
-        + (parameters[MX3R] * t47 + parameters[MY3R] * t70);
-    const puma560_real_t t143 = t26 * t109 + t25 * t115 + (PUMA560_C(-0.0203) * t132
-        + PUMA560_C(-0.4318) * t130);
-    const puma560_real_t t144 = t142 + t143;
+    const puma560_real_t t140 = t13 * t104 + t9 * t110 + (PUMA560_C(-0.0203) * t129
+        + PUMA560_C(-0.4318) * t127);
+    const puma560_real_t t141 = parameters[XX3R] * t8 + parameters[XY3R] * (t74 - t57)
+        + (parameters[MX3R] * t76 + parameters[MY3R] * t67);
+    const puma560_real_t t142 = t141 + t140;
+    const puma560_real_t t143 = parameters[XY2] * (t69 - t60) - parameters[XX2R] * t64
+        + (parameters[MX2R] * t65 + parameters[MY2] * t62);
+    const puma560_real_t t144 = puma560_sign(dq[1]);
     const puma560_real_t
         t145 = PUMA560_C(4.3478260869565215) * (parameters[FV2] * (PUMA560_C(107.815) * dq[1])
-        + parameters[FC2] * t140) + PUMA560_C(0.04032672714331514) * (t141 + (t144
-        + PUMA560_C(-0.4318) * t134));
+        + parameters[FC2] * t144) + PUMA560_C(0.04032672714331514) * (t143 + (t142
+        + PUMA560_C(-0.4318) * t131));
     out[1] = t145;
     const puma560_real_t t146 = puma560_sign(dq[2]);
     const puma560_real_t
         t147 = PUMA560_C(4.3478260869565215) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
-        - parameters[FC3] * t146) + PUMA560_C(-0.08095560645504385) * t144;
+        - parameters[FC3] * t146) + PUMA560_C(-0.08095560645504385) * t142;
     out[2] = t147;
     const puma560_real_t t148 = puma560_sign(dq[3]);
     const puma560_real_t
         t149 = PUMA560_C(14.285714285714285) * (parameters[FV4] * (PUMA560_C(76.0364) * dq[3])
-        + parameters[FC4] * t148) + PUMA560_C(0.18787994020908783) * t128;
+        + parameters[FC4] * t148) + PUMA560_C(0.18787994020908783) * t124;
     out[3] = t149;
     const puma560_real_t t150 = puma560_sign(dq[4]);
     const puma560_real_t t151 = PUMA560_C(14.285714285714285) * (parameters[FV5] * (PUMA560_C(71.923) * dq[4])
-        + parameters[FC5] * t150) + PUMA560_C(0.19862511694053758) * t114;
+        + parameters[FC5] * t150) + PUMA560_C(0.19862511694053758) * t107;
     out[4] = t151;
     const puma560_real_t t152 = puma560_sign(dq[5]);
     const puma560_real_t t153 = PUMA560_C(14.285714285714285) * (parameters[FV6] * (PUMA560_C(76.686) * dq[5])
-        + parameters[FC6] * t152) + PUMA560_C(0.1862884266452062) * t107;
+        + parameters[FC6] * t152) + PUMA560_C(0.1862884266452062) * t95;
     out[5] = t153;
     return PUMA560_STATUS_OK;
 }

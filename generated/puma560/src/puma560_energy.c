@@ -80,7 +80,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -107,10 +107,10 @@ int puma560_energy(
         return status;
     }
 
-    puma560_real_t t0, t2;
-    PUMA560_SINCOS(q[1], &t0, &t2);
-    puma560_real_t t8, t7;
-    PUMA560_SINCOS(q[2], &t8, &t7);
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t5, t2;
+    PUMA560_SINCOS(q[2], &t5, &t2);
     puma560_real_t t23, t22;
     PUMA560_SINCOS(q[3], &t23, &t22);
     puma560_real_t t37, t36;
@@ -118,38 +118,38 @@ int puma560_energy(
     puma560_real_t t49, t48;
     PUMA560_SINCOS(q[5], &t49, &t48);
     const puma560_real_t t1 = t0 * dq[0];
-    const puma560_real_t t3 = t2 * dq[0];
-    const puma560_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2R] * dq[1]);
-    const puma560_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2R] * t1
-        + parameters[YZ2] * t3));
-    const puma560_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const puma560_real_t t9 = t7 * t1 + t8 * t3;
-    const puma560_real_t t10 = t8 * t1 - t7 * t3;
-    const puma560_real_t t11 = dq[1] + dq[2];
-    const puma560_real_t t12 = t9 * (parameters[XX3R] * t9 - parameters[XY3R] * t10 - parameters[XZ3] * t11);
-    const puma560_real_t t13 = t11 * (parameters[YZ3] * t10 - parameters[XZ3] * t9 + parameters[ZZ3R] * t11);
-    const puma560_real_t t14 = t12 + t10 * (parameters[YZ3] * t11 - parameters[XY3R] * t9) + t13;
-    const puma560_real_t t15 = PUMA560_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + PUMA560_C(0.5) * t6
-        + PUMA560_C(0.5) * t14;
-    const puma560_real_t t16 = PUMA560_C(0.1254) * t3;
-    const puma560_real_t t17 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t1;
-    const puma560_real_t t18 = t7 * t17 - t8 * t16;
-    const puma560_real_t t19 = PUMA560_C(-0.4318) * t3;
-    const puma560_real_t t20 = t7 * t16 + t8 * t17;
-    const puma560_real_t t21 = parameters[MX3R] * (t10 * t19 - t11 * t18) + parameters[MY3R] * (t9 * t19
-        + t11 * t20);
-    const puma560_real_t t24 = t22 * t9 + t23 * t11;
-    const puma560_real_t t25 = t22 * t11 - t23 * t9;
-    const puma560_real_t t26 = dq[3] + t10;
+    const puma560_real_t t4 = t3 * dq[0];
+    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t7 = t5 * t1 - t2 * t4;
+    const puma560_real_t t8 = dq[1] + dq[2];
+    const puma560_real_t t9 = t6 * (parameters[XX3R] * t6 - parameters[XY3R] * t7 - parameters[XZ3] * t8);
+    const puma560_real_t t10 = t8 * (parameters[YZ3] * t7 - parameters[XZ3] * t6 + parameters[ZZ3R] * t8);
+    const puma560_real_t t11 = t9 + t7 * (parameters[YZ3] * t8 - parameters[XY3R] * t6) + t10;
+    const puma560_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t4 - parameters[XZ2R] * dq[1]);
+    const puma560_real_t t13 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2R] * t1
+        + parameters[YZ2] * t4));
+    const puma560_real_t t14 = t12 + t4 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
+    const puma560_real_t t15 = PUMA560_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + PUMA560_C(0.5) * t14
+        + PUMA560_C(0.5) * t11;
+    const puma560_real_t t16 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t1;
+    const puma560_real_t t17 = PUMA560_C(0.1254) * t4;
+    const puma560_real_t t18 = t2 * t16 - t5 * t17;
+    const puma560_real_t t19 = PUMA560_C(-0.4318) * t4;
+    const puma560_real_t t20 = t2 * t17 + t5 * t16;
+    const puma560_real_t t21 = parameters[MX3R] * (t7 * t19 - t8 * t18) + parameters[MY3R] * (t6 * t19
+        + t8 * t20);
+    const puma560_real_t t24 = t22 * t6 + t23 * t8;
+    const puma560_real_t t25 = t22 * t8 - t23 * t6;
+    const puma560_real_t t26 = dq[3] + t7;
     const puma560_real_t t27 = t24 * (parameters[XX4R] * t24 + parameters[XY4] * t25 - parameters[XZ4] * t26);
     const puma560_real_t t28 = t26 * (parameters[ZZ4R] * t26 - (parameters[XZ4] * t24
         + parameters[YZ4] * t25));
     const puma560_real_t t29 = t27 - t25 * (parameters[YZ4] * t26 - parameters[XY4] * t24) + t28;
-    const puma560_real_t t30 = t20 + PUMA560_C(0.4318) * t11;
-    const puma560_real_t t31 = t19 + (PUMA560_C(0.4318) * t9 + PUMA560_C(0.0203) * t10);
-    const puma560_real_t t32 = t23 * t30 + t22 * t31;
-    const puma560_real_t t33 = t18 + PUMA560_C(-0.0203) * t11;
-    const puma560_real_t t34 = t22 * t30 - t23 * t31;
+    const puma560_real_t t30 = t19 + (PUMA560_C(0.4318) * t6 + PUMA560_C(0.0203) * t7);
+    const puma560_real_t t31 = t20 + PUMA560_C(0.4318) * t8;
+    const puma560_real_t t32 = t23 * t31 + t22 * t30;
+    const puma560_real_t t33 = t18 + PUMA560_C(-0.0203) * t8;
+    const puma560_real_t t34 = t22 * t31 - t23 * t30;
     const puma560_real_t t35 = parameters[MX4] * (t26 * t32 - t25 * t33) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
     const puma560_real_t t38 = t37 * t26 - t36 * t24;
@@ -181,9 +181,9 @@ int puma560_energy(
         + PUMA560_C(0.5) * (PUMA560_C(5880.742596000001) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t60;
     const puma560_real_t t61 = PUMA560_C(-9.81) * t0;
-    const puma560_real_t t62 = PUMA560_C(-9.81) * t2;
-    const puma560_real_t t63 = t7 * t61 + t8 * t62;
-    const puma560_real_t t64 = t7 * t62 - t8 * t61;
+    const puma560_real_t t62 = PUMA560_C(-9.81) * t3;
+    const puma560_real_t t63 = t2 * t61 + t5 * t62;
+    const puma560_real_t t64 = t2 * t62 - t5 * t61;
     const puma560_real_t t65 = parameters[MX2R] * t61 + parameters[MY2] * t62 + (parameters[MX3R] * t63
         + parameters[MY3R] * t64);
     const puma560_real_t t66 = t22 * t63;

@@ -105,7 +105,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,86 +133,84 @@ int puma560_energy_standard(
         return status;
     }
 
-    puma560_real_t t0, t2;
-    PUMA560_SINCOS(q[1], &t0, &t2);
-    puma560_real_t t9, t8;
-    PUMA560_SINCOS(q[2], &t9, &t8);
-    puma560_real_t t24, t25;
-    PUMA560_SINCOS(q[3], &t24, &t25);
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t5, t2;
+    PUMA560_SINCOS(q[2], &t5, &t2);
+    puma560_real_t t25, t27;
+    PUMA560_SINCOS(q[3], &t25, &t27);
     puma560_real_t t42, t41;
     PUMA560_SINCOS(q[4], &t42, &t41);
     puma560_real_t t56, t55;
     PUMA560_SINCOS(q[5], &t56, &t55);
     const puma560_real_t t1 = t0 * dq[0];
-    const puma560_real_t t3 = t2 * dq[0];
-    const puma560_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] - dq[1] * parameters[XZ2]);
-    const puma560_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] - dq[1] * parameters[YZ2]);
-    const puma560_real_t t6 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2]
-        + t3 * parameters[YZ2]));
-    const puma560_real_t t7 = PUMA560_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + PUMA560_C(0.5) * (t4 + t5
-        + t6);
-    const puma560_real_t t10 = t8 * t1 + t9 * t3;
-    const puma560_real_t t11 = t8 * t3 - t9 * t1;
-    const puma560_real_t t12 = dq[1] + dq[2];
-    const puma560_real_t t13 = t10 * (parameters[XX3] * t10 + parameters[XY3] * t11 - t12 * parameters[XZ3]);
-    const puma560_real_t t14 = t11 * (t12 * parameters[YZ3] - (parameters[XY3] * t10
-        + parameters[YY3] * t11));
-    const puma560_real_t t15 = t12 * (t12 * parameters[ZZ3] - (parameters[XZ3] * t10
-        + parameters[YZ3] * t11));
-    const puma560_real_t t16 = PUMA560_C(0.1254) * t3;
-    const puma560_real_t t17 = PUMA560_C(0.4318) * dq[1] + PUMA560_C(0.1254) * t1;
-    const puma560_real_t t18 = t8 * t16 - t9 * t17;
-    const puma560_real_t t19 = t9 * t16 + t8 * t17;
-    const puma560_real_t t20 = PUMA560_C(0.4318) * t3;
-    const puma560_real_t t21 = parameters[M3] * (t18 * t18 + t19 * t19 + t20 * t20);
-    const puma560_real_t t22 = parameters[MX3] * (t12 * t19 + t11 * t20) + parameters[MY3] * (t12 * t18
-        - t10 * t20);
-    const puma560_real_t t23 = t7 + PUMA560_C(0.5) * (t13 - t14 + t15 + t21) + (t22
-        + parameters[MZ3] * (t11 * t18 + t10 * t19));
-    const puma560_real_t t26 = t24 * t12 + t25 * t10;
-    const puma560_real_t t27 = t25 * t12 - t24 * t10;
-    const puma560_real_t t28 = dq[3] - t11;
-    const puma560_real_t t29 = t26 * (parameters[XX4] * t26 + parameters[XY4] * t27 - parameters[XZ4] * t28);
-    const puma560_real_t t30 = t27 * (parameters[XY4] * t26 + parameters[YY4] * t27 - parameters[YZ4] * t28);
-    const puma560_real_t t31 = t28 * (parameters[ZZ4] * t28 - (parameters[XZ4] * t26
-        + parameters[YZ4] * t27));
-    const puma560_real_t t32 = t18 + PUMA560_C(0.4318) * t12;
-    const puma560_real_t t33 = t20 - (PUMA560_C(0.4318) * t10 + PUMA560_C(-0.0203) * t11);
-    const puma560_real_t t34 = t25 * t32 + t24 * t33;
-    const puma560_real_t t35 = t24 * t32 - t25 * t33;
-    const puma560_real_t t36 = t35 * t35;
-    const puma560_real_t t37 = t19 + PUMA560_C(0.0203) * t12;
-    const puma560_real_t t38 = t29 + t30 + t31 + parameters[M4] * (t34 * t34 + t36 + t37 * t37);
-    const puma560_real_t t39 = parameters[MX4] * (t28 * t35 + t27 * t37) + parameters[MY4] * (t28 * t34
-        - t26 * t37);
-    const puma560_real_t t40 = t23 + PUMA560_C(0.5) * t38 + (t39 + parameters[MZ4] * (t27 * t34 + t26 * t35));
-    const puma560_real_t t43 = t41 * t26 - t42 * t28;
-    const puma560_real_t t44 = t42 * t26 + t41 * t28;
-    const puma560_real_t t45 = dq[4] + t27;
+    const puma560_real_t t4 = t3 * dq[0];
+    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t7 = t2 * t4 - t5 * t1;
+    const puma560_real_t t8 = dq[1] + dq[2];
+    const puma560_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 - t8 * parameters[XZ3]);
+    const puma560_real_t t10 = t7 * (t8 * parameters[YZ3] - (parameters[XY3] * t6 + parameters[YY3] * t7));
+    const puma560_real_t t11 = t8 * (t8 * parameters[ZZ3] - (parameters[XZ3] * t6 + parameters[YZ3] * t7));
+    const puma560_real_t t12 = PUMA560_C(0.4318) * dq[1] + PUMA560_C(0.1254) * t1;
+    const puma560_real_t t13 = PUMA560_C(0.1254) * t4;
+    const puma560_real_t t14 = t2 * t13 - t5 * t12;
+    const puma560_real_t t15 = t5 * t13 + t2 * t12;
+    const puma560_real_t t16 = PUMA560_C(0.4318) * t4;
+    const puma560_real_t t17 = parameters[M3] * (t14 * t14 + t15 * t15 + t16 * t16);
+    const puma560_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] - dq[1] * parameters[XZ2]);
+    const puma560_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] - dq[1] * parameters[YZ2]);
+    const puma560_real_t t20 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2]
+        + t4 * parameters[YZ2]));
+    const puma560_real_t t21 = PUMA560_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + PUMA560_C(0.5) * (t18
+        + t19 + t20);
+    const puma560_real_t t22 = parameters[MX3] * (t8 * t15 + t7 * t16) + parameters[MY3] * (t8 * t14
+        - t6 * t16);
+    const puma560_real_t t23 = t21 + PUMA560_C(0.5) * (t9 - t10 + t11 + t17) + (t22
+        + parameters[MZ3] * (t7 * t14 + t6 * t15));
+    const puma560_real_t t24 = t16 - (PUMA560_C(0.4318) * t6 + PUMA560_C(-0.0203) * t7);
+    const puma560_real_t t26 = t14 + PUMA560_C(0.4318) * t8;
+    const puma560_real_t t28 = t27 * t26 + t25 * t24;
+    const puma560_real_t t29 = t25 * t26 - t27 * t24;
+    const puma560_real_t t30 = t29 * t29;
+    const puma560_real_t t31 = t15 + PUMA560_C(0.0203) * t8;
+    const puma560_real_t t32 = t25 * t8 + t27 * t6;
+    const puma560_real_t t33 = t27 * t8 - t25 * t6;
+    const puma560_real_t t34 = dq[3] - t7;
+    const puma560_real_t t35 = t32 * (parameters[XX4] * t32 + parameters[XY4] * t33 - parameters[XZ4] * t34);
+    const puma560_real_t t36 = t33 * (parameters[XY4] * t32 + parameters[YY4] * t33 - parameters[YZ4] * t34);
+    const puma560_real_t t37 = t34 * (parameters[ZZ4] * t34 - (parameters[XZ4] * t32
+        + parameters[YZ4] * t33));
+    const puma560_real_t t38 = t35 + t36 + t37 + parameters[M4] * (t28 * t28 + t30 + t31 * t31);
+    const puma560_real_t t39 = parameters[MX4] * (t34 * t29 + t33 * t31) + parameters[MY4] * (t34 * t28
+        - t32 * t31);
+    const puma560_real_t t40 = t23 + PUMA560_C(0.5) * t38 + (t39 + parameters[MZ4] * (t33 * t28 + t32 * t29));
+    const puma560_real_t t43 = t41 * t32 - t42 * t34;
+    const puma560_real_t t44 = t42 * t32 + t41 * t34;
+    const puma560_real_t t45 = dq[4] + t33;
     const puma560_real_t t46 = t43 * (parameters[XX5] * t43 - parameters[XY5] * t44 - parameters[XZ5] * t45);
     const puma560_real_t t47 = t44 * (parameters[YY5] * t44 - parameters[XY5] * t43 + parameters[YZ5] * t45);
     const puma560_real_t t48 = t45 * (parameters[YZ5] * t44 - parameters[XZ5] * t43 + parameters[ZZ5] * t45);
-    const puma560_real_t t49 = t41 * t34 - t42 * t37;
-    const puma560_real_t t50 = t42 * t34 + t41 * t37;
+    const puma560_real_t t49 = t41 * t28 - t42 * t31;
+    const puma560_real_t t50 = t42 * t28 + t41 * t31;
     const puma560_real_t t51 = t50 * t50;
-    const puma560_real_t t52 = t46 + t47 + t48 + parameters[M5] * (t36 + (t49 * t49 + t51));
-    const puma560_real_t t53 = parameters[MX5] * (t45 * t50 + t44 * t35) + parameters[MY5] * (t43 * t35
+    const puma560_real_t t52 = t46 + t47 + t48 + parameters[M5] * (t30 + (t49 * t49 + t51));
+    const puma560_real_t t53 = parameters[MX5] * (t45 * t50 + t44 * t29) + parameters[MY5] * (t43 * t29
         + t45 * t49);
     const puma560_real_t t54 = t40 + PUMA560_C(0.5) * t52 + (t53 + parameters[MZ5] * (t43 * t50 - t44 * t49));
-    const puma560_real_t t57 = t55 * t43 + t56 * t45;
-    const puma560_real_t t58 = t55 * t45 - t56 * t43;
-    const puma560_real_t t59 = dq[5] + t44;
-    const puma560_real_t t60 = t57 * (parameters[XX6] * t57 + parameters[XY6] * t58 - parameters[XZ6] * t59);
-    const puma560_real_t t61 = t58 * (parameters[YZ6] * t59 - (parameters[XY6] * t57
-        + parameters[YY6] * t58));
-    const puma560_real_t t62 = t59 * (parameters[ZZ6] * t59 - (parameters[XZ6] * t57
-        + parameters[YZ6] * t58));
-    const puma560_real_t t63 = t55 * t49 - t56 * t35;
-    const puma560_real_t t64 = t56 * t49 + t55 * t35;
-    const puma560_real_t t65 = t60 - t61 + t62 + parameters[M6] * (t51 + (t63 * t63 + t64 * t64));
-    const puma560_real_t t66 = parameters[MX6] * (t59 * t64 + t58 * t50) + parameters[MY6] * (t59 * t63
-        - t57 * t50);
-    const puma560_real_t t67 = t54 + PUMA560_C(0.5) * t65 + (t66 + parameters[MZ6] * (t58 * t63 + t57 * t64));
+    const puma560_real_t t57 = t55 * t49 - t56 * t29;
+    const puma560_real_t t58 = t56 * t49 + t55 * t29;
+    const puma560_real_t t59 = t55 * t43 + t56 * t45;
+    const puma560_real_t t60 = t55 * t45 - t56 * t43;
+    const puma560_real_t t61 = dq[5] + t44;
+    const puma560_real_t t62 = t59 * (parameters[XX6] * t59 + parameters[XY6] * t60 - parameters[XZ6] * t61);
+    const puma560_real_t t63 = t60 * (parameters[YZ6] * t61 - (parameters[XY6] * t59
+        + parameters[YY6] * t60));
+    const puma560_real_t t64 = t61 * (parameters[ZZ6] * t61 - (parameters[XZ6] * t59
+        + parameters[YZ6] * t60));
+    const puma560_real_t t65 = t62 - t63 + t64 + parameters[M6] * (t51 + (t57 * t57 + t58 * t58));
+    const puma560_real_t t66 = parameters[MX6] * (t61 * t58 + t60 * t50) + parameters[MY6] * (t61 * t57
+        - t59 * t50);
+    const puma560_real_t t67 = t54 + PUMA560_C(0.5) * t65 + (t66 + parameters[MZ6] * (t60 * t57 + t59 * t58));
     const puma560_real_t t68 = t67
         + PUMA560_C(0.5) * (dq[0] * dq[0] * (PUMA560_C(3920.14984321) * parameters[IA1]))
         + PUMA560_C(0.5) * (dq[1] * dq[1] * (PUMA560_C(11624.074225) * parameters[IA2]));
@@ -224,24 +222,24 @@ int puma560_energy_standard(
         + PUMA560_C(0.5) * (dq[5] * dq[5] * (PUMA560_C(5880.742596000001) * parameters[IA6]));
     kinetic[0] = t70;
     const puma560_real_t t71 = PUMA560_C(-9.81) * t0;
-    const puma560_real_t t72 = PUMA560_C(-9.81) * t2;
-    const puma560_real_t t73 = t8 * t71 + t9 * t72;
-    const puma560_real_t t74 = t8 * t72 - t9 * t71;
-    const puma560_real_t t75 = PUMA560_C(-4.235958) * t0;
-    const puma560_real_t t76 = PUMA560_C(9.81) * parameters[MZ1] + (t71 * parameters[MX2]
-        + t72 * parameters[MY2]) + (t73 * parameters[MX3] + t74 * parameters[MY3] + parameters[M3] * t75);
-    const puma560_real_t t77 = t25 * t73;
-    const puma560_real_t t78 = t24 * t73;
-    const puma560_real_t t79 = t75 + (PUMA560_C(0.0203) * t73 + PUMA560_C(0.4318) * t74);
-    const puma560_real_t t80 = t77 * parameters[MX4] - t78 * parameters[MY4] + t74 * parameters[MZ4]
-        + parameters[M4] * t79;
-    const puma560_real_t t81 = t41 * t77 + t42 * t74;
-    const puma560_real_t t82 = t41 * t74 - t42 * t77;
-    const puma560_real_t t83 = t81 * parameters[MX5] + t82 * parameters[MY5] + t78 * parameters[MZ5]
-        + parameters[M5] * t79;
-    const puma560_real_t t84 = (t55 * t81 - t56 * t78) * parameters[MX6] - (t56 * t81
-        + t55 * t78) * parameters[MY6];
-    const puma560_real_t t85 = t76 + t80 + t83 + (t84 + t82 * parameters[MZ6] + parameters[M6] * t79);
+    const puma560_real_t t72 = PUMA560_C(-9.81) * t3;
+    const puma560_real_t t73 = t2 * t71 + t5 * t72;
+    const puma560_real_t t74 = t27 * t73;
+    const puma560_real_t t75 = t25 * t73;
+    const puma560_real_t t76 = t2 * t72 - t5 * t71;
+    const puma560_real_t t77 = PUMA560_C(-4.235958) * t0;
+    const puma560_real_t t78 = t77 + (PUMA560_C(0.0203) * t73 + PUMA560_C(0.4318) * t76);
+    const puma560_real_t t79 = t74 * parameters[MX4] - t75 * parameters[MY4] + t76 * parameters[MZ4]
+        + parameters[M4] * t78;
+    const puma560_real_t t80 = PUMA560_C(9.81) * parameters[MZ1] + (t71 * parameters[MX2]
+        + t72 * parameters[MY2]) + (t73 * parameters[MX3] + t76 * parameters[MY3] + parameters[M3] * t77);
+    const puma560_real_t t81 = t41 * t74 + t42 * t76;
+    const puma560_real_t t82 = t41 * t76 - t42 * t74;
+    const puma560_real_t t83 = t81 * parameters[MX5] + t82 * parameters[MY5] + t75 * parameters[MZ5]
+        + parameters[M5] * t78;
+    const puma560_real_t t84 = (t55 * t81 - t56 * t75) * parameters[MX6] - (t56 * t81
+        + t55 * t75) * parameters[MY6];
+    const puma560_real_t t85 = t80 + t79 + t83 + (t84 + t82 * parameters[MZ6] + parameters[M6] * t78);
     potential[0] = t85;
     return PUMA560_STATUS_OK;
 }

@@ -81,7 +81,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -108,396 +108,394 @@ int puma560_forward_dynamics(
         return status;
     }
 
-    puma560_real_t t2, t3;
-    PUMA560_SINCOS(q[1], &t2, &t3);
-    puma560_real_t t13, t12;
-    PUMA560_SINCOS(q[2], &t13, &t12);
-    puma560_real_t t27, t26;
-    PUMA560_SINCOS(q[3], &t27, &t26);
-    puma560_real_t t53, t52;
-    PUMA560_SINCOS(q[4], &t53, &t52);
-    puma560_real_t t77, t76;
-    PUMA560_SINCOS(q[5], &t77, &t76);
-    const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t1 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0]))
-        + PUMA560_C(-62.6111) * (parameters[FC1] * t0);
-    const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t5 = dq[1] * t4;
-    const puma560_real_t t6 = t2 * dq[0];
-    const puma560_real_t t7 = dq[1] * t6;
-    const puma560_real_t t8 = parameters[XY2] * (PUMA560_C(2.0) * t7) - (parameters[XX2R] * t5
-        + parameters[ZZ2R] * t5);
-    const puma560_real_t t9 = t6 * t4;
-    const puma560_real_t t10 = dq[1] * dq[1];
-    const puma560_real_t t11 = t4 * t4;
-    const puma560_real_t t14 = t13 * t6 - t12 * t4;
-    const puma560_real_t t15 = dq[1] + dq[2];
-    const puma560_real_t t16 = t14 * t15;
-    const puma560_real_t t17 = t12 * t6 + t13 * t4;
-    const puma560_real_t t18 = t17 * t15;
-    const puma560_real_t t19 = PUMA560_C(2.0) * t18;
-    const puma560_real_t t20 = t17 * t14;
-    const puma560_real_t t21 = parameters[XX3R] * t16 + parameters[ZZ3R] * t16 + parameters[XY3R] * t19
-        - parameters[XZ3] * t20;
-    const puma560_real_t t22 = t14 * t14;
-    const puma560_real_t t23 = t15 * t15;
-    const puma560_real_t t24 = t6 * t6;
-    const puma560_real_t t25 = PUMA560_C(-0.8636) * t7 + PUMA560_C(-0.1254) * (t24 + t11);
-    const puma560_real_t t28 = PUMA560_C(-2.0) * t16;
-    const puma560_real_t t29 = t27 * t20 + t26 * t28;
-    const puma560_real_t t30 = t27 * t17 - t26 * t15;
-    const puma560_real_t t31 = dq[3] + t14;
-    const puma560_real_t t32 = t30 * t31;
-    const puma560_real_t t33 = t29 - t32;
-    const puma560_real_t t34 = t26 * t17 + t27 * t15;
-    const puma560_real_t t35 = t34 * t31;
-    const puma560_real_t t36 = t27 * t28 - t26 * t20;
-    const puma560_real_t t37 = t36 + t35;
-    const puma560_real_t t38 = t35 + t37;
-    const puma560_real_t t39 = t34 * t30;
-    const puma560_real_t t40 = t18 - t39;
-    const puma560_real_t t41 = parameters[ZZ4R] * t32 - parameters[XX4R] * t33 + parameters[XY4] * t38
-        + parameters[XZ4] * t40;
-    const puma560_real_t t42 = t30 * t30;
-    const puma560_real_t t43 = t31 * t31;
-    const puma560_real_t t44 = PUMA560_C(-9.81) * t2;
-    const puma560_real_t t45 = PUMA560_C(0.4318) * (t10 + t11) - t44;
-    const puma560_real_t t46 = PUMA560_C(-9.81) * t3;
-    const puma560_real_t t47 = t46 + PUMA560_C(0.4318) * t9;
-    const puma560_real_t t48 = t13 * t45 + t12 * t47;
-    const puma560_real_t t49 = t17 * t17;
-    const puma560_real_t t50 = t49 + t23;
-    const puma560_real_t t51 = t48 + (PUMA560_C(-0.0203) * t20 + PUMA560_C(-0.4318) * t50);
-    const puma560_real_t t54 = t18 + t39;
-    const puma560_real_t t55 = t33 - t32;
-    const puma560_real_t t56 = t52 * t55 - t53 * t54;
-    const puma560_real_t t57 = t53 * t34 + t52 * t31;
-    const puma560_real_t t58 = t30 - dq[4];
-    const puma560_real_t t59 = t57 * t58;
-    const puma560_real_t t60 = t56 + t59;
-    const puma560_real_t t61 = t52 * t34 - t53 * t31;
-    const puma560_real_t t62 = t61 * t58;
-    const puma560_real_t t63 = t52 * t54 + t53 * t55;
-    const puma560_real_t t64 = t63 - t62;
-    const puma560_real_t t65 = t64 - t62;
-    const puma560_real_t t66 = t61 * t57;
-    const puma560_real_t t67 = t37 + t66;
-    const puma560_real_t t68 = parameters[XY5] * t65 - (parameters[XX5R] * t60 + parameters[ZZ5R] * t59)
-        - parameters[XZ5] * t67;
-    const puma560_real_t t69 = t57 * t57;
-    const puma560_real_t t70 = t58 * t58;
-    const puma560_real_t t71 = t13 * t47 - t12 * t45;
-    const puma560_real_t t72 = t22 + t23;
-    const puma560_real_t t73 = t71 + (PUMA560_C(-0.0203) * t72 + PUMA560_C(-0.4318) * t20);
-    const puma560_real_t t74 = PUMA560_C(0.0406) * t18 - PUMA560_C(0.8636) * t16 - t25;
-    const puma560_real_t t75 = t27 * t73 - t26 * t74;
-    const puma560_real_t t78 = t37 - t66;
-    const puma560_real_t t79 = t59 + t60;
-    const puma560_real_t t80 = t77 * t78 - t76 * t79;
-    const puma560_real_t t81 = t77 * t61 + t76 * t58;
-    const puma560_real_t t82 = dq[5] + t57;
-    const puma560_real_t t83 = t81 * t82;
-    const puma560_real_t t84 = t80 + t83;
-    const puma560_real_t t85 = t77 * t58 - t76 * t61;
-    const puma560_real_t t86 = t85 * t82;
-    const puma560_real_t t87 = t76 * t78 + t77 * t79;
-    const puma560_real_t t88 = t87 - t86 - t86;
-    const puma560_real_t t89 = t85 * t81;
-    const puma560_real_t t90 = t64 + t89;
-    const puma560_real_t t91 = parameters[XX6R] * t84 + parameters[ZZ6] * t83 + parameters[XY6] * t88
-        + parameters[XZ6] * t90;
-    const puma560_real_t t92 = t81 * t81;
-    const puma560_real_t t93 = t82 * t82;
-    const puma560_real_t t94 = t26 * t73 + t27 * t74;
-    const puma560_real_t t95 = t53 * t94 - t52 * t51;
-    const puma560_real_t t96 = t91 + parameters[YZ6] * (t92 - t93) - parameters[MY6] * t95;
-    const puma560_real_t t97 = t83 + t84;
-    const puma560_real_t t98 = t64 - t89;
-    const puma560_real_t t99 = parameters[XY6] * t97 - t86 * (parameters[ZZ6] - parameters[XX6R])
-        + parameters[YZ6] * t98;
-    const puma560_real_t t100 = t85 * t85;
-    const puma560_real_t t101 = t99 + parameters[XZ6] * (t93 - t100) + parameters[MX6] * t95;
-    const puma560_real_t t102 = t68 + parameters[YZ5] * (t69 - t70) + parameters[MY5R] * t75 - (t77 * t101
-        - t76 * t96);
-    const puma560_real_t t103 = parameters[XY5] * t79 - t62 * (parameters[XX5R] - parameters[ZZ5R])
-        + parameters[YZ5] * t78;
-    const puma560_real_t t104 = t61 * t61;
-    const puma560_real_t t105 = parameters[XX6R] * t89 - parameters[ZZ6] * t64 - parameters[YZ6] * t87
-        - parameters[XZ6] * t80;
-    const puma560_real_t t106 = t52 * t94 + t53 * t51;
-    const puma560_real_t t107 = parameters[MX6] * (t77 * t106 + t76 * t75) + parameters[MY6] * (t76 * t106
-        - t77 * t75);
-    const puma560_real_t t108 = t105 + parameters[XY6] * (t92 - t100) + t107;
-    const puma560_real_t t109 = t103 + parameters[XZ5] * (t104 - t70) + parameters[MX5] * t75 + t108;
-    const puma560_real_t t110 = t41 + parameters[YZ4] * (t42 - t43) + parameters[MY4R] * t51 + (t52 * t102
-        + t53 * t109);
-    const puma560_real_t t111 = t35 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t55
-        - parameters[YZ4] * t54;
-    const puma560_real_t t112 = t34 * t34;
-    const puma560_real_t t113 = parameters[ZZ5R] * t37 - parameters[XX5R] * t66 - parameters[YZ5] * t63
-        + parameters[XZ5] * t56;
-    const puma560_real_t t114 = t113 + parameters[XY5] * (t69 - t104) + (parameters[MX5] * t95
-        + parameters[MY5R] * t106);
-    const puma560_real_t t115 = t114 + (t77 * t96 + t76 * t101);
-    const puma560_real_t t116 = t111 + parameters[XZ4] * (t112 - t43) + parameters[MX4] * t51 - t115;
-    const puma560_real_t t117 = parameters[MX6] * (t92 + t93) + parameters[MY6] * t98;
-    const puma560_real_t t118 = parameters[MX6] * t90 - parameters[MY6] * (t100 + t93);
-    const puma560_real_t t119 = parameters[MX5] * (t69 + t70) - parameters[MY5R] * t78 + (t76 * t117
-        + t77 * t118);
-    const puma560_real_t t120 = parameters[MX5] * t67 + parameters[MY5R] * (t104 + t70)
-        + (parameters[MX6] * t88 - parameters[MY6] * t97);
-    const puma560_real_t t121 = t53 * t120 - t52 * t119 - (parameters[MX4] * (t42 + t43)
-        + parameters[MY4R] * t54);
-    const puma560_real_t t122 = parameters[MX5] * t65 + parameters[MY5R] * t79 - (t77 * t117 - t76 * t118);
-    const puma560_real_t t123 = parameters[MX4] * t40 - parameters[MY4R] * (t112 + t43) + t122;
-    const puma560_real_t t124 = t27 * t121 + t26 * t123;
-    const puma560_real_t t125 = t21 + parameters[YZ3] * (t22 - t23) + parameters[MY3R] * t25 + (t26 * t110
-        + t27 * t116 + PUMA560_C(-0.4318) * t124);
-    const puma560_real_t t126 = t18 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t28
-        - parameters[YZ3] * t20;
-    const puma560_real_t t127 = parameters[XZ4] * t29 - (parameters[ZZ4R] * t18 + parameters[XX4R] * t39
-        + parameters[YZ4] * t36);
-    const puma560_real_t t128 = t127 + parameters[XY4] * (t42 - t112) + (parameters[MX4] * t75
-        + parameters[MY4R] * t94);
-    const puma560_real_t t129 = t128 + (t52 * t109 - t53 * t102);
-    const puma560_real_t t130 = t126 + parameters[XZ3] * (t49 - t23) + parameters[MX3R] * t25 + (t129
-        + PUMA560_C(-0.0203) * t124);
-    const puma560_real_t t131 = t26 * t121 - t27 * t123;
-    const puma560_real_t t132 = parameters[MX3R] * t72 + parameters[MY3R] * t20 - t131;
-    const puma560_real_t t133 = parameters[MX4] * t38 + parameters[MY4R] * t55 + (t53 * t119 + t52 * t120);
-    const puma560_real_t t134 = parameters[MX3R] * t20 + parameters[MY3R] * t50 + t133;
-    const puma560_real_t t135 = t13 * t132 + t12 * t134;
-    const puma560_real_t t136 = t8 + parameters[XZ2R] * t9 + parameters[YZ2] * (t11 - t10) + (t12 * t125
-        + t13 * t130 + PUMA560_C(0.1254) * t135);
-    const puma560_real_t t137 = t7 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (PUMA560_C(-2.0) * t5) - parameters[YZ2] * t9;
-    const puma560_real_t t138 = PUMA560_C(0.1254) * (t13 * t134 - t12 * t132)
-        + PUMA560_C(0.4318) * (parameters[MX3R] * t19 + parameters[MY3R] * t28 + t124);
-    const puma560_real_t t139 = t137 + parameters[XZ2R] * (t10 - t24) + (t13 * t125 - t12 * t130 + t138);
-    const puma560_real_t t140 = PUMA560_C(-14.400553) * input[0] + (t1 + (t2 * t136 + t3 * t139));
-    const puma560_real_t t141 = puma560_sign(dq[5]);
-    const puma560_real_t t142 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5]))
-        + PUMA560_C(-76.686) * (parameters[FC6] * t141);
-    const puma560_real_t t143 = PUMA560_C(5.368020000000001) * input[5] + (t142 + t108);
-    const puma560_real_t t144 = t77 * parameters[YZ6] - t76 * parameters[XZ6];
-    const puma560_real_t t145 = t52 * t144 + t53 * parameters[ZZ6];
-    const puma560_real_t t146 = t77 * parameters[XZ6] + t76 * parameters[YZ6];
-    const puma560_real_t t147 = t76 * parameters[MY6] + t77 * parameters[MX6];
-    const puma560_real_t t148 = t52 * t147;
-    const puma560_real_t t149 = t76 * parameters[MX6] - t77 * parameters[MY6];
-    const puma560_real_t t150 = t27 * t148 - t26 * t149;
-    const puma560_real_t t151 = PUMA560_C(0.4318) * t150;
-    const puma560_real_t t152 = t26 * t145 + t27 * t146 - t151;
-    const puma560_real_t t153 = t53 * t144 - t52 * parameters[ZZ6];
-    const puma560_real_t t154 = t153 + PUMA560_C(0.0203) * t150;
-    const puma560_real_t t155 = t26 * t148 + t27 * t149;
-    const puma560_real_t t156 = t53 * t147;
-    const puma560_real_t t157 = t13 * t155 + t12 * t156;
-    const puma560_real_t t158 = t2 * (t12 * t152 - t13 * t154 + PUMA560_C(-0.1254) * t157);
-    const puma560_real_t t159 = t13 * t152 + t12 * t154 + (t151 + PUMA560_C(0.1254) * (t12 * t155
-        - t13 * t156));
-    const puma560_real_t t160 = t158 + t3 * t159;
-    const puma560_real_t t161 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
-    if (!(t161 > PUMA560_C(1.0e-9))) {
+    puma560_real_t t97, t95;
+    PUMA560_SINCOS(q[1], &t97, &t95);
+    puma560_real_t t65, t67;
+    PUMA560_SINCOS(q[2], &t65, &t67);
+    puma560_real_t t28, t30;
+    PUMA560_SINCOS(q[3], &t28, &t30);
+    puma560_real_t t11, t13;
+    PUMA560_SINCOS(q[4], &t11, &t13);
+    puma560_real_t t1, t2;
+    PUMA560_SINCOS(q[5], &t1, &t2);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    if (!(t0 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t162 = PUMA560_C(1.0) / t161;
-    const puma560_real_t t163 = t160 * t162;
-    const puma560_real_t t164 = puma560_sign(dq[4]);
-    const puma560_real_t t165 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4]))
-        + PUMA560_C(-71.923) * (parameters[FC5] * t164);
-    const puma560_real_t t166 = t146 * t162;
-    const puma560_real_t t167 = PUMA560_C(5.034610000000001) * input[4] + (t165 + t115) + t143 * t166;
-    const puma560_real_t t168 = t76 * parameters[XX6R] - parameters[XY6] * (PUMA560_C(2.0) * t77);
-    const puma560_real_t t169 = parameters[XY6] + t77 * t168 - parameters[XZ5];
-    const puma560_real_t t170 = parameters[YZ5] - t146;
-    const puma560_real_t t171 = t52 * t169 + t53 * t170;
-    const puma560_real_t t172 = t76 * t168;
-    const puma560_real_t t173 = parameters[ZZ5R] + (parameters[XX6R] - t172);
-    const puma560_real_t t174 = parameters[MX5] + t149;
-    const puma560_real_t t175 = t52 * parameters[MY5R] + t53 * t174;
-    const puma560_real_t t176 = t27 * t175;
-    const puma560_real_t t177 = PUMA560_C(0.4318) * t176;
-    const puma560_real_t t178 = t26 * t171 - t27 * t173 - t177;
-    const puma560_real_t t179 = t52 * t170 - t53 * t169;
-    const puma560_real_t t180 = t179 - PUMA560_C(0.0203) * t176;
-    const puma560_real_t t181 = t26 * t175;
-    const puma560_real_t t182 = t52 * t174 - t53 * parameters[MY5R];
-    const puma560_real_t t183 = t12 * t182 - t13 * t181;
-    const puma560_real_t t184 = t2 * (t12 * t178 + t13 * t180 + PUMA560_C(0.1254) * t183);
-    const puma560_real_t t185 = t13 * t178 - t12 * t180 + (t177 + PUMA560_C(0.1254) * (t12 * t181
-        + t13 * t182));
-    const puma560_real_t t186 = t184 + t3 * t185 + t160 * t166;
-    const puma560_real_t t187 = t173 + PUMA560_C(5172.917929) * parameters[IA5] - t146 * t166;
-    if (!(t187 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
+    const puma560_real_t t4 = PUMA560_C(1.0) / t0;
+    const puma560_real_t t5 = t3 * t4;
+    const puma560_real_t t6 = t2 * parameters[XX6R] - parameters[XY6] * (PUMA560_C(2.0) * t1);
+    const puma560_real_t t7 = t2 * t6;
+    const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
+    const puma560_real_t t9 = t8 + PUMA560_C(5172.917929) * parameters[IA5] - t3 * t5;
+    if (!(t9 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t188 = PUMA560_C(-1.0) / t187;
-    const puma560_real_t t189 = t186 * t188;
-    const puma560_real_t t190 = puma560_sign(dq[3]);
-    const puma560_real_t t191 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3]))
-        + PUMA560_C(-76.0364) * (parameters[FC4] * t190);
-    const puma560_real_t t192 = t153 * t162;
-    const puma560_real_t t193 = t179 - t153 * t166;
-    const puma560_real_t t194 = t193 * t188;
-    const puma560_real_t t195 = PUMA560_C(5.322548) * input[3] + (t191 + t129) + t143 * t192 + t167 * t194;
-    const puma560_real_t t196 = t144 - parameters[XY5];
-    const puma560_real_t t197 = parameters[XX5R] + t172;
-    const puma560_real_t t198 = t52 * (parameters[ZZ6] - t197) - t196 * (PUMA560_C(2.0) * t53);
-    const puma560_real_t t199 = t196 + t53 * t198 - parameters[XZ4];
-    const puma560_real_t t200 = t179 - parameters[YZ4];
-    const puma560_real_t t201 = t27 * t200 - t26 * t199;
-    const puma560_real_t t202 = parameters[MY4R] + t147;
-    const puma560_real_t t203 = parameters[MX4] + t182;
-    const puma560_real_t t204 = t26 * t203 - t27 * t202;
-    const puma560_real_t t205 = PUMA560_C(-0.4318) * t204;
-    const puma560_real_t t206 = t201 + t205;
-    const puma560_real_t t207 = t52 * t198;
-    const puma560_real_t t208 = parameters[ZZ4R] + (t197 + t207);
-    const puma560_real_t t209 = t208 - PUMA560_C(-0.0203) * t204;
-    const puma560_real_t t210 = t26 * t202 + t27 * t203;
-    const puma560_real_t t211 = t13 * t210;
-    const puma560_real_t t212 = t2 * (t13 * t209 - t12 * t206 + PUMA560_C(-0.1254) * t211);
-    const puma560_real_t t213 = t205 + PUMA560_C(0.1254) * (t12 * t210) - (t13 * t206 + t12 * t209);
-    const puma560_real_t t214 = t212 + t3 * t213 + t160 * t192 + t186 * t194;
-    const puma560_real_t t215 = t208 + PUMA560_C(5781.53412496) * parameters[IA4] - t153 * t192 + t193 * t194;
-    if (!(t215 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t10 = parameters[XY6] + t1 * t6 - parameters[XZ5];
+    const puma560_real_t t12 = parameters[YZ5] - t3;
+    const puma560_real_t t14 = t13 * t12 - t11 * t10;
+    const puma560_real_t t15 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const puma560_real_t t16 = t11 * t15 - t13 * parameters[ZZ6];
+    const puma560_real_t t17 = t14 - t16 * t5;
+    const puma560_real_t t18 = PUMA560_C(-1.0) / t9;
+    const puma560_real_t t19 = t17 * t18;
+    const puma560_real_t t20 = parameters[XX5R] + t7;
+    const puma560_real_t t21 = t15 - parameters[XY5];
+    const puma560_real_t t22 = t13 * (parameters[ZZ6] - t20) - t21 * (PUMA560_C(2.0) * t11);
+    const puma560_real_t t23 = t13 * t22;
+    const puma560_real_t t24 = parameters[ZZ4R] + (t20 + t23);
+    const puma560_real_t t25 = t16 * t4;
+    const puma560_real_t t26 = t24 + PUMA560_C(5781.53412496) * parameters[IA4] - t16 * t25 + t17 * t19;
+    if (!(t26 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t216 = PUMA560_C(-1.0) / t215;
-    const puma560_real_t t217 = t214 * t216;
-    const puma560_real_t t218 = t140 - t143 * t163 + t167 * t189 + t195 * t217;
-    const puma560_real_t t219 = puma560_sign(dq[2]);
-    const puma560_real_t t220 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2]))
-        + PUMA560_C(-53.7063) * (parameters[FC3] * t219);
-    const puma560_real_t t221 = parameters[XY3R] * (t22 - t49) - parameters[XX3R] * t20
-        + (parameters[MY3R] * t71 - parameters[MX3R] * t48);
-    const puma560_real_t t222 = t27 * t110 - t26 * t116 + (PUMA560_C(0.0203) * t133
-        + PUMA560_C(0.4318) * t131);
-    const puma560_real_t t223 = t221 + t222;
-    const puma560_real_t t224 = t27 * t145 - t26 * t146 + (PUMA560_C(-0.0203) * t156
-        + PUMA560_C(0.4318) * t155);
-    const puma560_real_t t225 = t224 * t162;
-    const puma560_real_t t226 = t27 * t171 + t26 * t173 + (PUMA560_C(0.0203) * t182
-        + PUMA560_C(0.4318) * t181);
-    const puma560_real_t t227 = t226 + t224 * t166;
-    const puma560_real_t t228 = t227 * t188;
-    const puma560_real_t t229 = PUMA560_C(-12.352449) * input[2] + (t220 + t223) - t143 * t225 + t167 * t228;
-    const puma560_real_t t230 = PUMA560_C(0.4318) * t210;
-    const puma560_real_t t231 = t27 * t199 + t26 * t200 + t230;
-    const puma560_real_t t232 = t231 + t224 * t192 + t227 * t194;
-    const puma560_real_t t233 = t232 * t216;
-    const puma560_real_t t234 = t229 + t195 * t233;
-    const puma560_real_t t235 = parameters[XY4] + t171;
-    const puma560_real_t t236 = parameters[XX4R] + (parameters[ZZ6] - t207);
-    const puma560_real_t t237 = t26 * (t236 - t173) + t235 * (PUMA560_C(-2.0) * t27);
-    const puma560_real_t t238 = t235 + t27 * t237 + PUMA560_C(-0.0203) * t210 - parameters[XZ3];
-    const puma560_real_t t239 = parameters[YZ3] + t231;
-    const puma560_real_t t240 = t12 * t238 + t13 * t239;
-    const puma560_real_t t241 = parameters[MY3R] + t175;
-    const puma560_real_t t242 = parameters[MX3R] + t204;
-    const puma560_real_t t243 = t12 * t242 - t13 * t241;
-    const puma560_real_t t244 = PUMA560_C(0.1254) * t243;
-    const puma560_real_t t245 = t12 * t241 + t13 * t242;
-    const puma560_real_t t246 = t13 * t238 - t12 * t239 + PUMA560_C(0.1254) * t245;
-    const puma560_real_t t247 = t2 * (t240 + t244) + t3 * t246 - t160 * t225;
-    const puma560_real_t t248 = t247 + t186 * t228 + t214 * t233;
-    const puma560_real_t t249 = t26 * t237;
-    const puma560_real_t t250 = PUMA560_C(0.0406) * t204;
-    const puma560_real_t t251 = PUMA560_C(0.8636) * t175;
-    const puma560_real_t t252 = parameters[ZZ3R] + (t236 - t249 + (t250 + t251));
-    const puma560_real_t t253 = t252 + PUMA560_C(2884.36665969) * parameters[IA3] - t224 * t225 + t227 * t228;
-    const puma560_real_t t254 = t253 + t232 * t233;
-    if (!(t254 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t27 = t21 + t11 * t22 - parameters[XZ4];
+    const puma560_real_t t29 = t14 - parameters[YZ4];
+    const puma560_real_t t31 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t32 = parameters[MY4R] + t31;
+    const puma560_real_t t33 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const puma560_real_t t34 = parameters[MX5] + t33;
+    const puma560_real_t t35 = t13 * t34 - t11 * parameters[MY5R];
+    const puma560_real_t t36 = parameters[MX4] + t35;
+    const puma560_real_t t37 = t30 * t32 + t28 * t36;
+    const puma560_real_t t38 = PUMA560_C(0.4318) * t37;
+    const puma560_real_t t39 = t28 * t27 + t30 * t29 + t38;
+    const puma560_real_t t40 = t13 * t15 + t11 * parameters[ZZ6];
+    const puma560_real_t t41 = t13 * t31;
+    const puma560_real_t t42 = t30 * t41 + t28 * t33;
+    const puma560_real_t t43 = t11 * t31;
+    const puma560_real_t t44 = t28 * t40 - t30 * t3 + (PUMA560_C(-0.0203) * t43 + PUMA560_C(0.4318) * t42);
+    const puma560_real_t t45 = t13 * t10 + t11 * t12;
+    const puma560_real_t t46 = t13 * parameters[MY5R] + t11 * t34;
+    const puma560_real_t t47 = t30 * t46;
+    const puma560_real_t t48 = t28 * t45 + t30 * t8 + (PUMA560_C(0.0203) * t35 + PUMA560_C(0.4318) * t47);
+    const puma560_real_t t49 = t48 + t44 * t5;
+    const puma560_real_t t50 = t39 + t44 * t25 + t49 * t19;
+    const puma560_real_t t51 = PUMA560_C(-1.0) / t26;
+    const puma560_real_t t52 = t50 * t51;
+    const puma560_real_t t53 = t49 * t18;
+    const puma560_real_t t54 = t44 * t4;
+    const puma560_real_t t55 = parameters[XX4R] + (parameters[ZZ6] - t23);
+    const puma560_real_t t56 = parameters[XY4] + t45;
+    const puma560_real_t t57 = t30 * (t55 - t8) + t56 * (PUMA560_C(-2.0) * t28);
+    const puma560_real_t t58 = t30 * t57;
+    const puma560_real_t t59 = t30 * t36 - t28 * t32;
+    const puma560_real_t t60 = PUMA560_C(0.0406) * t59;
+    const puma560_real_t t61 = PUMA560_C(0.8636) * t46;
+    const puma560_real_t t62 = parameters[ZZ3R] + (t55 - t58 + (t60 + t61));
+    const puma560_real_t t63 = t62 + PUMA560_C(2884.36665969) * parameters[IA3] - t44 * t54 + t49 * t53;
+    const puma560_real_t t64 = t63 + t50 * t52;
+    if (!(t64 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t255 = PUMA560_C(-1.0) / t254;
-    const puma560_real_t t256 = t248 * t255;
-    const puma560_real_t t257 = puma560_sign(dq[1]);
-    const puma560_real_t t258 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1]))
-        + PUMA560_C(-107.815) * (parameters[FC2] * t257);
-    const puma560_real_t t259 = parameters[XX2R] * t9 + parameters[XY2] * (t11 - t24) + (parameters[MY2] * t44
-        - parameters[MX2R] * t46);
-    const puma560_real_t t260 = PUMA560_C(24.79745) * input[1] + (t258 + (t259 + (t223
-        + PUMA560_C(0.4318) * t135)));
-    const puma560_real_t t261 = PUMA560_C(0.4318) * t157 - t224;
-    const puma560_real_t t262 = t261 * t162;
-    const puma560_real_t t263 = PUMA560_C(-0.4318) * t183 - t226 + t261 * t166;
-    const puma560_real_t t264 = t263 * t188;
-    const puma560_real_t t265 = PUMA560_C(0.4318) * t211 - t231 + t261 * t192 + t263 * t194;
-    const puma560_real_t t266 = t265 * t216;
-    const puma560_real_t t267 = t260 + t143 * t262 - t167 * t264 - t195 * t266;
-    const puma560_real_t t268 = PUMA560_C(-0.4318) * t243 - t252 - t261 * t225 + t263 * t228;
-    const puma560_real_t t269 = t268 + t265 * t233;
-    const puma560_real_t t270 = t269 * t255;
-    const puma560_real_t t271 = t267 - t234 * t270;
-    const puma560_real_t t272 = t2 * (t240 + (t244 - t230) - parameters[XZ2R]) + t3 * (t246
+    const puma560_real_t t66 = t65 * t37;
+    const puma560_real_t t68 = t65 * t42 + t67 * t43;
+    const puma560_real_t t69 = PUMA560_C(0.4318) * t68 - t44;
+    const puma560_real_t t70 = t67 * t35 - t65 * t47;
+    const puma560_real_t t71 = PUMA560_C(-0.4318) * t70 - t48 + t69 * t5;
+    const puma560_real_t t72 = PUMA560_C(0.4318) * t66 - t39 + t69 * t25 + t71 * t19;
+    const puma560_real_t t73 = parameters[MX3R] + t59;
+    const puma560_real_t t74 = parameters[MY3R] + t46;
+    const puma560_real_t t75 = t67 * t73 - t65 * t74;
+    const puma560_real_t t76 = PUMA560_C(-0.4318) * t75 - t62 - t69 * t54 + t71 * t53;
+    const puma560_real_t t77 = t76 + t72 * t52;
+    const puma560_real_t t78 = PUMA560_C(-1.0) / t64;
+    const puma560_real_t t79 = t77 * t78;
+    const puma560_real_t t80 = t72 * t51;
+    const puma560_real_t t81 = t71 * t18;
+    const puma560_real_t t82 = t69 * t4;
+    const puma560_real_t t83 = PUMA560_C(0.8636) * t75;
+    const puma560_real_t t84 = parameters[ZZ2R] + (t62 + t83) - t69 * t82 + t71 * t81;
+    const puma560_real_t t85 = t84 + t72 * t80 + t77 * t79;
+    if (!(t85 > PUMA560_C(1.0e-9))) {
+        puma560_zero(out, 6);
+        return PUMA560_STATUS_PIVOT;
+    }
+    const puma560_real_t t86 = t24 + t60;
+    const puma560_real_t t87 = parameters[XX3R] + (t8 + t58 + t61);
+    const puma560_real_t t88 = t28 * t29 - t30 * t27;
+    const puma560_real_t t89 = PUMA560_C(-0.4318) * t59;
+    const puma560_real_t t90 = parameters[XY3R] + (t88 + (t89 + PUMA560_C(-0.0203) * t46));
+    const puma560_real_t t91 = t67 * (t86 - t87) + t90 * (PUMA560_C(2.0) * t65);
+    const puma560_real_t t92 = t67 * t91;
+    const puma560_real_t t93 = PUMA560_C(-0.2508) * t37;
+    const puma560_real_t t94 = parameters[XX2R] + (t86 - t92 + t93);
+    const puma560_real_t t96 = t67 * t74 + t65 * t73;
+    const puma560_real_t t98 = (parameters[XY2] + (t90 - t65 * t91
+        + PUMA560_C(-0.4318) * t96)) * (PUMA560_C(2.0) * t97);
+    const puma560_real_t t99 = t95 * (t87 + t92 + (t83 + t93) - t94) + t98;
+    const puma560_real_t t100 = t28 * t41 - t30 * t33;
+    const puma560_real_t t101 = PUMA560_C(0.4318) * t100;
+    const puma560_real_t t102 = t30 * t40 + t28 * t3 - t101;
+    const puma560_real_t t103 = t16 + PUMA560_C(0.0203) * t100;
+    const puma560_real_t t104 = t65 * t102 + t67 * t103 + (t101 + PUMA560_C(0.1254) * (t67 * t42
+        - t65 * t43));
+    const puma560_real_t t105 = t97 * (t67 * t102 - t65 * t103 + PUMA560_C(-0.1254) * t68);
+    const puma560_real_t t106 = t105 + t95 * t104;
+    const puma560_real_t t107 = t106 * t4;
+    const puma560_real_t t108 = t28 * t46;
+    const puma560_real_t t109 = PUMA560_C(0.4318) * t108;
+    const puma560_real_t t110 = t30 * t45 - t28 * t8 - t109;
+    const puma560_real_t t111 = t14 - PUMA560_C(0.0203) * t108;
+    const puma560_real_t t112 = t97 * (t67 * t110 + t65 * t111 + PUMA560_C(0.1254) * t70);
+    const puma560_real_t t113 = t65 * t110 - t67 * t111 + (t109 + PUMA560_C(0.1254) * (t67 * t47
+        + t65 * t35));
+    const puma560_real_t t114 = t112 + t95 * t113 + t106 * t5;
+    const puma560_real_t t115 = t114 * t18;
+    const puma560_real_t t116 = parameters[ZZ1R] + (t94 + t95 * t99) - t106 * t107 + t114 * t115;
+    const puma560_real_t t117 = t88 + t89;
+    const puma560_real_t t118 = t24 - PUMA560_C(-0.0203) * t59;
+    const puma560_real_t t119 = t97 * (t65 * t118 - t67 * t117 + PUMA560_C(-0.1254) * t66);
+    const puma560_real_t t120 = t89 + PUMA560_C(0.1254) * (t67 * t37) - (t65 * t117 + t67 * t118);
+    const puma560_real_t t121 = t119 + t95 * t120 + t106 * t25 + t114 * t19;
+    const puma560_real_t t122 = t121 * t51;
+    const puma560_real_t t123 = t56 + t28 * t57 + PUMA560_C(-0.0203) * t37 - parameters[XZ3];
+    const puma560_real_t t124 = parameters[YZ3] + t39;
+    const puma560_real_t t125 = t67 * t123 + t65 * t124;
+    const puma560_real_t t126 = PUMA560_C(0.1254) * t75;
+    const puma560_real_t t127 = t65 * t123 - t67 * t124 + PUMA560_C(0.1254) * t96;
+    const puma560_real_t t128 = t97 * (t125 + t126) + t95 * t127 - t106 * t54;
+    const puma560_real_t t129 = t128 + t114 * t53 + t121 * t52;
+    const puma560_real_t t130 = t129 * t78;
+    const puma560_real_t t131 = t97 * (t125 + (t126 - t38) - parameters[XZ2R]) + t95 * (t127
         - parameters[YZ2]);
-    const puma560_real_t t273 = t272 + t160 * t262 - t186 * t264 - t214 * t266;
-    const puma560_real_t t274 = t273 - t248 * t270;
-    const puma560_real_t t275 = PUMA560_C(0.8636) * t243;
-    const puma560_real_t t276 = parameters[ZZ2R] + (t252 + t275) - t261 * t262 + t263 * t264;
-    const puma560_real_t t277 = t276 + t265 * t266 + t269 * t270;
-    if (!(t277 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t132 = t131 + t106 * t82 - t114 * t81 - t121 * t80;
+    const puma560_real_t t133 = t132 - t129 * t79;
+    const puma560_real_t t134 = PUMA560_C(1.0) / t85;
+    const puma560_real_t t135 = t133 * t134;
+    const puma560_real_t t136 = t116 + t121 * t122 + t129 * t130 - t133 * t135;
+    if (!(t136 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t278 = PUMA560_C(1.0) / t277;
-    const puma560_real_t t279 = t274 * t278;
-    const puma560_real_t t280 = t208 + t250;
-    const puma560_real_t t281 = parameters[XX3R] + (t173 + t249 + t251);
-    const puma560_real_t t282 = parameters[XY3R] + (t201 + (t205 + PUMA560_C(-0.0203) * t175));
-    const puma560_real_t t283 = t12 * (t280 - t281) + t282 * (PUMA560_C(2.0) * t13);
-    const puma560_real_t t284 = t12 * t283;
-    const puma560_real_t t285 = PUMA560_C(-0.2508) * t210;
-    const puma560_real_t t286 = parameters[XX2R] + (t280 - t284 + t285);
-    const puma560_real_t t287 = (parameters[XY2] + (t282 - t13 * t283
-        + PUMA560_C(-0.4318) * t245)) * (PUMA560_C(2.0) * t2);
-    const puma560_real_t t288 = t3 * (t281 + t284 + (t275 + t285) - t286) + t287;
-    const puma560_real_t t289 = parameters[ZZ1R] + (t286 + t3 * t288) - t160 * t163 + t186 * t189;
-    const puma560_real_t t290 = t289 + t214 * t217 + t248 * t256 - t274 * t279;
-    if (!(t290 > PUMA560_C(1.0e-9))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t291 = PUMA560_C(-1.0) / t290;
-    const puma560_real_t t292 = (t271 * t279 - (t218 + t234 * t256)) * t291;
+    const puma560_real_t t137 = t97 * dq[0];
+    const puma560_real_t t138 = t95 * dq[0];
+    const puma560_real_t t139 = t67 * t137 + t65 * t138;
+    const puma560_real_t t140 = t65 * t137 - t67 * t138;
+    const puma560_real_t t141 = t139 * t140;
+    const puma560_real_t t142 = dq[1] + dq[2];
+    const puma560_real_t t143 = t140 * t142;
+    const puma560_real_t t144 = PUMA560_C(-2.0) * t143;
+    const puma560_real_t t145 = t28 * t144 - t30 * t141;
+    const puma560_real_t t146 = t30 * t139 + t28 * t142;
+    const puma560_real_t t147 = dq[3] + t140;
+    const puma560_real_t t148 = t146 * t147;
+    const puma560_real_t t149 = t145 + t148;
+    const puma560_real_t t150 = t13 * t146 - t11 * t147;
+    const puma560_real_t t151 = t11 * t146 + t13 * t147;
+    const puma560_real_t t152 = t150 * t151;
+    const puma560_real_t t153 = t149 - t152;
+    const puma560_real_t t154 = t28 * t141 + t30 * t144;
+    const puma560_real_t t155 = t28 * t139 - t30 * t142;
+    const puma560_real_t t156 = t155 * t147;
+    const puma560_real_t t157 = t154 - t156;
+    const puma560_real_t t158 = t157 - t156;
+    const puma560_real_t t159 = t146 * t155;
+    const puma560_real_t t160 = t139 * t142;
+    const puma560_real_t t161 = t160 + t159;
+    const puma560_real_t t162 = t13 * t158 - t11 * t161;
+    const puma560_real_t t163 = t155 - dq[4];
+    const puma560_real_t t164 = t151 * t163;
+    const puma560_real_t t165 = t162 + t164;
+    const puma560_real_t t166 = t164 + t165;
+    const puma560_real_t t167 = t1 * t153 - t2 * t166;
+    const puma560_real_t t168 = t1 * t150 + t2 * t163;
+    const puma560_real_t t169 = dq[5] + t151;
+    const puma560_real_t t170 = t168 * t169;
+    const puma560_real_t t171 = t167 + t170;
+    const puma560_real_t t172 = t2 * t153 + t1 * t166;
+    const puma560_real_t t173 = t1 * t163 - t2 * t150;
+    const puma560_real_t t174 = t173 * t169;
+    const puma560_real_t t175 = t172 - t174 - t174;
+    const puma560_real_t t176 = t13 * t161 + t11 * t158;
+    const puma560_real_t t177 = t150 * t163;
+    const puma560_real_t t178 = t176 - t177;
+    const puma560_real_t t179 = t173 * t168;
+    const puma560_real_t t180 = t178 + t179;
+    const puma560_real_t t181 = parameters[XX6R] * t171 + parameters[ZZ6] * t170 + parameters[XY6] * t175
+        + parameters[XZ6] * t180;
+    const puma560_real_t t182 = t168 * t168;
+    const puma560_real_t t183 = t169 * t169;
+    const puma560_real_t t184 = t140 * t140;
+    const puma560_real_t t185 = t142 * t142;
+    const puma560_real_t t186 = t184 + t185;
+    const puma560_real_t t187 = t138 * t138;
+    const puma560_real_t t188 = dq[1] * dq[1];
+    const puma560_real_t t189 = PUMA560_C(-9.81) * t97;
+    const puma560_real_t t190 = PUMA560_C(0.4318) * (t188 + t187) - t189;
+    const puma560_real_t t191 = t137 * t138;
+    const puma560_real_t t192 = PUMA560_C(-9.81) * t95;
+    const puma560_real_t t193 = t192 + PUMA560_C(0.4318) * t191;
+    const puma560_real_t t194 = t65 * t193 - t67 * t190;
+    const puma560_real_t t195 = t194 + (PUMA560_C(-0.0203) * t186 + PUMA560_C(-0.4318) * t141);
+    const puma560_real_t t196 = t137 * t137;
+    const puma560_real_t t197 = dq[1] * t137;
+    const puma560_real_t t198 = PUMA560_C(-0.8636) * t197 + PUMA560_C(-0.1254) * (t196 + t187);
+    const puma560_real_t t199 = PUMA560_C(0.0406) * t160 - PUMA560_C(0.8636) * t143 - t198;
+    const puma560_real_t t200 = t30 * t195 + t28 * t199;
+    const puma560_real_t t201 = t139 * t139;
+    const puma560_real_t t202 = t201 + t185;
+    const puma560_real_t t203 = t65 * t190 + t67 * t193;
+    const puma560_real_t t204 = t203 + (PUMA560_C(-0.0203) * t141 + PUMA560_C(-0.4318) * t202);
+    const puma560_real_t t205 = t11 * t200 - t13 * t204;
+    const puma560_real_t t206 = t181 + parameters[YZ6] * (t182 - t183) - parameters[MY6] * t205;
+    const puma560_real_t t207 = t170 + t171;
+    const puma560_real_t t208 = t178 - t179;
+    const puma560_real_t t209 = parameters[XY6] * t207 - t174 * (parameters[ZZ6] - parameters[XX6R])
+        + parameters[YZ6] * t208;
+    const puma560_real_t t210 = t173 * t173;
+    const puma560_real_t t211 = t209 + parameters[XZ6] * (t183 - t210) + parameters[MX6] * t205;
+    const puma560_real_t t212 = t178 - t177;
+    const puma560_real_t t213 = t149 + t152;
+    const puma560_real_t t214 = parameters[XY5] * t212 - (parameters[XX5R] * t165 + parameters[ZZ5R] * t164)
+        - parameters[XZ5] * t213;
+    const puma560_real_t t215 = t151 * t151;
+    const puma560_real_t t216 = t163 * t163;
+    const puma560_real_t t217 = t28 * t195 - t30 * t199;
+    const puma560_real_t t218 = t214 + parameters[YZ5] * (t215 - t216) + parameters[MY5R] * t217 - (t1 * t211
+        - t2 * t206);
+    const puma560_real_t t219 = t13 * t200 + t11 * t204;
+    const puma560_real_t t220 = parameters[MX6] * (t1 * t219 + t2 * t217) + parameters[MY6] * (t2 * t219
+        - t1 * t217);
+    const puma560_real_t t221 = parameters[XX6R] * t179 - parameters[ZZ6] * t178 - parameters[YZ6] * t172
+        - parameters[XZ6] * t167;
+    const puma560_real_t t222 = t221 + parameters[XY6] * (t182 - t210) + t220;
+    const puma560_real_t t223 = parameters[XY5] * t166 - t177 * (parameters[XX5R] - parameters[ZZ5R])
+        + parameters[YZ5] * t153;
+    const puma560_real_t t224 = t150 * t150;
+    const puma560_real_t t225 = t223 + parameters[XZ5] * (t224 - t216) + parameters[MX5] * t217 + t222;
+    const puma560_real_t t226 = t148 + t149;
+    const puma560_real_t t227 = t160 - t159;
+    const puma560_real_t t228 = parameters[ZZ4R] * t156 - parameters[XX4R] * t157 + parameters[XY4] * t226
+        + parameters[XZ4] * t227;
+    const puma560_real_t t229 = t155 * t155;
+    const puma560_real_t t230 = t147 * t147;
+    const puma560_real_t t231 = t228 + parameters[YZ4] * (t229 - t230) + parameters[MY4R] * t204 + (t13 * t218
+        + t11 * t225);
+    const puma560_real_t t232 = parameters[ZZ5R] * t149 - parameters[XX5R] * t152 - parameters[YZ5] * t176
+        + parameters[XZ5] * t162;
+    const puma560_real_t t233 = t232 + parameters[XY5] * (t215 - t224) + (parameters[MX5] * t205
+        + parameters[MY5R] * t219);
+    const puma560_real_t t234 = t233 + (t1 * t206 + t2 * t211);
+    const puma560_real_t t235 = t148 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t158
+        - parameters[YZ4] * t161;
+    const puma560_real_t t236 = t146 * t146;
+    const puma560_real_t t237 = t235 + parameters[XZ4] * (t236 - t230) + parameters[MX4] * t204 - t234;
+    const puma560_real_t t238 = parameters[MX6] * (t182 + t183) + parameters[MY6] * t208;
+    const puma560_real_t t239 = parameters[MX6] * t180 - parameters[MY6] * (t210 + t183);
+    const puma560_real_t t240 = parameters[MX5] * (t215 + t216) - parameters[MY5R] * t153 + (t2 * t238
+        + t1 * t239);
+    const puma560_real_t t241 = parameters[MX5] * t213 + parameters[MY5R] * (t224 + t216)
+        + (parameters[MX6] * t175 - parameters[MY6] * t207);
+    const puma560_real_t t242 = t11 * t241 - t13 * t240 - (parameters[MX4] * (t229 + t230)
+        + parameters[MY4R] * t161);
+    const puma560_real_t t243 = parameters[MX5] * t212 + parameters[MY5R] * t166 - (t1 * t238 - t2 * t239);
+    const puma560_real_t t244 = parameters[MX4] * t227 - parameters[MY4R] * (t236 + t230) + t243;
+    const puma560_real_t t245 = t28 * t242 + t30 * t244;
+    const puma560_real_t t246 = PUMA560_C(2.0) * t160;
+    const puma560_real_t t247 = parameters[XX3R] * t143 + parameters[ZZ3R] * t143 + parameters[XY3R] * t246
+        - parameters[XZ3] * t141;
+    const puma560_real_t t248 = t247 + parameters[YZ3] * (t184 - t185) + parameters[MY3R] * t198 + (t30 * t231
+        + t28 * t237 + PUMA560_C(-0.4318) * t245);
+    const puma560_real_t t249 = parameters[XZ4] * t154 - (parameters[ZZ4R] * t160 + parameters[XX4R] * t159
+        + parameters[YZ4] * t145);
+    const puma560_real_t t250 = t249 + parameters[XY4] * (t229 - t236) + (parameters[MX4] * t217
+        + parameters[MY4R] * t200);
+    const puma560_real_t t251 = t250 + (t13 * t225 - t11 * t218);
+    const puma560_real_t t252 = t160 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t144
+        - parameters[YZ3] * t141;
+    const puma560_real_t t253 = t252 + parameters[XZ3] * (t201 - t185) + parameters[MX3R] * t198 + (t251
+        + PUMA560_C(-0.0203) * t245);
+    const puma560_real_t t254 = t30 * t242 - t28 * t244;
+    const puma560_real_t t255 = parameters[MX3R] * t186 + parameters[MY3R] * t141 - t254;
+    const puma560_real_t t256 = parameters[MX4] * t226 + parameters[MY4R] * t158 + (t11 * t240 + t13 * t241);
+    const puma560_real_t t257 = parameters[MX3R] * t141 + parameters[MY3R] * t202 + t256;
+    const puma560_real_t t258 = t65 * t255 + t67 * t257;
+    const puma560_real_t t259 = dq[1] * t138;
+    const puma560_real_t t260 = parameters[XY2] * (PUMA560_C(2.0) * t197) - (parameters[XX2R] * t259
+        + parameters[ZZ2R] * t259);
+    const puma560_real_t t261 = t260 + parameters[XZ2R] * t191 + parameters[YZ2] * (t187 - t188) + (t67 * t248
+        + t65 * t253 + PUMA560_C(0.1254) * t258);
+    const puma560_real_t t262 = PUMA560_C(0.1254) * (t65 * t257 - t67 * t255)
+        + PUMA560_C(0.4318) * (parameters[MX3R] * t246 + parameters[MY3R] * t144 + t245);
+    const puma560_real_t t263 = t197 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (PUMA560_C(-2.0) * t259) - parameters[YZ2] * t191;
+    const puma560_real_t t264 = t263 + parameters[XZ2R] * (t188 - t196) + (t65 * t248 - t67 * t253 + t262);
+    const puma560_real_t t265 = puma560_sign(dq[0]);
+    const puma560_real_t t266 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0]))
+        + PUMA560_C(-62.6111) * (parameters[FC1] * t265);
+    const puma560_real_t t267 = PUMA560_C(-14.400553) * input[0] + (t266 + (t97 * t261 + t95 * t264));
+    const puma560_real_t t268 = puma560_sign(dq[5]);
+    const puma560_real_t t269 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5]))
+        + PUMA560_C(-76.686) * (parameters[FC6] * t268);
+    const puma560_real_t t270 = PUMA560_C(5.368020000000001) * input[5] + (t269 + t222);
+    const puma560_real_t t271 = puma560_sign(dq[4]);
+    const puma560_real_t t272 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4]))
+        + PUMA560_C(-71.923) * (parameters[FC5] * t271);
+    const puma560_real_t t273 = PUMA560_C(5.034610000000001) * input[4] + (t272 + t234) + t270 * t5;
+    const puma560_real_t t274 = puma560_sign(dq[3]);
+    const puma560_real_t t275 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3]))
+        + PUMA560_C(-76.0364) * (parameters[FC4] * t274);
+    const puma560_real_t t276 = PUMA560_C(5.322548) * input[3] + (t275 + t251) + t270 * t25 + t273 * t19;
+    const puma560_real_t t277 = t267 - t270 * t107 + t273 * t115 + t276 * t122;
+    const puma560_real_t t278 = t28 * t231 - t30 * t237 + (PUMA560_C(0.0203) * t256
+        + PUMA560_C(0.4318) * t254);
+    const puma560_real_t t279 = parameters[XY3R] * (t184 - t201) - parameters[XX3R] * t141
+        + (parameters[MY3R] * t194 - parameters[MX3R] * t203);
+    const puma560_real_t t280 = t279 + t278;
+    const puma560_real_t t281 = puma560_sign(dq[2]);
+    const puma560_real_t t282 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2]))
+        + PUMA560_C(-53.7063) * (parameters[FC3] * t281);
+    const puma560_real_t t283 = PUMA560_C(-12.352449) * input[2] + (t282 + t280) - t270 * t54 + t273 * t53;
+    const puma560_real_t t284 = t283 + t276 * t52;
+    const puma560_real_t t285 = parameters[XX2R] * t191 + parameters[XY2] * (t187 - t196)
+        + (parameters[MY2] * t189 - parameters[MX2R] * t192);
+    const puma560_real_t t286 = puma560_sign(dq[1]);
+    const puma560_real_t t287 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1]))
+        + PUMA560_C(-107.815) * (parameters[FC2] * t286);
+    const puma560_real_t t288 = PUMA560_C(24.79745) * input[1] + (t287 + (t285 + (t280
+        + PUMA560_C(0.4318) * t258)));
+    const puma560_real_t t289 = t288 + t270 * t82 - t273 * t81 - t276 * t80;
+    const puma560_real_t t290 = t289 - t284 * t79;
+    const puma560_real_t t291 = PUMA560_C(-1.0) / t136;
+    const puma560_real_t t292 = (t290 * t135 - (t277 + t284 * t130)) * t291;
     out[0] = t292;
     if (!(t292 >= PUMA560_C(-1.0e15) && t292 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t293 = t271 * t278 - t279 * t292;
+    const puma560_real_t t293 = t290 * t134 - t135 * t292;
     out[1] = t293;
     if (!(t293 >= PUMA560_C(-1.0e15) && t293 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t294 = t256 * t292 - t234 * t255 - t270 * t293;
+    const puma560_real_t t294 = t130 * t292 - t284 * t78 - t79 * t293;
     out[2] = t294;
     if (!(t294 >= PUMA560_C(-1.0e15) && t294 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t295 = t233 * t294 - (t195 * t216 - t217 * t292 + t266 * t293);
+    const puma560_real_t t295 = t52 * t294 - (t276 * t51 - t122 * t292 + t80 * t293);
     out[3] = t295;
     if (!(t295 >= PUMA560_C(-1.0e15) && t295 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t296 = t167 * t188 - t189 * t292 + t264 * t293 - t228 * t294;
-    const puma560_real_t t297 = t194 * t295 - t296;
+    const puma560_real_t t296 = t273 * t18 - t115 * t292 + t81 * t293 - t53 * t294;
+    const puma560_real_t t297 = t19 * t295 - t296;
     out[4] = t297;
     if (!(t297 >= PUMA560_C(-1.0e15) && t297 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t298 = t143 * t162 - t163 * t292 + t262 * t293 - t225 * t294;
-    out[5] = t298 + t192 * t295 + t166 * t297;
+    const puma560_real_t t298 = t270 * t4 - t107 * t292 + t82 * t293 - t54 * t294;
+    out[5] = t298 + t25 * t295 + t5 * t297;
     if (!(out[5] >= PUMA560_C(-1.0e15) && out[5] <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;

@@ -106,7 +106,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -134,439 +134,443 @@ int puma560_forward_dynamics_standard(
         return status;
     }
 
-    puma560_real_t t2, t3;
-    PUMA560_SINCOS(q[1], &t2, &t3);
-    puma560_real_t t16, t14;
-    PUMA560_SINCOS(q[2], &t16, &t14);
-    puma560_real_t t34, t33;
-    PUMA560_SINCOS(q[3], &t34, &t33);
-    puma560_real_t t61, t60;
-    PUMA560_SINCOS(q[4], &t61, &t60);
-    puma560_real_t t83, t82;
-    PUMA560_SINCOS(q[5], &t83, &t82);
-    const puma560_real_t t0 = puma560_sign(dq[0]);
-    const puma560_real_t t1 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1])
-        + PUMA560_C(-62.6111) * (t0 * parameters[FC1]);
-    const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t5 = dq[1] * t4;
-    const puma560_real_t t6 = t2 * dq[0];
-    const puma560_real_t t7 = dq[1] * t6;
-    const puma560_real_t t8 = t5 * (parameters[YY2] - parameters[ZZ2]) - t5 * parameters[XX2]
-        + PUMA560_C(2.0) * t7 * parameters[XY2];
-    const puma560_real_t t9 = t6 * t4;
-    const puma560_real_t t10 = t4 * t4;
-    const puma560_real_t t11 = dq[1] * dq[1];
-    const puma560_real_t t12 = PUMA560_C(9.81) * t3;
-    const puma560_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2]
-        + t12 * parameters[MZ2];
-    const puma560_real_t t15 = dq[1] + dq[2];
-    const puma560_real_t t17 = t16 * t6 - t14 * t4;
-    const puma560_real_t t18 = t15 * t17;
-    const puma560_real_t t19 = t14 * t6 + t16 * t4;
-    const puma560_real_t t20 = t15 * t19;
-    const puma560_real_t t21 = PUMA560_C(2.0) * t20;
-    const puma560_real_t t22 = parameters[XX3] * t18 + t18 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t21;
-    const puma560_real_t t23 = t19 * t17;
-    const puma560_real_t t24 = t15 * t15;
-    const puma560_real_t t25 = t17 * t17;
-    const puma560_real_t t26 = t6 * t6;
-    const puma560_real_t t27 = PUMA560_C(0.1254) * (t26 + t10) + PUMA560_C(0.8636) * t7;
-    const puma560_real_t t28 = PUMA560_C(-9.81) * t2;
-    const puma560_real_t t29 = t28 + PUMA560_C(-0.4318) * (t10 + t11);
-    const puma560_real_t t30 = t12 - PUMA560_C(0.4318) * t9;
-    const puma560_real_t t31 = t16 * t29 + t14 * t30;
-    const puma560_real_t t32 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t25 - t24)
-        + (parameters[MZ3] * t31 - parameters[MY3] * t27);
-    const puma560_real_t t35 = PUMA560_C(-2.0) * t18;
-    const puma560_real_t t36 = t34 * t23 + t33 * t35;
-    const puma560_real_t t37 = t33 * t15 - t34 * t19;
-    const puma560_real_t t38 = dq[3] + t17;
-    const puma560_real_t t39 = t37 * t38;
-    const puma560_real_t t40 = t36 + t39;
-    const puma560_real_t t41 = t34 * t15 + t33 * t19;
-    const puma560_real_t t42 = t41 * t38;
-    const puma560_real_t t43 = t34 * t35 - t33 * t23;
-    const puma560_real_t t44 = t43 + t42;
-    const puma560_real_t t45 = t42 + t44;
-    const puma560_real_t t46 = t39 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t40
-        + parameters[XY4] * t45;
-    const puma560_real_t t47 = t41 * t37;
-    const puma560_real_t t48 = t20 + t47;
-    const puma560_real_t t49 = t37 * t37;
-    const puma560_real_t t50 = t38 * t38;
-    const puma560_real_t t51 = t19 * t19;
-    const puma560_real_t t52 = t24 + t51;
-    const puma560_real_t t53 = t31 + (PUMA560_C(0.0203) * t23 + PUMA560_C(0.4318) * t52);
-    const puma560_real_t t54 = t14 * t29 - t16 * t30;
-    const puma560_real_t t55 = t24 + t25;
-    const puma560_real_t t56 = t54 + (PUMA560_C(-0.0203) * t55 + PUMA560_C(-0.4318) * t23);
-    const puma560_real_t t57 = t27 + (PUMA560_C(0.0406) * t20 - PUMA560_C(0.8636) * t18);
-    const puma560_real_t t58 = t34 * t56 - t33 * t57;
-    const puma560_real_t t59 = t46 + parameters[XZ4] * t48 + parameters[YZ4] * (t49 - t50)
-        + (parameters[MZ4] * t58 - parameters[MY4] * t53);
-    const puma560_real_t t62 = t47 - t20;
-    const puma560_real_t t63 = t39 + t40;
-    const puma560_real_t t64 = t61 * t62 + t60 * t63;
-    const puma560_real_t t65 = t61 * t41 + t60 * t38;
-    const puma560_real_t t66 = dq[4] + t37;
-    const puma560_real_t t67 = t65 * t66;
-    const puma560_real_t t68 = t64 - t67;
-    const puma560_real_t t69 = t60 * t41 - t61 * t38;
-    const puma560_real_t t70 = t69 * t66;
-    const puma560_real_t t71 = t61 * t63 - t60 * t62;
-    const puma560_real_t t72 = t71 + t70;
-    const puma560_real_t t73 = t70 + t72;
-    const puma560_real_t t74 = parameters[XY5] * t73 - (parameters[XX5] * t68 + t67 * (parameters[YY5]
-        - parameters[ZZ5]));
-    const puma560_real_t t75 = t69 * t65;
-    const puma560_real_t t76 = t44 + t75;
-    const puma560_real_t t77 = t65 * t65;
-    const puma560_real_t t78 = t66 * t66;
-    const puma560_real_t t79 = t33 * t56 + t34 * t57;
-    const puma560_real_t t80 = t61 * t79 + t60 * t53;
-    const puma560_real_t t81 = t74 - parameters[XZ5] * t76 + parameters[YZ5] * (t77 - t78)
-        + (parameters[MY5] * t58 + parameters[MZ5] * t80);
-    const puma560_real_t t84 = t44 - t75;
-    const puma560_real_t t85 = t68 - t67;
-    const puma560_real_t t86 = t83 * t84 - t82 * t85;
-    const puma560_real_t t87 = t83 * t69 - t82 * t66;
-    const puma560_real_t t88 = dq[5] + t65;
-    const puma560_real_t t89 = t87 * t88;
-    const puma560_real_t t90 = t86 + t89;
-    const puma560_real_t t91 = t82 * t69 + t83 * t66;
-    const puma560_real_t t92 = t91 * t88;
-    const puma560_real_t t93 = t82 * t84 + t83 * t85;
-    const puma560_real_t t94 = t93 + t92;
-    const puma560_real_t t95 = t92 + t94;
-    const puma560_real_t t96 = parameters[XX6] * t90 + t89 * (parameters[ZZ6] - parameters[YY6])
-        + parameters[XY6] * t95;
-    const puma560_real_t t97 = t91 * t87;
-    const puma560_real_t t98 = t72 - t97;
-    const puma560_real_t t99 = t87 * t87;
-    const puma560_real_t t100 = t88 * t88;
-    const puma560_real_t t101 = t60 * t79 - t61 * t53;
-    const puma560_real_t t102 = t83 * t101 + t82 * t58;
-    const puma560_real_t t103 = t96 + parameters[XZ6] * t98 + parameters[YZ6] * (t99 - t100)
-        + (parameters[MZ6] * t102 - parameters[MY6] * t80);
-    const puma560_real_t t104 = t89 + t90;
-    const puma560_real_t t105 = parameters[YY6] * t94 + t92 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t104;
-    const puma560_real_t t106 = t72 + t97;
-    const puma560_real_t t107 = t91 * t91;
-    const puma560_real_t t108 = t82 * t101 - t83 * t58;
-    const puma560_real_t t109 = t105 + parameters[YZ6] * t106 + parameters[XZ6] * (t100 - t107)
-        + (parameters[MZ6] * t108 + parameters[MX6] * t80);
-    const puma560_real_t t110 = t81 - (t83 * t109 - t82 * t103);
-    const puma560_real_t t111 = t70 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t72
-        + parameters[XY5] * t85;
-    const puma560_real_t t112 = t69 * t69;
-    const puma560_real_t t113 = t111 + parameters[YZ5] * t84 + parameters[XZ5] * (t112 - t78)
-        + (parameters[MX5] * t58 - parameters[MZ5] * t101);
-    const puma560_real_t t114 = parameters[YY6] - parameters[XX6];
-    const puma560_real_t t115 = t114 * t97 - parameters[ZZ6] * t72 - parameters[YZ6] * t93
-        - parameters[XZ6] * t86;
-    const puma560_real_t t116 = t115 + parameters[XY6] * (t99 - t107) + (parameters[MX6] * t102
-        + parameters[MY6] * t108);
-    const puma560_real_t t117 = t113 + t116;
-    const puma560_real_t t118 = t59 + (t60 * t110 + t61 * t117);
-    const puma560_real_t t119 = t42 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t44
-        + parameters[XY4] * t63;
-    const puma560_real_t t120 = t41 * t41;
-    const puma560_real_t t121 = t119 + parameters[YZ4] * t62 + parameters[XZ4] * (t120 - t50)
-        - (parameters[MZ4] * t79 + parameters[MX4] * t53);
-    const puma560_real_t t122 = parameters[ZZ5] * t44 + t75 * (parameters[YY5] - parameters[XX5])
-        - parameters[YZ5] * t71;
-    const puma560_real_t t123 = t122 + parameters[XZ5] * t64 + parameters[XY5] * (t77 - t112)
-        + (parameters[MX5] * t80 + parameters[MY5] * t101);
-    const puma560_real_t t124 = t123 + (t83 * t103 + t82 * t109);
-    const puma560_real_t t125 = t121 - t124;
-    const puma560_real_t t126 = parameters[MY4] * t62 - parameters[MX4] * (t49 + t50) + parameters[MZ4] * t43;
-    const puma560_real_t t127 = parameters[MX5] * (t77 + t78) - parameters[MY5] * t84 - parameters[MZ5] * t71;
-    const puma560_real_t t128 = parameters[MX6] * (t99 + t100) + parameters[MY6] * t106
-        - parameters[MZ6] * t93;
-    const puma560_real_t t129 = t128 - parameters[M6] * t108;
-    const puma560_real_t t130 = parameters[MX6] * t98 - parameters[MY6] * (t107 + t100)
-        - parameters[MZ6] * t86;
-    const puma560_real_t t131 = t130 - parameters[M6] * t102;
-    const puma560_real_t t132 = t127 - parameters[M5] * t101 + (t82 * t129 + t83 * t131);
-    const puma560_real_t t133 = parameters[MX5] * t76 + parameters[MY5] * (t112 + t78)
-        - parameters[MZ5] * t64;
-    const puma560_real_t t134 = parameters[MX6] * t95 - parameters[MY6] * t104 + parameters[MZ6] * (t107
-        + t99);
-    const puma560_real_t t135 = parameters[M5] * t80 + t133 + (parameters[M6] * t80 + t134);
-    const puma560_real_t t136 = parameters[M4] * t79 + t126 + (t61 * t135 - t60 * t132);
-    const puma560_real_t t137 = parameters[MX4] * t48 - parameters[MY4] * (t120 + t50)
-        + parameters[MZ4] * t36;
-    const puma560_real_t t138 = parameters[MX5] * t73 + parameters[MY5] * t85 + parameters[MZ5] * (t112
-        + t77);
-    const puma560_real_t t139 = t138 - parameters[M5] * t58 - (t83 * t129 - t82 * t131);
-    const puma560_real_t t140 = t137 - parameters[M4] * t58 + t139;
-    const puma560_real_t t141 = t34 * t136 + t33 * t140;
-    const puma560_real_t t142 = t32 + (t33 * t118 + t34 * t125 + PUMA560_C(-0.4318) * t141);
-    const puma560_real_t t143 = parameters[YY3] * t20 - t20 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t35;
-    const puma560_real_t t144 = t143 + parameters[YZ3] * t23 + parameters[XZ3] * (t24 - t51)
-        + (parameters[MZ3] * t54 + parameters[MX3] * t27);
-    const puma560_real_t t145 = t47 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t20
-        - parameters[YZ4] * t43;
-    const puma560_real_t t146 = t145 + parameters[XZ4] * t36 + parameters[XY4] * (t49 - t120)
-        + (parameters[MX4] * t58 + parameters[MY4] * t79);
-    const puma560_real_t t147 = t146 + (t60 * t117 - t61 * t110);
-    const puma560_real_t t148 = t144 - (t147 + PUMA560_C(-0.0203) * t141);
-    const puma560_real_t t149 = t33 * t136 - t34 * t140;
-    const puma560_real_t t150 = parameters[MX3] * t55 + parameters[MY3] * t23 - parameters[M3] * t54 - t149;
-    const puma560_real_t t151 = parameters[MX4] * t45 + parameters[MY4] * t63 + parameters[MZ4] * (t120
-        + t49);
-    const puma560_real_t t152 = parameters[M4] * t53 + t151 + (t61 * t132 + t60 * t135);
-    const puma560_real_t t153 = parameters[M3] * t31 + (parameters[MX3] * t23 + parameters[MY3] * t52) + t152;
-    const puma560_real_t t154 = t16 * t150 + t14 * t153;
-    const puma560_real_t t155 = t13 + (t14 * t142 - t16 * t148 + PUMA560_C(0.1254) * t154);
-    const puma560_real_t t156 = t7 * parameters[YY2] + t7 * (parameters[ZZ2] - parameters[XX2])
-        + PUMA560_C(-2.0) * t5 * parameters[XY2];
-    const puma560_real_t t157 = t156 - t9 * parameters[YZ2] + (t11 - t26) * parameters[XZ2]
-        + t28 * parameters[MZ2];
-    const puma560_real_t t158 = parameters[MX3] * t21 + parameters[MY3] * t35 + parameters[MZ3] * (t51 + t25);
-    const puma560_real_t t159 = PUMA560_C(0.1254) * (t16 * t153 - t14 * t150)
-        + PUMA560_C(0.4318) * (parameters[M3] * t27 + t158 + t141);
-    const puma560_real_t t160 = t3 * (t157 + (t16 * t142 + t14 * t148 + t159));
-    const puma560_real_t t161 = puma560_sign(dq[5]);
-    const puma560_real_t t162 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6])
-        + PUMA560_C(-76.686) * (t161 * parameters[FC6]);
-    const puma560_real_t t163 = PUMA560_C(5.368020000000001) * input[5] + (t162 + t116);
-    const puma560_real_t t164 = t83 * parameters[YZ6] - t82 * parameters[XZ6];
-    const puma560_real_t t165 = t60 * t164 + t61 * parameters[ZZ6];
-    const puma560_real_t t166 = t83 * parameters[XZ6] + t82 * parameters[YZ6];
-    const puma560_real_t t167 = t82 * parameters[MY6] + t83 * parameters[MX6];
-    const puma560_real_t t168 = t60 * t167;
-    const puma560_real_t t169 = t82 * parameters[MX6] - t83 * parameters[MY6];
-    const puma560_real_t t170 = t34 * t168 - t33 * t169;
-    const puma560_real_t t171 = PUMA560_C(0.4318) * t170;
-    const puma560_real_t t172 = t33 * t165 + t34 * t166 - t171;
-    const puma560_real_t t173 = t61 * t164 - t60 * parameters[ZZ6];
-    const puma560_real_t t174 = t173 + PUMA560_C(0.0203) * t170;
-    const puma560_real_t t175 = t33 * t168 + t34 * t169;
-    const puma560_real_t t176 = t61 * t167;
-    const puma560_real_t t177 = t16 * t175 + t14 * t176;
-    const puma560_real_t t178 = t2 * (t14 * t172 - t16 * t174 + PUMA560_C(-0.1254) * t177);
-    const puma560_real_t t179 = t16 * t172 + t14 * t174 + (t171 + PUMA560_C(0.1254) * (t14 * t175
-        - t16 * t176));
-    const puma560_real_t t180 = t178 + t3 * t179;
-    const puma560_real_t t181 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
-    if (!(t181 > PUMA560_C(1.0e-9))) {
+    puma560_real_t t108, t105;
+    PUMA560_SINCOS(q[1], &t108, &t105);
+    puma560_real_t t72, t74;
+    PUMA560_SINCOS(q[2], &t72, &t74);
+    puma560_real_t t30, t32;
+    PUMA560_SINCOS(q[3], &t30, &t32);
+    puma560_real_t t12, t14;
+    PUMA560_SINCOS(q[4], &t12, &t14);
+    puma560_real_t t1, t2;
+    PUMA560_SINCOS(q[5], &t1, &t2);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    if (!(t0 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t182 = PUMA560_C(1.0) / t181;
-    const puma560_real_t t183 = t180 * t182;
-    const puma560_real_t t184 = PUMA560_C(-14.400553) * input[0] + (t1 + (t2 * t155 + t160)) - t163 * t183;
-    const puma560_real_t t185 = puma560_sign(dq[4]);
-    const puma560_real_t t186 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5])
-        + PUMA560_C(-71.923) * (t185 * parameters[FC5]);
-    const puma560_real_t t187 = t166 * t182;
-    const puma560_real_t t188 = PUMA560_C(5.034610000000001) * input[4] + (t186 + t124) + t163 * t187;
-    const puma560_real_t t189 = t82 * t114 + parameters[XY6] * (PUMA560_C(2.0) * t83);
-    const puma560_real_t t190 = parameters[XY6] - t83 * t189 - parameters[XZ5];
-    const puma560_real_t t191 = parameters[YZ5] - t166;
-    const puma560_real_t t192 = t60 * t190 + t61 * t191;
-    const puma560_real_t t193 = t82 * t189;
-    const puma560_real_t t194 = parameters[ZZ5] + (parameters[XX6] + t193);
-    const puma560_real_t t195 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t196 = parameters[MX5] + t169;
-    const puma560_real_t t197 = t60 * t195 + t61 * t196;
-    const puma560_real_t t198 = t34 * t197;
-    const puma560_real_t t199 = PUMA560_C(0.4318) * t198;
-    const puma560_real_t t200 = t33 * t192 - t34 * t194 - t199;
-    const puma560_real_t t201 = t60 * t191 - t61 * t190;
-    const puma560_real_t t202 = t201 - PUMA560_C(0.0203) * t198;
-    const puma560_real_t t203 = t33 * t197;
-    const puma560_real_t t204 = t60 * t196 - t61 * t195;
-    const puma560_real_t t205 = t14 * t204 - t16 * t203;
-    const puma560_real_t t206 = t2 * (t14 * t200 + t16 * t202 + PUMA560_C(0.1254) * t205);
-    const puma560_real_t t207 = t16 * t200 - t14 * t202 + (t199 + PUMA560_C(0.1254) * (t14 * t203
-        + t16 * t204));
-    const puma560_real_t t208 = t206 + t3 * t207 + t180 * t187;
-    const puma560_real_t t209 = t194 + PUMA560_C(5172.917929) * parameters[IA5] - t166 * t187;
-    if (!(t209 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
+    const puma560_real_t t4 = PUMA560_C(1.0) / t0;
+    const puma560_real_t t5 = t3 * t4;
+    const puma560_real_t t6 = parameters[YY6] - parameters[XX6];
+    const puma560_real_t t7 = t2 * t6 + parameters[XY6] * (PUMA560_C(2.0) * t1);
+    const puma560_real_t t8 = t2 * t7;
+    const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
+    const puma560_real_t t10 = t9 + PUMA560_C(5172.917929) * parameters[IA5] - t3 * t5;
+    if (!(t10 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t210 = PUMA560_C(-1.0) / t209;
-    const puma560_real_t t211 = t208 * t210;
-    const puma560_real_t t212 = puma560_sign(dq[3]);
-    const puma560_real_t t213 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4])
-        + PUMA560_C(-76.0364) * (t212 * parameters[FC4]);
-    const puma560_real_t t214 = t173 * t182;
-    const puma560_real_t t215 = t201 - t173 * t187;
-    const puma560_real_t t216 = t215 * t210;
-    const puma560_real_t t217 = PUMA560_C(5.322548) * input[3] + (t213 + t147) + t163 * t214 + t188 * t216;
-    const puma560_real_t t218 = t164 - parameters[XY5];
-    const puma560_real_t t219 = parameters[XX5] + (parameters[YY6] - t193);
-    const puma560_real_t t220 = parameters[YY5] + parameters[ZZ6];
-    const puma560_real_t t221 = t60 * (t220 - t219) - t218 * (PUMA560_C(2.0) * t61);
-    const puma560_real_t t222 = t218 + t61 * t221 - parameters[XZ4];
-    const puma560_real_t t223 = t201 - parameters[YZ4];
-    const puma560_real_t t224 = t34 * t223 - t33 * t222;
-    const puma560_real_t t225 = parameters[MZ5] - t167 - parameters[MY4];
-    const puma560_real_t t226 = parameters[MX4] + t204;
-    const puma560_real_t t227 = t34 * t225 + t33 * t226;
-    const puma560_real_t t228 = PUMA560_C(-0.4318) * t227;
-    const puma560_real_t t229 = t224 + t228;
-    const puma560_real_t t230 = t60 * t221;
-    const puma560_real_t t231 = parameters[ZZ4] + (t219 + t230);
-    const puma560_real_t t232 = t231 - PUMA560_C(-0.0203) * t227;
-    const puma560_real_t t233 = t33 * t225 - t34 * t226;
-    const puma560_real_t t234 = t16 * t233;
-    const puma560_real_t t235 = t2 * (t16 * t232 - t14 * t229 + PUMA560_C(0.1254) * t234);
-    const puma560_real_t t236 = t228 + PUMA560_C(-0.1254) * (t14 * t233) - (t16 * t229 + t14 * t232);
-    const puma560_real_t t237 = t235 + t3 * t236 + t180 * t214 + t208 * t216;
-    const puma560_real_t t238 = t231 + PUMA560_C(5781.53412496) * parameters[IA4] - t173 * t214 + t215 * t216;
-    if (!(t238 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t11 = parameters[XY6] - t1 * t7 - parameters[XZ5];
+    const puma560_real_t t13 = parameters[YZ5] - t3;
+    const puma560_real_t t15 = t14 * t13 - t12 * t11;
+    const puma560_real_t t16 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const puma560_real_t t17 = t12 * t16 - t14 * parameters[ZZ6];
+    const puma560_real_t t18 = t15 - t17 * t5;
+    const puma560_real_t t19 = PUMA560_C(-1.0) / t10;
+    const puma560_real_t t20 = t18 * t19;
+    const puma560_real_t t21 = parameters[XX5] + (parameters[YY6] - t8);
+    const puma560_real_t t22 = parameters[YY5] + parameters[ZZ6];
+    const puma560_real_t t23 = t16 - parameters[XY5];
+    const puma560_real_t t24 = t14 * (t22 - t21) - t23 * (PUMA560_C(2.0) * t12);
+    const puma560_real_t t25 = t14 * t24;
+    const puma560_real_t t26 = parameters[ZZ4] + (t21 + t25);
+    const puma560_real_t t27 = t17 * t4;
+    const puma560_real_t t28 = t26 + PUMA560_C(5781.53412496) * parameters[IA4] - t17 * t27 + t18 * t20;
+    if (!(t28 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t239 = PUMA560_C(-1.0) / t238;
-    const puma560_real_t t240 = t237 * t239;
-    const puma560_real_t t241 = puma560_sign(dq[2]);
-    const puma560_real_t t242 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3])
-        + PUMA560_C(-53.7063) * (t241 * parameters[FC3]);
-    const puma560_real_t t243 = t23 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t25 - t51)
-        + (parameters[MX3] * t31 + parameters[MY3] * t54);
-    const puma560_real_t t244 = t34 * t118 - t33 * t125 + (PUMA560_C(0.0203) * t152
-        + PUMA560_C(0.4318) * t149);
-    const puma560_real_t t245 = t243 + t244;
-    const puma560_real_t t246 = t34 * t165 - t33 * t166 + (PUMA560_C(-0.0203) * t176
-        + PUMA560_C(0.4318) * t175);
-    const puma560_real_t t247 = t246 * t182;
-    const puma560_real_t t248 = t34 * t192 + t33 * t194 + (PUMA560_C(0.0203) * t204
-        + PUMA560_C(0.4318) * t203);
-    const puma560_real_t t249 = t248 + t246 * t187;
-    const puma560_real_t t250 = t249 * t210;
-    const puma560_real_t t251 = PUMA560_C(-12.352449) * input[2] + (t242 + t245) - t163 * t247 + t188 * t250;
-    const puma560_real_t t252 = t34 * t222 + t33 * t223 + PUMA560_C(-0.4318) * t233;
-    const puma560_real_t t253 = t252 + t246 * t214 + t249 * t216;
-    const puma560_real_t t254 = t253 * t239;
-    const puma560_real_t t255 = t251 + t217 * t254;
-    const puma560_real_t t256 = parameters[XY4] + t192;
-    const puma560_real_t t257 = parameters[XX4] + (t220 - t230);
-    const puma560_real_t t258 = parameters[YY4] + t194;
-    const puma560_real_t t259 = t33 * (t257 - t258) + t256 * (PUMA560_C(-2.0) * t34);
-    const puma560_real_t t260 = t256 + t34 * t259 + PUMA560_C(0.0203) * t233 - parameters[XZ3];
-    const puma560_real_t t261 = parameters[YZ3] + t252;
-    const puma560_real_t t262 = t14 * t260 + t16 * t261;
-    const puma560_real_t t263 = parameters[MZ4] + t197;
-    const puma560_real_t t264 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const puma560_real_t t265 = PUMA560_C(0.4318) * t264;
-    const puma560_real_t t266 = parameters[MY3] + (t263 + t265);
-    const puma560_real_t t267 = PUMA560_C(0.0203) * t264;
-    const puma560_real_t t268 = t227 + t267;
-    const puma560_real_t t269 = parameters[MX3] + t268;
-    const puma560_real_t t270 = t14 * t269 - t16 * t266;
-    const puma560_real_t t271 = t14 * t266 + t16 * t269;
-    const puma560_real_t t272 = t16 * t260 - t14 * t261 + PUMA560_C(0.1254) * t271;
-    const puma560_real_t t273 = t2 * (t262 + PUMA560_C(0.1254) * t270) + t3 * t272 - t180 * t247;
-    const puma560_real_t t274 = t273 + t208 * t250 + t237 * t254;
-    const puma560_real_t t275 = t33 * t259;
-    const puma560_real_t t276 = PUMA560_C(0.0203) * (t267 + PUMA560_C(2.0) * t227);
-    const puma560_real_t t277 = PUMA560_C(0.4318) * (t265 + PUMA560_C(2.0) * t263);
-    const puma560_real_t t278 = parameters[ZZ3] + (t257 - t275 + (t276 + t277));
-    const puma560_real_t t279 = t278 + PUMA560_C(2884.36665969) * parameters[IA3] - t246 * t247 + t249 * t250;
-    const puma560_real_t t280 = t279 + t253 * t254;
-    if (!(t280 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t29 = t23 + t12 * t24 - parameters[XZ4];
+    const puma560_real_t t31 = t15 - parameters[YZ4];
+    const puma560_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t34 = parameters[MZ5] - t33 - parameters[MY4];
+    const puma560_real_t t35 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const puma560_real_t t36 = parameters[MX5] + t35;
+    const puma560_real_t t37 = parameters[MY5] + parameters[MZ6];
+    const puma560_real_t t38 = t14 * t36 - t12 * t37;
+    const puma560_real_t t39 = parameters[MX4] + t38;
+    const puma560_real_t t40 = t32 * t34 - t30 * t39;
+    const puma560_real_t t41 = t30 * t29 + t32 * t31 + PUMA560_C(-0.4318) * t40;
+    const puma560_real_t t42 = t14 * t16 + t12 * parameters[ZZ6];
+    const puma560_real_t t43 = t14 * t33;
+    const puma560_real_t t44 = t32 * t43 + t30 * t35;
+    const puma560_real_t t45 = t12 * t33;
+    const puma560_real_t t46 = t30 * t42 - t32 * t3 + (PUMA560_C(-0.0203) * t45 + PUMA560_C(0.4318) * t44);
+    const puma560_real_t t47 = t14 * t11 + t12 * t13;
+    const puma560_real_t t48 = t14 * t37 + t12 * t36;
+    const puma560_real_t t49 = t32 * t48;
+    const puma560_real_t t50 = t30 * t47 + t32 * t9 + (PUMA560_C(0.0203) * t38 + PUMA560_C(0.4318) * t49);
+    const puma560_real_t t51 = t50 + t46 * t5;
+    const puma560_real_t t52 = t41 + t46 * t27 + t51 * t20;
+    const puma560_real_t t53 = PUMA560_C(-1.0) / t28;
+    const puma560_real_t t54 = t52 * t53;
+    const puma560_real_t t55 = t51 * t19;
+    const puma560_real_t t56 = t46 * t4;
+    const puma560_real_t t57 = parameters[XX4] + (t22 - t25);
+    const puma560_real_t t58 = parameters[YY4] + t9;
+    const puma560_real_t t59 = parameters[XY4] + t47;
+    const puma560_real_t t60 = t32 * (t57 - t58) + t59 * (PUMA560_C(-2.0) * t30);
+    const puma560_real_t t61 = t32 * t60;
+    const puma560_real_t t62 = t30 * t34 + t32 * t39;
+    const puma560_real_t t63 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const puma560_real_t t64 = PUMA560_C(0.0203) * t63;
+    const puma560_real_t t65 = PUMA560_C(0.0203) * (t64 + PUMA560_C(2.0) * t62);
+    const puma560_real_t t66 = parameters[MZ4] + t48;
+    const puma560_real_t t67 = PUMA560_C(0.4318) * t63;
+    const puma560_real_t t68 = PUMA560_C(0.4318) * (t67 + PUMA560_C(2.0) * t66);
+    const puma560_real_t t69 = parameters[ZZ3] + (t57 - t61 + (t65 + t68));
+    const puma560_real_t t70 = t69 + PUMA560_C(2884.36665969) * parameters[IA3] - t46 * t56 + t51 * t55;
+    const puma560_real_t t71 = t70 + t52 * t54;
+    if (!(t71 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t281 = PUMA560_C(-1.0) / t280;
-    const puma560_real_t t282 = t274 * t281;
-    const puma560_real_t t283 = t184 + t188 * t211 + t217 * t240 + t255 * t282;
-    const puma560_real_t t284 = puma560_sign(dq[1]);
-    const puma560_real_t t285 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2])
-        + PUMA560_C(-107.815) * (t284 * parameters[FC2]);
-    const puma560_real_t t286 = t9 * (parameters[XX2] - parameters[YY2]) + (t10 - t26) * parameters[XY2]
-        + (t12 * parameters[MX2] + t28 * parameters[MY2]);
-    const puma560_real_t t287 = PUMA560_C(24.79745) * input[1] + (t285 + (t286 + (t245
-        + PUMA560_C(0.4318) * t154)));
-    const puma560_real_t t288 = PUMA560_C(0.4318) * t177 - t246;
-    const puma560_real_t t289 = t288 * t182;
-    const puma560_real_t t290 = PUMA560_C(-0.4318) * t205 - t248 + t288 * t187;
-    const puma560_real_t t291 = t290 * t210;
-    const puma560_real_t t292 = PUMA560_C(-0.4318) * t234 - t252 + t288 * t214 + t290 * t216;
-    const puma560_real_t t293 = t292 * t239;
-    const puma560_real_t t294 = t287 + t163 * t289 - t188 * t291 - t217 * t293;
-    const puma560_real_t t295 = PUMA560_C(-0.4318) * t270 - t278 - t288 * t247 + t290 * t250;
-    const puma560_real_t t296 = t295 + t292 * t254;
-    const puma560_real_t t297 = t296 * t281;
-    const puma560_real_t t298 = t294 - t255 * t297;
-    const puma560_real_t t299 = parameters[MZ3] + t233;
-    const puma560_real_t t300 = parameters[M3] + t264;
-    const puma560_real_t t301 = PUMA560_C(0.4318) * t300;
-    const puma560_real_t t302 = t262 + (PUMA560_C(0.4318) * t299 + PUMA560_C(0.1254) * (t270 + t301))
-        - parameters[XZ2];
-    const puma560_real_t t303 = t2 * t302 + t3 * (t272 - parameters[YZ2]) + t180 * t289;
-    const puma560_real_t t304 = t303 - t208 * t291 - t237 * t293 - t274 * t297;
-    const puma560_real_t t305 = PUMA560_C(0.4318) * (t301 + PUMA560_C(2.0) * t270);
-    const puma560_real_t t306 = parameters[ZZ2] + (t278 + t305) + PUMA560_C(11624.074225) * parameters[IA2]
-        - t288 * t289;
-    const puma560_real_t t307 = t306 + t290 * t291 + t292 * t293 + t296 * t297;
-    if (!(t307 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t73 = t72 * t40;
+    const puma560_real_t t75 = t72 * t44 + t74 * t45;
+    const puma560_real_t t76 = PUMA560_C(0.4318) * t75 - t46;
+    const puma560_real_t t77 = t74 * t38 - t72 * t49;
+    const puma560_real_t t78 = PUMA560_C(-0.4318) * t77 - t50 + t76 * t5;
+    const puma560_real_t t79 = PUMA560_C(-0.4318) * t73 - t41 + t76 * t27 + t78 * t20;
+    const puma560_real_t t80 = t62 + t64;
+    const puma560_real_t t81 = parameters[MX3] + t80;
+    const puma560_real_t t82 = parameters[MY3] + (t66 + t67);
+    const puma560_real_t t83 = t74 * t81 - t72 * t82;
+    const puma560_real_t t84 = PUMA560_C(-0.4318) * t83 - t69 - t76 * t56 + t78 * t55;
+    const puma560_real_t t85 = t84 + t79 * t54;
+    const puma560_real_t t86 = PUMA560_C(-1.0) / t71;
+    const puma560_real_t t87 = t85 * t86;
+    const puma560_real_t t88 = t79 * t53;
+    const puma560_real_t t89 = t78 * t19;
+    const puma560_real_t t90 = t76 * t4;
+    const puma560_real_t t91 = parameters[M3] + t63;
+    const puma560_real_t t92 = PUMA560_C(0.4318) * t91;
+    const puma560_real_t t93 = PUMA560_C(0.4318) * (t92 + PUMA560_C(2.0) * t83);
+    const puma560_real_t t94 = parameters[ZZ2] + (t69 + t93) + PUMA560_C(11624.074225) * parameters[IA2]
+        - t76 * t90;
+    const puma560_real_t t95 = t94 + t78 * t89 + t79 * t88 + t85 * t87;
+    if (!(t95 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t308 = PUMA560_C(1.0) / t307;
-    const puma560_real_t t309 = t304 * t308;
-    const puma560_real_t t310 = parameters[YY3] + (t231 + t276);
-    const puma560_real_t t311 = parameters[XX3] + (t258 + t275 + t277);
-    const puma560_real_t t312 = parameters[XY3] + (t224 + (PUMA560_C(-0.0203) * t263
-        + PUMA560_C(-0.4318) * t268));
-    const puma560_real_t t313 = t14 * (t311 - t310) - t312 * (PUMA560_C(2.0) * t16);
-    const puma560_real_t t314 = t14 * t313;
-    const puma560_real_t t315 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t300 + PUMA560_C(2.0) * t299);
-    const puma560_real_t t316 = parameters[XX2] + (t310 + t314 + t315);
-    const puma560_real_t t317 = t3 * (parameters[YY2] + (t311 - t314 + (t305 + t315)) - t316);
-    const puma560_real_t t318 = (parameters[XY2] + (t312 + t16 * t313
-        + PUMA560_C(-0.4318) * t271)) * (PUMA560_C(2.0) * t2);
-    const puma560_real_t t319 = parameters[ZZ1] + (t316 + t3 * (t317 + t318))
+    const puma560_real_t t96 = parameters[XX3] + (t58 + t61 + t68);
+    const puma560_real_t t97 = parameters[YY3] + (t26 + t65);
+    const puma560_real_t t98 = t30 * t31 - t32 * t29;
+    const puma560_real_t t99 = parameters[XY3] + (t98 + (PUMA560_C(-0.0203) * t66
+        + PUMA560_C(-0.4318) * t80));
+    const puma560_real_t t100 = t74 * (t96 - t97) - t99 * (PUMA560_C(2.0) * t72);
+    const puma560_real_t t101 = t74 * t100;
+    const puma560_real_t t102 = parameters[MZ3] + t40;
+    const puma560_real_t t103 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t91 + PUMA560_C(2.0) * t102);
+    const puma560_real_t t104 = parameters[XX2] + (t97 + t101 + t103);
+    const puma560_real_t t106 = t105 * (parameters[YY2] + (t96 - t101 + (t93 + t103)) - t104);
+    const puma560_real_t t107 = t74 * t82 + t72 * t81;
+    const puma560_real_t t109 = (parameters[XY2] + (t99 + t72 * t100
+        + PUMA560_C(-0.4318) * t107)) * (PUMA560_C(2.0) * t108);
+    const puma560_real_t t110 = parameters[ZZ1] + (t104 + t105 * (t106 + t109))
         + PUMA560_C(3920.14984321) * parameters[IA1];
-    const puma560_real_t t320 = t319 - t180 * t183 + t208 * t211 + t237 * t240;
-    const puma560_real_t t321 = t320 + t274 * t282 - t304 * t309;
-    if (!(t321 > PUMA560_C(1.0e-9))) {
+    const puma560_real_t t111 = t30 * t43 - t32 * t35;
+    const puma560_real_t t112 = PUMA560_C(0.4318) * t111;
+    const puma560_real_t t113 = t32 * t42 + t30 * t3 - t112;
+    const puma560_real_t t114 = t17 + PUMA560_C(0.0203) * t111;
+    const puma560_real_t t115 = t72 * t113 + t74 * t114 + (t112 + PUMA560_C(0.1254) * (t74 * t44
+        - t72 * t45));
+    const puma560_real_t t116 = t108 * (t74 * t113 - t72 * t114 + PUMA560_C(-0.1254) * t75);
+    const puma560_real_t t117 = t116 + t105 * t115;
+    const puma560_real_t t118 = t117 * t4;
+    const puma560_real_t t119 = t30 * t48;
+    const puma560_real_t t120 = PUMA560_C(0.4318) * t119;
+    const puma560_real_t t121 = t32 * t47 - t30 * t9 - t120;
+    const puma560_real_t t122 = t15 - PUMA560_C(0.0203) * t119;
+    const puma560_real_t t123 = t108 * (t74 * t121 + t72 * t122 + PUMA560_C(0.1254) * t77);
+    const puma560_real_t t124 = t72 * t121 - t74 * t122 + (t120 + PUMA560_C(0.1254) * (t74 * t49
+        + t72 * t38));
+    const puma560_real_t t125 = t123 + t105 * t124 + t117 * t5;
+    const puma560_real_t t126 = t125 * t19;
+    const puma560_real_t t127 = PUMA560_C(-0.4318) * t62;
+    const puma560_real_t t128 = t98 + t127;
+    const puma560_real_t t129 = t26 - PUMA560_C(-0.0203) * t62;
+    const puma560_real_t t130 = t108 * (t72 * t129 - t74 * t128 + PUMA560_C(0.1254) * t73);
+    const puma560_real_t t131 = t127 + PUMA560_C(-0.1254) * (t74 * t40) - (t72 * t128 + t74 * t129);
+    const puma560_real_t t132 = t130 + t105 * t131 + t117 * t27 + t125 * t20;
+    const puma560_real_t t133 = t132 * t53;
+    const puma560_real_t t134 = t110 - t117 * t118 + t125 * t126 + t132 * t133;
+    const puma560_real_t t135 = t59 + t30 * t60 + PUMA560_C(0.0203) * t40 - parameters[XZ3];
+    const puma560_real_t t136 = parameters[YZ3] + t41;
+    const puma560_real_t t137 = t74 * t135 + t72 * t136;
+    const puma560_real_t t138 = t72 * t135 - t74 * t136 + PUMA560_C(0.1254) * t107;
+    const puma560_real_t t139 = t108 * (t137 + PUMA560_C(0.1254) * t83) + t105 * t138 - t117 * t56;
+    const puma560_real_t t140 = t139 + t125 * t55 + t132 * t54;
+    const puma560_real_t t141 = t140 * t86;
+    const puma560_real_t t142 = t137 + (PUMA560_C(0.4318) * t102 + PUMA560_C(0.1254) * (t83 + t92))
+        - parameters[XZ2];
+    const puma560_real_t t143 = t108 * t142 + t105 * (t138 - parameters[YZ2]) + t117 * t90;
+    const puma560_real_t t144 = t143 - t125 * t89 - t132 * t88 - t140 * t87;
+    const puma560_real_t t145 = PUMA560_C(1.0) / t95;
+    const puma560_real_t t146 = t144 * t145;
+    const puma560_real_t t147 = t134 + t140 * t141 - t144 * t146;
+    if (!(t147 > PUMA560_C(1.0e-9))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t322 = PUMA560_C(-1.0) / t321;
-    const puma560_real_t t323 = (t298 * t309 - t283) * t322;
+    const puma560_real_t t148 = t108 * dq[0];
+    const puma560_real_t t149 = t105 * dq[0];
+    const puma560_real_t t150 = t74 * t148 + t72 * t149;
+    const puma560_real_t t151 = t72 * t148 - t74 * t149;
+    const puma560_real_t t152 = t150 * t151;
+    const puma560_real_t t153 = dq[1] + dq[2];
+    const puma560_real_t t154 = t153 * t151;
+    const puma560_real_t t155 = PUMA560_C(-2.0) * t154;
+    const puma560_real_t t156 = t30 * t155 - t32 * t152;
+    const puma560_real_t t157 = t30 * t153 + t32 * t150;
+    const puma560_real_t t158 = dq[3] + t151;
+    const puma560_real_t t159 = t157 * t158;
+    const puma560_real_t t160 = t156 + t159;
+    const puma560_real_t t161 = t14 * t157 - t12 * t158;
+    const puma560_real_t t162 = t12 * t157 + t14 * t158;
+    const puma560_real_t t163 = t161 * t162;
+    const puma560_real_t t164 = t160 - t163;
+    const puma560_real_t t165 = t30 * t152 + t32 * t155;
+    const puma560_real_t t166 = t32 * t153 - t30 * t150;
+    const puma560_real_t t167 = t166 * t158;
+    const puma560_real_t t168 = t165 + t167;
+    const puma560_real_t t169 = t167 + t168;
+    const puma560_real_t t170 = t157 * t166;
+    const puma560_real_t t171 = t153 * t150;
+    const puma560_real_t t172 = t170 - t171;
+    const puma560_real_t t173 = t12 * t172 + t14 * t169;
+    const puma560_real_t t174 = dq[4] + t166;
+    const puma560_real_t t175 = t162 * t174;
+    const puma560_real_t t176 = t173 - t175;
+    const puma560_real_t t177 = t176 - t175;
+    const puma560_real_t t178 = t1 * t164 - t2 * t177;
+    const puma560_real_t t179 = t1 * t161 - t2 * t174;
+    const puma560_real_t t180 = dq[5] + t162;
+    const puma560_real_t t181 = t179 * t180;
+    const puma560_real_t t182 = t178 + t181;
+    const puma560_real_t t183 = t2 * t164 + t1 * t177;
+    const puma560_real_t t184 = t2 * t161 + t1 * t174;
+    const puma560_real_t t185 = t184 * t180;
+    const puma560_real_t t186 = t183 + t185;
+    const puma560_real_t t187 = t185 + t186;
+    const puma560_real_t t188 = parameters[XX6] * t182 + t181 * (parameters[ZZ6] - parameters[YY6])
+        + parameters[XY6] * t187;
+    const puma560_real_t t189 = t12 * t169 - t14 * t172;
+    const puma560_real_t t190 = t161 * t174;
+    const puma560_real_t t191 = t189 + t190;
+    const puma560_real_t t192 = t184 * t179;
+    const puma560_real_t t193 = t191 - t192;
+    const puma560_real_t t194 = t179 * t179;
+    const puma560_real_t t195 = t180 * t180;
+    const puma560_real_t t196 = t151 * t151;
+    const puma560_real_t t197 = t153 * t153;
+    const puma560_real_t t198 = t197 + t196;
+    const puma560_real_t t199 = t149 * t149;
+    const puma560_real_t t200 = dq[1] * dq[1];
+    const puma560_real_t t201 = PUMA560_C(-9.81) * t108;
+    const puma560_real_t t202 = t201 + PUMA560_C(-0.4318) * (t199 + t200);
+    const puma560_real_t t203 = t148 * t149;
+    const puma560_real_t t204 = PUMA560_C(9.81) * t105;
+    const puma560_real_t t205 = t204 - PUMA560_C(0.4318) * t203;
+    const puma560_real_t t206 = t74 * t202 - t72 * t205;
+    const puma560_real_t t207 = t206 + (PUMA560_C(-0.0203) * t198 + PUMA560_C(-0.4318) * t152);
+    const puma560_real_t t208 = t148 * t148;
+    const puma560_real_t t209 = dq[1] * t148;
+    const puma560_real_t t210 = PUMA560_C(0.1254) * (t208 + t199) + PUMA560_C(0.8636) * t209;
+    const puma560_real_t t211 = t210 + (PUMA560_C(0.0406) * t171 - PUMA560_C(0.8636) * t154);
+    const puma560_real_t t212 = t32 * t207 + t30 * t211;
+    const puma560_real_t t213 = t150 * t150;
+    const puma560_real_t t214 = t197 + t213;
+    const puma560_real_t t215 = t72 * t202 + t74 * t205;
+    const puma560_real_t t216 = t215 + (PUMA560_C(0.0203) * t152 + PUMA560_C(0.4318) * t214);
+    const puma560_real_t t217 = t14 * t212 - t12 * t216;
+    const puma560_real_t t218 = t30 * t207 - t32 * t211;
+    const puma560_real_t t219 = t1 * t217 + t2 * t218;
+    const puma560_real_t t220 = t12 * t212 + t14 * t216;
+    const puma560_real_t t221 = t188 + parameters[XZ6] * t193 + parameters[YZ6] * (t194 - t195)
+        + (parameters[MZ6] * t219 - parameters[MY6] * t220);
+    const puma560_real_t t222 = t181 + t182;
+    const puma560_real_t t223 = parameters[YY6] * t186 + t185 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t222;
+    const puma560_real_t t224 = t191 + t192;
+    const puma560_real_t t225 = t184 * t184;
+    const puma560_real_t t226 = t2 * t217 - t1 * t218;
+    const puma560_real_t t227 = t223 + parameters[YZ6] * t224 + parameters[XZ6] * (t195 - t225)
+        + (parameters[MZ6] * t226 + parameters[MX6] * t220);
+    const puma560_real_t t228 = t190 + t191;
+    const puma560_real_t t229 = parameters[XY5] * t228 - (parameters[XX5] * t176 + t175 * (parameters[YY5]
+        - parameters[ZZ5]));
+    const puma560_real_t t230 = t160 + t163;
+    const puma560_real_t t231 = t162 * t162;
+    const puma560_real_t t232 = t174 * t174;
+    const puma560_real_t t233 = t229 - parameters[XZ5] * t230 + parameters[YZ5] * (t231 - t232)
+        + (parameters[MY5] * t218 + parameters[MZ5] * t220);
+    const puma560_real_t t234 = t233 - (t1 * t227 - t2 * t221);
+    const puma560_real_t t235 = t190 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t191
+        + parameters[XY5] * t177;
+    const puma560_real_t t236 = t161 * t161;
+    const puma560_real_t t237 = t235 + parameters[YZ5] * t164 + parameters[XZ5] * (t236 - t232)
+        + (parameters[MX5] * t218 - parameters[MZ5] * t217);
+    const puma560_real_t t238 = t6 * t192 - parameters[ZZ6] * t191 - parameters[YZ6] * t183
+        - parameters[XZ6] * t178;
+    const puma560_real_t t239 = t238 + parameters[XY6] * (t194 - t225) + (parameters[MX6] * t219
+        + parameters[MY6] * t226);
+    const puma560_real_t t240 = t237 + t239;
+    const puma560_real_t t241 = t159 + t160;
+    const puma560_real_t t242 = t167 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t168
+        + parameters[XY4] * t241;
+    const puma560_real_t t243 = t171 + t170;
+    const puma560_real_t t244 = t166 * t166;
+    const puma560_real_t t245 = t158 * t158;
+    const puma560_real_t t246 = t242 + parameters[XZ4] * t243 + parameters[YZ4] * (t244 - t245)
+        + (parameters[MZ4] * t218 - parameters[MY4] * t216);
+    const puma560_real_t t247 = t246 + (t14 * t234 + t12 * t240);
+    const puma560_real_t t248 = parameters[ZZ5] * t160 + t163 * (parameters[YY5] - parameters[XX5])
+        - parameters[YZ5] * t189;
+    const puma560_real_t t249 = t248 + parameters[XZ5] * t173 + parameters[XY5] * (t231 - t236)
+        + (parameters[MX5] * t220 + parameters[MY5] * t217);
+    const puma560_real_t t250 = t249 + (t1 * t221 + t2 * t227);
+    const puma560_real_t t251 = t159 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t160
+        + parameters[XY4] * t169;
+    const puma560_real_t t252 = t157 * t157;
+    const puma560_real_t t253 = t251 + parameters[YZ4] * t172 + parameters[XZ4] * (t252 - t245)
+        - (parameters[MZ4] * t212 + parameters[MX4] * t216);
+    const puma560_real_t t254 = t253 - t250;
+    const puma560_real_t t255 = parameters[MX6] * (t194 + t195) + parameters[MY6] * t224
+        - parameters[MZ6] * t183;
+    const puma560_real_t t256 = t255 - parameters[M6] * t226;
+    const puma560_real_t t257 = parameters[MX6] * t193 - parameters[MY6] * (t225 + t195)
+        - parameters[MZ6] * t178;
+    const puma560_real_t t258 = t257 - parameters[M6] * t219;
+    const puma560_real_t t259 = parameters[MX5] * (t231 + t232) - parameters[MY5] * t164
+        - parameters[MZ5] * t189;
+    const puma560_real_t t260 = t259 - parameters[M5] * t217 + (t2 * t256 + t1 * t258);
+    const puma560_real_t t261 = parameters[MX5] * t230 + parameters[MY5] * (t236 + t232)
+        - parameters[MZ5] * t173;
+    const puma560_real_t t262 = parameters[MX6] * t187 - parameters[MY6] * t222 + parameters[MZ6] * (t225
+        + t194);
+    const puma560_real_t t263 = parameters[M5] * t220 + t261 + (parameters[M6] * t220 + t262);
+    const puma560_real_t t264 = parameters[MY4] * t172 - parameters[MX4] * (t244 + t245)
+        + parameters[MZ4] * t156;
+    const puma560_real_t t265 = parameters[M4] * t212 + t264 + (t12 * t263 - t14 * t260);
+    const puma560_real_t t266 = parameters[MX5] * t228 + parameters[MY5] * t177 + parameters[MZ5] * (t236
+        + t231);
+    const puma560_real_t t267 = t266 - parameters[M5] * t218 - (t1 * t256 - t2 * t258);
+    const puma560_real_t t268 = parameters[MX4] * t243 - parameters[MY4] * (t252 + t245)
+        + parameters[MZ4] * t165;
+    const puma560_real_t t269 = t268 - parameters[M4] * t218 + t267;
+    const puma560_real_t t270 = t30 * t265 + t32 * t269;
+    const puma560_real_t t271 = PUMA560_C(2.0) * t171;
+    const puma560_real_t t272 = parameters[XX3] * t154 + t154 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t271;
+    const puma560_real_t t273 = t272 - parameters[XZ3] * t152 + parameters[YZ3] * (t196 - t197)
+        + (parameters[MZ3] * t215 - parameters[MY3] * t210);
+    const puma560_real_t t274 = t273 + (t32 * t247 + t30 * t254 + PUMA560_C(-0.4318) * t270);
+    const puma560_real_t t275 = t170 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t171
+        - parameters[YZ4] * t156;
+    const puma560_real_t t276 = t275 + parameters[XZ4] * t165 + parameters[XY4] * (t244 - t252)
+        + (parameters[MX4] * t218 + parameters[MY4] * t212);
+    const puma560_real_t t277 = t276 + (t14 * t240 - t12 * t234);
+    const puma560_real_t t278 = parameters[YY3] * t171 - t171 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t155;
+    const puma560_real_t t279 = t278 + parameters[YZ3] * t152 + parameters[XZ3] * (t197 - t213)
+        + (parameters[MZ3] * t206 + parameters[MX3] * t210);
+    const puma560_real_t t280 = t279 - (t277 + PUMA560_C(-0.0203) * t270);
+    const puma560_real_t t281 = t32 * t265 - t30 * t269;
+    const puma560_real_t t282 = parameters[MX3] * t198 + parameters[MY3] * t152 - parameters[M3] * t206
+        - t281;
+    const puma560_real_t t283 = parameters[MX4] * t241 + parameters[MY4] * t169 + parameters[MZ4] * (t252
+        + t244);
+    const puma560_real_t t284 = parameters[M4] * t216 + t283 + (t12 * t260 + t14 * t263);
+    const puma560_real_t t285 = parameters[M3] * t215 + (parameters[MX3] * t152 + parameters[MY3] * t214)
+        + t284;
+    const puma560_real_t t286 = t72 * t282 + t74 * t285;
+    const puma560_real_t t287 = dq[1] * t149;
+    const puma560_real_t t288 = t287 * (parameters[YY2] - parameters[ZZ2]) - t287 * parameters[XX2]
+        + PUMA560_C(2.0) * t209 * parameters[XY2];
+    const puma560_real_t t289 = t288 + t203 * parameters[XZ2] + (t199 - t200) * parameters[YZ2]
+        + t204 * parameters[MZ2];
+    const puma560_real_t t290 = t289 + (t74 * t274 - t72 * t280 + PUMA560_C(0.1254) * t286);
+    const puma560_real_t t291 = parameters[MX3] * t271 + parameters[MY3] * t155 + parameters[MZ3] * (t213
+        + t196);
+    const puma560_real_t t292 = PUMA560_C(0.1254) * (t72 * t285 - t74 * t282)
+        + PUMA560_C(0.4318) * (parameters[M3] * t210 + t291 + t270);
+    const puma560_real_t t293 = t209 * parameters[YY2] + t209 * (parameters[ZZ2] - parameters[XX2])
+        + PUMA560_C(-2.0) * t287 * parameters[XY2];
+    const puma560_real_t t294 = t293 - t203 * parameters[YZ2] + (t200 - t208) * parameters[XZ2]
+        + t201 * parameters[MZ2];
+    const puma560_real_t t295 = t105 * (t294 + (t72 * t274 + t74 * t280 + t292));
+    const puma560_real_t t296 = puma560_sign(dq[0]);
+    const puma560_real_t t297 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1])
+        + PUMA560_C(-62.6111) * (t296 * parameters[FC1]);
+    const puma560_real_t t298 = puma560_sign(dq[5]);
+    const puma560_real_t t299 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6])
+        + PUMA560_C(-76.686) * (t298 * parameters[FC6]);
+    const puma560_real_t t300 = PUMA560_C(5.368020000000001) * input[5] + (t299 + t239);
+    const puma560_real_t t301 = PUMA560_C(-14.400553) * input[0] + (t297 + (t108 * t290 + t295))
+        - t300 * t118;
+    const puma560_real_t t302 = puma560_sign(dq[4]);
+    const puma560_real_t t303 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5])
+        + PUMA560_C(-71.923) * (t302 * parameters[FC5]);
+    const puma560_real_t t304 = PUMA560_C(5.034610000000001) * input[4] + (t303 + t250) + t300 * t5;
+    const puma560_real_t t305 = puma560_sign(dq[3]);
+    const puma560_real_t t306 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4])
+        + PUMA560_C(-76.0364) * (t305 * parameters[FC4]);
+    const puma560_real_t t307 = PUMA560_C(5.322548) * input[3] + (t306 + t277) + t300 * t27 + t304 * t20;
+    const puma560_real_t t308 = t30 * t247 - t32 * t254 + (PUMA560_C(0.0203) * t284
+        + PUMA560_C(0.4318) * t281);
+    const puma560_real_t t309 = t152 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t196 - t213)
+        + (parameters[MX3] * t215 + parameters[MY3] * t206);
+    const puma560_real_t t310 = t309 + t308;
+    const puma560_real_t t311 = puma560_sign(dq[2]);
+    const puma560_real_t t312 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3])
+        + PUMA560_C(-53.7063) * (t311 * parameters[FC3]);
+    const puma560_real_t t313 = PUMA560_C(-12.352449) * input[2] + (t312 + t310) - t300 * t56 + t304 * t55;
+    const puma560_real_t t314 = t313 + t307 * t54;
+    const puma560_real_t t315 = t301 + t304 * t126 + t307 * t133 + t314 * t141;
+    const puma560_real_t t316 = t203 * (parameters[XX2] - parameters[YY2]) + (t199 - t208) * parameters[XY2]
+        + (t204 * parameters[MX2] + t201 * parameters[MY2]);
+    const puma560_real_t t317 = puma560_sign(dq[1]);
+    const puma560_real_t t318 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2])
+        + PUMA560_C(-107.815) * (t317 * parameters[FC2]);
+    const puma560_real_t t319 = PUMA560_C(24.79745) * input[1] + (t318 + (t316 + (t310
+        + PUMA560_C(0.4318) * t286)));
+    const puma560_real_t t320 = t319 + t300 * t90 - t304 * t89 - t307 * t88;
+    const puma560_real_t t321 = t320 - t314 * t87;
+    const puma560_real_t t322 = PUMA560_C(-1.0) / t147;
+    const puma560_real_t t323 = (t321 * t146 - t315) * t322;
     out[0] = t323;
     if (!(t323 >= PUMA560_C(-1.0e15) && t323 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t324 = t298 * t308 - t309 * t323;
+    const puma560_real_t t324 = t321 * t145 - t146 * t323;
     out[1] = t324;
     if (!(t324 >= PUMA560_C(-1.0e15) && t324 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t325 = t282 * t323 - t255 * t281 - t297 * t324;
+    const puma560_real_t t325 = t141 * t323 - t314 * t86 - t87 * t324;
     out[2] = t325;
     if (!(t325 >= PUMA560_C(-1.0e15) && t325 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t326 = t254 * t325 - (t217 * t239 - t240 * t323 + t293 * t324);
+    const puma560_real_t t326 = t54 * t325 - (t307 * t53 - t133 * t323 + t88 * t324);
     out[3] = t326;
     if (!(t326 >= PUMA560_C(-1.0e15) && t326 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t327 = t188 * t210 - t211 * t323 + t291 * t324 - t250 * t325;
-    const puma560_real_t t328 = t216 * t326 - t327;
+    const puma560_real_t t327 = t304 * t19 - t126 * t323 + t89 * t324 - t55 * t325;
+    const puma560_real_t t328 = t20 * t326 - t327;
     out[4] = t328;
     if (!(t328 >= PUMA560_C(-1.0e15) && t328 <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t329 = t163 * t182 - t183 * t323 + t289 * t324 - t247 * t325;
-    out[5] = t329 + t214 * t326 + t187 * t328;
+    const puma560_real_t t329 = t300 * t4 - t118 * t323 + t90 * t324 - t56 * t325;
+    out[5] = t329 + t27 * t326 + t5 * t328;
     if (!(out[5] >= PUMA560_C(-1.0e15) && out[5] <= PUMA560_C(1.0e15))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;

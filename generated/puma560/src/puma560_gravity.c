@@ -78,7 +78,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -101,39 +101,39 @@ int puma560_gravity(
         return status;
     }
 
-    puma560_real_t t0, t5;
-    PUMA560_SINCOS(q[1], &t0, &t5);
-    puma560_real_t t3, t1;
-    PUMA560_SINCOS(q[2], &t3, &t1);
-    puma560_real_t t9, t2;
-    PUMA560_SINCOS(q[3], &t9, &t2);
-    puma560_real_t t13, t8;
-    PUMA560_SINCOS(q[4], &t13, &t8);
-    puma560_real_t t17, t12;
-    PUMA560_SINCOS(q[5], &t17, &t12);
-    const puma560_real_t t4 = PUMA560_C(9.81) * t0;
-    const puma560_real_t t6 = PUMA560_C(-9.81) * t5;
-    const puma560_real_t t7 = t3 * t4 + t1 * t6;
-    const puma560_real_t t10 = t1 * t4 - t3 * t6;
-    const puma560_real_t t11 = t9 * t10;
-    const puma560_real_t t14 = t2 * t10;
-    const puma560_real_t t15 = t13 * t14 + t8 * t7;
-    const puma560_real_t t16 = parameters[MY6] * t15;
-    const puma560_real_t t18 = parameters[MX6] * t15;
-    const puma560_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
-    const puma560_real_t t20 = t8 * t14 - t13 * t7;
-    const puma560_real_t t21 = parameters[MX6] * (t17 * t20 + t12 * t11) + parameters[MY6] * (t12 * t20
-        - t17 * t11);
-    const puma560_real_t t22 = parameters[MX5] * t11 + t21;
-    const puma560_real_t t23 = parameters[MY4R] * t7 - (t13 * t22 - t8 * t19);
-    const puma560_real_t t24 = parameters[MX5] * t15 + parameters[MY5R] * t20 + (t12 * t18 - t17 * t16);
-    const puma560_real_t t25 = parameters[MX4] * t7 + t24;
-    const puma560_real_t t26 = t2 * t23 + t9 * t25;
-    const puma560_real_t t27 = parameters[MX4] * t11 + parameters[MY4R] * t14 + (t13 * t19 + t8 * t22);
-    const puma560_real_t t28 = t0 * (t1 * t26 - t3 * t27) + t5 * (t3 * t26 + t1 * t27);
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t5, t2;
+    PUMA560_SINCOS(q[2], &t5, &t2);
+    puma560_real_t t17, t7;
+    PUMA560_SINCOS(q[3], &t17, &t7);
+    puma560_real_t t9, t11;
+    PUMA560_SINCOS(q[4], &t9, &t11);
+    puma560_real_t t16, t14;
+    PUMA560_SINCOS(q[5], &t16, &t14);
+    const puma560_real_t t1 = PUMA560_C(9.81) * t0;
+    const puma560_real_t t4 = PUMA560_C(-9.81) * t3;
+    const puma560_real_t t6 = t2 * t1 - t5 * t4;
+    const puma560_real_t t8 = t7 * t6;
+    const puma560_real_t t10 = t5 * t1 + t2 * t4;
+    const puma560_real_t t12 = t9 * t8 + t11 * t10;
+    const puma560_real_t t13 = parameters[MY6] * t12;
+    const puma560_real_t t15 = parameters[MX6] * t12;
+    const puma560_real_t t18 = t17 * t6;
+    const puma560_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18;
+    const puma560_real_t t20 = t11 * t8 - t9 * t10;
+    const puma560_real_t t21 = parameters[MX6] * (t16 * t20 + t14 * t18) + parameters[MY6] * (t14 * t20
+        - t16 * t18);
+    const puma560_real_t t22 = parameters[MX5] * t18 + t21;
+    const puma560_real_t t23 = parameters[MY4R] * t10 - (t9 * t22 - t11 * t19);
+    const puma560_real_t t24 = parameters[MX5] * t12 + parameters[MY5R] * t20 + (t14 * t15 - t16 * t13);
+    const puma560_real_t t25 = parameters[MX4] * t10 + t24;
+    const puma560_real_t t26 = t7 * t23 + t17 * t25;
+    const puma560_real_t t27 = parameters[MX4] * t18 + parameters[MY4R] * t8 + (t9 * t19 + t11 * t22);
+    const puma560_real_t t28 = t0 * (t2 * t26 - t5 * t27) + t3 * (t5 * t26 + t2 * t27);
     out[0] = PUMA560_C(0.06944177768728742) * t28;
-    const puma560_real_t t29 = parameters[MX3R] * t7 + parameters[MY3R] * t10 + (t2 * t25 - t9 * t23);
-    out[1] = PUMA560_C(0.04032672714331514) * (parameters[MX2R] * t6 + parameters[MY2] * t4 + t29);
+    const puma560_real_t t29 = parameters[MX3R] * t10 + parameters[MY3R] * t6 + (t7 * t25 - t17 * t23);
+    out[1] = PUMA560_C(0.04032672714331514) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t29);
     out[2] = PUMA560_C(-0.08095560645504385) * t29;
     out[3] = PUMA560_C(0.18787994020908783) * t27;
     out[4] = PUMA560_C(0.19862511694053758) * t24;

@@ -103,7 +103,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -127,58 +127,58 @@ int puma560_gravity_standard(
         return status;
     }
 
-    puma560_real_t t0, t1;
-    PUMA560_SINCOS(q[1], &t0, &t1);
-    puma560_real_t t4, t3;
-    PUMA560_SINCOS(q[2], &t4, &t3);
-    puma560_real_t t8, t7;
-    PUMA560_SINCOS(q[3], &t8, &t7);
-    puma560_real_t t12, t11;
-    PUMA560_SINCOS(q[4], &t12, &t11);
-    puma560_real_t t16, t15;
-    PUMA560_SINCOS(q[5], &t16, &t15);
-    const puma560_real_t t2 = PUMA560_C(9.81) * t1;
-    const puma560_real_t t5 = PUMA560_C(-9.81) * t0;
-    const puma560_real_t t6 = t4 * t5 + t3 * t2;
-    const puma560_real_t t9 = t4 * t2 - t3 * t5;
-    const puma560_real_t t10 = t8 * t9;
-    const puma560_real_t t13 = t7 * t9;
-    const puma560_real_t t14 = t11 * t6 - t12 * t13;
-    const puma560_real_t t17 = t11 * t13 + t12 * t6;
-    const puma560_real_t t18 = t16 * t17 + t15 * t10;
-    const puma560_real_t t19 = t14 * parameters[MY6] + t18 * parameters[MZ6];
-    const puma560_real_t t20 = t15 * t17 - t16 * t10;
-    const puma560_real_t t21 = t20 * parameters[MZ6] - t14 * parameters[MX6];
-    const puma560_real_t t22 = t14 * parameters[MZ5] - t10 * parameters[MY5] + (t16 * t21 - t15 * t19);
+    puma560_real_t t0, t3;
+    PUMA560_SINCOS(q[1], &t0, &t3);
+    puma560_real_t t5, t2;
+    PUMA560_SINCOS(q[2], &t5, &t2);
+    puma560_real_t t15, t7;
+    PUMA560_SINCOS(q[3], &t15, &t7);
+    puma560_real_t t9, t11;
+    PUMA560_SINCOS(q[4], &t9, &t11);
+    puma560_real_t t14, t17;
+    PUMA560_SINCOS(q[5], &t14, &t17);
+    const puma560_real_t t1 = PUMA560_C(-9.81) * t0;
+    const puma560_real_t t4 = PUMA560_C(9.81) * t3;
+    const puma560_real_t t6 = t5 * t4 - t2 * t1;
+    const puma560_real_t t8 = t7 * t6;
+    const puma560_real_t t10 = t5 * t1 + t2 * t4;
+    const puma560_real_t t12 = t11 * t10 - t9 * t8;
+    const puma560_real_t t13 = t11 * t8 + t9 * t10;
+    const puma560_real_t t16 = t15 * t6;
+    const puma560_real_t t18 = t14 * t13 + t17 * t16;
+    const puma560_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
+    const puma560_real_t t20 = t17 * t13 - t14 * t16;
+    const puma560_real_t t21 = t20 * parameters[MZ6] - t12 * parameters[MX6];
+    const puma560_real_t t22 = t12 * parameters[MZ5] - t16 * parameters[MY5] + (t14 * t21 - t17 * t19);
     const puma560_real_t t23 = t18 * parameters[MX6] + t20 * parameters[MY6];
-    const puma560_real_t t24 = t10 * parameters[MX5] - t17 * parameters[MZ5] + t23;
-    const puma560_real_t t25 = t6 * parameters[MY4] + t10 * parameters[MZ4] + (t12 * t24 - t11 * t22);
-    const puma560_real_t t26 = t17 * parameters[MY5] - t14 * parameters[MX5] + (t16 * t19 + t15 * t21);
-    const puma560_real_t t27 = t13 * parameters[MZ4] - t6 * parameters[MX4] + t26;
+    const puma560_real_t t24 = t16 * parameters[MX5] - t13 * parameters[MZ5] + t23;
+    const puma560_real_t t25 = t10 * parameters[MY4] + t16 * parameters[MZ4] + (t9 * t24 - t11 * t22);
+    const puma560_real_t t26 = t13 * parameters[MY5] - t12 * parameters[MX5] + (t14 * t19 + t17 * t21);
+    const puma560_real_t t27 = t8 * parameters[MZ4] - t10 * parameters[MX4] + t26;
     const puma560_real_t t28 = t20 * parameters[M6];
     const puma560_real_t t29 = t18 * parameters[M6];
-    const puma560_real_t t30 = t17 * parameters[M5] + (t15 * t28 + t16 * t29);
-    const puma560_real_t t31 = t14 * parameters[M5] + t14 * parameters[M6];
-    const puma560_real_t t32 = t12 * t31 - t11 * t30 - t13 * parameters[M4];
-    const puma560_real_t t33 = t16 * t28 - t15 * t29 - t10 * parameters[M5] - t10 * parameters[M4];
-    const puma560_real_t t34 = t7 * t33 - t8 * t32;
+    const puma560_real_t t30 = t13 * parameters[M5] + (t17 * t28 + t14 * t29);
+    const puma560_real_t t31 = t12 * parameters[M5] + t12 * parameters[M6];
+    const puma560_real_t t32 = t9 * t31 - t11 * t30 - t8 * parameters[M4];
+    const puma560_real_t t33 = t14 * t28 - t17 * t29 - t16 * parameters[M5] - t16 * parameters[M4];
+    const puma560_real_t t34 = t7 * t33 - t15 * t32;
     const puma560_real_t t35 = PUMA560_C(0.4318) * t34;
-    const puma560_real_t t36 = t6 * parameters[MZ3] + (t8 * t27 - t7 * t25 + t35);
-    const puma560_real_t t37 = t10 * parameters[MX4] + t13 * parameters[MY4] + (t12 * t22 + t11 * t24);
-    const puma560_real_t t38 = t9 * parameters[MZ3] - (t37 - PUMA560_C(0.0203) * t34);
-    const puma560_real_t t39 = t7 * t32 + t8 * t33;
-    const puma560_real_t t40 = t39 - t9 * parameters[M3];
-    const puma560_real_t t41 = t6 * parameters[M4] + (t12 * t30 + t11 * t31);
-    const puma560_real_t t42 = t6 * parameters[M3] + t41;
-    const puma560_real_t t43 = t3 * t42 - t4 * t40;
-    const puma560_real_t t44 = t2 * parameters[MZ2] + (t3 * t36 + t4 * t38 + PUMA560_C(0.1254) * t43);
-    const puma560_real_t t45 = t4 * t36 - t3 * t38 + (PUMA560_C(0.1254) * (t3 * t40 + t4 * t42) - t35);
-    const puma560_real_t t46 = PUMA560_C(0.06944177768728742) * (t0 * t44 + t1 * (t5 * parameters[MZ2]
+    const puma560_real_t t36 = t10 * parameters[MZ3] + (t15 * t27 - t7 * t25 + t35);
+    const puma560_real_t t37 = t16 * parameters[MX4] + t8 * parameters[MY4] + (t9 * t22 + t11 * t24);
+    const puma560_real_t t38 = t6 * parameters[MZ3] - (t37 - PUMA560_C(0.0203) * t34);
+    const puma560_real_t t39 = t7 * t32 + t15 * t33;
+    const puma560_real_t t40 = t39 - t6 * parameters[M3];
+    const puma560_real_t t41 = t10 * parameters[M4] + (t9 * t30 + t11 * t31);
+    const puma560_real_t t42 = t10 * parameters[M3] + t41;
+    const puma560_real_t t43 = t2 * t42 - t5 * t40;
+    const puma560_real_t t44 = t4 * parameters[MZ2] + (t2 * t36 + t5 * t38 + PUMA560_C(0.1254) * t43);
+    const puma560_real_t t45 = t5 * t36 - t2 * t38 + (PUMA560_C(0.1254) * (t2 * t40 + t5 * t42) - t35);
+    const puma560_real_t t46 = PUMA560_C(0.06944177768728742) * (t0 * t44 + t3 * (t1 * parameters[MZ2]
         + t45));
     out[0] = t46;
-    const puma560_real_t t47 = t8 * t25 + t7 * t27 + (PUMA560_C(-0.0203) * t41 + PUMA560_C(-0.4318) * t39);
-    const puma560_real_t t48 = t9 * parameters[MY3] - t6 * parameters[MX3] + t47;
-    const puma560_real_t t49 = t48 + PUMA560_C(-0.4318) * t43 - (t2 * parameters[MX2] + t5 * parameters[MY2]);
+    const puma560_real_t t47 = t15 * t25 + t7 * t27 + (PUMA560_C(-0.0203) * t41 + PUMA560_C(-0.4318) * t39);
+    const puma560_real_t t48 = t6 * parameters[MY3] - t10 * parameters[MX3] + t47;
+    const puma560_real_t t49 = t48 + PUMA560_C(-0.4318) * t43 - (t4 * parameters[MX2] + t1 * parameters[MY2]);
     out[1] = PUMA560_C(0.04032672714331514) * t49;
     out[2] = PUMA560_C(-0.08095560645504385) * t48;
     out[3] = PUMA560_C(0.18787994020908783) * t37;

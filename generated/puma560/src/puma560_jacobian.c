@@ -21,7 +21,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -39,51 +39,51 @@ int puma560_jacobian(
         return status;
     }
 
-    puma560_real_t t0, t3;
-    PUMA560_SINCOS(q[0], &t0, &t3);
-    puma560_real_t t6, t1;
-    PUMA560_SINCOS(q[1], &t6, &t1);
-    puma560_real_t t5, t4;
-    PUMA560_SINCOS(q[2], &t5, &t4);
+    puma560_real_t t0, t10;
+    PUMA560_SINCOS(q[0], &t0, &t10);
+    puma560_real_t t4, t1;
+    PUMA560_SINCOS(q[1], &t4, &t1);
+    puma560_real_t t6, t3;
+    PUMA560_SINCOS(q[2], &t6, &t3);
     puma560_real_t t22, t23;
     PUMA560_SINCOS(q[3], &t22, &t23);
     puma560_real_t t24, t25;
     PUMA560_SINCOS(q[4], &t24, &t25);
     const puma560_real_t t2 = t0 * t1;
-    const puma560_real_t t7 = t0 * t6;
-    const puma560_real_t t8 = t5 * t7 - t4 * t2;
-    const puma560_real_t t9 = t5 * t2 + t4 * t7;
-    const puma560_real_t t10 = PUMA560_C(0.0203) * t8 + PUMA560_C(0.4318) * t9;
-    const puma560_real_t t11 = PUMA560_C(-0.4318) * t2 + PUMA560_C(-0.1254) * t3 + t10;
+    const puma560_real_t t5 = t0 * t4;
+    const puma560_real_t t7 = t6 * t5 - t3 * t2;
+    const puma560_real_t t8 = t6 * t2 + t3 * t5;
+    const puma560_real_t t9 = PUMA560_C(0.0203) * t7 + PUMA560_C(0.4318) * t8;
+    const puma560_real_t t11 = PUMA560_C(-0.4318) * t2 + PUMA560_C(-0.1254) * t10 + t9;
     out[0] = t11;
-    const puma560_real_t t12 = t6 * t4 + t1 * t5;
-    const puma560_real_t t13 = t6 * t5 - t1 * t4;
+    const puma560_real_t t12 = t4 * t3 + t1 * t6;
+    const puma560_real_t t13 = t4 * t6 - t1 * t3;
     const puma560_real_t t14 = PUMA560_C(-0.0203) * t12 + PUMA560_C(0.4318) * t13;
-    const puma560_real_t t15 = PUMA560_C(-0.4318) * t6 + t14;
-    out[1] = t3 * t15;
-    out[2] = t3 * t14;
-    const puma560_real_t t16 = t3 * t1;
-    const puma560_real_t t17 = t3 * t6;
-    const puma560_real_t t18 = t4 * t16 - t5 * t17;
-    const puma560_real_t t19 = t5 * t16 + t4 * t17;
+    const puma560_real_t t15 = PUMA560_C(-0.4318) * t4 + t14;
+    out[1] = t10 * t15;
+    out[2] = t10 * t14;
+    const puma560_real_t t16 = t10 * t1;
+    const puma560_real_t t17 = t10 * t4;
+    const puma560_real_t t18 = t3 * t16 - t6 * t17;
+    const puma560_real_t t19 = t6 * t16 + t3 * t17;
     const puma560_real_t t20 = PUMA560_C(0.0203) * t18 + PUMA560_C(-0.4318) * t19;
     const puma560_real_t t21 = PUMA560_C(0.4318) * t16 + PUMA560_C(-0.1254) * t0 + t20;
     out[6] = t21;
     out[7] = t0 * t15;
     out[8] = t0 * t14;
-    out[13] = t0 * t11 - t3 * t21;
-    out[14] = t0 * t10 - t3 * t20;
+    out[13] = t0 * t11 - t10 * t21;
+    out[14] = t0 * t9 - t10 * t20;
     out[19] = -t0;
     out[20] = -t0;
     out[21] = -t19;
     out[22] = t22 * t18 - t0 * t23;
     const puma560_real_t t26 = t24 * (t23 * t18 + t0 * t22) + t25 * t19;
     out[23] = -t26;
-    out[25] = t3;
-    out[26] = t3;
-    out[27] = -t9;
-    out[28] = t3 * t23 - t22 * t8;
-    const puma560_real_t t27 = t24 * (t23 * t8 + t3 * t22) - t25 * t9;
+    out[25] = t10;
+    out[26] = t10;
+    out[27] = -t8;
+    out[28] = t10 * t23 - t22 * t7;
+    const puma560_real_t t27 = t24 * (t23 * t7 + t10 * t22) - t25 * t8;
     out[29] = t27;
     out[30] = PUMA560_C(1.0);
     out[33] = t13;

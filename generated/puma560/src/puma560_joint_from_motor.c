@@ -25,7 +25,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 

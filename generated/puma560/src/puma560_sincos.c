@@ -11,7 +11,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x5A5F931EUL
+#if PUMA560_GENERATION != 0xBA0A6069UL
 #error "puma560.h and puma560_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 puma560_pair_t puma560_sincos(puma560_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * PUMA560_C(0.636619772) + PUMA560_C(16384.5));
+    const puma560_real_t turns = x * PUMA560_C(0.636619772) + PUMA560_C(16384.5);
+    const long quarter = (long)turns;
     const puma560_real_t k = (puma560_real_t)quarter - PUMA560_C(16384.0);
     const puma560_real_t r = x - k * PUMA560_C(1.5703125) - k * PUMA560_C(4.83826792e-4);
     const puma560_real_t z = r * r;

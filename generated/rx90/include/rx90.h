@@ -81,7 +81,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x4F4B5E98UL
+#define RX90_GENERATION 0xAC003571UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef RX90_REAL

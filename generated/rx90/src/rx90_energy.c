@@ -79,7 +79,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -106,10 +106,10 @@ int rx90_energy(
         return status;
     }
 
-    rx90_real_t t0, t2;
-    RX90_SINCOS(q[1], &t0, &t2);
-    rx90_real_t t8, t7;
-    RX90_SINCOS(q[2], &t8, &t7);
+    rx90_real_t t0, t3;
+    RX90_SINCOS(q[1], &t0, &t3);
+    rx90_real_t t5, t2;
+    RX90_SINCOS(q[2], &t5, &t2);
     rx90_real_t t22, t21;
     RX90_SINCOS(q[3], &t22, &t21);
     rx90_real_t t35, t34;
@@ -117,32 +117,32 @@ int rx90_energy(
     rx90_real_t t47, t46;
     RX90_SINCOS(q[5], &t47, &t46);
     const rx90_real_t t1 = t0 * dq[0];
-    const rx90_real_t t3 = t2 * dq[0];
-    const rx90_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
-    const rx90_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3 + parameters[ZZ2R] * dq[1]);
-    const rx90_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const rx90_real_t t9 = t7 * t1 + t8 * t3;
-    const rx90_real_t t10 = t7 * t3 - t8 * t1;
-    const rx90_real_t t11 = dq[1] + dq[2];
-    const rx90_real_t t12 = t9 * (parameters[XX3R] * t9 + parameters[XY3] * t10 + parameters[XZ3] * t11);
-    const rx90_real_t t13 = t11 * (parameters[XZ3] * t9 + parameters[YZ3] * t10 + parameters[ZZ3R] * t11);
-    const rx90_real_t t14 = t12 + t10 * (parameters[XY3] * t9 + parameters[YZ3] * t11) + t13;
-    const rx90_real_t t15 = RX90_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + RX90_C(0.5) * t6
-        + RX90_C(0.5) * t14;
+    const rx90_real_t t4 = t3 * dq[0];
+    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t7 = t2 * t4 - t5 * t1;
+    const rx90_real_t t8 = dq[1] + dq[2];
+    const rx90_real_t t9 = t6 * (parameters[XX3R] * t6 + parameters[XY3] * t7 + parameters[XZ3] * t8);
+    const rx90_real_t t10 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + parameters[ZZ3R] * t8);
+    const rx90_real_t t11 = t9 + t7 * (parameters[XY3] * t6 + parameters[YZ3] * t8) + t10;
+    const rx90_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t4 + parameters[XZ2R] * dq[1]);
+    const rx90_real_t t13 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t4 + parameters[ZZ2R] * dq[1]);
+    const rx90_real_t t14 = t12 + t4 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t13;
+    const rx90_real_t t15 = RX90_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + RX90_C(0.5) * t14
+        + RX90_C(0.5) * t11;
     const rx90_real_t t16 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t17 = t7 * t16;
-    const rx90_real_t t18 = RX90_C(-0.45) * t3;
-    const rx90_real_t t19 = t8 * t16;
-    const rx90_real_t t20 = parameters[MX3] * (t11 * t17 - t10 * t18) + parameters[MY3R] * (t9 * t18
-        - t11 * t19);
-    const rx90_real_t t23 = t21 * t9 - t22 * t11;
-    const rx90_real_t t24 = t22 * t9 + t21 * t11;
-    const rx90_real_t t25 = dq[3] + t10;
+    const rx90_real_t t17 = t2 * t16;
+    const rx90_real_t t18 = RX90_C(-0.45) * t4;
+    const rx90_real_t t19 = t5 * t16;
+    const rx90_real_t t20 = parameters[MX3] * (t8 * t17 - t7 * t18) + parameters[MY3R] * (t6 * t18
+        - t8 * t19);
+    const rx90_real_t t23 = t21 * t6 - t22 * t8;
+    const rx90_real_t t24 = t22 * t6 + t21 * t8;
+    const rx90_real_t t25 = dq[3] + t7;
     const rx90_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4] * t24 + parameters[XZ4] * t25);
     const rx90_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24 + parameters[ZZ4R] * t25);
     const rx90_real_t t28 = t26 - t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25) + t27;
-    const rx90_real_t t29 = t19 - RX90_C(0.45) * t11;
-    const rx90_real_t t30 = t18 + RX90_C(0.45) * t9;
+    const rx90_real_t t29 = t19 - RX90_C(0.45) * t8;
+    const rx90_real_t t30 = t18 + RX90_C(0.45) * t6;
     const rx90_real_t t31 = t22 * t29 + t21 * t30;
     const rx90_real_t t32 = t22 * t30 - t21 * t29;
     const rx90_real_t t33 = parameters[MX4] * (t24 * t17 - t25 * t31) + parameters[MY4R] * (t23 * t17
@@ -173,9 +173,9 @@ int rx90_energy(
         + RX90_C(0.5) * (RX90_C(9.0e2) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t58;
     const rx90_real_t t59 = RX90_C(9.81) * t0;
-    const rx90_real_t t60 = RX90_C(9.81) * t2;
-    const rx90_real_t t61 = t7 * t59 + t8 * t60;
-    const rx90_real_t t62 = t7 * t60 - t8 * t59;
+    const rx90_real_t t60 = RX90_C(9.81) * t3;
+    const rx90_real_t t61 = t2 * t59 + t5 * t60;
+    const rx90_real_t t62 = t2 * t60 - t5 * t59;
     const rx90_real_t t63 = parameters[MX2R] * t59 + parameters[MY2] * t60 + (parameters[MX3] * t61
         + parameters[MY3R] * t62);
     const rx90_real_t t64 = t21 * t61;

@@ -105,7 +105,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,77 +133,77 @@ int rx90_energy_standard(
         return status;
     }
 
-    rx90_real_t t0, t2;
-    RX90_SINCOS(q[1], &t0, &t2);
-    rx90_real_t t9, t8;
-    RX90_SINCOS(q[2], &t9, &t8);
-    rx90_real_t t24, t25;
-    RX90_SINCOS(q[3], &t24, &t25);
+    rx90_real_t t0, t3;
+    RX90_SINCOS(q[1], &t0, &t3);
+    rx90_real_t t5, t2;
+    RX90_SINCOS(q[2], &t5, &t2);
+    rx90_real_t t27, t25;
+    RX90_SINCOS(q[3], &t27, &t25);
     rx90_real_t t41, t40;
     RX90_SINCOS(q[4], &t41, &t40);
     rx90_real_t t55, t54;
     RX90_SINCOS(q[5], &t55, &t54);
     const rx90_real_t t1 = t0 * dq[0];
-    const rx90_real_t t3 = t2 * dq[0];
-    const rx90_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
-    const rx90_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
-    const rx90_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
-    const rx90_real_t t7 = RX90_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + RX90_C(0.5) * (t4 + t5 + t6);
-    const rx90_real_t t10 = t8 * t1 + t9 * t3;
-    const rx90_real_t t11 = t8 * t3 - t9 * t1;
-    const rx90_real_t t12 = dq[1] + dq[2];
-    const rx90_real_t t13 = t10 * (parameters[XX3] * t10 + parameters[XY3] * t11 + t12 * parameters[XZ3]);
-    const rx90_real_t t14 = t11 * (parameters[XY3] * t10 + parameters[YY3] * t11 + t12 * parameters[YZ3]);
-    const rx90_real_t t15 = t12 * (parameters[XZ3] * t10 + parameters[YZ3] * t11 + t12 * parameters[ZZ3]);
-    const rx90_real_t t16 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t17 = t9 * t16;
-    const rx90_real_t t18 = t8 * t16;
-    const rx90_real_t t19 = t18 * t18;
-    const rx90_real_t t20 = RX90_C(0.45) * t3;
-    const rx90_real_t t21 = t13 + t14 + t15 + parameters[M3] * (t17 * t17 + t19 + t20 * t20);
-    const rx90_real_t t22 = parameters[MX3] * (t12 * t18 + t11 * t20) - parameters[MY3] * (t10 * t20
-        + t12 * t17);
-    const rx90_real_t t23 = t7 + RX90_C(0.5) * t21 + (t22 + parameters[MZ3] * (t11 * t17 - t10 * t18));
-    const rx90_real_t t26 = t25 * t10 - t24 * t12;
-    const rx90_real_t t27 = t25 * t12 + t24 * t10;
-    const rx90_real_t t28 = dq[3] + t11;
-    const rx90_real_t t29 = t26 * (parameters[XY4] * t27 - parameters[XX4] * t26 - parameters[XZ4] * t28);
-    const rx90_real_t t30 = t27 * (parameters[YY4] * t27 - parameters[XY4] * t26 - parameters[YZ4] * t28);
-    const rx90_real_t t31 = t28 * (parameters[XZ4] * t26 - parameters[YZ4] * t27 + parameters[ZZ4] * t28);
-    const rx90_real_t t32 = t17 - RX90_C(0.45) * t12;
-    const rx90_real_t t33 = t20 + RX90_C(-0.45) * t10;
-    const rx90_real_t t34 = t25 * t32 + t24 * t33;
-    const rx90_real_t t35 = t25 * t33 - t24 * t32;
-    const rx90_real_t t36 = t35 * t35;
-    const rx90_real_t t37 = t30 - t29 + t31 + parameters[M4] * (t19 + (t34 * t34 + t36));
-    const rx90_real_t t38 = parameters[MX4] * (t28 * t35 + t27 * t18) + parameters[MY4] * (t26 * t18
-        - t28 * t34);
-    const rx90_real_t t39 = t23 + RX90_C(0.5) * t37 + (t38 - parameters[MZ4] * (t27 * t34 + t26 * t35));
-    const rx90_real_t t42 = t40 * t26 + t41 * t28;
-    const rx90_real_t t43 = t41 * t26 - t40 * t28;
-    const rx90_real_t t44 = dq[4] + t27;
+    const rx90_real_t t4 = t3 * dq[0];
+    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t7 = t2 * t4 - t5 * t1;
+    const rx90_real_t t8 = dq[1] + dq[2];
+    const rx90_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
+    const rx90_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
+    const rx90_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
+    const rx90_real_t t12 = RX90_C(0.45) * dq[1];
+    const rx90_real_t t13 = t5 * t12;
+    const rx90_real_t t14 = t2 * t12;
+    const rx90_real_t t15 = t14 * t14;
+    const rx90_real_t t16 = RX90_C(0.45) * t4;
+    const rx90_real_t t17 = t9 + t10 + t11 + parameters[M3] * (t13 * t13 + t15 + t16 * t16);
+    const rx90_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
+    const rx90_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
+    const rx90_real_t t20 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
+    const rx90_real_t t21 = RX90_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + RX90_C(0.5) * (t18 + t19
+        + t20);
+    const rx90_real_t t22 = parameters[MX3] * (t8 * t14 + t7 * t16) - parameters[MY3] * (t6 * t16 + t8 * t13);
+    const rx90_real_t t23 = t21 + RX90_C(0.5) * t17 + (t22 + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    const rx90_real_t t24 = t13 - RX90_C(0.45) * t8;
+    const rx90_real_t t26 = t16 + RX90_C(-0.45) * t6;
+    const rx90_real_t t28 = t25 * t24 + t27 * t26;
+    const rx90_real_t t29 = t25 * t26 - t27 * t24;
+    const rx90_real_t t30 = t29 * t29;
+    const rx90_real_t t31 = t25 * t6 - t27 * t8;
+    const rx90_real_t t32 = t25 * t8 + t27 * t6;
+    const rx90_real_t t33 = dq[3] + t7;
+    const rx90_real_t t34 = t31 * (parameters[XY4] * t32 - parameters[XX4] * t31 - parameters[XZ4] * t33);
+    const rx90_real_t t35 = t32 * (parameters[YY4] * t32 - parameters[XY4] * t31 - parameters[YZ4] * t33);
+    const rx90_real_t t36 = t33 * (parameters[XZ4] * t31 - parameters[YZ4] * t32 + parameters[ZZ4] * t33);
+    const rx90_real_t t37 = t35 - t34 + t36 + parameters[M4] * (t15 + (t28 * t28 + t30));
+    const rx90_real_t t38 = parameters[MX4] * (t33 * t29 + t32 * t14) + parameters[MY4] * (t31 * t14
+        - t33 * t28);
+    const rx90_real_t t39 = t23 + RX90_C(0.5) * t37 + (t38 - parameters[MZ4] * (t32 * t28 + t31 * t29));
+    const rx90_real_t t42 = t40 * t31 + t41 * t33;
+    const rx90_real_t t43 = t41 * t31 - t40 * t33;
+    const rx90_real_t t44 = dq[4] + t32;
     const rx90_real_t t45 = t42 * (parameters[XY5] * t43 - parameters[XX5] * t42 - parameters[XZ5] * t44);
     const rx90_real_t t46 = t43 * (parameters[XY5] * t42 - parameters[YY5] * t43 + parameters[YZ5] * t44);
     const rx90_real_t t47 = t44 * (parameters[XZ5] * t42 - parameters[YZ5] * t43 + parameters[ZZ5] * t44);
-    const rx90_real_t t48 = t40 * t34 + t41 * t18;
-    const rx90_real_t t49 = t41 * t34 - t40 * t18;
+    const rx90_real_t t48 = t40 * t28 + t41 * t14;
+    const rx90_real_t t49 = t41 * t28 - t40 * t14;
     const rx90_real_t t50 = t49 * t49;
-    const rx90_real_t t51 = t47 - (t45 + t46) + parameters[M5] * (t36 + (t48 * t48 + t50));
-    const rx90_real_t t52 = parameters[MX5] * (t44 * t49 + t43 * t35) + parameters[MY5] * (t42 * t35
+    const rx90_real_t t51 = t47 - (t45 + t46) + parameters[M5] * (t30 + (t48 * t48 + t50));
+    const rx90_real_t t52 = parameters[MX5] * (t44 * t49 + t43 * t29) + parameters[MY5] * (t42 * t29
         + t44 * t48);
     const rx90_real_t t53 = t39 + RX90_C(0.5) * t51 + (parameters[MZ5] * (t42 * t49 - t43 * t48) - t52);
-    const rx90_real_t t56 = t55 * t44 - t54 * t42;
-    const rx90_real_t t57 = t55 * t42 + t54 * t44;
-    const rx90_real_t t58 = t43 - dq[5];
-    const rx90_real_t t59 = t56 * (parameters[XX6] * t56 + parameters[XY6] * t57 + parameters[XZ6] * t58);
-    const rx90_real_t t60 = t57 * (parameters[XY6] * t56 + parameters[YY6] * t57 + parameters[YZ6] * t58);
-    const rx90_real_t t61 = t58 * (parameters[XZ6] * t56 + parameters[YZ6] * t57 + parameters[ZZ6] * t58);
-    const rx90_real_t t62 = t54 * t48 + t55 * t35;
-    const rx90_real_t t63 = t55 * t48 - t54 * t35;
-    const rx90_real_t t64 = t59 + t60 + t61 + parameters[M6] * (t50 + (t62 * t62 + t63 * t63));
-    const rx90_real_t t65 = parameters[MX6] * (t58 * t63 - t57 * t49) + parameters[MY6] * (t56 * t49
-        + t58 * t62);
-    const rx90_real_t t66 = t53 + RX90_C(0.5) * t64 + (t65 - parameters[MZ6] * (t57 * t62 + t56 * t63));
+    const rx90_real_t t56 = t54 * t48 + t55 * t29;
+    const rx90_real_t t57 = t55 * t48 - t54 * t29;
+    const rx90_real_t t58 = t55 * t44 - t54 * t42;
+    const rx90_real_t t59 = t55 * t42 + t54 * t44;
+    const rx90_real_t t60 = t43 - dq[5];
+    const rx90_real_t t61 = t58 * (parameters[XX6] * t58 + parameters[XY6] * t59 + parameters[XZ6] * t60);
+    const rx90_real_t t62 = t59 * (parameters[XY6] * t58 + parameters[YY6] * t59 + parameters[YZ6] * t60);
+    const rx90_real_t t63 = t60 * (parameters[XZ6] * t58 + parameters[YZ6] * t59 + parameters[ZZ6] * t60);
+    const rx90_real_t t64 = t61 + t62 + t63 + parameters[M6] * (t50 + (t56 * t56 + t57 * t57));
+    const rx90_real_t t65 = parameters[MX6] * (t60 * t57 - t59 * t49) + parameters[MY6] * (t58 * t49
+        + t60 * t56);
+    const rx90_real_t t66 = t53 + RX90_C(0.5) * t64 + (t65 - parameters[MZ6] * (t59 * t56 + t58 * t57));
     const rx90_real_t t67 = t66 + RX90_C(0.5) * (dq[0] * dq[0] * (RX90_C(1.0e4) * parameters[IA1]))
         + RX90_C(0.5) * (dq[1] * dq[1] * (RX90_C(1.0e4) * parameters[IA2]));
     const rx90_real_t t68 = t67 + RX90_C(0.5) * (dq[2] * dq[2] * (RX90_C(1.0e4) * parameters[IA3]))
@@ -212,14 +212,14 @@ int rx90_energy_standard(
         + RX90_C(0.5) * (dq[5] * dq[5] * (RX90_C(9.0e2) * parameters[IA6]));
     kinetic[0] = t69;
     const rx90_real_t t70 = RX90_C(9.81) * t0;
-    const rx90_real_t t71 = RX90_C(9.81) * t2;
-    const rx90_real_t t72 = t8 * t70 + t9 * t71;
-    const rx90_real_t t73 = t8 * t71 - t9 * t70;
+    const rx90_real_t t71 = RX90_C(9.81) * t3;
+    const rx90_real_t t72 = t2 * t70 + t5 * t71;
+    const rx90_real_t t73 = t2 * t71 - t5 * t70;
     const rx90_real_t t74 = RX90_C(4.4145) * t0;
     const rx90_real_t t75 = RX90_C(9.81) * parameters[MZ1] + (t70 * parameters[MX2] + t71 * parameters[MY2])
         + (t72 * parameters[MX3] + t73 * parameters[MY3] + parameters[M3] * t74);
     const rx90_real_t t76 = t25 * t72;
-    const rx90_real_t t77 = t24 * t72;
+    const rx90_real_t t77 = t27 * t72;
     const rx90_real_t t78 = t74 + RX90_C(0.45) * t73;
     const rx90_real_t t79 = t76 * parameters[MX4] - t77 * parameters[MY4] + t73 * parameters[MZ4]
         + parameters[M4] * t78;

@@ -80,7 +80,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -107,365 +107,365 @@ int rx90_forward_dynamics(
         return status;
     }
 
-    rx90_real_t t2, t3;
-    RX90_SINCOS(q[1], &t2, &t3);
-    rx90_real_t t13, t12;
-    RX90_SINCOS(q[2], &t13, &t12);
-    rx90_real_t t26, t25;
-    RX90_SINCOS(q[3], &t26, &t25);
-    rx90_real_t t52, t51;
-    RX90_SINCOS(q[4], &t52, &t51);
-    rx90_real_t t75, t74;
-    RX90_SINCOS(q[5], &t75, &t74);
-    const rx90_real_t t0 = rx90_sign(dq[0]);
-    const rx90_real_t t1 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0]))
-        + RX90_C(-1.0e2) * (parameters[FC1] * t0);
-    const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t5 = dq[1] * t4;
-    const rx90_real_t t6 = t2 * dq[0];
-    const rx90_real_t t7 = dq[1] * t6;
-    const rx90_real_t t8 = parameters[XY2] * (RX90_C(2.0) * t7) - (parameters[XX2R] * t5
-        + parameters[ZZ2R] * t5);
-    const rx90_real_t t9 = t6 * t4;
-    const rx90_real_t t10 = dq[1] * dq[1];
-    const rx90_real_t t11 = t4 * t4;
-    const rx90_real_t t14 = t12 * t4 - t13 * t6;
-    const rx90_real_t t15 = dq[1] + dq[2];
-    const rx90_real_t t16 = t14 * t15;
-    const rx90_real_t t17 = t12 * t6 + t13 * t4;
-    const rx90_real_t t18 = t17 * t15;
-    const rx90_real_t t19 = RX90_C(2.0) * t18;
-    const rx90_real_t t20 = t17 * t14;
-    const rx90_real_t t21 = parameters[XY3] * t19 - (parameters[XX3R] * t16 + parameters[ZZ3R] * t16)
-        - parameters[XZ3] * t20;
-    const rx90_real_t t22 = t14 * t14;
-    const rx90_real_t t23 = t15 * t15;
-    const rx90_real_t t24 = RX90_C(-0.9) * t7;
-    const rx90_real_t t27 = RX90_C(2.0) * t16;
-    const rx90_real_t t28 = t26 * t20 + t25 * t27;
-    const rx90_real_t t29 = t26 * t17 + t25 * t15;
-    const rx90_real_t t30 = dq[3] + t14;
-    const rx90_real_t t31 = t29 * t30;
-    const rx90_real_t t32 = t28 - t31;
-    const rx90_real_t t33 = t25 * t17 - t26 * t15;
-    const rx90_real_t t34 = t33 * t30;
-    const rx90_real_t t35 = t26 * t27 - t25 * t20;
-    const rx90_real_t t36 = t35 + t34;
-    const rx90_real_t t37 = t34 + t36;
-    const rx90_real_t t38 = t33 * t29;
-    const rx90_real_t t39 = t18 + t38;
-    const rx90_real_t t40 = parameters[ZZ4R] * t31 - parameters[XX4R] * t32 + parameters[XY4] * t37
-        + parameters[XZ4] * t39;
-    const rx90_real_t t41 = t29 * t29;
-    const rx90_real_t t42 = t30 * t30;
-    const rx90_real_t t43 = RX90_C(9.81) * t2;
-    const rx90_real_t t44 = t43 - RX90_C(0.45) * (t10 + t11);
-    const rx90_real_t t45 = RX90_C(-9.81) * t3;
-    const rx90_real_t t46 = t45 + RX90_C(-0.45) * t9;
-    const rx90_real_t t47 = t13 * t44 + t12 * t46;
-    const rx90_real_t t48 = t17 * t17;
-    const rx90_real_t t49 = t48 + t23;
-    const rx90_real_t t50 = t47 + RX90_C(0.45) * t49;
-    const rx90_real_t t53 = t38 - t18;
-    const rx90_real_t t54 = t32 - t31;
-    const rx90_real_t t55 = t52 * t53 + t51 * t54;
-    const rx90_real_t t56 = t52 * t33 - t51 * t30;
-    const rx90_real_t t57 = dq[4] + t29;
-    const rx90_real_t t58 = t56 * t57;
-    const rx90_real_t t59 = t55 - t58;
-    const rx90_real_t t60 = t51 * t33 + t52 * t30;
-    const rx90_real_t t61 = t60 * t57;
-    const rx90_real_t t62 = t51 * t53 - t52 * t54;
-    const rx90_real_t t63 = t62 - t61;
-    const rx90_real_t t64 = t61 - t63;
-    const rx90_real_t t65 = t60 * t56;
-    const rx90_real_t t66 = t36 - t65;
-    const rx90_real_t t67 = parameters[ZZ5R] * t58 - parameters[XX5R] * t59 + parameters[XY5] * t64
-        - parameters[XZ5] * t66;
-    const rx90_real_t t68 = t56 * t56;
-    const rx90_real_t t69 = t57 * t57;
-    const rx90_real_t t70 = t13 * t46 - t12 * t44;
-    const rx90_real_t t71 = t70 + RX90_C(-0.45) * t20;
-    const rx90_real_t t72 = t24 + RX90_C(-0.9) * t16;
-    const rx90_real_t t73 = t26 * t71 + t25 * t72;
-    const rx90_real_t t76 = t36 + t65;
-    const rx90_real_t t77 = t59 - t58;
-    const rx90_real_t t78 = t74 * t77 - t75 * t76;
-    const rx90_real_t t79 = t75 * t60 + t74 * t57;
-    const rx90_real_t t80 = dq[5] - t56;
-    const rx90_real_t t81 = t79 * t80;
-    const rx90_real_t t82 = t78 - t81;
-    const rx90_real_t t83 = t74 * t60 - t75 * t57;
-    const rx90_real_t t84 = t83 * t80;
-    const rx90_real_t t85 = t74 * t76 + t75 * t77;
-    const rx90_real_t t86 = t84 + (t85 + t84);
-    const rx90_real_t t87 = t83 * t79;
-    const rx90_real_t t88 = t87 - t63;
-    const rx90_real_t t89 = parameters[ZZ6] * t81 - parameters[XX6R] * t82 + parameters[XY6] * t86
-        + parameters[XZ6] * t88;
-    const rx90_real_t t90 = t79 * t79;
-    const rx90_real_t t91 = t80 * t80;
-    const rx90_real_t t92 = t26 * t72 - t25 * t71;
-    const rx90_real_t t93 = t52 * t92 + t51 * t50;
-    const rx90_real_t t94 = t89 - parameters[YZ6] * (t90 - t91) + parameters[MY6] * t93;
-    const rx90_real_t t95 = t82 - t81;
-    const rx90_real_t t96 = t63 + t87;
-    const rx90_real_t t97 = t84 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t95
-        + parameters[YZ6] * t96;
-    const rx90_real_t t98 = t83 * t83;
-    const rx90_real_t t99 = t97 + parameters[XZ6] * (t91 - t98) + parameters[MX6] * t93;
-    const rx90_real_t t100 = t67 + parameters[YZ5] * (t69 - t68) + parameters[MY5R] * t73 + (t74 * t94
-        + t75 * t99);
-    const rx90_real_t t101 = t61 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t77
-        + parameters[YZ5] * t76;
-    const rx90_real_t t102 = t60 * t60;
-    const rx90_real_t t103 = parameters[ZZ6] * t63 + parameters[XX6R] * t87 - parameters[YZ6] * t85
-        + parameters[XZ6] * t78;
-    const rx90_real_t t104 = t52 * t50 - t51 * t92;
-    const rx90_real_t t105 = parameters[MX6] * (t75 * t104 + t74 * t73) + parameters[MY6] * (t74 * t104
-        - t75 * t73);
-    const rx90_real_t t106 = t103 + parameters[XY6] * (t98 - t90) + t105;
-    const rx90_real_t t107 = t101 + parameters[XZ5] * (t69 - t102) + parameters[MX5] * t73 + t106;
-    const rx90_real_t t108 = t40 + parameters[YZ4] * (t42 - t41) + parameters[MY4R] * t50 + (t51 * t100
-        + t52 * t107);
-    const rx90_real_t t109 = t34 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t54
-        + parameters[YZ4] * t53;
-    const rx90_real_t t110 = t33 * t33;
-    const rx90_real_t t111 = parameters[ZZ5R] * t36 + parameters[XX5R] * t65 + parameters[YZ5] * t62
-        + parameters[XZ5] * t55;
-    const rx90_real_t t112 = parameters[XY5] * (t68 - t102) - t111 + (parameters[MX5] * t93
-        - parameters[MY5R] * t104);
-    const rx90_real_t t113 = t112 + (t74 * t99 - t75 * t94);
-    const rx90_real_t t114 = t109 + parameters[XZ4] * (t42 - t110) + parameters[MX4] * t50 + t113;
-    const rx90_real_t t115 = parameters[MX6] * (t90 + t91) + parameters[MY6] * t96;
-    const rx90_real_t t116 = parameters[MX6] * t88 + parameters[MY6] * (t98 + t91);
-    const rx90_real_t t117 = parameters[MX5] * (t68 + t69) + parameters[MY5R] * t76 + (t74 * t115
-        - t75 * t116);
-    const rx90_real_t t118 = parameters[MX5] * t66 - parameters[MY5R] * (t102 + t69) + (parameters[MX6] * t86
-        + parameters[MY6] * t95);
-    const rx90_real_t t119 = parameters[MX4] * (t41 + t42) + parameters[MY4R] * t53 + (t51 * t117
-        + t52 * t118);
-    const rx90_real_t t120 = parameters[MX5] * t64 + parameters[MY5R] * t77 + (t75 * t115 + t74 * t116);
-    const rx90_real_t t121 = parameters[MX4] * t39 + parameters[MY4R] * (t110 + t42) + t120;
-    const rx90_real_t t122 = t26 * t119 + t25 * t121;
-    const rx90_real_t t123 = t21 + parameters[YZ3] * (t23 - t22) + parameters[MY3R] * t24 + (t25 * t108
-        + t26 * t114 + RX90_C(-0.45) * t122);
-    const rx90_real_t t124 = t18 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t27
-        - parameters[YZ3] * t20;
-    const rx90_real_t t125 = parameters[ZZ4R] * t18 - parameters[XX4R] * t38 + parameters[YZ4] * t35
-        - parameters[XZ4] * t28;
-    const rx90_real_t t126 = t125 - parameters[XY4] * (t110 - t41) + (parameters[MY4R] * t92
-        - parameters[MX4] * t73);
-    const rx90_real_t t127 = t126 + (t52 * t100 - t51 * t107);
-    const rx90_real_t t128 = t124 - parameters[XZ3] * (t48 - t23) + parameters[MX3] * t24 - t127;
-    const rx90_real_t t129 = t8 - parameters[XZ2R] * t9 + parameters[YZ2] * (t10 - t11) + (t12 * t123
-        + t13 * t128);
-    const rx90_real_t t130 = t7 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (RX90_C(-2.0) * t5) + parameters[YZ2] * t9;
-    const rx90_real_t t131 = t6 * t6;
-    const rx90_real_t t132 = t13 * t123 - t12 * t128 + RX90_C(0.45) * (parameters[MX3] * t19
-        + parameters[MY3R] * t27 + t122);
-    const rx90_real_t t133 = t2 * t129 + t3 * (t130 + parameters[XZ2R] * (t131 - t10) + t132);
-    const rx90_real_t t134 = rx90_sign(dq[5]);
-    const rx90_real_t t135 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5]))
-        + RX90_C(30.0) * (parameters[FC6] * t134);
-    const rx90_real_t t136 = RX90_C(6.0) * input[5] - (t135 + t106);
-    const rx90_real_t t137 = t75 * parameters[YZ6] - t74 * parameters[XZ6];
-    const rx90_real_t t138 = t51 * t137 + t52 * parameters[ZZ6];
-    const rx90_real_t t139 = t75 * parameters[XZ6] + t74 * parameters[YZ6];
-    const rx90_real_t t140 = t74 * parameters[MY6] + t75 * parameters[MX6];
-    const rx90_real_t t141 = t51 * t140;
-    const rx90_real_t t142 = t75 * parameters[MY6] - t74 * parameters[MX6];
-    const rx90_real_t t143 = RX90_C(0.45) * (t26 * t141 + t25 * t142);
-    const rx90_real_t t144 = t25 * t138 + t26 * t139 - t143;
-    const rx90_real_t t145 = t51 * parameters[ZZ6] - t52 * t137;
-    const rx90_real_t t146 = t2 * (t12 * t144 + t13 * t145) + t3 * (t143 + (t13 * t144 - t12 * t145));
-    const rx90_real_t t147 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
-    if (!(t147 > RX90_C(1.0e-9))) {
+    rx90_real_t t90, t88;
+    RX90_SINCOS(q[1], &t90, &t88);
+    rx90_real_t t62, t63;
+    RX90_SINCOS(q[2], &t62, &t63);
+    rx90_real_t t28, t30;
+    RX90_SINCOS(q[3], &t28, &t30);
+    rx90_real_t t11, t13;
+    RX90_SINCOS(q[4], &t11, &t13);
+    rx90_real_t t1, t2;
+    RX90_SINCOS(q[5], &t1, &t2);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    if (!(t0 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t148 = RX90_C(-1.0) / t147;
-    const rx90_real_t t149 = t146 * t148;
-    const rx90_real_t t150 = rx90_sign(dq[4]);
-    const rx90_real_t t151 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4]))
-        + RX90_C(50.0) * (parameters[FC5] * t150);
-    const rx90_real_t t152 = t139 * t148;
-    const rx90_real_t t153 = RX90_C(10.0) * input[4] - (t151 - t113) - t136 * t152;
-    const rx90_real_t t154 = parameters[XY6] * (RX90_C(2.0) * t75) - t74 * parameters[XX6R];
-    const rx90_real_t t155 = parameters[XZ5] - (parameters[XY6] - t75 * t154);
-    const rx90_real_t t156 = parameters[YZ5] - t139;
-    const rx90_real_t t157 = t52 * t156 - t51 * t155;
-    const rx90_real_t t158 = t74 * t154;
-    const rx90_real_t t159 = parameters[ZZ5R] + (parameters[XX6R] + t158);
-    const rx90_real_t t160 = t142 - parameters[MX5];
-    const rx90_real_t t161 = t52 * t160 - t51 * parameters[MY5R];
-    const rx90_real_t t162 = RX90_C(-0.45) * (t26 * t161);
-    const rx90_real_t t163 = t25 * t157 - t26 * t159 - t162;
-    const rx90_real_t t164 = t52 * t155 + t51 * t156;
-    const rx90_real_t t165 = t2 * (t12 * t163 + t13 * t164) + t3 * (t162 + (t13 * t163 - t12 * t164));
-    const rx90_real_t t166 = t165 - t146 * t152;
-    const rx90_real_t t167 = t159 + RX90_C(2.5e3) * parameters[IA5] + t139 * t152;
-    if (!(t167 > RX90_C(1.0e-9))) {
+    const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
+    const rx90_real_t t4 = RX90_C(-1.0) / t0;
+    const rx90_real_t t5 = t3 * t4;
+    const rx90_real_t t6 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * parameters[XX6R];
+    const rx90_real_t t7 = t2 * t6;
+    const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
+    const rx90_real_t t9 = t8 + RX90_C(2.5e3) * parameters[IA5] + t3 * t5;
+    if (!(t9 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t168 = RX90_C(1.0) / t167;
-    const rx90_real_t t169 = t166 * t168;
-    const rx90_real_t t170 = RX90_C(30.0) * input[0] + (t1 + t133) - t136 * t149 + t153 * t169;
-    const rx90_real_t t171 = rx90_sign(dq[3]);
-    const rx90_real_t t172 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3]))
-        + RX90_C(50.0) * (parameters[FC4] * t171);
-    const rx90_real_t t173 = t145 * t148;
-    const rx90_real_t t174 = t164 - t145 * t152;
-    const rx90_real_t t175 = t174 * t168;
-    const rx90_real_t t176 = RX90_C(10.0) * input[3] - (t172 - t127) + t136 * t173 - t153 * t175;
-    const rx90_real_t t177 = t137 - parameters[XY5];
-    const rx90_real_t t178 = parameters[XX5R] - t158;
-    const rx90_real_t t179 = t51 * (parameters[ZZ6] - t178) - t177 * (RX90_C(2.0) * t52);
-    const rx90_real_t t180 = t177 + t52 * t179 - parameters[XZ4];
-    const rx90_real_t t181 = t164 - parameters[YZ4];
-    const rx90_real_t t182 = parameters[MY4R] + t140;
-    const rx90_real_t t183 = t52 * parameters[MY5R] + t51 * t160;
-    const rx90_real_t t184 = t183 - parameters[MX4];
-    const rx90_real_t t185 = t26 * t182 + t25 * t184;
-    const rx90_real_t t186 = RX90_C(0.45) * t185;
-    const rx90_real_t t187 = t26 * t181 - t25 * t180 + t186;
-    const rx90_real_t t188 = t51 * t179;
-    const rx90_real_t t189 = parameters[ZZ4R] + (t178 + t188);
-    const rx90_real_t t190 = t2 * (t13 * t189 - t12 * t187) + t3 * (t186 - (t13 * t187 + t12 * t189));
-    const rx90_real_t t191 = t190 + t146 * t173 - t166 * t175;
-    const rx90_real_t t192 = t189 + RX90_C(2.5e3) * parameters[IA4] + t145 * t173 - t174 * t175;
-    if (!(t192 > RX90_C(1.0e-9))) {
+    const rx90_real_t t10 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
+    const rx90_real_t t12 = parameters[YZ5] - t3;
+    const rx90_real_t t14 = t11 * t10 + t13 * t12;
+    const rx90_real_t t15 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const rx90_real_t t16 = t13 * parameters[ZZ6] - t11 * t15;
+    const rx90_real_t t17 = t14 - t16 * t5;
+    const rx90_real_t t18 = RX90_C(1.0) / t9;
+    const rx90_real_t t19 = t17 * t18;
+    const rx90_real_t t20 = parameters[XX5R] - t7;
+    const rx90_real_t t21 = t15 - parameters[XY5];
+    const rx90_real_t t22 = t13 * (parameters[ZZ6] - t20) - t21 * (RX90_C(2.0) * t11);
+    const rx90_real_t t23 = t13 * t22;
+    const rx90_real_t t24 = parameters[ZZ4R] + (t20 + t23);
+    const rx90_real_t t25 = t16 * t4;
+    const rx90_real_t t26 = t24 + RX90_C(2.5e3) * parameters[IA4] + t16 * t25 - t17 * t19;
+    if (!(t26 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t193 = RX90_C(-1.0) / t192;
-    const rx90_real_t t194 = t191 * t193;
-    const rx90_real_t t195 = rx90_sign(dq[2]);
-    const rx90_real_t t196 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2]))
-        + RX90_C(1.0e2) * (parameters[FC3] * t195);
-    const rx90_real_t t197 = parameters[XY3] * (t48 - t22) - parameters[XX3R] * t20 - (parameters[MX3] * t47
-        - parameters[MY3R] * t70);
-    const rx90_real_t t198 = t25 * t119 - t26 * t121;
-    const rx90_real_t t199 = t197 + (t26 * t108 - t25 * t114 + RX90_C(0.45) * t198);
-    const rx90_real_t t200 = t25 * t141 - t26 * t142;
-    const rx90_real_t t201 = t25 * t139 - t26 * t138 - RX90_C(0.45) * t200;
-    const rx90_real_t t202 = t201 * t148;
-    const rx90_real_t t203 = t25 * t161;
-    const rx90_real_t t204 = t26 * t157 + t25 * t159 + RX90_C(-0.45) * t203;
-    const rx90_real_t t205 = t204 + t201 * t152;
-    const rx90_real_t t206 = t205 * t168;
-    const rx90_real_t t207 = RX90_C(30.0) * input[2] - (t196 + t199) - t136 * t202 - t153 * t206;
-    const rx90_real_t t208 = t26 * t184 - t25 * t182;
-    const rx90_real_t t209 = RX90_C(-0.45) * t208;
-    const rx90_real_t t210 = t26 * t180 + t25 * t181 + t209;
-    const rx90_real_t t211 = t210 - t201 * t173 - t205 * t175;
-    const rx90_real_t t212 = t211 * t193;
-    const rx90_real_t t213 = t207 + t176 * t212;
-    const rx90_real_t t214 = parameters[XY4] + t157;
-    const rx90_real_t t215 = parameters[XX4R] + (parameters[ZZ6] - t188);
-    const rx90_real_t t216 = t25 * (t215 - t159) + t214 * (RX90_C(-2.0) * t26);
-    const rx90_real_t t217 = t214 + t26 * t216 - parameters[XZ3];
-    const rx90_real_t t218 = parameters[YZ3] + t210;
-    const rx90_real_t t219 = t12 * t217 + t13 * t218;
-    const rx90_real_t t220 = t13 * t217 - t12 * t218;
-    const rx90_real_t t221 = t2 * t219 + t3 * t220 - t146 * t202 - t166 * t206;
-    const rx90_real_t t222 = t221 + t191 * t212;
-    const rx90_real_t t223 = t25 * t216;
-    const rx90_real_t t224 = RX90_C(-0.9) * t161;
-    const rx90_real_t t225 = parameters[ZZ3R] + (t215 - t223 + t224);
-    const rx90_real_t t226 = t225 + RX90_C(1.0e4) * parameters[IA3] + t201 * t202 - t205 * t206;
-    const rx90_real_t t227 = t226 + t211 * t212;
-    if (!(t227 > RX90_C(1.0e-9))) {
+    const rx90_real_t t27 = t21 + t11 * t22 - parameters[XZ4];
+    const rx90_real_t t29 = t14 - parameters[YZ4];
+    const rx90_real_t t31 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t32 = parameters[MY4R] + t31;
+    const rx90_real_t t33 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const rx90_real_t t34 = t33 - parameters[MX5];
+    const rx90_real_t t35 = t11 * parameters[MY5R] + t13 * t34;
+    const rx90_real_t t36 = t35 - parameters[MX4];
+    const rx90_real_t t37 = t28 * t36 - t30 * t32;
+    const rx90_real_t t38 = RX90_C(-0.45) * t37;
+    const rx90_real_t t39 = t28 * t27 + t30 * t29 + t38;
+    const rx90_real_t t40 = t13 * t15 + t11 * parameters[ZZ6];
+    const rx90_real_t t41 = t13 * t31;
+    const rx90_real_t t42 = t30 * t41 - t28 * t33;
+    const rx90_real_t t43 = t30 * t3 - t28 * t40 - RX90_C(0.45) * t42;
+    const rx90_real_t t44 = t11 * t12 - t13 * t10;
+    const rx90_real_t t45 = t11 * t34 - t13 * parameters[MY5R];
+    const rx90_real_t t46 = t30 * t45;
+    const rx90_real_t t47 = t28 * t44 + t30 * t8 + RX90_C(-0.45) * t46;
+    const rx90_real_t t48 = t47 + t43 * t5;
+    const rx90_real_t t49 = t39 - t43 * t25 - t48 * t19;
+    const rx90_real_t t50 = RX90_C(-1.0) / t26;
+    const rx90_real_t t51 = t49 * t50;
+    const rx90_real_t t52 = t43 * t4;
+    const rx90_real_t t53 = parameters[XX4R] + (parameters[ZZ6] - t23);
+    const rx90_real_t t54 = parameters[XY4] + t44;
+    const rx90_real_t t55 = t30 * (t53 - t8) + t54 * (RX90_C(-2.0) * t28);
+    const rx90_real_t t56 = t30 * t55;
+    const rx90_real_t t57 = RX90_C(-0.9) * t45;
+    const rx90_real_t t58 = parameters[ZZ3R] + (t53 - t56 + t57);
+    const rx90_real_t t59 = t48 * t18;
+    const rx90_real_t t60 = t58 + RX90_C(1.0e4) * parameters[IA3] + t43 * t52 - t48 * t59;
+    const rx90_real_t t61 = t60 + t49 * t51;
+    if (!(t61 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t228 = RX90_C(1.0) / t227;
-    const rx90_real_t t229 = t222 * t228;
-    const rx90_real_t t230 = rx90_sign(dq[1]);
-    const rx90_real_t t231 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1]))
-        + RX90_C(1.0e2) * (parameters[FC2] * t230);
-    const rx90_real_t t232 = parameters[XX2R] * t9 - parameters[XY2] * (t131 - t11) + (parameters[MX2R] * t45
-        + parameters[MY2] * t43);
-    const rx90_real_t t233 = t13 * (parameters[MX3] * (t22 + t23) - parameters[MY3R] * t20 + t198);
-    const rx90_real_t t234 = parameters[MX4] * t37 + parameters[MY4R] * t54 - (t52 * t117 - t51 * t118);
-    const rx90_real_t t235 = t233 + t12 * (parameters[MY3R] * t49 - parameters[MX3] * t20 - t234);
-    const rx90_real_t t236 = RX90_C(30.0) * input[1] - (t231 - (t232 - (t199 - RX90_C(0.45) * t235)));
-    const rx90_real_t t237 = t201 + RX90_C(0.45) * (t13 * t200 + t12 * (t52 * t140));
-    const rx90_real_t t238 = t237 * t148;
-    const rx90_real_t t239 = RX90_C(0.45) * (t12 * t183 - t13 * t203) - t204 - t237 * t152;
-    const rx90_real_t t240 = t239 * t168;
-    const rx90_real_t t241 = t210 + RX90_C(0.45) * (t13 * t208) - t237 * t173 + t239 * t175;
-    const rx90_real_t t242 = t241 * t193;
-    const rx90_real_t t243 = t236 - t136 * t238 + t153 * t240 + t176 * t242;
-    const rx90_real_t t244 = t161 - parameters[MY3R];
-    const rx90_real_t t245 = t185 - parameters[MX3];
-    const rx90_real_t t246 = t12 * t245 - t13 * t244;
-    const rx90_real_t t247 = RX90_C(0.45) * t246 - t225 - t237 * t202 - t239 * t206;
-    const rx90_real_t t248 = t247 - t241 * t212;
-    const rx90_real_t t249 = t248 * t228;
-    const rx90_real_t t250 = t243 + t213 * t249;
-    const rx90_real_t t251 = t2 * (t219 - t209 - parameters[XZ2R]) + t3 * (t220 - parameters[YZ2]);
-    const rx90_real_t t252 = t251 - t146 * t238 + t166 * t240 + t191 * t242;
-    const rx90_real_t t253 = t252 + t222 * t249;
-    const rx90_real_t t254 = RX90_C(-0.9) * t246;
-    const rx90_real_t t255 = parameters[ZZ2R] + (t225 + t254) + t237 * t238 - t239 * t240;
-    const rx90_real_t t256 = t255 + t241 * t242 - t248 * t249;
-    if (!(t256 > RX90_C(1.0e-9))) {
+    const rx90_real_t t64 = t43 + RX90_C(0.45) * (t62 * t42 + t63 * (t11 * t31));
+    const rx90_real_t t65 = RX90_C(0.45) * (t63 * t35 - t62 * t46) - t47 - t64 * t5;
+    const rx90_real_t t66 = t39 + RX90_C(0.45) * (t62 * t37) - t64 * t25 + t65 * t19;
+    const rx90_real_t t67 = t28 * t32 + t30 * t36;
+    const rx90_real_t t68 = t67 - parameters[MX3];
+    const rx90_real_t t69 = t45 - parameters[MY3R];
+    const rx90_real_t t70 = t63 * t68 - t62 * t69;
+    const rx90_real_t t71 = RX90_C(0.45) * t70 - t58 - t64 * t52 - t65 * t59;
+    const rx90_real_t t72 = t71 - t66 * t51;
+    const rx90_real_t t73 = RX90_C(1.0) / t61;
+    const rx90_real_t t74 = t72 * t73;
+    const rx90_real_t t75 = t66 * t50;
+    const rx90_real_t t76 = t65 * t18;
+    const rx90_real_t t77 = t64 * t4;
+    const rx90_real_t t78 = RX90_C(-0.9) * t70;
+    const rx90_real_t t79 = parameters[ZZ2R] + (t58 + t78) + t64 * t77 - t65 * t76;
+    const rx90_real_t t80 = t79 + t66 * t75 - t72 * t74;
+    if (!(t80 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t257 = RX90_C(1.0) / t256;
-    const rx90_real_t t258 = t253 * t257;
-    const rx90_real_t t259 = t170 - t176 * t194 + t213 * t229 + t250 * t258;
-    const rx90_real_t t260 = parameters[XX3R] + (t159 + t223 + t224);
-    const rx90_real_t t261 = parameters[XY3] + t187;
-    const rx90_real_t t262 = t12 * (t189 - t260) + t261 * (RX90_C(2.0) * t13);
-    const rx90_real_t t263 = t12 * t262;
-    const rx90_real_t t264 = parameters[XX2R] + (t189 - t263);
-    const rx90_real_t t265 = t261 - t13 * t262 + RX90_C(0.45) * (t12 * t244 + t13 * t245);
-    const rx90_real_t t266 = t3 * (t260 + t263 + t254 - t264) + (parameters[XY2] + t265) * (RX90_C(2.0) * t2);
-    const rx90_real_t t267 = parameters[ZZ1R] + (t264 + t3 * t266) + t146 * t149 - t166 * t169;
-    const rx90_real_t t268 = t267 + t191 * t194 - t222 * t229 - t253 * t258;
-    if (!(t268 > RX90_C(1.0e-9))) {
+    const rx90_real_t t81 = parameters[XX3R] + (t8 + t56 + t57);
+    const rx90_real_t t82 = RX90_C(0.45) * t67;
+    const rx90_real_t t83 = t28 * t29 - t30 * t27 + t82;
+    const rx90_real_t t84 = parameters[XY3] + t83;
+    const rx90_real_t t85 = t63 * (t24 - t81) + t84 * (RX90_C(2.0) * t62);
+    const rx90_real_t t86 = t63 * t85;
+    const rx90_real_t t87 = parameters[XX2R] + (t24 - t86);
+    const rx90_real_t t89 = t84 - t62 * t85 + RX90_C(0.45) * (t63 * t69 + t62 * t68);
+    const rx90_real_t t91 = t88 * (t81 + t86 + t78 - t87) + (parameters[XY2] + t89) * (RX90_C(2.0) * t90);
+    const rx90_real_t t92 = RX90_C(0.45) * (t28 * t41 + t30 * t33);
+    const rx90_real_t t93 = t30 * t40 + t28 * t3 - t92;
+    const rx90_real_t t94 = t90 * (t63 * t93 + t62 * t16) + t88 * (t92 + (t62 * t93 - t63 * t16));
+    const rx90_real_t t95 = t94 * t4;
+    const rx90_real_t t96 = RX90_C(-0.45) * (t28 * t45);
+    const rx90_real_t t97 = t30 * t44 - t28 * t8 - t96;
+    const rx90_real_t t98 = t90 * (t63 * t97 + t62 * t14) + t88 * (t96 + (t62 * t97 - t63 * t14));
+    const rx90_real_t t99 = t98 - t94 * t5;
+    const rx90_real_t t100 = t99 * t18;
+    const rx90_real_t t101 = parameters[ZZ1R] + (t87 + t88 * t91) + t94 * t95 - t99 * t100;
+    const rx90_real_t t102 = t90 * (t62 * t24 - t63 * t83) + t88 * (t82 - (t62 * t83 + t63 * t24));
+    const rx90_real_t t103 = t102 + t94 * t25 - t99 * t19;
+    const rx90_real_t t104 = t103 * t50;
+    const rx90_real_t t105 = t54 + t28 * t55 - parameters[XZ3];
+    const rx90_real_t t106 = parameters[YZ3] + t39;
+    const rx90_real_t t107 = t63 * t105 + t62 * t106;
+    const rx90_real_t t108 = t62 * t105 - t63 * t106;
+    const rx90_real_t t109 = t90 * t107 + t88 * t108 - t94 * t52 - t99 * t59;
+    const rx90_real_t t110 = t109 + t103 * t51;
+    const rx90_real_t t111 = t110 * t73;
+    const rx90_real_t t112 = t90 * (t107 - t38 - parameters[XZ2R]) + t88 * (t108 - parameters[YZ2]);
+    const rx90_real_t t113 = t112 - t94 * t77 + t99 * t76 + t103 * t75;
+    const rx90_real_t t114 = t113 + t110 * t74;
+    const rx90_real_t t115 = RX90_C(1.0) / t80;
+    const rx90_real_t t116 = t114 * t115;
+    const rx90_real_t t117 = t101 + t103 * t104 - t110 * t111 - t114 * t116;
+    if (!(t117 > RX90_C(1.0e-9))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t269 = RX90_C(1.0) / t268;
-    const rx90_real_t t270 = t259 * t269;
+    const rx90_real_t t118 = t90 * dq[0];
+    const rx90_real_t t119 = t88 * dq[0];
+    const rx90_real_t t120 = t63 * t118 + t62 * t119;
+    const rx90_real_t t121 = t63 * t119 - t62 * t118;
+    const rx90_real_t t122 = t120 * t121;
+    const rx90_real_t t123 = dq[1] + dq[2];
+    const rx90_real_t t124 = t121 * t123;
+    const rx90_real_t t125 = RX90_C(2.0) * t124;
+    const rx90_real_t t126 = t28 * t125 - t30 * t122;
+    const rx90_real_t t127 = t30 * t120 - t28 * t123;
+    const rx90_real_t t128 = dq[3] + t121;
+    const rx90_real_t t129 = t127 * t128;
+    const rx90_real_t t130 = t126 + t129;
+    const rx90_real_t t131 = t13 * t127 + t11 * t128;
+    const rx90_real_t t132 = t11 * t127 - t13 * t128;
+    const rx90_real_t t133 = t131 * t132;
+    const rx90_real_t t134 = t130 + t133;
+    const rx90_real_t t135 = t28 * t122 + t30 * t125;
+    const rx90_real_t t136 = t28 * t120 + t30 * t123;
+    const rx90_real_t t137 = t136 * t128;
+    const rx90_real_t t138 = t135 - t137;
+    const rx90_real_t t139 = t138 - t137;
+    const rx90_real_t t140 = t127 * t136;
+    const rx90_real_t t141 = t120 * t123;
+    const rx90_real_t t142 = t140 - t141;
+    const rx90_real_t t143 = t11 * t142 + t13 * t139;
+    const rx90_real_t t144 = dq[4] + t136;
+    const rx90_real_t t145 = t132 * t144;
+    const rx90_real_t t146 = t143 - t145;
+    const rx90_real_t t147 = t146 - t145;
+    const rx90_real_t t148 = t2 * t147 - t1 * t134;
+    const rx90_real_t t149 = t1 * t131 + t2 * t144;
+    const rx90_real_t t150 = dq[5] - t132;
+    const rx90_real_t t151 = t149 * t150;
+    const rx90_real_t t152 = t148 - t151;
+    const rx90_real_t t153 = t2 * t134 + t1 * t147;
+    const rx90_real_t t154 = t2 * t131 - t1 * t144;
+    const rx90_real_t t155 = t154 * t150;
+    const rx90_real_t t156 = t155 + (t153 + t155);
+    const rx90_real_t t157 = t13 * t142 - t11 * t139;
+    const rx90_real_t t158 = t131 * t144;
+    const rx90_real_t t159 = t157 - t158;
+    const rx90_real_t t160 = t154 * t149;
+    const rx90_real_t t161 = t160 - t159;
+    const rx90_real_t t162 = parameters[ZZ6] * t151 - parameters[XX6R] * t152 + parameters[XY6] * t156
+        + parameters[XZ6] * t161;
+    const rx90_real_t t163 = t149 * t149;
+    const rx90_real_t t164 = t150 * t150;
+    const rx90_real_t t165 = t119 * t119;
+    const rx90_real_t t166 = dq[1] * dq[1];
+    const rx90_real_t t167 = RX90_C(9.81) * t90;
+    const rx90_real_t t168 = t167 - RX90_C(0.45) * (t166 + t165);
+    const rx90_real_t t169 = t118 * t119;
+    const rx90_real_t t170 = RX90_C(-9.81) * t88;
+    const rx90_real_t t171 = t170 + RX90_C(-0.45) * t169;
+    const rx90_real_t t172 = t62 * t171 - t63 * t168;
+    const rx90_real_t t173 = t172 + RX90_C(-0.45) * t122;
+    const rx90_real_t t174 = dq[1] * t118;
+    const rx90_real_t t175 = RX90_C(-0.9) * t174;
+    const rx90_real_t t176 = t175 + RX90_C(-0.9) * t124;
+    const rx90_real_t t177 = t28 * t176 - t30 * t173;
+    const rx90_real_t t178 = t62 * t168 + t63 * t171;
+    const rx90_real_t t179 = t120 * t120;
+    const rx90_real_t t180 = t123 * t123;
+    const rx90_real_t t181 = t179 + t180;
+    const rx90_real_t t182 = t178 + RX90_C(0.45) * t181;
+    const rx90_real_t t183 = t11 * t177 + t13 * t182;
+    const rx90_real_t t184 = t162 - parameters[YZ6] * (t163 - t164) + parameters[MY6] * t183;
+    const rx90_real_t t185 = t152 - t151;
+    const rx90_real_t t186 = t159 + t160;
+    const rx90_real_t t187 = t155 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t185
+        + parameters[YZ6] * t186;
+    const rx90_real_t t188 = t154 * t154;
+    const rx90_real_t t189 = t187 + parameters[XZ6] * (t164 - t188) + parameters[MX6] * t183;
+    const rx90_real_t t190 = t158 - t159;
+    const rx90_real_t t191 = t130 - t133;
+    const rx90_real_t t192 = parameters[ZZ5R] * t145 - parameters[XX5R] * t146 + parameters[XY5] * t190
+        - parameters[XZ5] * t191;
+    const rx90_real_t t193 = t132 * t132;
+    const rx90_real_t t194 = t144 * t144;
+    const rx90_real_t t195 = t28 * t173 + t30 * t176;
+    const rx90_real_t t196 = t192 + parameters[YZ5] * (t194 - t193) + parameters[MY5R] * t195 + (t2 * t184
+        + t1 * t189);
+    const rx90_real_t t197 = parameters[ZZ6] * t159 + parameters[XX6R] * t160 - parameters[YZ6] * t153
+        + parameters[XZ6] * t148;
+    const rx90_real_t t198 = t11 * t182 - t13 * t177;
+    const rx90_real_t t199 = parameters[MX6] * (t1 * t198 + t2 * t195) + parameters[MY6] * (t2 * t198
+        - t1 * t195);
+    const rx90_real_t t200 = t197 + parameters[XY6] * (t188 - t163) + t199;
+    const rx90_real_t t201 = t158 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t147
+        + parameters[YZ5] * t134;
+    const rx90_real_t t202 = t131 * t131;
+    const rx90_real_t t203 = t201 + parameters[XZ5] * (t194 - t202) + parameters[MX5] * t195 + t200;
+    const rx90_real_t t204 = t129 + t130;
+    const rx90_real_t t205 = t141 + t140;
+    const rx90_real_t t206 = parameters[ZZ4R] * t137 - parameters[XX4R] * t138 + parameters[XY4] * t204
+        + parameters[XZ4] * t205;
+    const rx90_real_t t207 = t136 * t136;
+    const rx90_real_t t208 = t128 * t128;
+    const rx90_real_t t209 = t206 + parameters[YZ4] * (t208 - t207) + parameters[MY4R] * t182 + (t13 * t196
+        + t11 * t203);
+    const rx90_real_t t210 = parameters[ZZ5R] * t130 + parameters[XX5R] * t133 + parameters[YZ5] * t157
+        + parameters[XZ5] * t143;
+    const rx90_real_t t211 = parameters[XY5] * (t193 - t202) - t210 + (parameters[MX5] * t183
+        - parameters[MY5R] * t198);
+    const rx90_real_t t212 = t211 + (t2 * t189 - t1 * t184);
+    const rx90_real_t t213 = t129 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t139
+        + parameters[YZ4] * t142;
+    const rx90_real_t t214 = t127 * t127;
+    const rx90_real_t t215 = t213 + parameters[XZ4] * (t208 - t214) + parameters[MX4] * t182 + t212;
+    const rx90_real_t t216 = parameters[MX6] * (t163 + t164) + parameters[MY6] * t186;
+    const rx90_real_t t217 = parameters[MX6] * t161 + parameters[MY6] * (t188 + t164);
+    const rx90_real_t t218 = parameters[MX5] * (t193 + t194) + parameters[MY5R] * t134 + (t2 * t216
+        - t1 * t217);
+    const rx90_real_t t219 = parameters[MX5] * t191 - parameters[MY5R] * (t202 + t194)
+        + (parameters[MX6] * t156 + parameters[MY6] * t185);
+    const rx90_real_t t220 = parameters[MX4] * (t207 + t208) + parameters[MY4R] * t142 + (t13 * t218
+        + t11 * t219);
+    const rx90_real_t t221 = parameters[MX5] * t190 + parameters[MY5R] * t147 + (t1 * t216 + t2 * t217);
+    const rx90_real_t t222 = parameters[MX4] * t205 + parameters[MY4R] * (t214 + t208) + t221;
+    const rx90_real_t t223 = t28 * t220 + t30 * t222;
+    const rx90_real_t t224 = RX90_C(2.0) * t141;
+    const rx90_real_t t225 = parameters[XY3] * t224 - (parameters[XX3R] * t124 + parameters[ZZ3R] * t124)
+        - parameters[XZ3] * t122;
+    const rx90_real_t t226 = t121 * t121;
+    const rx90_real_t t227 = t225 + parameters[YZ3] * (t180 - t226) + parameters[MY3R] * t175 + (t30 * t209
+        + t28 * t215 + RX90_C(-0.45) * t223);
+    const rx90_real_t t228 = parameters[ZZ4R] * t141 - parameters[XX4R] * t140 + parameters[YZ4] * t126
+        - parameters[XZ4] * t135;
+    const rx90_real_t t229 = t228 - parameters[XY4] * (t214 - t207) + (parameters[MY4R] * t177
+        - parameters[MX4] * t195);
+    const rx90_real_t t230 = t229 + (t11 * t196 - t13 * t203);
+    const rx90_real_t t231 = t141 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t125
+        - parameters[YZ3] * t122;
+    const rx90_real_t t232 = t231 - parameters[XZ3] * (t179 - t180) + parameters[MX3] * t175 - t230;
+    const rx90_real_t t233 = dq[1] * t119;
+    const rx90_real_t t234 = parameters[XY2] * (RX90_C(2.0) * t174) - (parameters[XX2R] * t233
+        + parameters[ZZ2R] * t233);
+    const rx90_real_t t235 = t234 - parameters[XZ2R] * t169 + parameters[YZ2] * (t166 - t165) + (t63 * t227
+        + t62 * t232);
+    const rx90_real_t t236 = t62 * t227 - t63 * t232 + RX90_C(0.45) * (parameters[MX3] * t224
+        + parameters[MY3R] * t125 + t223);
+    const rx90_real_t t237 = t174 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (RX90_C(-2.0) * t233) + parameters[YZ2] * t169;
+    const rx90_real_t t238 = t118 * t118;
+    const rx90_real_t t239 = t90 * t235 + t88 * (t237 + parameters[XZ2R] * (t238 - t166) + t236);
+    const rx90_real_t t240 = rx90_sign(dq[0]);
+    const rx90_real_t t241 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0]))
+        + RX90_C(-1.0e2) * (parameters[FC1] * t240);
+    const rx90_real_t t242 = rx90_sign(dq[5]);
+    const rx90_real_t t243 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5]))
+        + RX90_C(30.0) * (parameters[FC6] * t242);
+    const rx90_real_t t244 = RX90_C(6.0) * input[5] - (t243 + t200);
+    const rx90_real_t t245 = rx90_sign(dq[4]);
+    const rx90_real_t t246 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4]))
+        + RX90_C(50.0) * (parameters[FC5] * t245);
+    const rx90_real_t t247 = RX90_C(10.0) * input[4] - (t246 - t212) - t244 * t5;
+    const rx90_real_t t248 = RX90_C(30.0) * input[0] + (t241 + t239) - t244 * t95 + t247 * t100;
+    const rx90_real_t t249 = rx90_sign(dq[3]);
+    const rx90_real_t t250 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3]))
+        + RX90_C(50.0) * (parameters[FC4] * t249);
+    const rx90_real_t t251 = RX90_C(10.0) * input[3] - (t250 - t230) + t244 * t25 - t247 * t19;
+    const rx90_real_t t252 = t30 * t220 - t28 * t222;
+    const rx90_real_t t253 = parameters[XY3] * (t179 - t226) - parameters[XX3R] * t122
+        - (parameters[MX3] * t178 - parameters[MY3R] * t172);
+    const rx90_real_t t254 = t253 + (t28 * t209 - t30 * t215 + RX90_C(0.45) * t252);
+    const rx90_real_t t255 = rx90_sign(dq[2]);
+    const rx90_real_t t256 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2]))
+        + RX90_C(1.0e2) * (parameters[FC3] * t255);
+    const rx90_real_t t257 = RX90_C(30.0) * input[2] - (t256 + t254) - t244 * t52 - t247 * t59;
+    const rx90_real_t t258 = t257 + t251 * t51;
+    const rx90_real_t t259 = t62 * (parameters[MX3] * (t226 + t180) - parameters[MY3R] * t122 + t252);
+    const rx90_real_t t260 = parameters[MX4] * t204 + parameters[MY4R] * t139 - (t11 * t218 - t13 * t219);
+    const rx90_real_t t261 = t259 + t63 * (parameters[MY3R] * t181 - parameters[MX3] * t122 - t260);
+    const rx90_real_t t262 = parameters[XX2R] * t169 - parameters[XY2] * (t238 - t165)
+        + (parameters[MX2R] * t170 + parameters[MY2] * t167);
+    const rx90_real_t t263 = rx90_sign(dq[1]);
+    const rx90_real_t t264 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1]))
+        + RX90_C(1.0e2) * (parameters[FC2] * t263);
+    const rx90_real_t t265 = RX90_C(30.0) * input[1] - (t264 - (t262 - (t254 - RX90_C(0.45) * t261)));
+    const rx90_real_t t266 = t265 - t244 * t77 + t247 * t76 + t251 * t75;
+    const rx90_real_t t267 = t266 + t258 * t74;
+    const rx90_real_t t268 = t248 - t251 * t104 + t258 * t111 + t267 * t116;
+    const rx90_real_t t269 = RX90_C(1.0) / t117;
+    const rx90_real_t t270 = t268 * t269;
     out[0] = t270;
     if (!(t270 >= RX90_C(-1.0e15) && t270 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t271 = t250 * t257 + t258 * t270;
+    const rx90_real_t t271 = t267 * t115 + t116 * t270;
     out[1] = t271;
     if (!(t271 >= RX90_C(-1.0e15) && t271 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t272 = t213 * t228 + t229 * t270 + t249 * t271;
+    const rx90_real_t t272 = t258 * t73 + t111 * t270 + t74 * t271;
     out[2] = t272;
     if (!(t272 >= RX90_C(-1.0e15) && t272 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t273 = t242 * t271 - (t176 * t193 + t194 * t270) + t212 * t272;
+    const rx90_real_t t273 = t75 * t271 - (t251 * t50 + t104 * t270) + t51 * t272;
     out[3] = t273;
     if (!(t273 >= RX90_C(-1.0e15) && t273 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t274 = t153 * t168 + t169 * t270 + t240 * t271 - t206 * t272;
-    const rx90_real_t t275 = t274 - t175 * t273;
+    const rx90_real_t t274 = t247 * t18 + t100 * t270 + t76 * t271 - t59 * t272;
+    const rx90_real_t t275 = t274 - t19 * t273;
     out[4] = t275;
     if (!(t275 >= RX90_C(-1.0e15) && t275 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t276 = t136 * t148 + t149 * t270 + t238 * t271 + t202 * t272;
-    out[5] = t173 * t273 - t276 - t152 * t275;
+    const rx90_real_t t276 = t244 * t4 + t95 * t270 + t77 * t271 + t52 * t272;
+    out[5] = t25 * t273 - t276 - t5 * t275;
     if (!(out[5] >= RX90_C(-1.0e15) && out[5] <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;

@@ -106,7 +106,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -134,396 +134,408 @@ int rx90_forward_dynamics_standard(
         return status;
     }
 
-    rx90_real_t t2, t3;
-    RX90_SINCOS(q[1], &t2, &t3);
-    rx90_real_t t16, t14;
-    RX90_SINCOS(q[2], &t16, &t14);
-    rx90_real_t t33, t32;
-    RX90_SINCOS(q[3], &t33, &t32);
-    rx90_real_t t59, t58;
-    RX90_SINCOS(q[4], &t59, &t58);
-    rx90_real_t t81, t80;
-    RX90_SINCOS(q[5], &t81, &t80);
-    const rx90_real_t t0 = rx90_sign(dq[0]);
-    const rx90_real_t t1 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1])
-        + RX90_C(-1.0e2) * (t0 * parameters[FC1]);
-    const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t5 = dq[1] * t4;
-    const rx90_real_t t6 = t2 * dq[0];
-    const rx90_real_t t7 = dq[1] * t6;
-    const rx90_real_t t8 = t5 * (parameters[YY2] - parameters[ZZ2]) - t5 * parameters[XX2]
-        + RX90_C(2.0) * t7 * parameters[XY2];
-    const rx90_real_t t9 = t6 * t4;
-    const rx90_real_t t10 = t4 * t4;
-    const rx90_real_t t11 = dq[1] * dq[1];
-    const rx90_real_t t12 = RX90_C(-9.81) * t3;
-    const rx90_real_t t13 = t8 - t9 * parameters[XZ2] + (t11 - t10) * parameters[YZ2] - t12 * parameters[MZ2];
-    const rx90_real_t t15 = dq[1] + dq[2];
-    const rx90_real_t t17 = t14 * t4 - t16 * t6;
-    const rx90_real_t t18 = t15 * t17;
-    const rx90_real_t t19 = t14 * t6 + t16 * t4;
-    const rx90_real_t t20 = t15 * t19;
-    const rx90_real_t t21 = RX90_C(2.0) * t20;
-    const rx90_real_t t22 = parameters[XY3] * t21 - (parameters[XX3] * t18 + t18 * (parameters[ZZ3]
-        - parameters[YY3]));
-    const rx90_real_t t23 = t19 * t17;
-    const rx90_real_t t24 = t15 * t15;
-    const rx90_real_t t25 = t17 * t17;
-    const rx90_real_t t26 = RX90_C(0.9) * t7;
-    const rx90_real_t t27 = RX90_C(-9.81) * t2;
-    const rx90_real_t t28 = t27 + RX90_C(0.45) * (t10 + t11);
-    const rx90_real_t t29 = t12 + RX90_C(-0.45) * t9;
-    const rx90_real_t t30 = t14 * t29 - t16 * t28;
-    const rx90_real_t t31 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t24 - t25)
-        - (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const rx90_real_t t34 = RX90_C(2.0) * t18;
-    const rx90_real_t t35 = t33 * t23 + t32 * t34;
-    const rx90_real_t t36 = t32 * t15 + t33 * t19;
-    const rx90_real_t t37 = dq[3] + t17;
-    const rx90_real_t t38 = t36 * t37;
-    const rx90_real_t t39 = t35 - t38;
-    const rx90_real_t t40 = t32 * t19 - t33 * t15;
-    const rx90_real_t t41 = t40 * t37;
-    const rx90_real_t t42 = t33 * t34 - t32 * t23;
-    const rx90_real_t t43 = t42 + t41;
-    const rx90_real_t t44 = t41 + t43;
-    const rx90_real_t t45 = t38 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t39
-        + parameters[XY4] * t44;
-    const rx90_real_t t46 = t40 * t36;
-    const rx90_real_t t47 = t20 + t46;
-    const rx90_real_t t48 = t36 * t36;
-    const rx90_real_t t49 = t37 * t37;
-    const rx90_real_t t50 = t19 * t19;
-    const rx90_real_t t51 = t24 + t50;
-    const rx90_real_t t52 = t30 + RX90_C(0.45) * t51;
-    const rx90_real_t t53 = t14 * t28 + t16 * t29;
-    const rx90_real_t t54 = t53 + RX90_C(-0.45) * t23;
-    const rx90_real_t t55 = t26 - RX90_C(-0.9) * t18;
-    const rx90_real_t t56 = t33 * t54 - t32 * t55;
-    const rx90_real_t t57 = t45 + parameters[XZ4] * t47 + parameters[YZ4] * (t49 - t48)
-        + (parameters[MY4] * t52 + parameters[MZ4] * t56);
-    const rx90_real_t t60 = t46 - t20;
-    const rx90_real_t t61 = t39 - t38;
-    const rx90_real_t t62 = t59 * t60 + t58 * t61;
-    const rx90_real_t t63 = t58 * t37 - t59 * t40;
-    const rx90_real_t t64 = dq[4] + t36;
-    const rx90_real_t t65 = t63 * t64;
-    const rx90_real_t t66 = t62 + t65;
-    const rx90_real_t t67 = t58 * t40 + t59 * t37;
-    const rx90_real_t t68 = t67 * t64;
-    const rx90_real_t t69 = t59 * t61 - t58 * t60;
-    const rx90_real_t t70 = t69 + t68;
-    const rx90_real_t t71 = t68 + t70;
-    const rx90_real_t t72 = t65 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t66
-        + parameters[XY5] * t71;
-    const rx90_real_t t73 = t67 * t63;
-    const rx90_real_t t74 = t43 + t73;
-    const rx90_real_t t75 = t63 * t63;
-    const rx90_real_t t76 = t64 * t64;
-    const rx90_real_t t77 = t32 * t54 + t33 * t55;
-    const rx90_real_t t78 = t59 * t77 - t58 * t52;
-    const rx90_real_t t79 = t72 - parameters[XZ5] * t74 + parameters[YZ5] * (t76 - t75)
-        + (parameters[MY5] * t56 + parameters[MZ5] * t78);
-    const rx90_real_t t82 = t43 - t73;
-    const rx90_real_t t83 = t65 + t66;
-    const rx90_real_t t84 = t80 * t83 - t81 * t82;
-    const rx90_real_t t85 = t81 * t67 + t80 * t64;
-    const rx90_real_t t86 = dq[5] + t63;
-    const rx90_real_t t87 = t85 * t86;
-    const rx90_real_t t88 = t84 - t87;
-    const rx90_real_t t89 = t80 * t67 - t81 * t64;
-    const rx90_real_t t90 = t89 * t86;
-    const rx90_real_t t91 = t80 * t82 + t81 * t83;
-    const rx90_real_t t92 = t91 + t90;
-    const rx90_real_t t93 = t90 + t92;
-    const rx90_real_t t94 = parameters[XY6] * t93 - (parameters[XX6] * t88 + t87 * (parameters[YY6]
+    rx90_real_t t97, t95;
+    RX90_SINCOS(q[1], &t97, &t95);
+    rx90_real_t t68, t69;
+    RX90_SINCOS(q[2], &t68, &t69);
+    rx90_real_t t30, t32;
+    RX90_SINCOS(q[3], &t30, &t32);
+    rx90_real_t t12, t14;
+    RX90_SINCOS(q[4], &t12, &t14);
+    rx90_real_t t1, t2;
+    RX90_SINCOS(q[5], &t1, &t2);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    if (!(t0 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
+    const rx90_real_t t4 = RX90_C(-1.0) / t0;
+    const rx90_real_t t5 = t3 * t4;
+    const rx90_real_t t6 = parameters[XX6] - parameters[YY6];
+    const rx90_real_t t7 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * t6;
+    const rx90_real_t t8 = t2 * t7;
+    const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
+    const rx90_real_t t10 = t9 + RX90_C(2.5e3) * parameters[IA5] + t3 * t5;
+    if (!(t10 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t11 = parameters[XZ5] - (parameters[XY6] - t1 * t7);
+    const rx90_real_t t13 = parameters[YZ5] - t3;
+    const rx90_real_t t15 = t12 * t11 + t14 * t13;
+    const rx90_real_t t16 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const rx90_real_t t17 = t14 * parameters[ZZ6] - t12 * t16;
+    const rx90_real_t t18 = t15 - t17 * t5;
+    const rx90_real_t t19 = RX90_C(1.0) / t10;
+    const rx90_real_t t20 = t18 * t19;
+    const rx90_real_t t21 = parameters[XX5] + (parameters[YY6] - t8);
+    const rx90_real_t t22 = parameters[YY5] + parameters[ZZ6];
+    const rx90_real_t t23 = t16 - parameters[XY5];
+    const rx90_real_t t24 = t14 * (t22 - t21) - t23 * (RX90_C(2.0) * t12);
+    const rx90_real_t t25 = t14 * t24;
+    const rx90_real_t t26 = parameters[ZZ4] + (t21 + t25);
+    const rx90_real_t t27 = t17 * t4;
+    const rx90_real_t t28 = t26 + RX90_C(2.5e3) * parameters[IA4] + t17 * t27 - t18 * t20;
+    if (!(t28 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t29 = t23 + t12 * t24 - parameters[XZ4];
+    const rx90_real_t t31 = t15 - parameters[YZ4];
+    const rx90_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t34 = parameters[MY4] - (parameters[MZ5] - t33);
+    const rx90_real_t t35 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const rx90_real_t t36 = t35 - parameters[MX5];
+    const rx90_real_t t37 = parameters[MY5] + parameters[MZ6];
+    const rx90_real_t t38 = t12 * t37 + t14 * t36;
+    const rx90_real_t t39 = t38 - parameters[MX4];
+    const rx90_real_t t40 = t30 * t39 - t32 * t34;
+    const rx90_real_t t41 = t30 * t29 + t32 * t31 + RX90_C(-0.45) * t40;
+    const rx90_real_t t42 = t14 * t16 + t12 * parameters[ZZ6];
+    const rx90_real_t t43 = t14 * t33;
+    const rx90_real_t t44 = t32 * t43 - t30 * t35;
+    const rx90_real_t t45 = t32 * t3 - t30 * t42 - RX90_C(0.45) * t44;
+    const rx90_real_t t46 = t12 * t13 - t14 * t11;
+    const rx90_real_t t47 = t12 * t36 - t14 * t37;
+    const rx90_real_t t48 = t32 * t47;
+    const rx90_real_t t49 = t30 * t46 + t32 * t9 + RX90_C(-0.45) * t48;
+    const rx90_real_t t50 = t49 + t45 * t5;
+    const rx90_real_t t51 = t41 - t45 * t27 - t50 * t20;
+    const rx90_real_t t52 = RX90_C(-1.0) / t28;
+    const rx90_real_t t53 = t51 * t52;
+    const rx90_real_t t54 = t45 * t4;
+    const rx90_real_t t55 = parameters[XX4] + (t22 - t25);
+    const rx90_real_t t56 = parameters[YY4] + t9;
+    const rx90_real_t t57 = parameters[XY4] + t46;
+    const rx90_real_t t58 = t32 * (t55 - t56) + t57 * (RX90_C(-2.0) * t30);
+    const rx90_real_t t59 = t32 * t58;
+    const rx90_real_t t60 = t47 - parameters[MZ4];
+    const rx90_real_t t61 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const rx90_real_t t62 = RX90_C(0.45) * t61;
+    const rx90_real_t t63 = RX90_C(0.45) * (t62 + RX90_C(-2.0) * t60);
+    const rx90_real_t t64 = parameters[ZZ3] + (t55 - t59 + t63);
+    const rx90_real_t t65 = t50 * t19;
+    const rx90_real_t t66 = t64 + RX90_C(1.0e4) * parameters[IA3] + t45 * t54 - t50 * t65;
+    const rx90_real_t t67 = t66 + t51 * t53;
+    if (!(t67 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t70 = t45 + RX90_C(0.45) * (t68 * t44 + t69 * (t12 * t33));
+    const rx90_real_t t71 = RX90_C(0.45) * (t69 * t38 - t68 * t48) - t49 - t70 * t5;
+    const rx90_real_t t72 = t41 + RX90_C(0.45) * (t68 * t40) - t70 * t27 + t71 * t20;
+    const rx90_real_t t73 = t30 * t34 + t32 * t39;
+    const rx90_real_t t74 = t73 - parameters[MX3];
+    const rx90_real_t t75 = t60 - t62 - parameters[MY3];
+    const rx90_real_t t76 = t69 * t74 - t68 * t75;
+    const rx90_real_t t77 = RX90_C(0.45) * t76 - t64 - t70 * t54 - t71 * t65;
+    const rx90_real_t t78 = t77 - t72 * t53;
+    const rx90_real_t t79 = RX90_C(1.0) / t67;
+    const rx90_real_t t80 = t78 * t79;
+    const rx90_real_t t81 = t72 * t52;
+    const rx90_real_t t82 = t71 * t19;
+    const rx90_real_t t83 = t70 * t4;
+    const rx90_real_t t84 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t61) + RX90_C(-2.0) * t76);
+    const rx90_real_t t85 = parameters[ZZ2] + (t64 + t84) + RX90_C(1.0e4) * parameters[IA2] + t70 * t83;
+    const rx90_real_t t86 = t85 - t71 * t82 + t72 * t81 - t78 * t80;
+    if (!(t86 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t87 = parameters[XX3] + (t56 + t59 + t63);
+    const rx90_real_t t88 = parameters[YY3] + t26;
+    const rx90_real_t t89 = RX90_C(0.45) * t73;
+    const rx90_real_t t90 = t30 * t31 - t32 * t29 + t89;
+    const rx90_real_t t91 = parameters[XY3] + t90;
+    const rx90_real_t t92 = t69 * (t87 - t88) - t91 * (RX90_C(2.0) * t68);
+    const rx90_real_t t93 = t69 * t92;
+    const rx90_real_t t94 = parameters[XX2] + (t88 + t93);
+    const rx90_real_t t96 = t91 + t68 * t92 + RX90_C(0.45) * (t69 * t75 + t68 * t74);
+    const rx90_real_t t98 = t95 * (parameters[YY2] + (t87 - t93 + t84) - t94) + (parameters[XY2]
+        + t96) * (RX90_C(2.0) * t97);
+    const rx90_real_t t99 = RX90_C(0.45) * (t30 * t43 + t32 * t35);
+    const rx90_real_t t100 = t32 * t42 + t30 * t3 - t99;
+    const rx90_real_t t101 = t97 * (t69 * t100 + t68 * t17) + t95 * (t99 + (t68 * t100 - t69 * t17));
+    const rx90_real_t t102 = t101 * t4;
+    const rx90_real_t t103 = parameters[ZZ1] + (t94 + t95 * t98) + RX90_C(1.0e4) * parameters[IA1]
+        + t101 * t102;
+    const rx90_real_t t104 = RX90_C(-0.45) * (t30 * t47);
+    const rx90_real_t t105 = t32 * t46 - t30 * t9 - t104;
+    const rx90_real_t t106 = t97 * (t69 * t105 + t68 * t15) + t95 * (t104 + (t68 * t105 - t69 * t15));
+    const rx90_real_t t107 = t106 - t101 * t5;
+    const rx90_real_t t108 = t107 * t19;
+    const rx90_real_t t109 = t97 * (t68 * t26 - t69 * t90) + t95 * (t89 - (t68 * t90 + t69 * t26));
+    const rx90_real_t t110 = t109 + t101 * t27 - t107 * t20;
+    const rx90_real_t t111 = t110 * t52;
+    const rx90_real_t t112 = t57 + t30 * t58 - parameters[XZ3];
+    const rx90_real_t t113 = parameters[YZ3] + t41;
+    const rx90_real_t t114 = t69 * t112 + t68 * t113;
+    const rx90_real_t t115 = t68 * t112 - t69 * t113;
+    const rx90_real_t t116 = t97 * t114 + t95 * t115 - t101 * t54 - t107 * t65;
+    const rx90_real_t t117 = t116 + t110 * t53;
+    const rx90_real_t t118 = t117 * t79;
+    const rx90_real_t t119 = t103 - t107 * t108 + t110 * t111 - t117 * t118;
+    const rx90_real_t t120 = t97 * (t114 + RX90_C(0.45) * (parameters[MZ3] + t40) - parameters[XZ2])
+        + t95 * (t115 - parameters[YZ2]);
+    const rx90_real_t t121 = t120 - t101 * t83 + t107 * t82 + t110 * t81;
+    const rx90_real_t t122 = t121 + t117 * t80;
+    const rx90_real_t t123 = RX90_C(1.0) / t86;
+    const rx90_real_t t124 = t122 * t123;
+    const rx90_real_t t125 = t119 - t122 * t124;
+    if (!(t125 > RX90_C(1.0e-9))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t126 = t97 * dq[0];
+    const rx90_real_t t127 = t95 * dq[0];
+    const rx90_real_t t128 = t69 * t126 + t68 * t127;
+    const rx90_real_t t129 = t69 * t127 - t68 * t126;
+    const rx90_real_t t130 = t128 * t129;
+    const rx90_real_t t131 = dq[1] + dq[2];
+    const rx90_real_t t132 = t131 * t129;
+    const rx90_real_t t133 = RX90_C(2.0) * t132;
+    const rx90_real_t t134 = t30 * t133 - t32 * t130;
+    const rx90_real_t t135 = t32 * t128 - t30 * t131;
+    const rx90_real_t t136 = dq[3] + t129;
+    const rx90_real_t t137 = t135 * t136;
+    const rx90_real_t t138 = t134 + t137;
+    const rx90_real_t t139 = t14 * t135 + t12 * t136;
+    const rx90_real_t t140 = t14 * t136 - t12 * t135;
+    const rx90_real_t t141 = t139 * t140;
+    const rx90_real_t t142 = t138 - t141;
+    const rx90_real_t t143 = t30 * t130 + t32 * t133;
+    const rx90_real_t t144 = t32 * t131 + t30 * t128;
+    const rx90_real_t t145 = t144 * t136;
+    const rx90_real_t t146 = t143 - t145;
+    const rx90_real_t t147 = t146 - t145;
+    const rx90_real_t t148 = t135 * t144;
+    const rx90_real_t t149 = t131 * t128;
+    const rx90_real_t t150 = t148 - t149;
+    const rx90_real_t t151 = t12 * t150 + t14 * t147;
+    const rx90_real_t t152 = dq[4] + t144;
+    const rx90_real_t t153 = t140 * t152;
+    const rx90_real_t t154 = t151 + t153;
+    const rx90_real_t t155 = t153 + t154;
+    const rx90_real_t t156 = t2 * t155 - t1 * t142;
+    const rx90_real_t t157 = t1 * t139 + t2 * t152;
+    const rx90_real_t t158 = dq[5] + t140;
+    const rx90_real_t t159 = t157 * t158;
+    const rx90_real_t t160 = t156 - t159;
+    const rx90_real_t t161 = t2 * t142 + t1 * t155;
+    const rx90_real_t t162 = t2 * t139 - t1 * t152;
+    const rx90_real_t t163 = t162 * t158;
+    const rx90_real_t t164 = t161 + t163;
+    const rx90_real_t t165 = t163 + t164;
+    const rx90_real_t t166 = parameters[XY6] * t165 - (parameters[XX6] * t160 + t159 * (parameters[YY6]
         - parameters[ZZ6]));
-    const rx90_real_t t95 = t89 * t85;
-    const rx90_real_t t96 = t70 + t95;
-    const rx90_real_t t97 = t85 * t85;
-    const rx90_real_t t98 = t86 * t86;
-    const rx90_real_t t99 = t58 * t77 + t59 * t52;
-    const rx90_real_t t100 = t81 * t99 + t80 * t56;
-    const rx90_real_t t101 = t94 + parameters[XZ6] * t96 - parameters[YZ6] * (t97 - t98)
-        + (parameters[MZ6] * t100 - parameters[MY6] * t78);
-    const rx90_real_t t102 = t88 - t87;
-    const rx90_real_t t103 = parameters[XY6] * t102 - (parameters[YY6] * t92 + t90 * (parameters[ZZ6]
+    const rx90_real_t t167 = t12 * t147 - t14 * t150;
+    const rx90_real_t t168 = t139 * t152;
+    const rx90_real_t t169 = t167 + t168;
+    const rx90_real_t t170 = t162 * t157;
+    const rx90_real_t t171 = t169 + t170;
+    const rx90_real_t t172 = t157 * t157;
+    const rx90_real_t t173 = t158 * t158;
+    const rx90_real_t t174 = t127 * t127;
+    const rx90_real_t t175 = dq[1] * dq[1];
+    const rx90_real_t t176 = RX90_C(-9.81) * t97;
+    const rx90_real_t t177 = t176 + RX90_C(0.45) * (t174 + t175);
+    const rx90_real_t t178 = t126 * t127;
+    const rx90_real_t t179 = RX90_C(-9.81) * t95;
+    const rx90_real_t t180 = t179 + RX90_C(-0.45) * t178;
+    const rx90_real_t t181 = t69 * t177 + t68 * t180;
+    const rx90_real_t t182 = t181 + RX90_C(-0.45) * t130;
+    const rx90_real_t t183 = dq[1] * t126;
+    const rx90_real_t t184 = RX90_C(0.9) * t183;
+    const rx90_real_t t185 = t184 - RX90_C(-0.9) * t132;
+    const rx90_real_t t186 = t32 * t182 + t30 * t185;
+    const rx90_real_t t187 = t69 * t180 - t68 * t177;
+    const rx90_real_t t188 = t128 * t128;
+    const rx90_real_t t189 = t131 * t131;
+    const rx90_real_t t190 = t189 + t188;
+    const rx90_real_t t191 = t187 + RX90_C(0.45) * t190;
+    const rx90_real_t t192 = t12 * t186 - t14 * t191;
+    const rx90_real_t t193 = t14 * t186 + t12 * t191;
+    const rx90_real_t t194 = t30 * t182 - t32 * t185;
+    const rx90_real_t t195 = t1 * t193 + t2 * t194;
+    const rx90_real_t t196 = t166 + parameters[XZ6] * t171 - parameters[YZ6] * (t172 - t173)
+        + (parameters[MZ6] * t195 - parameters[MY6] * t192);
+    const rx90_real_t t197 = t160 - t159;
+    const rx90_real_t t198 = parameters[XY6] * t197 - (parameters[YY6] * t164 + t163 * (parameters[ZZ6]
         - parameters[XX6]));
-    const rx90_real_t t104 = t95 - t70;
-    const rx90_real_t t105 = t89 * t89;
-    const rx90_real_t t106 = t80 * t99 - t81 * t56;
-    const rx90_real_t t107 = t103 + parameters[YZ6] * t104 + parameters[XZ6] * (t98 - t105)
-        - (parameters[MZ6] * t106 + parameters[MX6] * t78);
-    const rx90_real_t t108 = t79 + (t80 * t101 + t81 * t107);
-    const rx90_real_t t109 = parameters[XY5] * t83 - (parameters[YY5] * t70 + t68 * (parameters[ZZ5]
+    const rx90_real_t t199 = t170 - t169;
+    const rx90_real_t t200 = t162 * t162;
+    const rx90_real_t t201 = t2 * t193 - t1 * t194;
+    const rx90_real_t t202 = t198 + parameters[YZ6] * t199 + parameters[XZ6] * (t173 - t200)
+        - (parameters[MZ6] * t201 + parameters[MX6] * t192);
+    const rx90_real_t t203 = t168 + t169;
+    const rx90_real_t t204 = t153 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t154
+        + parameters[XY5] * t203;
+    const rx90_real_t t205 = t138 + t141;
+    const rx90_real_t t206 = t140 * t140;
+    const rx90_real_t t207 = t152 * t152;
+    const rx90_real_t t208 = t204 - parameters[XZ5] * t205 + parameters[YZ5] * (t207 - t206)
+        + (parameters[MY5] * t194 + parameters[MZ5] * t192);
+    const rx90_real_t t209 = t208 + (t2 * t196 + t1 * t202);
+    const rx90_real_t t210 = t6 * t170 - parameters[ZZ6] * t169 - parameters[YZ6] * t161
+        + parameters[XZ6] * t156;
+    const rx90_real_t t211 = t210 + parameters[XY6] * (t200 - t172) + (parameters[MX6] * t195
+        + parameters[MY6] * t201);
+    const rx90_real_t t212 = parameters[XY5] * t155 - (parameters[YY5] * t169 + t168 * (parameters[ZZ5]
         - parameters[XX5]));
-    const rx90_real_t t110 = t67 * t67;
-    const rx90_real_t t111 = t109 + parameters[YZ5] * t82 + parameters[XZ5] * (t76 - t110)
-        + (parameters[MX5] * t56 - parameters[MZ5] * t99);
-    const rx90_real_t t112 = parameters[XX6] - parameters[YY6];
-    const rx90_real_t t113 = t112 * t95 - parameters[ZZ6] * t70 - parameters[YZ6] * t91
-        + parameters[XZ6] * t84;
-    const rx90_real_t t114 = t113 + parameters[XY6] * (t105 - t97) + (parameters[MX6] * t100
-        + parameters[MY6] * t106);
-    const rx90_real_t t115 = t111 + t114;
-    const rx90_real_t t116 = t57 + (t58 * t108 + t59 * t115);
-    const rx90_real_t t117 = parameters[XY4] * t61 - (parameters[YY4] * t43 + t41 * (parameters[ZZ4]
+    const rx90_real_t t213 = t139 * t139;
+    const rx90_real_t t214 = t212 + parameters[YZ5] * t142 + parameters[XZ5] * (t207 - t213)
+        + (parameters[MX5] * t194 - parameters[MZ5] * t193);
+    const rx90_real_t t215 = t214 + t211;
+    const rx90_real_t t216 = t137 + t138;
+    const rx90_real_t t217 = t145 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t146
+        + parameters[XY4] * t216;
+    const rx90_real_t t218 = t149 + t148;
+    const rx90_real_t t219 = t144 * t144;
+    const rx90_real_t t220 = t136 * t136;
+    const rx90_real_t t221 = t217 + parameters[XZ4] * t218 + parameters[YZ4] * (t220 - t219)
+        + (parameters[MY4] * t191 + parameters[MZ4] * t194);
+    const rx90_real_t t222 = t221 + (t14 * t209 + t12 * t215);
+    const rx90_real_t t223 = parameters[YZ5] * t167 - (parameters[ZZ5] * t138 + t141 * (parameters[YY5]
+        - parameters[XX5]));
+    const rx90_real_t t224 = t223 - parameters[XZ5] * t151 + parameters[XY5] * (t206 - t213)
+        - (parameters[MX5] * t192 + parameters[MY5] * t193);
+    const rx90_real_t t225 = t224 + (t2 * t202 - t1 * t196);
+    const rx90_real_t t226 = parameters[XY4] * t147 - (parameters[YY4] * t138 + t137 * (parameters[ZZ4]
         - parameters[XX4]));
-    const rx90_real_t t118 = t40 * t40;
-    const rx90_real_t t119 = t117 + parameters[YZ4] * t60 + parameters[XZ4] * (t49 - t118)
-        + (parameters[MX4] * t52 - parameters[MZ4] * t77);
-    const rx90_real_t t120 = parameters[YZ5] * t69 - (parameters[ZZ5] * t43 + t73 * (parameters[YY5]
-        - parameters[XX5]));
-    const rx90_real_t t121 = t120 - parameters[XZ5] * t62 + parameters[XY5] * (t75 - t110)
-        - (parameters[MX5] * t78 + parameters[MY5] * t99);
-    const rx90_real_t t122 = t121 + (t80 * t107 - t81 * t101);
-    const rx90_real_t t123 = t119 + t122;
-    const rx90_real_t t124 = parameters[MX4] * (t48 + t49) + parameters[MY4] * t60 + parameters[MZ4] * t42;
-    const rx90_real_t t125 = parameters[MX5] * (t75 + t76) + parameters[MY5] * t82 + parameters[MZ5] * t69;
-    const rx90_real_t t126 = parameters[MX6] * (t97 + t98) + parameters[MY6] * t104 + parameters[MZ6] * t91;
-    const rx90_real_t t127 = parameters[M6] * t106 + t126;
-    const rx90_real_t t128 = parameters[MX6] * t96 + parameters[MY6] * (t105 + t98) + parameters[MZ6] * t84;
-    const rx90_real_t t129 = t128 - parameters[M6] * t100;
-    const rx90_real_t t130 = parameters[M5] * t99 + t125 + (t80 * t127 - t81 * t129);
-    const rx90_real_t t131 = parameters[MX5] * t74 - parameters[MY5] * (t110 + t76) - parameters[MZ5] * t62;
-    const rx90_real_t t132 = parameters[MX6] * t93 + parameters[MY6] * t102 - parameters[MZ6] * (t105 + t97);
-    const rx90_real_t t133 = parameters[M5] * t78 + t131 + (parameters[M6] * t78 + t132);
-    const rx90_real_t t134 = parameters[M4] * t77 + t124 + (t58 * t130 + t59 * t133);
-    const rx90_real_t t135 = parameters[MX4] * t47 + parameters[MY4] * (t118 + t49) + parameters[MZ4] * t35;
-    const rx90_real_t t136 = parameters[MX5] * t71 + parameters[MY5] * t83 - parameters[MZ5] * (t110 + t75);
-    const rx90_real_t t137 = t136 - parameters[M5] * t56 + (t81 * t127 + t80 * t129);
-    const rx90_real_t t138 = t135 - parameters[M4] * t56 + t137;
-    const rx90_real_t t139 = t33 * t134 + t32 * t138;
-    const rx90_real_t t140 = t31 + (t32 * t116 + t33 * t123 + RX90_C(-0.45) * t139);
-    const rx90_real_t t141 = parameters[YY3] * t20 - t20 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t34;
-    const rx90_real_t t142 = t141 + parameters[YZ3] * t23 - parameters[XZ3] * (t24 - t50)
-        + (parameters[MZ3] * t53 + parameters[MX3] * t26);
-    const rx90_real_t t143 = parameters[ZZ4] * t20 - t46 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t42;
-    const rx90_real_t t144 = t143 - parameters[XZ4] * t35 - parameters[XY4] * (t118 - t48)
-        - (parameters[MX4] * t56 + parameters[MY4] * t77);
-    const rx90_real_t t145 = t144 + (t59 * t108 - t58 * t115);
-    const rx90_real_t t146 = t142 + t145;
-    const rx90_real_t t147 = t7 * parameters[YY2] + t7 * (parameters[ZZ2] - parameters[XX2])
-        + RX90_C(-2.0) * t5 * parameters[XY2];
-    const rx90_real_t t148 = t6 * t6;
-    const rx90_real_t t149 = t147 + t9 * parameters[YZ2] + (t148 - t11) * parameters[XZ2]
-        + t27 * parameters[MZ2];
-    const rx90_real_t t150 = parameters[MX3] * t21 + parameters[MY3] * t34 - parameters[MZ3] * (t50 + t25);
-    const rx90_real_t t151 = t16 * t140 + t14 * t146 + RX90_C(0.45) * (parameters[M3] * t26 + t150 + t139);
-    const rx90_real_t t152 = t2 * (t13 + (t14 * t140 - t16 * t146)) + t3 * (t149 + t151);
-    const rx90_real_t t153 = rx90_sign(dq[5]);
-    const rx90_real_t t154 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6])
-        + RX90_C(30.0) * (t153 * parameters[FC6]);
-    const rx90_real_t t155 = RX90_C(6.0) * input[5] - (t154 + t114);
-    const rx90_real_t t156 = t81 * parameters[YZ6] - t80 * parameters[XZ6];
-    const rx90_real_t t157 = t58 * t156 + t59 * parameters[ZZ6];
-    const rx90_real_t t158 = t81 * parameters[XZ6] + t80 * parameters[YZ6];
-    const rx90_real_t t159 = t80 * parameters[MY6] + t81 * parameters[MX6];
-    const rx90_real_t t160 = t58 * t159;
-    const rx90_real_t t161 = t81 * parameters[MY6] - t80 * parameters[MX6];
-    const rx90_real_t t162 = RX90_C(0.45) * (t33 * t160 + t32 * t161);
-    const rx90_real_t t163 = t32 * t157 + t33 * t158 - t162;
-    const rx90_real_t t164 = t58 * parameters[ZZ6] - t59 * t156;
-    const rx90_real_t t165 = t2 * (t14 * t163 + t16 * t164) + t3 * (t162 + (t16 * t163 - t14 * t164));
-    const rx90_real_t t166 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
-    if (!(t166 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t167 = RX90_C(-1.0) / t166;
-    const rx90_real_t t168 = t165 * t167;
-    const rx90_real_t t169 = rx90_sign(dq[4]);
-    const rx90_real_t t170 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5])
-        + RX90_C(50.0) * (t169 * parameters[FC5]);
-    const rx90_real_t t171 = t158 * t167;
-    const rx90_real_t t172 = RX90_C(10.0) * input[4] - (t170 - t122) - t155 * t171;
-    const rx90_real_t t173 = parameters[XY6] * (RX90_C(2.0) * t81) - t80 * t112;
-    const rx90_real_t t174 = parameters[XZ5] - (parameters[XY6] - t81 * t173);
-    const rx90_real_t t175 = parameters[YZ5] - t158;
-    const rx90_real_t t176 = t59 * t175 - t58 * t174;
-    const rx90_real_t t177 = t80 * t173;
-    const rx90_real_t t178 = parameters[ZZ5] + (parameters[XX6] + t177);
-    const rx90_real_t t179 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t180 = t161 - parameters[MX5];
-    const rx90_real_t t181 = t59 * t180 - t58 * t179;
-    const rx90_real_t t182 = RX90_C(-0.45) * (t33 * t181);
-    const rx90_real_t t183 = t32 * t176 - t33 * t178 - t182;
-    const rx90_real_t t184 = t59 * t174 + t58 * t175;
-    const rx90_real_t t185 = t2 * (t14 * t183 + t16 * t184) + t3 * (t182 + (t16 * t183 - t14 * t184));
-    const rx90_real_t t186 = t185 - t165 * t171;
-    const rx90_real_t t187 = t178 + RX90_C(2.5e3) * parameters[IA5] + t158 * t171;
-    if (!(t187 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t188 = RX90_C(1.0) / t187;
-    const rx90_real_t t189 = t186 * t188;
-    const rx90_real_t t190 = RX90_C(30.0) * input[0] + (t1 + t152) - t155 * t168 + t172 * t189;
-    const rx90_real_t t191 = rx90_sign(dq[3]);
-    const rx90_real_t t192 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4])
-        + RX90_C(50.0) * (t191 * parameters[FC4]);
-    const rx90_real_t t193 = t164 * t167;
-    const rx90_real_t t194 = t184 - t164 * t171;
-    const rx90_real_t t195 = t194 * t188;
-    const rx90_real_t t196 = RX90_C(10.0) * input[3] - (t192 - t145) + t155 * t193 - t172 * t195;
-    const rx90_real_t t197 = t156 - parameters[XY5];
-    const rx90_real_t t198 = parameters[XX5] + (parameters[YY6] - t177);
-    const rx90_real_t t199 = parameters[YY5] + parameters[ZZ6];
-    const rx90_real_t t200 = t58 * (t199 - t198) - t197 * (RX90_C(2.0) * t59);
-    const rx90_real_t t201 = t197 + t59 * t200 - parameters[XZ4];
-    const rx90_real_t t202 = t184 - parameters[YZ4];
-    const rx90_real_t t203 = parameters[MY4] - (parameters[MZ5] - t159);
-    const rx90_real_t t204 = t59 * t179 + t58 * t180;
-    const rx90_real_t t205 = t204 - parameters[MX4];
-    const rx90_real_t t206 = t33 * t203 + t32 * t205;
-    const rx90_real_t t207 = RX90_C(0.45) * t206;
-    const rx90_real_t t208 = t33 * t202 - t32 * t201 + t207;
-    const rx90_real_t t209 = t58 * t200;
-    const rx90_real_t t210 = parameters[ZZ4] + (t198 + t209);
-    const rx90_real_t t211 = t2 * (t16 * t210 - t14 * t208) + t3 * (t207 - (t16 * t208 + t14 * t210));
-    const rx90_real_t t212 = t211 + t165 * t193 - t186 * t195;
-    const rx90_real_t t213 = t210 + RX90_C(2.5e3) * parameters[IA4] + t164 * t193 - t194 * t195;
-    if (!(t213 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t214 = RX90_C(-1.0) / t213;
-    const rx90_real_t t215 = t212 * t214;
-    const rx90_real_t t216 = rx90_sign(dq[2]);
-    const rx90_real_t t217 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3])
-        + RX90_C(1.0e2) * (t216 * parameters[FC3]);
-    const rx90_real_t t218 = parameters[XY3] * (t50 - t25) - t23 * (parameters[XX3] - parameters[YY3])
-        - (parameters[MX3] * t30 - parameters[MY3] * t53);
-    const rx90_real_t t219 = t33 * t138 - t32 * t134;
-    const rx90_real_t t220 = t218 + (t33 * t116 - t32 * t123 - RX90_C(0.45) * t219);
-    const rx90_real_t t221 = t32 * t160 - t33 * t161;
-    const rx90_real_t t222 = t32 * t158 - t33 * t157 - RX90_C(0.45) * t221;
-    const rx90_real_t t223 = t222 * t167;
-    const rx90_real_t t224 = t32 * t181;
-    const rx90_real_t t225 = t33 * t176 + t32 * t178 + RX90_C(-0.45) * t224;
-    const rx90_real_t t226 = t225 + t222 * t171;
-    const rx90_real_t t227 = t226 * t188;
-    const rx90_real_t t228 = RX90_C(30.0) * input[2] - (t217 + t220) - t155 * t223 - t172 * t227;
-    const rx90_real_t t229 = t33 * t205 - t32 * t203;
-    const rx90_real_t t230 = t33 * t201 + t32 * t202 + RX90_C(-0.45) * t229;
-    const rx90_real_t t231 = t230 - t222 * t193 - t226 * t195;
-    const rx90_real_t t232 = t231 * t214;
-    const rx90_real_t t233 = t228 + t196 * t232;
-    const rx90_real_t t234 = parameters[XY4] + t176;
-    const rx90_real_t t235 = parameters[XX4] + (t199 - t209);
-    const rx90_real_t t236 = parameters[YY4] + t178;
-    const rx90_real_t t237 = t32 * (t235 - t236) + t234 * (RX90_C(-2.0) * t33);
-    const rx90_real_t t238 = t234 + t33 * t237 - parameters[XZ3];
-    const rx90_real_t t239 = parameters[YZ3] + t230;
-    const rx90_real_t t240 = t14 * t238 + t16 * t239;
-    const rx90_real_t t241 = t16 * t238 - t14 * t239;
-    const rx90_real_t t242 = t2 * t240 + t3 * t241 - t165 * t223 - t186 * t227;
-    const rx90_real_t t243 = t242 + t212 * t232;
-    const rx90_real_t t244 = t32 * t237;
-    const rx90_real_t t245 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const rx90_real_t t246 = RX90_C(0.45) * t245;
-    const rx90_real_t t247 = t181 - parameters[MZ4];
-    const rx90_real_t t248 = RX90_C(0.45) * (t246 + RX90_C(-2.0) * t247);
-    const rx90_real_t t249 = parameters[ZZ3] + (t235 - t244 + t248);
-    const rx90_real_t t250 = t249 + RX90_C(1.0e4) * parameters[IA3] + t222 * t223 - t226 * t227;
-    const rx90_real_t t251 = t250 + t231 * t232;
-    if (!(t251 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t252 = RX90_C(1.0) / t251;
-    const rx90_real_t t253 = t243 * t252;
-    const rx90_real_t t254 = rx90_sign(dq[1]);
-    const rx90_real_t t255 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2])
-        + RX90_C(1.0e2) * (t254 * parameters[FC2]);
-    const rx90_real_t t256 = t9 * (parameters[XX2] - parameters[YY2]) - (t148 - t10) * parameters[XY2]
-        - (t27 * parameters[MY2] - t12 * parameters[MX2]);
-    const rx90_real_t t257 = parameters[M3] * t53 + (parameters[MX3] * (t24 + t25) - parameters[MY3] * t23);
-    const rx90_real_t t258 = parameters[MZ4] * (t118 + t48) - (parameters[MX4] * t44 + parameters[MY4] * t61);
-    const rx90_real_t t259 = parameters[M4] * t52 + t258 - (t58 * t133 - t59 * t130);
-    const rx90_real_t t260 = parameters[M3] * t30 + (parameters[MY3] * t51 - parameters[MX3] * t23) + t259;
-    const rx90_real_t t261 = t220 + RX90_C(0.45) * (t16 * (t219 - t257) - t14 * t260);
-    const rx90_real_t t262 = t222 + RX90_C(0.45) * (t16 * t221 + t14 * (t59 * t159));
-    const rx90_real_t t263 = t262 * t167;
-    const rx90_real_t t264 = RX90_C(30.0) * input[1] - (t255 - (t256 - t261)) - t155 * t263;
-    const rx90_real_t t265 = RX90_C(0.45) * (t14 * t204 - t16 * t224) - t225 - t262 * t171;
-    const rx90_real_t t266 = t265 * t188;
-    const rx90_real_t t267 = t230 + RX90_C(0.45) * (t16 * t229) - t262 * t193 + t265 * t195;
-    const rx90_real_t t268 = t267 * t214;
-    const rx90_real_t t269 = t247 - t246 - parameters[MY3];
-    const rx90_real_t t270 = t206 - parameters[MX3];
-    const rx90_real_t t271 = t14 * t270 - t16 * t269;
-    const rx90_real_t t272 = RX90_C(0.45) * t271 - t249 - t262 * t223 - t265 * t227;
-    const rx90_real_t t273 = t272 - t267 * t232;
-    const rx90_real_t t274 = t273 * t252;
-    const rx90_real_t t275 = t264 + t172 * t266 + t196 * t268 + t233 * t274;
-    const rx90_real_t t276 = t2 * (t240 + RX90_C(0.45) * (parameters[MZ3] + t229) - parameters[XZ2])
-        + t3 * (t241 - parameters[YZ2]);
-    const rx90_real_t t277 = t276 - t165 * t263 + t186 * t266 + t212 * t268;
-    const rx90_real_t t278 = t277 + t243 * t274;
-    const rx90_real_t t279 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t245) + RX90_C(-2.0) * t271);
-    const rx90_real_t t280 = parameters[ZZ2] + (t249 + t279) + RX90_C(1.0e4) * parameters[IA2] + t262 * t263;
-    const rx90_real_t t281 = t280 - t265 * t266 + t267 * t268 - t273 * t274;
-    if (!(t281 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t282 = RX90_C(1.0) / t281;
-    const rx90_real_t t283 = t278 * t282;
-    const rx90_real_t t284 = t190 - t196 * t215 + t233 * t253 + t275 * t283;
-    const rx90_real_t t285 = parameters[YY3] + t210;
-    const rx90_real_t t286 = parameters[XX3] + (t236 + t244 + t248);
-    const rx90_real_t t287 = parameters[XY3] + t208;
-    const rx90_real_t t288 = t14 * (t286 - t285) - t287 * (RX90_C(2.0) * t16);
-    const rx90_real_t t289 = t14 * t288;
-    const rx90_real_t t290 = parameters[XX2] + (t285 + t289);
-    const rx90_real_t t291 = t287 + t16 * t288 + RX90_C(0.45) * (t14 * t269 + t16 * t270);
-    const rx90_real_t t292 = t3 * (parameters[YY2] + (t286 - t289 + t279) - t290) + (parameters[XY2]
-        + t291) * (RX90_C(2.0) * t2);
-    const rx90_real_t t293 = parameters[ZZ1] + (t290 + t3 * t292) + RX90_C(1.0e4) * parameters[IA1]
-        + t165 * t168;
-    const rx90_real_t t294 = t293 - t186 * t189 + t212 * t215 - t243 * t253;
-    const rx90_real_t t295 = t294 - t278 * t283;
-    if (!(t295 > RX90_C(1.0e-9))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t296 = RX90_C(1.0) / t295;
-    const rx90_real_t t297 = t284 * t296;
+    const rx90_real_t t227 = t135 * t135;
+    const rx90_real_t t228 = t226 + parameters[YZ4] * t150 + parameters[XZ4] * (t220 - t227)
+        + (parameters[MX4] * t191 - parameters[MZ4] * t186);
+    const rx90_real_t t229 = t228 + t225;
+    const rx90_real_t t230 = parameters[MX6] * (t172 + t173) + parameters[MY6] * t199
+        + parameters[MZ6] * t161;
+    const rx90_real_t t231 = parameters[M6] * t201 + t230;
+    const rx90_real_t t232 = parameters[MX6] * t171 + parameters[MY6] * (t200 + t173)
+        + parameters[MZ6] * t156;
+    const rx90_real_t t233 = t232 - parameters[M6] * t195;
+    const rx90_real_t t234 = parameters[MX5] * (t206 + t207) + parameters[MY5] * t142
+        + parameters[MZ5] * t167;
+    const rx90_real_t t235 = parameters[M5] * t193 + t234 + (t2 * t231 - t1 * t233);
+    const rx90_real_t t236 = parameters[MX5] * t205 - parameters[MY5] * (t213 + t207)
+        - parameters[MZ5] * t151;
+    const rx90_real_t t237 = parameters[MX6] * t165 + parameters[MY6] * t197 - parameters[MZ6] * (t200
+        + t172);
+    const rx90_real_t t238 = parameters[M5] * t192 + t236 + (parameters[M6] * t192 + t237);
+    const rx90_real_t t239 = parameters[MX4] * (t219 + t220) + parameters[MY4] * t150
+        + parameters[MZ4] * t134;
+    const rx90_real_t t240 = parameters[M4] * t186 + t239 + (t14 * t235 + t12 * t238);
+    const rx90_real_t t241 = parameters[MX5] * t203 + parameters[MY5] * t155 - parameters[MZ5] * (t213
+        + t206);
+    const rx90_real_t t242 = t241 - parameters[M5] * t194 + (t1 * t231 + t2 * t233);
+    const rx90_real_t t243 = parameters[MX4] * t218 + parameters[MY4] * (t227 + t220)
+        + parameters[MZ4] * t143;
+    const rx90_real_t t244 = t243 - parameters[M4] * t194 + t242;
+    const rx90_real_t t245 = t30 * t240 + t32 * t244;
+    const rx90_real_t t246 = RX90_C(2.0) * t149;
+    const rx90_real_t t247 = parameters[XY3] * t246 - (parameters[XX3] * t132 + t132 * (parameters[ZZ3]
+        - parameters[YY3]));
+    const rx90_real_t t248 = t129 * t129;
+    const rx90_real_t t249 = t247 - parameters[XZ3] * t130 + parameters[YZ3] * (t189 - t248)
+        - (parameters[MY3] * t184 + parameters[MZ3] * t187);
+    const rx90_real_t t250 = t249 + (t32 * t222 + t30 * t229 + RX90_C(-0.45) * t245);
+    const rx90_real_t t251 = parameters[ZZ4] * t149 - t148 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t134;
+    const rx90_real_t t252 = t251 - parameters[XZ4] * t143 - parameters[XY4] * (t227 - t219)
+        - (parameters[MX4] * t194 + parameters[MY4] * t186);
+    const rx90_real_t t253 = t252 + (t12 * t209 - t14 * t215);
+    const rx90_real_t t254 = parameters[YY3] * t149 - t149 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t133;
+    const rx90_real_t t255 = t254 + parameters[YZ3] * t130 - parameters[XZ3] * (t189 - t188)
+        + (parameters[MZ3] * t181 + parameters[MX3] * t184);
+    const rx90_real_t t256 = t255 + t253;
+    const rx90_real_t t257 = dq[1] * t127;
+    const rx90_real_t t258 = t257 * (parameters[YY2] - parameters[ZZ2]) - t257 * parameters[XX2]
+        + RX90_C(2.0) * t183 * parameters[XY2];
+    const rx90_real_t t259 = t258 - t178 * parameters[XZ2] + (t175 - t174) * parameters[YZ2]
+        - t179 * parameters[MZ2];
+    const rx90_real_t t260 = parameters[MX3] * t246 + parameters[MY3] * t133 - parameters[MZ3] * (t188
+        + t248);
+    const rx90_real_t t261 = t68 * t250 + t69 * t256 + RX90_C(0.45) * (parameters[M3] * t184 + t260 + t245);
+    const rx90_real_t t262 = t183 * parameters[YY2] + t183 * (parameters[ZZ2] - parameters[XX2])
+        + RX90_C(-2.0) * t257 * parameters[XY2];
+    const rx90_real_t t263 = t126 * t126;
+    const rx90_real_t t264 = t262 + t178 * parameters[YZ2] + (t263 - t175) * parameters[XZ2]
+        + t176 * parameters[MZ2];
+    const rx90_real_t t265 = t97 * (t259 + (t69 * t250 - t68 * t256)) + t95 * (t264 + t261);
+    const rx90_real_t t266 = rx90_sign(dq[0]);
+    const rx90_real_t t267 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1])
+        + RX90_C(-1.0e2) * (t266 * parameters[FC1]);
+    const rx90_real_t t268 = rx90_sign(dq[5]);
+    const rx90_real_t t269 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6])
+        + RX90_C(30.0) * (t268 * parameters[FC6]);
+    const rx90_real_t t270 = RX90_C(6.0) * input[5] - (t269 + t211);
+    const rx90_real_t t271 = rx90_sign(dq[4]);
+    const rx90_real_t t272 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5])
+        + RX90_C(50.0) * (t271 * parameters[FC5]);
+    const rx90_real_t t273 = RX90_C(10.0) * input[4] - (t272 - t225) - t270 * t5;
+    const rx90_real_t t274 = RX90_C(30.0) * input[0] + (t267 + t265) - t270 * t102 + t273 * t108;
+    const rx90_real_t t275 = rx90_sign(dq[3]);
+    const rx90_real_t t276 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4])
+        + RX90_C(50.0) * (t275 * parameters[FC4]);
+    const rx90_real_t t277 = RX90_C(10.0) * input[3] - (t276 - t253) + t270 * t27 - t273 * t20;
+    const rx90_real_t t278 = t30 * t244 - t32 * t240;
+    const rx90_real_t t279 = parameters[XY3] * (t188 - t248) - t130 * (parameters[XX3] - parameters[YY3])
+        - (parameters[MX3] * t187 - parameters[MY3] * t181);
+    const rx90_real_t t280 = t279 + (t30 * t222 - t32 * t229 - RX90_C(0.45) * t278);
+    const rx90_real_t t281 = rx90_sign(dq[2]);
+    const rx90_real_t t282 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3])
+        + RX90_C(1.0e2) * (t281 * parameters[FC3]);
+    const rx90_real_t t283 = RX90_C(30.0) * input[2] - (t282 + t280) - t270 * t54 - t273 * t65;
+    const rx90_real_t t284 = t283 + t277 * t53;
+    const rx90_real_t t285 = parameters[M3] * t181 + (parameters[MX3] * (t189 + t248)
+        - parameters[MY3] * t130);
+    const rx90_real_t t286 = parameters[MZ4] * (t227 + t219) - (parameters[MX4] * t216
+        + parameters[MY4] * t147);
+    const rx90_real_t t287 = parameters[M4] * t191 + t286 - (t14 * t238 - t12 * t235);
+    const rx90_real_t t288 = parameters[M3] * t187 + (parameters[MY3] * t190 - parameters[MX3] * t130) + t287;
+    const rx90_real_t t289 = t280 + RX90_C(0.45) * (t68 * (t278 - t285) - t69 * t288);
+    const rx90_real_t t290 = t178 * (parameters[XX2] - parameters[YY2]) - (t263 - t174) * parameters[XY2]
+        - (t176 * parameters[MY2] - t179 * parameters[MX2]);
+    const rx90_real_t t291 = rx90_sign(dq[1]);
+    const rx90_real_t t292 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2])
+        + RX90_C(1.0e2) * (t291 * parameters[FC2]);
+    const rx90_real_t t293 = RX90_C(30.0) * input[1] - (t292 - (t290 - t289)) - t270 * t83;
+    const rx90_real_t t294 = t293 + t273 * t82 + t277 * t81 + t284 * t80;
+    const rx90_real_t t295 = t274 - t277 * t111 + t284 * t118 + t294 * t124;
+    const rx90_real_t t296 = RX90_C(1.0) / t125;
+    const rx90_real_t t297 = t295 * t296;
     out[0] = t297;
     if (!(t297 >= RX90_C(-1.0e15) && t297 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t298 = t275 * t282 + t283 * t297;
+    const rx90_real_t t298 = t294 * t123 + t124 * t297;
     out[1] = t298;
     if (!(t298 >= RX90_C(-1.0e15) && t298 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t299 = t233 * t252 + t253 * t297 + t274 * t298;
+    const rx90_real_t t299 = t284 * t79 + t118 * t297 + t80 * t298;
     out[2] = t299;
     if (!(t299 >= RX90_C(-1.0e15) && t299 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t300 = t268 * t298 - (t196 * t214 + t215 * t297) + t232 * t299;
+    const rx90_real_t t300 = t81 * t298 - (t277 * t52 + t111 * t297) + t53 * t299;
     out[3] = t300;
     if (!(t300 >= RX90_C(-1.0e15) && t300 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t301 = t172 * t188 + t189 * t297 + t266 * t298 - t227 * t299;
-    const rx90_real_t t302 = t301 - t195 * t300;
+    const rx90_real_t t301 = t273 * t19 + t108 * t297 + t82 * t298 - t65 * t299;
+    const rx90_real_t t302 = t301 - t20 * t300;
     out[4] = t302;
     if (!(t302 >= RX90_C(-1.0e15) && t302 <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t303 = t155 * t167 + t168 * t297 + t263 * t298 + t223 * t299;
-    out[5] = t193 * t300 - t303 - t171 * t302;
+    const rx90_real_t t303 = t270 * t4 + t102 * t297 + t83 * t298 + t54 * t299;
+    out[5] = t27 * t300 - t303 - t5 * t302;
     if (!(out[5] >= RX90_C(-1.0e15) && out[5] <= RX90_C(1.0e15))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;

@@ -103,7 +103,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -127,53 +127,53 @@ int rx90_gravity_standard(
         return status;
     }
 
-    rx90_real_t t0, t1;
-    RX90_SINCOS(q[1], &t0, &t1);
-    rx90_real_t t4, t3;
-    RX90_SINCOS(q[2], &t4, &t3);
-    rx90_real_t t8, t7;
-    RX90_SINCOS(q[3], &t8, &t7);
-    rx90_real_t t12, t11;
-    RX90_SINCOS(q[4], &t12, &t11);
-    rx90_real_t t16, t15;
-    RX90_SINCOS(q[5], &t16, &t15);
-    const rx90_real_t t2 = RX90_C(9.81) * t1;
-    const rx90_real_t t5 = RX90_C(-9.81) * t0;
-    const rx90_real_t t6 = t4 * t5 + t3 * t2;
-    const rx90_real_t t9 = t4 * t2 - t3 * t5;
-    const rx90_real_t t10 = t8 * t9;
-    const rx90_real_t t13 = t7 * t9;
-    const rx90_real_t t14 = t11 * t6 - t12 * t13;
-    const rx90_real_t t17 = t11 * t13 + t12 * t6;
-    const rx90_real_t t18 = t16 * t17 + t15 * t10;
-    const rx90_real_t t19 = t14 * parameters[MY6] + t18 * parameters[MZ6];
-    const rx90_real_t t20 = t16 * t10 - t15 * t17;
-    const rx90_real_t t21 = t20 * parameters[MZ6] + t14 * parameters[MX6];
-    const rx90_real_t t22 = t10 * parameters[MY5] - t14 * parameters[MZ5] + (t15 * t19 + t16 * t21);
+    rx90_real_t t0, t3;
+    RX90_SINCOS(q[1], &t0, &t3);
+    rx90_real_t t5, t2;
+    RX90_SINCOS(q[2], &t5, &t2);
+    rx90_real_t t15, t7;
+    RX90_SINCOS(q[3], &t15, &t7);
+    rx90_real_t t9, t11;
+    RX90_SINCOS(q[4], &t9, &t11);
+    rx90_real_t t14, t17;
+    RX90_SINCOS(q[5], &t14, &t17);
+    const rx90_real_t t1 = RX90_C(-9.81) * t0;
+    const rx90_real_t t4 = RX90_C(9.81) * t3;
+    const rx90_real_t t6 = t5 * t4 - t2 * t1;
+    const rx90_real_t t8 = t7 * t6;
+    const rx90_real_t t10 = t5 * t1 + t2 * t4;
+    const rx90_real_t t12 = t11 * t10 - t9 * t8;
+    const rx90_real_t t13 = t11 * t8 + t9 * t10;
+    const rx90_real_t t16 = t15 * t6;
+    const rx90_real_t t18 = t14 * t13 + t17 * t16;
+    const rx90_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
+    const rx90_real_t t20 = t14 * t16 - t17 * t13;
+    const rx90_real_t t21 = t20 * parameters[MZ6] + t12 * parameters[MX6];
+    const rx90_real_t t22 = t16 * parameters[MY5] - t12 * parameters[MZ5] + (t17 * t19 + t14 * t21);
     const rx90_real_t t23 = t20 * parameters[MY6] - t18 * parameters[MX6];
-    const rx90_real_t t24 = t17 * parameters[MZ5] - t10 * parameters[MX5] + t23;
-    const rx90_real_t t25 = t6 * parameters[MY4] + t10 * parameters[MZ4] + (t11 * t22 - t12 * t24);
-    const rx90_real_t t26 = t14 * parameters[MX5] - t17 * parameters[MY5] + (t15 * t21 - t16 * t19);
-    const rx90_real_t t27 = t6 * parameters[MX4] - t13 * parameters[MZ4] + t26;
+    const rx90_real_t t24 = t13 * parameters[MZ5] - t16 * parameters[MX5] + t23;
+    const rx90_real_t t25 = t10 * parameters[MY4] + t16 * parameters[MZ4] + (t11 * t22 - t9 * t24);
+    const rx90_real_t t26 = t12 * parameters[MX5] - t13 * parameters[MY5] + (t17 * t21 - t14 * t19);
+    const rx90_real_t t27 = t10 * parameters[MX4] - t8 * parameters[MZ4] + t26;
     const rx90_real_t t28 = t20 * parameters[M6];
     const rx90_real_t t29 = t18 * parameters[M6];
-    const rx90_real_t t30 = t17 * parameters[M5] + (t16 * t29 - t15 * t28);
-    const rx90_real_t t31 = t14 * parameters[M5] + t14 * parameters[M6];
-    const rx90_real_t t32 = t13 * parameters[M4] + (t11 * t30 - t12 * t31);
-    const rx90_real_t t33 = t10 * parameters[M4] + (t10 * parameters[M5] + (t16 * t28 + t15 * t29));
-    const rx90_real_t t34 = RX90_C(0.45) * (t8 * t32 - t7 * t33);
-    const rx90_real_t t35 = t7 * t25 + t8 * t27 - t34 - t6 * parameters[MZ3];
-    const rx90_real_t t36 = t12 * t22 + t11 * t24 - (t10 * parameters[MX4] + t13 * parameters[MY4]);
-    const rx90_real_t t37 = t9 * parameters[MZ3] + t36;
-    const rx90_real_t t38 = t0 * (t3 * t35 - t4 * t37 - t2 * parameters[MZ2]);
-    const rx90_real_t t39 = t34 + (t4 * t35 + t3 * t37) - t5 * parameters[MZ2];
-    out[0] = RX90_C(0.03333333333333333) * (t38 + t1 * t39);
-    const rx90_real_t t40 = t7 * t32 + t8 * t33;
-    const rx90_real_t t41 = t6 * parameters[MX3] - t9 * parameters[MY3] + (t7 * t27 - t8 * t25
+    const rx90_real_t t30 = t13 * parameters[M5] + (t14 * t29 - t17 * t28);
+    const rx90_real_t t31 = t12 * parameters[M5] + t12 * parameters[M6];
+    const rx90_real_t t32 = t8 * parameters[M4] + (t11 * t30 - t9 * t31);
+    const rx90_real_t t33 = t16 * parameters[M4] + (t16 * parameters[M5] + (t14 * t28 + t17 * t29));
+    const rx90_real_t t34 = RX90_C(0.45) * (t15 * t32 - t7 * t33);
+    const rx90_real_t t35 = t7 * t25 + t15 * t27 - t34 - t10 * parameters[MZ3];
+    const rx90_real_t t36 = t9 * t22 + t11 * t24 - (t16 * parameters[MX4] + t8 * parameters[MY4]);
+    const rx90_real_t t37 = t6 * parameters[MZ3] + t36;
+    const rx90_real_t t38 = t0 * (t2 * t35 - t5 * t37 - t4 * parameters[MZ2]);
+    const rx90_real_t t39 = t34 + (t5 * t35 + t2 * t37) - t1 * parameters[MZ2];
+    out[0] = RX90_C(0.03333333333333333) * (t38 + t3 * t39);
+    const rx90_real_t t40 = t7 * t32 + t15 * t33;
+    const rx90_real_t t41 = t10 * parameters[MX3] - t6 * parameters[MY3] + (t7 * t27 - t15 * t25
         + RX90_C(-0.45) * t40);
-    const rx90_real_t t42 = t6 * parameters[M3] + (t6 * parameters[M4] + (t12 * t30 + t11 * t31));
-    const rx90_real_t t43 = RX90_C(0.45) * (t4 * (t9 * parameters[M3] + t40) + t3 * t42);
-    const rx90_real_t t44 = RX90_C(0.03333333333333333) * (t2 * parameters[MX2] + t5 * parameters[MY2] + (t41
+    const rx90_real_t t42 = t10 * parameters[M3] + (t10 * parameters[M4] + (t9 * t30 + t11 * t31));
+    const rx90_real_t t43 = RX90_C(0.45) * (t5 * (t6 * parameters[M3] + t40) + t2 * t42);
+    const rx90_real_t t44 = RX90_C(0.03333333333333333) * (t4 * parameters[MX2] + t1 * parameters[MY2] + (t41
         + t43));
     out[1] = t44;
     out[2] = RX90_C(0.03333333333333333) * t41;

@@ -21,7 +21,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -39,56 +39,56 @@ int rx90_jacobian(
         return status;
     }
 
-    rx90_real_t t0, t10;
-    RX90_SINCOS(q[0], &t0, &t10);
-    rx90_real_t t5, t1;
-    RX90_SINCOS(q[1], &t5, &t1);
-    rx90_real_t t3, t4;
-    RX90_SINCOS(q[2], &t3, &t4);
-    rx90_real_t t19, t21;
-    RX90_SINCOS(q[3], &t19, &t21);
+    rx90_real_t t0, t13;
+    RX90_SINCOS(q[0], &t0, &t13);
+    rx90_real_t t4, t1;
+    RX90_SINCOS(q[1], &t4, &t1);
+    rx90_real_t t3, t6;
+    RX90_SINCOS(q[2], &t3, &t6);
+    rx90_real_t t20, t21;
+    RX90_SINCOS(q[3], &t20, &t21);
     rx90_real_t t22, t23;
     RX90_SINCOS(q[4], &t22, &t23);
     const rx90_real_t t2 = t0 * t1;
-    const rx90_real_t t6 = t0 * t5;
-    const rx90_real_t t7 = t3 * t2 + t4 * t6;
+    const rx90_real_t t5 = t0 * t4;
+    const rx90_real_t t7 = t3 * t2 + t6 * t5;
     const rx90_real_t t8 = RX90_C(0.45) * t7;
     const rx90_real_t t9 = RX90_C(-0.45) * t2 + t8;
     out[0] = t9;
-    const rx90_real_t t11 = t1 * t4 - t5 * t3;
-    const rx90_real_t t12 = RX90_C(-0.45) * t11;
-    const rx90_real_t t13 = RX90_C(-0.45) * t5 + t12;
-    out[1] = t10 * t13;
-    out[2] = t10 * t12;
-    const rx90_real_t t14 = t10 * t1;
-    const rx90_real_t t15 = t10 * t5;
-    const rx90_real_t t16 = t3 * t14 + t4 * t15;
+    const rx90_real_t t10 = t1 * t6 - t4 * t3;
+    const rx90_real_t t11 = RX90_C(-0.45) * t10;
+    const rx90_real_t t12 = RX90_C(-0.45) * t4 + t11;
+    out[1] = t13 * t12;
+    out[2] = t13 * t11;
+    const rx90_real_t t14 = t13 * t1;
+    const rx90_real_t t15 = t13 * t4;
+    const rx90_real_t t16 = t3 * t14 + t6 * t15;
     const rx90_real_t t17 = RX90_C(-0.45) * t16;
     const rx90_real_t t18 = RX90_C(0.45) * t14 + t17;
     out[6] = t18;
-    out[7] = t0 * t13;
-    out[8] = t0 * t12;
-    out[13] = t10 * t18 - t0 * t9;
-    out[14] = t10 * t17 - t0 * t8;
+    out[7] = t0 * t12;
+    out[8] = t0 * t11;
+    out[13] = t13 * t18 - t0 * t9;
+    out[14] = t13 * t17 - t0 * t8;
     out[19] = t0;
     out[20] = t0;
     out[21] = -t16;
-    const rx90_real_t t20 = t4 * t14 - t3 * t15;
-    out[22] = t19 * t20 + t0 * t21;
-    const rx90_real_t t24 = t22 * (t0 * t19 - t21 * t20) - t23 * t16;
+    const rx90_real_t t19 = t6 * t14 - t3 * t15;
+    out[22] = t20 * t19 + t0 * t21;
+    const rx90_real_t t24 = t22 * (t0 * t20 - t21 * t19) - t23 * t16;
     out[23] = t24;
-    out[25] = -t10;
-    out[26] = -t10;
+    out[25] = -t13;
+    out[26] = -t13;
     out[27] = -t7;
-    const rx90_real_t t25 = t4 * t2 - t3 * t6;
-    out[28] = t19 * t25 - t10 * t21;
-    const rx90_real_t t26 = t22 * (t21 * t25 + t10 * t19) + t23 * t7;
+    const rx90_real_t t25 = t6 * t2 - t3 * t5;
+    out[28] = t20 * t25 - t13 * t21;
+    const rx90_real_t t26 = t22 * (t21 * t25 + t13 * t20) + t23 * t7;
     out[29] = -t26;
     out[30] = RX90_C(1.0);
-    out[33] = t11;
-    const rx90_real_t t27 = t5 * t4 + t1 * t3;
-    out[34] = t19 * t27;
-    out[35] = t23 * t11 - t22 * (t21 * t27);
+    out[33] = t10;
+    const rx90_real_t t27 = t4 * t6 + t1 * t3;
+    out[34] = t20 * t27;
+    out[35] = t23 * t10 - t22 * (t21 * t27);
     /* always zero */
     out[3] = out[4] = out[5] = RX90_C(0.0);
     out[9] = out[10] = out[11] = RX90_C(0.0);

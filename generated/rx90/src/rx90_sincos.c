@@ -11,7 +11,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x4F4B5E98UL
+#if RX90_GENERATION != 0xAC003571UL
 #error "rx90.h and rx90_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 rx90_pair_t rx90_sincos(rx90_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * RX90_C(0.636619772) + RX90_C(16384.5));
+    const rx90_real_t turns = x * RX90_C(0.636619772) + RX90_C(16384.5);
+    const long quarter = (long)turns;
     const rx90_real_t k = (rx90_real_t)quarter - RX90_C(16384.0);
     const rx90_real_t r = x - k * RX90_C(1.5703125) - k * RX90_C(4.83826792e-4);
     const rx90_real_t z = r * r;

@@ -52,7 +52,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0x06CE1AB2UL
+#define SCARA_GENERATION 0x56F4A270UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef SCARA_REAL

@@ -43,7 +43,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -67,32 +67,32 @@ int scara_bias(
         return status;
     }
 
-    scara_real_t t1, t4;
-    SCARA_SINCOS(q[1], &t1, &t4);
-    scara_real_t t6, t10;
-    SCARA_SINCOS(q[3], &t6, &t10);
-    const scara_real_t t0 = scara_sign(dq[0]);
+    scara_real_t t7, t3;
+    SCARA_SINCOS(q[1], &t7, &t3);
+    scara_real_t t6, t9;
+    SCARA_SINCOS(q[3], &t6, &t9);
+    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t3 = t1 * t2;
-    const scara_real_t t5 = t4 * t2;
-    const scara_real_t t7 = dq[0] + dq[1];
-    const scara_real_t t8 = t7 * t7;
-    const scara_real_t t9 = SCARA_C(-0.275) * t8 - t5;
-    const scara_real_t t11 = parameters[MX4] * (t6 * t9 + t10 * t3) + parameters[MY4] * (t10 * t9 - t6 * t3);
-    const scara_real_t t12 = dq[3] - t7;
-    const scara_real_t t13 = t12 * t12;
-    const scara_real_t t14 = parameters[MX4] * t13;
-    const scara_real_t t15 = parameters[MY4] * t13;
-    const scara_real_t t16 = parameters[M3R] * t3 + (t6 * t14 + t10 * t15);
-    const scara_real_t t17 = parameters[MX2R] * t3 + parameters[MY2R] * t5 + (t11 + SCARA_C(0.275) * t16);
-    const scara_real_t t18 = parameters[M3R] * t9 + (t6 * t15 - t10 * t14) - parameters[MX2R] * t8;
-    const scara_real_t t19 = SCARA_C(0.325) * (t1 * t18 + t4 * (t16 - parameters[MY2R] * t8));
-    const scara_real_t t20 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0]) + parameters[FC1] * t0)
-        + SCARA_C(0.0625) * (t17 + t19);
+    const scara_real_t t4 = t3 * t2;
+    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4;
+    const scara_real_t t8 = t7 * t2;
+    const scara_real_t t10 = parameters[MX4] * (t6 * t5 + t9 * t8) + parameters[MY4] * (t9 * t5 - t6 * t8);
+    const scara_real_t t11 = dq[3] - t0;
+    const scara_real_t t12 = t11 * t11;
+    const scara_real_t t13 = parameters[MX4] * t12;
+    const scara_real_t t14 = parameters[MY4] * t12;
+    const scara_real_t t15 = parameters[M3R] * t8 + (t6 * t13 + t9 * t14);
+    const scara_real_t t16 = parameters[MX2R] * t8 + parameters[MY2R] * t4 + (t10 + SCARA_C(0.275) * t15);
+    const scara_real_t t17 = parameters[M3R] * t5 + (t6 * t14 - t9 * t13) - parameters[MX2R] * t1;
+    const scara_real_t t18 = SCARA_C(0.325) * (t7 * t17 + t3 * (t15 - parameters[MY2R] * t1));
+    const scara_real_t t19 = scara_sign(dq[0]);
+    const scara_real_t t20 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0])
+        + parameters[FC1] * t19) + SCARA_C(0.0625) * (t16 + t18);
     out[0] = t20;
     const scara_real_t t21 = scara_sign(dq[1]);
     const scara_real_t t22 = SCARA_C(5.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
-        + parameters[FC2] * t21) + SCARA_C(0.1) * t17;
+        + parameters[FC2] * t21) + SCARA_C(0.1) * t16;
     out[1] = t22;
     const scara_real_t t23 = scara_sign(dq[2]);
     const scara_real_t t24 = SCARA_C(-0.3122619983462987) * parameters[M3R]
@@ -100,7 +100,7 @@ int scara_bias(
     out[2] = t24;
     const scara_real_t t25 = scara_sign(dq[3]);
     const scara_real_t t26 = SCARA_C(10.0) * (parameters[FV4] * (SCARA_C(20.0) * dq[3])
-        + parameters[FC4] * t25) + SCARA_C(-0.5) * t11;
+        + parameters[FC4] * t25) + SCARA_C(-0.5) * t10;
     out[3] = t26;
     return SCARA_STATUS_OK;
 }

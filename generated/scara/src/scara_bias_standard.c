@@ -76,7 +76,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -101,36 +101,36 @@ int scara_bias_standard(
         return status;
     }
 
-    scara_real_t t1, t4;
-    SCARA_SINCOS(q[1], &t1, &t4);
-    scara_real_t t9, t10;
-    SCARA_SINCOS(q[3], &t9, &t10);
-    const scara_real_t t0 = scara_sign(dq[0]);
+    scara_real_t t7, t3;
+    SCARA_SINCOS(q[1], &t7, &t3);
+    scara_real_t t9, t6;
+    SCARA_SINCOS(q[3], &t9, &t6);
+    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t3 = t1 * t2;
-    const scara_real_t t5 = t4 * t2;
-    const scara_real_t t6 = dq[0] + dq[1];
-    const scara_real_t t7 = t6 * t6;
-    const scara_real_t t8 = SCARA_C(-0.275) * t7 - t5;
-    const scara_real_t t11 = t9 * t8 + t10 * t3;
-    const scara_real_t t12 = t10 * t8 - t9 * t3;
-    const scara_real_t t13 = parameters[MX4] * t11 + parameters[MY4] * t12;
-    const scara_real_t t14 = dq[3] - t6;
-    const scara_real_t t15 = t14 * t14;
-    const scara_real_t t16 = t15 * parameters[MX4] - parameters[M4] * t12;
-    const scara_real_t t17 = parameters[M4] * t11 + t15 * parameters[MY4];
-    const scara_real_t t18 = t3 * parameters[M3] + t7 * parameters[MY3] + (t9 * t16 + t10 * t17);
-    const scara_real_t t19 = t3 * parameters[MX3] + parameters[MY3] * t8 + t13 + SCARA_C(0.275) * t18;
-    const scara_real_t t20 = t3 * parameters[MX2] + t5 * parameters[MY2] + t19;
-    const scara_real_t t21 = parameters[M3] * t8 - t7 * parameters[MX3] + (t9 * t17 - t10 * t16);
-    const scara_real_t t22 = t1 * (t21 - (t5 * parameters[M2] + t7 * parameters[MX2]))
-        + t4 * (t3 * parameters[M2] - t7 * parameters[MY2] + t18);
-    const scara_real_t t23 = SCARA_C(5.0) * (SCARA_C(80.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1])
-        + SCARA_C(0.0625) * (t20 + SCARA_C(0.325) * t22);
+    const scara_real_t t4 = t3 * t2;
+    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4;
+    const scara_real_t t8 = t7 * t2;
+    const scara_real_t t10 = t6 * t5 - t9 * t8;
+    const scara_real_t t11 = dq[3] - t0;
+    const scara_real_t t12 = t11 * t11;
+    const scara_real_t t13 = t12 * parameters[MX4] - parameters[M4] * t10;
+    const scara_real_t t14 = t9 * t5 + t6 * t8;
+    const scara_real_t t15 = parameters[M4] * t14 + t12 * parameters[MY4];
+    const scara_real_t t16 = parameters[M3] * t5 - t1 * parameters[MX3] + (t9 * t15 - t6 * t13);
+    const scara_real_t t17 = t8 * parameters[M3] + t1 * parameters[MY3] + (t9 * t13 + t6 * t15);
+    const scara_real_t t18 = t7 * (t16 - (t4 * parameters[M2] + t1 * parameters[MX2]))
+        + t3 * (t8 * parameters[M2] - t1 * parameters[MY2] + t17);
+    const scara_real_t t19 = parameters[MX4] * t14 + parameters[MY4] * t10;
+    const scara_real_t t20 = t8 * parameters[MX3] + parameters[MY3] * t5 + t19 + SCARA_C(0.275) * t17;
+    const scara_real_t t21 = t8 * parameters[MX2] + t4 * parameters[MY2] + t20;
+    const scara_real_t t22 = scara_sign(dq[0]);
+    const scara_real_t t23 = SCARA_C(5.0) * (SCARA_C(80.0) * dq[0] * parameters[FV1] + t22 * parameters[FC1])
+        + SCARA_C(0.0625) * (t21 + SCARA_C(0.325) * t18);
     out[0] = t23;
     const scara_real_t t24 = scara_sign(dq[1]);
     const scara_real_t t25 = SCARA_C(5.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t24 * parameters[FC2])
-        + SCARA_C(0.1) * t20;
+        + SCARA_C(0.1) * t21;
     out[1] = t25;
     const scara_real_t t26 = scara_sign(dq[2]);
     const scara_real_t t27 = SCARA_C(0.03183098861837907) * (SCARA_C(-9.81) * parameters[M3]
@@ -139,7 +139,7 @@ int scara_bias_standard(
     out[2] = t27;
     const scara_real_t t28 = scara_sign(dq[3]);
     const scara_real_t t29 = SCARA_C(10.0) * (SCARA_C(20.0) * dq[3] * parameters[FV4] + t28 * parameters[FC4])
-        + SCARA_C(-0.5) * t13;
+        + SCARA_C(-0.5) * t19;
     out[3] = t29;
     return SCARA_STATUS_OK;
 }

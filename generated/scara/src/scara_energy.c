@@ -44,7 +44,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -70,26 +70,26 @@ int scara_energy(
         return status;
     }
 
-    scara_real_t t5, t2;
-    SCARA_SINCOS(q[1], &t5, &t2);
-    scara_real_t t12, t13;
-    SCARA_SINCOS(q[3], &t12, &t13);
+    scara_real_t t4, t2;
+    SCARA_SINCOS(q[1], &t4, &t2);
+    scara_real_t t13, t12;
+    SCARA_SINCOS(q[3], &t13, &t12);
     const scara_real_t t0 = dq[0] + dq[1];
-    const scara_real_t t1 = SCARA_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
+    const scara_real_t t1 = SCARA_C(0.325) * dq[0];
+    const scara_real_t t3 = t2 * t1;
+    const scara_real_t t5 = t4 * t1;
+    const scara_real_t t6 = SCARA_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + SCARA_C(0.5) * (t0 * (parameters[ZZ2R] * t0));
-    const scara_real_t t3 = SCARA_C(0.325) * dq[0];
-    const scara_real_t t4 = t2 * t3;
-    const scara_real_t t6 = t5 * t3;
-    const scara_real_t t7 = t1 + (parameters[MX2R] * (t0 * t4) - parameters[MY2R] * (t0 * t6));
-    const scara_real_t t8 = dq[2] * dq[2];
-    const scara_real_t t9 = t4 + SCARA_C(0.275) * t0;
-    const scara_real_t t10 = SCARA_C(0.5) * (parameters[M3R] * (t8 + (t6 * t6 + t9 * t9)));
+    const scara_real_t t7 = t6 + (parameters[MX2R] * (t0 * t3) - parameters[MY2R] * (t0 * t5));
+    const scara_real_t t8 = t3 + SCARA_C(0.275) * t0;
+    const scara_real_t t9 = dq[2] * dq[2];
+    const scara_real_t t10 = SCARA_C(0.5) * (parameters[M3R] * (t9 + (t5 * t5 + t8 * t8)));
     const scara_real_t t11 = dq[3] - t0;
-    const scara_real_t t14 = parameters[MY4] * (t11 * (t12 * t9 - t13 * t6))
-        - parameters[MX4] * (t11 * (t12 * t6 + t13 * t9));
+    const scara_real_t t14 = parameters[MY4] * (t11 * (t13 * t8 - t12 * t5))
+        - parameters[MX4] * (t11 * (t13 * t5 + t12 * t8));
     const scara_real_t t15 = t7 + t10 + SCARA_C(0.5) * (t11 * (parameters[ZZ4] * t11)) + t14;
     const scara_real_t t16 = t15 + SCARA_C(0.5) * (SCARA_C(2.5e3) * parameters[IA2] * (dq[1] * dq[1]))
-        + SCARA_C(0.5) * (SCARA_C(98696.04401089359) * parameters[IA3] * t8);
+        + SCARA_C(0.5) * (SCARA_C(98696.04401089359) * parameters[IA3] * t9);
     kinetic[0] = t16 + SCARA_C(0.5) * (SCARA_C(4.0e2) * parameters[IA4] * (dq[3] * dq[3]));
     potential[0] = parameters[M3R] * (SCARA_C(-9.81) * q[2] + SCARA_C(3.9240000000000004));
     return SCARA_STATUS_OK;

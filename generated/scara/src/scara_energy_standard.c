@@ -77,7 +77,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,32 +104,32 @@ int scara_energy_standard(
         return status;
     }
 
-    scara_real_t t1, t5;
-    SCARA_SINCOS(q[1], &t1, &t5);
-    scara_real_t t16, t15;
-    SCARA_SINCOS(q[3], &t16, &t15);
-    const scara_real_t t0 = dq[0] + dq[1];
-    const scara_real_t t2 = SCARA_C(0.325) * dq[0];
-    const scara_real_t t3 = t1 * t2;
-    const scara_real_t t4 = t3 * t3;
-    const scara_real_t t6 = t5 * t2;
-    const scara_real_t t7 = t0 * (t0 * parameters[ZZ2]) + parameters[M2] * (t4 + t6 * t6);
-    const scara_real_t t8 = t0 * t3;
+    scara_real_t t1, t4;
+    SCARA_SINCOS(q[1], &t1, &t4);
+    scara_real_t t14, t15;
+    SCARA_SINCOS(q[3], &t14, &t15);
+    const scara_real_t t0 = SCARA_C(0.325) * dq[0];
+    const scara_real_t t2 = t1 * t0;
+    const scara_real_t t3 = t2 * t2;
+    const scara_real_t t5 = t4 * t0;
+    const scara_real_t t6 = dq[0] + dq[1];
+    const scara_real_t t7 = t6 * (t6 * parameters[ZZ2]) + parameters[M2] * (t3 + t5 * t5);
+    const scara_real_t t8 = t6 * t2;
     const scara_real_t t9 = SCARA_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + SCARA_C(0.5) * t7
-        + (parameters[MX2] * (t0 * t6) - parameters[MY2] * t8);
-    const scara_real_t t10 = dq[2] * dq[2];
-    const scara_real_t t11 = t6 + SCARA_C(0.275) * t0;
-    const scara_real_t t12 = t0 * (t0 * parameters[ZZ3]) + parameters[M3] * (t10 + (t4 + t11 * t11));
-    const scara_real_t t13 = t9 + SCARA_C(0.5) * t12 + (parameters[MX3] * (t0 * t11) + parameters[MY3] * t8);
-    const scara_real_t t14 = dq[3] - t0;
-    const scara_real_t t17 = t15 * t3 - t16 * t11;
-    const scara_real_t t18 = t16 * t3 + t15 * t11;
-    const scara_real_t t19 = t14 * (t14 * parameters[ZZ4]) + parameters[M4] * (t10 + (t17 * t17 + t18 * t18));
-    const scara_real_t t20 = t13 + SCARA_C(0.5) * t19 - (parameters[MX4] * (t14 * t18)
-        + parameters[MY4] * (t14 * t17));
+        + (parameters[MX2] * (t6 * t5) - parameters[MY2] * t8);
+    const scara_real_t t10 = t5 + SCARA_C(0.275) * t6;
+    const scara_real_t t11 = dq[2] * dq[2];
+    const scara_real_t t12 = t6 * (t6 * parameters[ZZ3]) + parameters[M3] * (t11 + (t3 + t10 * t10));
+    const scara_real_t t13 = t9 + SCARA_C(0.5) * t12 + (parameters[MX3] * (t6 * t10) + parameters[MY3] * t8);
+    const scara_real_t t16 = t15 * t2 - t14 * t10;
+    const scara_real_t t17 = t14 * t2 + t15 * t10;
+    const scara_real_t t18 = dq[3] - t6;
+    const scara_real_t t19 = t18 * (t18 * parameters[ZZ4]) + parameters[M4] * (t11 + (t16 * t16 + t17 * t17));
+    const scara_real_t t20 = t13 + SCARA_C(0.5) * t19 - (parameters[MX4] * (t18 * t17)
+        + parameters[MY4] * (t18 * t16));
     const scara_real_t t21 = t20 + SCARA_C(0.5) * (dq[0] * dq[0] * (SCARA_C(6.4e3) * parameters[IA1]))
         + SCARA_C(0.5) * (dq[1] * dq[1] * (SCARA_C(2.5e3) * parameters[IA2]));
-    const scara_real_t t22 = t21 + SCARA_C(0.5) * (t10 * (SCARA_C(98696.04401089359) * parameters[IA3]))
+    const scara_real_t t22 = t21 + SCARA_C(0.5) * (t11 * (SCARA_C(98696.04401089359) * parameters[IA3]))
         + SCARA_C(0.5) * (dq[3] * dq[3] * (SCARA_C(4.0e2) * parameters[IA4]));
     kinetic[0] = t22;
     const scara_real_t t23 = SCARA_C(9.81) * parameters[MZ1] + SCARA_C(3.9240000000000004) * parameters[M1]

@@ -45,7 +45,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -71,98 +71,97 @@ int scara_forward_dynamics(
         return status;
     }
 
-    scara_real_t t2, t5;
-    SCARA_SINCOS(q[1], &t2, &t5);
-    scara_real_t t7, t11;
-    SCARA_SINCOS(q[3], &t7, &t11);
-    const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0]))
-        + SCARA_C(-80.0) * (parameters[FC1] * t0);
-    const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t4 = t2 * t3;
-    const scara_real_t t6 = t5 * t3;
-    const scara_real_t t8 = dq[0] + dq[1];
-    const scara_real_t t9 = t8 * t8;
-    const scara_real_t t10 = t6 + SCARA_C(0.275) * t9;
-    const scara_real_t t12 = parameters[MX4] * (t7 * t10 - t11 * t4) + parameters[MY4] * (t11 * t10
-        + t7 * t4);
-    const scara_real_t t13 = t8 - dq[3];
-    const scara_real_t t14 = t13 * t13;
-    const scara_real_t t15 = parameters[MX4] * t14;
-    const scara_real_t t16 = parameters[MY4] * t14;
-    const scara_real_t t17 = parameters[M3R] * t4 + (t7 * t15 + t11 * t16);
-    const scara_real_t t18 = t12 + SCARA_C(-0.275) * t17 - (parameters[MX2R] * t4 + parameters[MY2R] * t6);
-    const scara_real_t t19 = parameters[MX2R] * t9 + (parameters[M3R] * t10 + (t11 * t15 - t7 * t16));
-    const scara_real_t t20 = SCARA_C(0.325) * (t2 * t19 + t5 * (parameters[MY2R] * t9 - t17));
-    const scara_real_t t21 = scara_sign(dq[3]);
-    const scara_real_t t22 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3]))
-        + SCARA_C(-20.0) * (parameters[FC4] * t21);
-    const scara_real_t t23 = SCARA_C(2.0) * input[3] + (t22 - t12);
-    const scara_real_t t24 = t11 * parameters[MX4] - t7 * parameters[MY4];
-    const scara_real_t t25 = parameters[ZZ4] + SCARA_C(0.275) * t24;
-    const scara_real_t t26 = t11 * parameters[MY4] + t7 * parameters[MX4];
-    const scara_real_t t27 = t25 + SCARA_C(0.325) * (t2 * t26 + t5 * t24);
-    const scara_real_t t28 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
-    if (!(t28 > SCARA_C(1.0e-9))) {
+    scara_real_t t12, t13;
+    SCARA_SINCOS(q[1], &t12, &t13);
+    scara_real_t t2, t3;
+    SCARA_SINCOS(q[3], &t2, &t3);
+    const scara_real_t t0 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
+    if (!(t0 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t29 = SCARA_C(1.0) / t28;
-    const scara_real_t t30 = t27 * t29;
-    const scara_real_t t31 = SCARA_C(16.0) * input[0] + (t1 + (t18 + t20)) + t23 * t30;
-    const scara_real_t t32 = scara_sign(dq[1]);
-    const scara_real_t t33 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1]))
-        + SCARA_C(50.0) * (parameters[FC2] * t32);
-    const scara_real_t t34 = t25 * t29;
-    const scara_real_t t35 = SCARA_C(10.0) * input[1] - (t33 - t18) + t23 * t34;
-    const scara_real_t t36 = SCARA_C(0.275) * parameters[M3R];
-    const scara_real_t t37 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t24
-        + t36));
-    const scara_real_t t38 = t2 * (parameters[MY2R] - t26) - t5 * (parameters[MX2R] + (t24 + t36));
-    const scara_real_t t39 = SCARA_C(0.325) * t38 - t37 + t27 * t34;
-    const scara_real_t t40 = t37 + SCARA_C(2.5e3) * parameters[IA2] - t25 * t34;
-    if (!(t40 > SCARA_C(1.0e-9))) {
+    const scara_real_t t1 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    if (!(t1 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t41 = SCARA_C(1.0) / t40;
-    const scara_real_t t42 = t39 * t41;
-    const scara_real_t t43 = parameters[ZZ1R] + (t37 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(-2.0) * t38));
-    const scara_real_t t44 = t43 - t27 * t30 - t39 * t42;
-    if (!(t44 > SCARA_C(1.0e-9))) {
+    const scara_real_t t4 = t3 * parameters[MX4] - t2 * parameters[MY4];
+    const scara_real_t t5 = parameters[ZZ4] + SCARA_C(0.275) * t4;
+    const scara_real_t t6 = SCARA_C(1.0) / t1;
+    const scara_real_t t7 = t5 * t6;
+    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R];
+    const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
+    const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2] - t5 * t7;
+    if (!(t10 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t45 = SCARA_C(1.0) / t44;
-    const scara_real_t t46 = (t31 + t35 * t42) * t45;
-    out[0] = t46;
-    if (!(t46 >= SCARA_C(-1.0e15) && t46 <= SCARA_C(1.0e15))) {
+    const scara_real_t t11 = t3 * parameters[MY4] + t2 * parameters[MX4];
+    const scara_real_t t14 = t12 * (parameters[MY2R] - t11) - t13 * (parameters[MX2R] + (t4 + t8));
+    const scara_real_t t15 = t5 + SCARA_C(0.325) * (t12 * t11 + t13 * t4);
+    const scara_real_t t16 = SCARA_C(0.325) * t14 - t9 + t15 * t7;
+    const scara_real_t t17 = SCARA_C(1.0) / t10;
+    const scara_real_t t18 = t16 * t17;
+    const scara_real_t t19 = t15 * t6;
+    const scara_real_t t20 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(-2.0) * t14));
+    const scara_real_t t21 = t20 - t15 * t19 - t16 * t18;
+    if (!(t21 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t47 = t35 * t41 + t42 * t46;
-    out[1] = t47;
+    const scara_real_t t22 = dq[0] + dq[1];
+    const scara_real_t t23 = t22 * t22;
+    const scara_real_t t24 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t25 = t13 * t24;
+    const scara_real_t t26 = t25 + SCARA_C(0.275) * t23;
+    const scara_real_t t27 = t12 * t24;
+    const scara_real_t t28 = parameters[MX4] * (t2 * t26 - t3 * t27) + parameters[MY4] * (t3 * t26
+        + t2 * t27);
+    const scara_real_t t29 = t22 - dq[3];
+    const scara_real_t t30 = t29 * t29;
+    const scara_real_t t31 = parameters[MX4] * t30;
+    const scara_real_t t32 = parameters[MY4] * t30;
+    const scara_real_t t33 = parameters[M3R] * t27 + (t2 * t31 + t3 * t32);
+    const scara_real_t t34 = t28 + SCARA_C(-0.275) * t33 - (parameters[MX2R] * t27 + parameters[MY2R] * t25);
+    const scara_real_t t35 = parameters[MX2R] * t23 + (parameters[M3R] * t26 + (t3 * t31 - t2 * t32));
+    const scara_real_t t36 = SCARA_C(0.325) * (t12 * t35 + t13 * (parameters[MY2R] * t23 - t33));
+    const scara_real_t t37 = scara_sign(dq[0]);
+    const scara_real_t t38 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0]))
+        + SCARA_C(-80.0) * (parameters[FC1] * t37);
+    const scara_real_t t39 = scara_sign(dq[3]);
+    const scara_real_t t40 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3]))
+        + SCARA_C(-20.0) * (parameters[FC4] * t39);
+    const scara_real_t t41 = SCARA_C(2.0) * input[3] + (t40 - t28);
+    const scara_real_t t42 = SCARA_C(16.0) * input[0] + (t38 + (t34 + t36)) + t41 * t19;
+    const scara_real_t t43 = scara_sign(dq[1]);
+    const scara_real_t t44 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1]))
+        + SCARA_C(50.0) * (parameters[FC2] * t43);
+    const scara_real_t t45 = SCARA_C(10.0) * input[1] - (t44 - t34) + t41 * t7;
+    const scara_real_t t46 = SCARA_C(1.0) / t21;
+    const scara_real_t t47 = (t42 + t45 * t18) * t46;
+    out[0] = t47;
     if (!(t47 >= SCARA_C(-1.0e15) && t47 <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t48 = scara_sign(dq[2]);
-    const scara_real_t
-        t49 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2]))
-        + SCARA_C(-314.1592653589793) * (parameters[FC3] * t48);
-    const scara_real_t t50 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
-    if (!(t50 > SCARA_C(1.0e-9))) {
+    const scara_real_t t48 = t45 * t17 + t18 * t47;
+    out[1] = t48;
+    if (!(t48 >= SCARA_C(-1.0e15) && t48 <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t51 = SCARA_C(1.0) / t50;
-    out[2] = (SCARA_C(31.415926535897935) * input[2] + (t49 + SCARA_C(9.81) * parameters[M3R])) * t51;
+    const scara_real_t t49 = scara_sign(dq[2]);
+    const scara_real_t
+        t50 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2]))
+        + SCARA_C(-314.1592653589793) * (parameters[FC3] * t49);
+    const scara_real_t t51 = SCARA_C(1.0) / t0;
+    out[2] = (SCARA_C(31.415926535897935) * input[2] + (t50 + SCARA_C(9.81) * parameters[M3R])) * t51;
     if (!(out[2] >= SCARA_C(-1.0e15) && out[2] <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    out[3] = t23 * t29 + t30 * t46 + t34 * t47;
+    out[3] = t41 * t6 + t19 * t47 + t7 * t48;
     if (!(out[3] >= SCARA_C(-1.0e15) && out[3] <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;

@@ -78,7 +78,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -105,106 +105,106 @@ int scara_forward_dynamics_standard(
         return status;
     }
 
-    scara_real_t t2, t5;
-    SCARA_SINCOS(q[1], &t2, &t5);
-    scara_real_t t10, t11;
-    SCARA_SINCOS(q[3], &t10, &t11);
-    const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1])
-        + SCARA_C(-80.0) * (t0 * parameters[FC1]);
-    const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t4 = t2 * t3;
-    const scara_real_t t6 = t5 * t3;
-    const scara_real_t t7 = dq[0] + dq[1];
-    const scara_real_t t8 = t7 * t7;
-    const scara_real_t t9 = t6 + SCARA_C(0.275) * t8;
-    const scara_real_t t12 = t10 * t9 - t11 * t4;
-    const scara_real_t t13 = t11 * t9 + t10 * t4;
-    const scara_real_t t14 = parameters[MX4] * t12 + parameters[MY4] * t13;
-    const scara_real_t t15 = t7 - dq[3];
-    const scara_real_t t16 = t15 * t15;
-    const scara_real_t t17 = parameters[M4] * t13 + t16 * parameters[MX4];
-    const scara_real_t t18 = parameters[M4] * t12 - t16 * parameters[MY4];
-    const scara_real_t t19 = t11 * t18 - t10 * t17 - (t4 * parameters[M3] + t8 * parameters[MY3]);
-    const scara_real_t t20 = parameters[MY3] * t9 - t4 * parameters[MX3] + t14 + SCARA_C(0.275) * t19;
-    const scara_real_t t21 = t20 - (t4 * parameters[MX2] + t6 * parameters[MY2]);
-    const scara_real_t t22 = parameters[M3] * t9 + t8 * parameters[MX3] + (t11 * t17 + t10 * t18);
-    const scara_real_t t23 = t2 * (t6 * parameters[M2] + t8 * parameters[MX2] + t22)
-        + t5 * (t8 * parameters[MY2] - t4 * parameters[M2] + t19);
-    const scara_real_t t24 = scara_sign(dq[3]);
-    const scara_real_t t25 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4])
-        + SCARA_C(-20.0) * (t24 * parameters[FC4]);
-    const scara_real_t t26 = SCARA_C(2.0) * input[3] + (t25 - t14);
-    const scara_real_t t27 = t11 * parameters[MX4] - t10 * parameters[MY4];
-    const scara_real_t t28 = parameters[ZZ4] + SCARA_C(0.275) * t27;
-    const scara_real_t t29 = t11 * parameters[MY4] + t10 * parameters[MX4];
-    const scara_real_t t30 = t28 + SCARA_C(0.325) * (t2 * t29 + t5 * t27);
-    const scara_real_t t31 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
-    if (!(t31 > SCARA_C(1.0e-9))) {
+    scara_real_t t14, t15;
+    SCARA_SINCOS(q[1], &t14, &t15);
+    scara_real_t t3, t4;
+    SCARA_SINCOS(q[3], &t3, &t4);
+    const scara_real_t t0 = parameters[M3] + parameters[M4];
+    const scara_real_t t1 = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
+    if (!(t1 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t32 = SCARA_C(1.0) / t31;
-    const scara_real_t t33 = t30 * t32;
-    const scara_real_t t34 = SCARA_C(16.0) * input[0] + (t1 + (t21 + SCARA_C(0.325) * t23)) + t26 * t33;
-    const scara_real_t t35 = scara_sign(dq[1]);
-    const scara_real_t t36 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2])
-        + SCARA_C(50.0) * (t35 * parameters[FC2]);
-    const scara_real_t t37 = t28 * t32;
-    const scara_real_t t38 = SCARA_C(10.0) * input[1] - (t36 - t21) + t26 * t37;
-    const scara_real_t t39 = parameters[M3] + parameters[M4];
-    const scara_real_t t40 = SCARA_C(0.275) * t39;
-    const scara_real_t t41 = parameters[MX3] + t27;
-    const scara_real_t t42 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t40
-        + SCARA_C(2.0) * t41));
-    const scara_real_t t43 = t2 * (parameters[MY2] - (parameters[MY3] + t29)) - t5 * (parameters[MX2] + (t41
-        + t40));
-    const scara_real_t t44 = SCARA_C(0.325) * t43 - t42 + t30 * t37;
-    const scara_real_t t45 = t42 + SCARA_C(2.5e3) * parameters[IA2] - t28 * t37;
-    if (!(t45 > SCARA_C(1.0e-9))) {
+    const scara_real_t t2 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    if (!(t2 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t46 = SCARA_C(1.0) / t45;
-    const scara_real_t t47 = t44 * t46;
-    const scara_real_t t48 = t42 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t39)
-        + SCARA_C(-2.0) * t43);
-    const scara_real_t t49 = parameters[ZZ1] + t48 + SCARA_C(6.4e3) * parameters[IA1] - t30 * t33 - t44 * t47;
-    if (!(t49 > SCARA_C(1.0e-9))) {
+    const scara_real_t t5 = t4 * parameters[MX4] - t3 * parameters[MY4];
+    const scara_real_t t6 = parameters[ZZ4] + SCARA_C(0.275) * t5;
+    const scara_real_t t7 = SCARA_C(1.0) / t2;
+    const scara_real_t t8 = t6 * t7;
+    const scara_real_t t9 = parameters[MX3] + t5;
+    const scara_real_t t10 = SCARA_C(0.275) * t0;
+    const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
+        + SCARA_C(2.0) * t9));
+    const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2] - t6 * t8;
+    if (!(t12 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t50 = SCARA_C(1.0) / t49;
-    const scara_real_t t51 = (t34 + t38 * t47) * t50;
-    out[0] = t51;
-    if (!(t51 >= SCARA_C(-1.0e15) && t51 <= SCARA_C(1.0e15))) {
+    const scara_real_t t13 = t4 * parameters[MY4] + t3 * parameters[MX4];
+    const scara_real_t t16 = t14 * (parameters[MY2] - (parameters[MY3] + t13)) - t15 * (parameters[MX2] + (t9
+        + t10));
+    const scara_real_t t17 = t6 + SCARA_C(0.325) * (t14 * t13 + t15 * t5);
+    const scara_real_t t18 = SCARA_C(0.325) * t16 - t11 + t17 * t8;
+    const scara_real_t t19 = SCARA_C(1.0) / t12;
+    const scara_real_t t20 = t18 * t19;
+    const scara_real_t t21 = t17 * t7;
+    const scara_real_t t22 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
+        + SCARA_C(-2.0) * t16);
+    const scara_real_t t23 = parameters[ZZ1] + t22 + SCARA_C(6.4e3) * parameters[IA1] - t17 * t21 - t18 * t20;
+    if (!(t23 > SCARA_C(1.0e-9))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t52 = t38 * t46 + t47 * t51;
-    out[1] = t52;
+    const scara_real_t t24 = dq[0] + dq[1];
+    const scara_real_t t25 = t24 * t24;
+    const scara_real_t t26 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t27 = t15 * t26;
+    const scara_real_t t28 = t27 + SCARA_C(0.275) * t25;
+    const scara_real_t t29 = t14 * t26;
+    const scara_real_t t30 = t4 * t28 + t3 * t29;
+    const scara_real_t t31 = t24 - dq[3];
+    const scara_real_t t32 = t31 * t31;
+    const scara_real_t t33 = parameters[M4] * t30 + t32 * parameters[MX4];
+    const scara_real_t t34 = t3 * t28 - t4 * t29;
+    const scara_real_t t35 = parameters[M4] * t34 - t32 * parameters[MY4];
+    const scara_real_t t36 = parameters[M3] * t28 + t25 * parameters[MX3] + (t4 * t33 + t3 * t35);
+    const scara_real_t t37 = t4 * t35 - t3 * t33 - (t29 * parameters[M3] + t25 * parameters[MY3]);
+    const scara_real_t t38 = t14 * (t27 * parameters[M2] + t25 * parameters[MX2] + t36)
+        + t15 * (t25 * parameters[MY2] - t29 * parameters[M2] + t37);
+    const scara_real_t t39 = parameters[MX4] * t34 + parameters[MY4] * t30;
+    const scara_real_t t40 = parameters[MY3] * t28 - t29 * parameters[MX3] + t39 + SCARA_C(0.275) * t37;
+    const scara_real_t t41 = t40 - (t29 * parameters[MX2] + t27 * parameters[MY2]);
+    const scara_real_t t42 = scara_sign(dq[0]);
+    const scara_real_t t43 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1])
+        + SCARA_C(-80.0) * (t42 * parameters[FC1]);
+    const scara_real_t t44 = scara_sign(dq[3]);
+    const scara_real_t t45 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4])
+        + SCARA_C(-20.0) * (t44 * parameters[FC4]);
+    const scara_real_t t46 = SCARA_C(2.0) * input[3] + (t45 - t39);
+    const scara_real_t t47 = SCARA_C(16.0) * input[0] + (t43 + (t41 + SCARA_C(0.325) * t38)) + t46 * t21;
+    const scara_real_t t48 = scara_sign(dq[1]);
+    const scara_real_t t49 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2])
+        + SCARA_C(50.0) * (t48 * parameters[FC2]);
+    const scara_real_t t50 = SCARA_C(10.0) * input[1] - (t49 - t41) + t46 * t8;
+    const scara_real_t t51 = SCARA_C(1.0) / t23;
+    const scara_real_t t52 = (t47 + t50 * t20) * t51;
+    out[0] = t52;
     if (!(t52 >= SCARA_C(-1.0e15) && t52 <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t53 = scara_sign(dq[2]);
-    const scara_real_t
-        t54 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3])
-        + SCARA_C(-314.1592653589793) * (t53 * parameters[FC3]);
-    const scara_real_t t55 = SCARA_C(31.415926535897935) * input[2] + (t54 + (SCARA_C(9.81) * parameters[M3]
-        + SCARA_C(9.81) * parameters[M4]));
-    const scara_real_t t56 = t39 + SCARA_C(98696.04401089359) * parameters[IA3];
-    if (!(t56 > SCARA_C(1.0e-9))) {
+    const scara_real_t t53 = t50 * t19 + t20 * t52;
+    out[1] = t53;
+    if (!(t53 >= SCARA_C(-1.0e15) && t53 <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t57 = SCARA_C(1.0) / t56;
-    out[2] = t55 * t57;
+    const scara_real_t t54 = scara_sign(dq[2]);
+    const scara_real_t
+        t55 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3])
+        + SCARA_C(-314.1592653589793) * (t54 * parameters[FC3]);
+    const scara_real_t t56 = SCARA_C(31.415926535897935) * input[2] + (t55 + (SCARA_C(9.81) * parameters[M3]
+        + SCARA_C(9.81) * parameters[M4]));
+    const scara_real_t t57 = SCARA_C(1.0) / t1;
+    out[2] = t56 * t57;
     if (!(out[2] >= SCARA_C(-1.0e15) && out[2] <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    out[3] = t26 * t32 + t33 * t51 + t37 * t52;
+    out[3] = t46 * t7 + t21 * t52 + t8 * t53;
     if (!(out[3] >= SCARA_C(-1.0e15) && out[3] <= SCARA_C(1.0e15))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;

@@ -45,7 +45,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -71,41 +71,42 @@ int scara_inverse_dynamics(
         return status;
     }
 
-    scara_real_t t2, t4;
-    SCARA_SINCOS(q[1], &t2, &t4);
-    scara_real_t t9, t13;
-    SCARA_SINCOS(q[3], &t9, &t13);
-    const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = ddq[0] + ddq[1];
-    const scara_real_t t3 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t5 = SCARA_C(0.325) * ddq[0];
-    const scara_real_t t6 = t2 * t3 + t4 * t5;
-    const scara_real_t t7 = t2 * t5 - t4 * t3;
-    const scara_real_t t8 = t1 - ddq[3];
-    const scara_real_t t10 = dq[0] + dq[1];
-    const scara_real_t t11 = t10 * t10;
-    const scara_real_t t12 = SCARA_C(-0.275) * t11 + t7;
-    const scara_real_t t14 = t6 + SCARA_C(0.275) * t1;
-    const scara_real_t t15 = parameters[MX4] * (t9 * t12 + t13 * t14) + parameters[MY4] * (t13 * t12
-        - t9 * t14);
-    const scara_real_t t16 = parameters[ZZ4] * t8 + t15;
-    const scara_real_t t17 = dq[3] - t10;
-    const scara_real_t t18 = t17 * t17;
-    const scara_real_t t19 = parameters[MX4] * t18 - parameters[MY4] * t8;
-    const scara_real_t t20 = parameters[MY4] * t18 + parameters[MX4] * t8;
-    const scara_real_t t21 = parameters[M3R] * t14 + (t9 * t19 + t13 * t20);
-    const scara_real_t t22 = parameters[ZZ2R] * t1 + (parameters[MX2R] * t6 - parameters[MY2R] * t7) + (t16
-        + SCARA_C(0.275) * t21);
-    const scara_real_t t23 = parameters[M3R] * t12 + (t9 * t20 - t13 * t19) - (parameters[MX2R] * t11
-        + parameters[MY2R] * t1);
-    const scara_real_t t24 = t2 * t23 + t4 * (parameters[MX2R] * t1 - parameters[MY2R] * t11 + t21);
-    const scara_real_t t25 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0]) + parameters[FC1] * t0)
-        + SCARA_C(0.0625) * (parameters[ZZ1R] * ddq[0] + (t22 + SCARA_C(0.325) * t24));
+    scara_real_t t5, t3;
+    SCARA_SINCOS(q[1], &t5, &t3);
+    scara_real_t t8, t12;
+    SCARA_SINCOS(q[3], &t8, &t12);
+    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t1 = t0 * t0;
+    const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t4 = SCARA_C(0.325) * ddq[0];
+    const scara_real_t t6 = t5 * t4 - t3 * t2;
+    const scara_real_t t7 = SCARA_C(-0.275) * t1 + t6;
+    const scara_real_t t9 = t5 * t2 + t3 * t4;
+    const scara_real_t t10 = ddq[0] + ddq[1];
+    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10;
+    const scara_real_t t13 = parameters[MX4] * (t8 * t7 + t12 * t11) + parameters[MY4] * (t12 * t7
+        - t8 * t11);
+    const scara_real_t t14 = t10 - ddq[3];
+    const scara_real_t t15 = parameters[ZZ4] * t14 + t13;
+    const scara_real_t t16 = dq[3] - t0;
+    const scara_real_t t17 = t16 * t16;
+    const scara_real_t t18 = parameters[MX4] * t17 - parameters[MY4] * t14;
+    const scara_real_t t19 = parameters[MY4] * t17 + parameters[MX4] * t14;
+    const scara_real_t t20 = parameters[M3R] * t11 + (t8 * t18 + t12 * t19);
+    const scara_real_t t21 = parameters[ZZ2R] * t10 + (parameters[MX2R] * t9 - parameters[MY2R] * t6) + (t15
+        + SCARA_C(0.275) * t20);
+    const scara_real_t t22 = parameters[M3R] * t7 + (t8 * t19 - t12 * t18) - (parameters[MX2R] * t1
+        + parameters[MY2R] * t10);
+    const scara_real_t t23 = t5 * t22 + t3 * (parameters[MX2R] * t10 - parameters[MY2R] * t1 + t20);
+    const scara_real_t t24 = scara_sign(dq[0]);
+    const scara_real_t t25 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0])
+        + parameters[FC1] * t24) + SCARA_C(0.0625) * (parameters[ZZ1R] * ddq[0] + (t21
+        + SCARA_C(0.325) * t23));
     out[0] = t25;
     const scara_real_t t26 = scara_sign(dq[1]);
     const scara_real_t t27 = parameters[FV2] * (SCARA_C(50.0) * dq[1]) + parameters[FC2] * t26
         + parameters[IA2] * (SCARA_C(50.0) * ddq[1]);
-    out[1] = SCARA_C(5.0) * t27 + SCARA_C(0.1) * t22;
+    out[1] = SCARA_C(5.0) * t27 + SCARA_C(0.1) * t21;
     const scara_real_t t28 = scara_sign(dq[2]);
     const scara_real_t t29 = parameters[FV3] * (SCARA_C(314.1592653589793) * dq[2]) + parameters[FC3] * t28
         + parameters[IA3] * (SCARA_C(314.1592653589793) * ddq[2]);
@@ -114,6 +115,6 @@ int scara_inverse_dynamics(
     const scara_real_t t30 = scara_sign(dq[3]);
     const scara_real_t t31 = parameters[FV4] * (SCARA_C(20.0) * dq[3]) + parameters[FC4] * t30
         + parameters[IA4] * (SCARA_C(20.0) * ddq[3]);
-    out[3] = SCARA_C(10.0) * t31 + SCARA_C(-0.5) * t16;
+    out[3] = SCARA_C(10.0) * t31 + SCARA_C(-0.5) * t15;
     return SCARA_STATUS_OK;
 }

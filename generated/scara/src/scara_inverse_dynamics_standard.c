@@ -78,7 +78,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -105,45 +105,45 @@ int scara_inverse_dynamics_standard(
         return status;
     }
 
-    scara_real_t t3, t5;
-    SCARA_SINCOS(q[1], &t3, &t5);
-    scara_real_t t14, t15;
-    SCARA_SINCOS(q[3], &t14, &t15);
-    const scara_real_t t0 = scara_sign(dq[0]);
-    const scara_real_t t1 = SCARA_C(80.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
+    scara_real_t t3, t1;
+    SCARA_SINCOS(q[1], &t3, &t1);
+    scara_real_t t8, t12;
+    SCARA_SINCOS(q[3], &t8, &t12);
+    const scara_real_t t0 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t2 = SCARA_C(0.325) * ddq[0];
+    const scara_real_t t4 = t3 * t2 - t1 * t0;
+    const scara_real_t t5 = dq[0] + dq[1];
+    const scara_real_t t6 = t5 * t5;
+    const scara_real_t t7 = t4 + SCARA_C(-0.275) * t6;
+    const scara_real_t t9 = t3 * t0 + t1 * t2;
+    const scara_real_t t10 = ddq[0] + ddq[1];
+    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10;
+    const scara_real_t t13 = t8 * t7 + t12 * t11;
+    const scara_real_t t14 = t12 * t7 - t8 * t11;
+    const scara_real_t t15 = t10 - ddq[3];
+    const scara_real_t t16 = t15 * parameters[ZZ4] + (t13 * parameters[MX4] + t14 * parameters[MY4]);
+    const scara_real_t t17 = t10 * parameters[ZZ3] + (t11 * parameters[MX3] + t7 * parameters[MY3]) + t16;
+    const scara_real_t t18 = dq[3] - t5;
+    const scara_real_t t19 = t18 * t18;
+    const scara_real_t t20 = t19 * parameters[MX4] - t15 * parameters[MY4] - t14 * parameters[M4];
+    const scara_real_t t21 = t13 * parameters[M4] + (t19 * parameters[MY4] + t15 * parameters[MX4]);
+    const scara_real_t t22 = t11 * parameters[M3] + (t6 * parameters[MY3] + t10 * parameters[MX3]) + (t8 * t20
+        + t12 * t21);
+    const scara_real_t t23 = t10 * parameters[ZZ2] + (t9 * parameters[MX2] - t4 * parameters[MY2]) + (t17
+        + SCARA_C(0.275) * t22);
+    const scara_real_t t24 = t7 * parameters[M3] + (t10 * parameters[MY3] - t6 * parameters[MX3]) + (t8 * t21
+        - t12 * t20);
+    const scara_real_t t25 = t4 * parameters[M2] - (t6 * parameters[MX2] + t10 * parameters[MY2]) + t24;
+    const scara_real_t t26 = t9 * parameters[M2] + (t10 * parameters[MX2] - t6 * parameters[MY2]) + t22;
+    const scara_real_t t27 = ddq[0] * parameters[ZZ1] + (t23 + SCARA_C(0.325) * (t3 * t25 + t1 * t26));
+    const scara_real_t t28 = scara_sign(dq[0]);
+    const scara_real_t t29 = SCARA_C(80.0) * dq[0] * parameters[FV1] + t28 * parameters[FC1]
         + SCARA_C(80.0) * ddq[0] * parameters[IA1];
-    const scara_real_t t2 = ddq[0] + ddq[1];
-    const scara_real_t t4 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t6 = SCARA_C(0.325) * ddq[0];
-    const scara_real_t t7 = t3 * t4 + t5 * t6;
-    const scara_real_t t8 = t3 * t6 - t5 * t4;
-    const scara_real_t t9 = t7 + SCARA_C(0.275) * t2;
-    const scara_real_t t10 = dq[0] + dq[1];
-    const scara_real_t t11 = t10 * t10;
-    const scara_real_t t12 = t8 + SCARA_C(-0.275) * t11;
-    const scara_real_t t13 = t2 - ddq[3];
-    const scara_real_t t16 = t14 * t12 + t15 * t9;
-    const scara_real_t t17 = t15 * t12 - t14 * t9;
-    const scara_real_t t18 = t13 * parameters[ZZ4] + (t16 * parameters[MX4] + t17 * parameters[MY4]);
-    const scara_real_t t19 = t2 * parameters[ZZ3] + (t9 * parameters[MX3] + t12 * parameters[MY3]) + t18;
-    const scara_real_t t20 = dq[3] - t10;
-    const scara_real_t t21 = t20 * t20;
-    const scara_real_t t22 = t21 * parameters[MX4] - t13 * parameters[MY4] - t17 * parameters[M4];
-    const scara_real_t t23 = t16 * parameters[M4] + (t21 * parameters[MY4] + t13 * parameters[MX4]);
-    const scara_real_t t24 = t9 * parameters[M3] + (t11 * parameters[MY3] + t2 * parameters[MX3]) + (t14 * t22
-        + t15 * t23);
-    const scara_real_t t25 = t2 * parameters[ZZ2] + (t7 * parameters[MX2] - t8 * parameters[MY2]) + (t19
-        + SCARA_C(0.275) * t24);
-    const scara_real_t t26 = t12 * parameters[M3] + (t2 * parameters[MY3] - t11 * parameters[MX3])
-        + (t14 * t23 - t15 * t22);
-    const scara_real_t t27 = t8 * parameters[M2] - (t11 * parameters[MX2] + t2 * parameters[MY2]) + t26;
-    const scara_real_t t28 = t7 * parameters[M2] + (t2 * parameters[MX2] - t11 * parameters[MY2]) + t24;
-    const scara_real_t t29 = ddq[0] * parameters[ZZ1] + (t25 + SCARA_C(0.325) * (t3 * t27 + t5 * t28));
-    out[0] = SCARA_C(5.0) * t1 + SCARA_C(0.0625) * t29;
+    out[0] = SCARA_C(5.0) * t29 + SCARA_C(0.0625) * t27;
     const scara_real_t t30 = scara_sign(dq[1]);
     const scara_real_t t31 = SCARA_C(50.0) * dq[1] * parameters[FV2] + t30 * parameters[FC2]
         + SCARA_C(50.0) * ddq[1] * parameters[IA2];
-    out[1] = SCARA_C(5.0) * t31 + SCARA_C(0.1) * t25;
+    out[1] = SCARA_C(5.0) * t31 + SCARA_C(0.1) * t23;
     const scara_real_t t32 = scara_sign(dq[2]);
     const scara_real_t t33 = SCARA_C(314.1592653589793) * dq[2] * parameters[FV3] + t32 * parameters[FC3]
         + SCARA_C(314.1592653589793) * ddq[2] * parameters[IA3];
@@ -154,6 +154,6 @@ int scara_inverse_dynamics_standard(
     const scara_real_t t36 = scara_sign(dq[3]);
     const scara_real_t t37 = SCARA_C(20.0) * dq[3] * parameters[FV4] + t36 * parameters[FC4]
         + SCARA_C(20.0) * ddq[3] * parameters[IA4];
-    out[3] = SCARA_C(10.0) * t37 + SCARA_C(-0.5) * t18;
+    out[3] = SCARA_C(10.0) * t37 + SCARA_C(-0.5) * t16;
     return SCARA_STATUS_OK;
 }

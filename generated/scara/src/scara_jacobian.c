@@ -19,7 +19,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -37,15 +37,15 @@ int scara_jacobian(
         return status;
     }
 
-    scara_real_t t0, t1;
-    SCARA_SINCOS(q[0], &t0, &t1);
-    scara_real_t t2, t3;
-    SCARA_SINCOS(q[1], &t2, &t3);
-    const scara_real_t t4 = SCARA_C(-0.275) * (t1 * t2 + t0 * t3);
-    out[0] = SCARA_C(-0.325) * t0 + t4;
+    scara_real_t t2, t0;
+    SCARA_SINCOS(q[0], &t2, &t0);
+    scara_real_t t1, t3;
+    SCARA_SINCOS(q[1], &t1, &t3);
+    const scara_real_t t4 = SCARA_C(-0.275) * (t0 * t1 + t2 * t3);
+    out[0] = SCARA_C(-0.325) * t2 + t4;
     out[1] = t4;
-    const scara_real_t t5 = SCARA_C(0.275) * (t1 * t3 - t0 * t2);
-    out[4] = SCARA_C(0.325) * t1 + t5;
+    const scara_real_t t5 = SCARA_C(0.275) * (t0 * t3 - t2 * t1);
+    out[4] = SCARA_C(0.325) * t0 + t5;
     out[5] = t5;
     out[10] = SCARA_C(-1.0);
     out[20] = SCARA_C(1.0);

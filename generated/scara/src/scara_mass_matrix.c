@@ -42,7 +42,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -64,25 +64,25 @@ int scara_mass_matrix(
         return status;
     }
 
-    scara_real_t t5, t7;
-    SCARA_SINCOS(q[1], &t5, &t7);
-    scara_real_t t0, t1;
-    SCARA_SINCOS(q[3], &t0, &t1);
-    const scara_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
-    const scara_real_t t3 = SCARA_C(0.275) * parameters[M3R];
-    const scara_real_t t4 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t2 + t3));
-    const scara_real_t t6 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const scara_real_t t8 = t5 * (t6 - parameters[MY2R]) + t7 * (parameters[MX2R] + (t2 + t3));
-    const scara_real_t t9 = parameters[ZZ1R] + (t4 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(2.0) * t8));
+    scara_real_t t3, t6;
+    SCARA_SINCOS(q[1], &t3, &t6);
+    scara_real_t t1, t0;
+    SCARA_SINCOS(q[3], &t1, &t0);
+    const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
+    const scara_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
+    const scara_real_t t5 = SCARA_C(0.275) * parameters[M3R];
+    const scara_real_t t7 = t3 * (t2 - parameters[MY2R]) + t6 * (parameters[MX2R] + (t4 + t5));
+    const scara_real_t t8 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t5));
+    const scara_real_t t9 = parameters[ZZ1R] + (t8 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(2.0) * t7));
     out[0] = t9;
-    const scara_real_t t10 = t4 + SCARA_C(0.325) * t8;
+    const scara_real_t t10 = t8 + SCARA_C(0.325) * t7;
     out[1] = t10;
-    const scara_real_t t11 = SCARA_C(-0.275) * t2 - parameters[ZZ4];
-    const scara_real_t t12 = t11 + SCARA_C(-0.325) * (t5 * t6 + t7 * t2);
+    const scara_real_t t11 = SCARA_C(-0.275) * t4 - parameters[ZZ4];
+    const scara_real_t t12 = t11 + SCARA_C(-0.325) * (t3 * t2 + t6 * t4);
     out[3] = t12;
     out[4] = t10;
-    out[5] = t4 + SCARA_C(2.5e3) * parameters[IA2];
+    out[5] = t8 + SCARA_C(2.5e3) * parameters[IA2];
     out[7] = t11;
     out[10] = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
     out[12] = t12;

@@ -75,7 +75,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -98,31 +98,31 @@ int scara_mass_matrix_standard(
         return status;
     }
 
-    scara_real_t t7, t9;
-    SCARA_SINCOS(q[1], &t7, &t9);
-    scara_real_t t2, t3;
-    SCARA_SINCOS(q[3], &t2, &t3);
-    const scara_real_t t0 = parameters[M3] + parameters[M4];
-    const scara_real_t t1 = SCARA_C(0.275) * t0;
-    const scara_real_t t4 = t2 * parameters[MY4] - t3 * parameters[MX4];
+    scara_real_t t3, t8;
+    SCARA_SINCOS(q[1], &t3, &t8);
+    scara_real_t t1, t0;
+    SCARA_SINCOS(q[3], &t1, &t0);
+    const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
+    const scara_real_t t4 = t1 * parameters[MY4] - t0 * parameters[MX4];
     const scara_real_t t5 = parameters[MX3] - t4;
-    const scara_real_t t6 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t1
+    const scara_real_t t6 = parameters[M3] + parameters[M4];
+    const scara_real_t t7 = SCARA_C(0.275) * t6;
+    const scara_real_t t9 = t3 * (parameters[MY3] + t2 - parameters[MY2]) + t8 * (parameters[MX2] + (t5
+        + t7));
+    const scara_real_t t10 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t7
         + SCARA_C(2.0) * t5));
-    const scara_real_t t8 = t3 * parameters[MY4] + t2 * parameters[MX4];
-    const scara_real_t t10 = t7 * (parameters[MY3] + t8 - parameters[MY2]) + t9 * (parameters[MX2] + (t5
-        + t1));
-    const scara_real_t t11 = t6 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
-        + SCARA_C(2.0) * t10);
+    const scara_real_t t11 = t10 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t6)
+        + SCARA_C(2.0) * t9);
     out[0] = parameters[ZZ1] + t11 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t12 = t6 + SCARA_C(0.325) * t10;
+    const scara_real_t t12 = t10 + SCARA_C(0.325) * t9;
     out[1] = t12;
     const scara_real_t t13 = SCARA_C(0.275) * t4 - parameters[ZZ4];
-    const scara_real_t t14 = t13 + SCARA_C(0.325) * (t9 * t4 - t7 * t8);
+    const scara_real_t t14 = t13 + SCARA_C(0.325) * (t8 * t4 - t3 * t2);
     out[3] = t14;
     out[4] = t12;
-    out[5] = t6 + SCARA_C(2.5e3) * parameters[IA2];
+    out[5] = t10 + SCARA_C(2.5e3) * parameters[IA2];
     out[7] = t13;
-    out[10] = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
+    out[10] = t6 + SCARA_C(98696.04401089359) * parameters[IA3];
     out[12] = t14;
     out[13] = t13;
     out[15] = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];

@@ -26,7 +26,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -92,12 +92,12 @@ int scara_regressor_packed(
     const scara_real_t t20 = t19 * t19;
     const scara_real_t t21 = t16 * t20 - t15 * t14;
     const scara_real_t t22 = t15 * t20 + t16 * t14;
-    out[6] = t18 + (t4 * t21 + t13 * t22);
+    out[6] = t18 + (t21 * t4 + t22 * t13);
     out[15] = SCARA_C(1.6) * (t18 + SCARA_C(0.0171875) * t22);
     out[25] = SCARA_C(-0.5) * t17;
     const scara_real_t t23 = t15 * t12 - t16 * t11;
     const scara_real_t t24 = SCARA_C(-0.0625) * t23;
-    out[7] = t24 + (t13 * t21 - t4 * t22);
+    out[7] = t24 + (t21 * t13 - t22 * t4);
     out[16] = SCARA_C(1.6) * (t24 + SCARA_C(0.0171875) * t21);
     out[26] = SCARA_C(0.5) * t23;
     out[8] = SCARA_C(4.0e2) * dq[0];

@@ -30,7 +30,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -52,8 +52,8 @@ int scara_regressor_standard(
         return status;
     }
 
-    scara_real_t t3, t5;
-    SCARA_SINCOS(q[1], &t3, &t5);
+    scara_real_t t5, t8;
+    SCARA_SINCOS(q[1], &t5, &t8);
     scara_real_t t24, t25;
     SCARA_SINCOS(q[3], &t24, &t25);
     out[5] = SCARA_C(0.0625) * ddq[0];
@@ -62,35 +62,35 @@ int scara_regressor_standard(
     out[15] = t1;
     const scara_real_t t2 = SCARA_C(0.1) * t0;
     out[67] = t2;
-    const scara_real_t t4 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t6 = SCARA_C(0.325) * ddq[0];
-    const scara_real_t t7 = t3 * t4 + t5 * t6;
-    const scara_real_t t8 = dq[0] + dq[1];
-    const scara_real_t t9 = t8 * t8;
-    const scara_real_t t10 = SCARA_C(-0.325) * t3;
-    const scara_real_t t11 = t9 * t10;
-    const scara_real_t t12 = SCARA_C(0.325) * t5;
-    out[16] = SCARA_C(0.0625) * (t7 + (t11 + t0 * t12));
-    out[68] = SCARA_C(0.1) * t7;
-    const scara_real_t t13 = t5 * t4 - t3 * t6;
-    const scara_real_t t14 = t0 * t10;
-    out[17] = SCARA_C(0.0625) * (t13 + (t14 - t9 * t12));
-    const scara_real_t t15 = SCARA_C(0.1) * t13;
+    const scara_real_t t3 = dq[0] + dq[1];
+    const scara_real_t t4 = t3 * t3;
+    const scara_real_t t6 = SCARA_C(-0.325) * t5;
+    const scara_real_t t7 = t4 * t6;
+    const scara_real_t t9 = SCARA_C(0.325) * t8;
+    const scara_real_t t10 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t11 = SCARA_C(0.325) * ddq[0];
+    const scara_real_t t12 = t5 * t10 + t8 * t11;
+    out[16] = SCARA_C(0.0625) * (t12 + (t7 + t0 * t9));
+    out[68] = SCARA_C(0.1) * t12;
+    const scara_real_t t13 = t0 * t6;
+    const scara_real_t t14 = t8 * t10 - t5 * t11;
+    out[17] = SCARA_C(0.0625) * (t14 + (t13 - t4 * t9));
+    const scara_real_t t15 = SCARA_C(0.1) * t14;
     out[69] = t15;
     out[19] = SCARA_C(0.006601562500000001) * ddq[0];
     out[25] = t1;
     out[77] = t2;
-    const scara_real_t t16 = SCARA_C(0.275) * t0;
-    const scara_real_t t17 = t7 + t16;
-    const scara_real_t t18 = t12 + SCARA_C(0.275);
-    out[26] = SCARA_C(0.0625) * (t17 + (t11 + t0 * t18));
-    out[78] = SCARA_C(0.1) * (t16 + t17);
-    const scara_real_t t19 = SCARA_C(-0.275) * t9 - t13;
-    out[27] = SCARA_C(0.0625) * (t19 + (t9 * t18 - t14));
+    const scara_real_t t16 = t9 + SCARA_C(0.275);
+    const scara_real_t t17 = SCARA_C(0.275) * t0;
+    const scara_real_t t18 = t12 + t17;
+    out[26] = SCARA_C(0.0625) * (t18 + (t7 + t0 * t16));
+    out[78] = SCARA_C(0.1) * (t17 + t18);
+    const scara_real_t t19 = SCARA_C(-0.275) * t4 - t14;
+    out[27] = SCARA_C(0.0625) * (t19 + (t4 * t16 - t13));
     out[79] = -t15;
-    const scara_real_t t20 = SCARA_C(0.0625) * (t17 * t18 - t19 * t10);
+    const scara_real_t t20 = SCARA_C(0.0625) * (t18 * t16 - t19 * t6);
     out[29] = t20;
-    const scara_real_t t21 = SCARA_C(0.027500000000000004) * t17;
+    const scara_real_t t21 = SCARA_C(0.027500000000000004) * t18;
     out[81] = t21;
     const scara_real_t t22 = SCARA_C(0.03183098861837907) * (ddq[2] - SCARA_C(9.81));
     out[133] = t22;
@@ -98,16 +98,16 @@ int scara_regressor_standard(
     out[35] = SCARA_C(0.0625) * t23;
     out[87] = SCARA_C(0.1) * t23;
     out[191] = SCARA_C(-0.5) * t23;
-    const scara_real_t t26 = t24 * t19 + t25 * t17;
-    const scara_real_t t27 = dq[3] - t8;
+    const scara_real_t t26 = t24 * t19 + t25 * t18;
+    const scara_real_t t27 = dq[3] - t3;
     const scara_real_t t28 = t27 * t27;
     const scara_real_t t29 = t25 * t28 - t24 * t23;
     const scara_real_t t30 = t24 * t28 + t25 * t23;
-    out[36] = SCARA_C(0.0625) * (t26 + (t29 * t10 + t30 * t18));
+    out[36] = SCARA_C(0.0625) * (t26 + (t6 * t29 + t16 * t30));
     out[88] = SCARA_C(0.1) * (t26 + SCARA_C(0.275) * t30);
     out[192] = SCARA_C(-0.5) * t26;
-    const scara_real_t t31 = t25 * t19 - t24 * t17;
-    out[37] = SCARA_C(0.0625) * (t31 + (t29 * t18 - t30 * t10));
+    const scara_real_t t31 = t25 * t19 - t24 * t18;
+    out[37] = SCARA_C(0.0625) * (t31 + (t16 * t29 - t6 * t30));
     out[89] = SCARA_C(0.1) * (t31 + SCARA_C(0.275) * t29);
     out[193] = SCARA_C(-0.5) * t31;
     out[39] = t20;

@@ -11,7 +11,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 scara_pair_t scara_sincos(scara_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * SCARA_C(0.636619772) + SCARA_C(16384.5));
+    const scara_real_t turns = x * SCARA_C(0.636619772) + SCARA_C(16384.5);
+    const long quarter = (long)turns;
     const scara_real_t k = (scara_real_t)quarter - SCARA_C(16384.0);
     const scara_real_t r = x - k * SCARA_C(1.5703125) - k * SCARA_C(4.83826792e-4);
     const scara_real_t z = r * r;

@@ -29,7 +29,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x06CE1AB2UL
+#if SCARA_GENERATION != 0x56F4A270UL
 #error "scara.h and scara_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
@@ -53,49 +53,49 @@ int scara_slotine_li_regressor(
         return status;
     }
 
-    scara_real_t t1, t6;
-    SCARA_SINCOS(q[1], &t1, &t6);
-    scara_real_t t16, t17;
-    SCARA_SINCOS(q[3], &t16, &t17);
+    scara_real_t t4, t6;
+    SCARA_SINCOS(q[1], &t4, &t6);
+    scara_real_t t18, t17;
+    SCARA_SINCOS(q[3], &t18, &t17);
     out[0] = SCARA_C(0.0625) * ddq_r[0];
     const scara_real_t t0 = ddq_r[0] + ddq_r[1];
     out[1] = SCARA_C(0.0625) * t0;
     out[20] = SCARA_C(0.1) * t0;
-    const scara_real_t t2 = SCARA_C(-0.0203125) * t1;
-    const scara_real_t t3 = dq[0] + dq[1];
-    const scara_real_t t4 = dq_r[0] + dq_r[1];
-    const scara_real_t t5 = t3 * t4;
+    const scara_real_t t1 = dq[0] + dq[1];
+    const scara_real_t t2 = dq_r[0] + dq_r[1];
+    const scara_real_t t3 = t1 * t2;
+    const scara_real_t t5 = SCARA_C(-0.0203125) * t4;
     const scara_real_t t7 = SCARA_C(0.0203125) * t6;
     const scara_real_t t8 = SCARA_C(0.325) * (dq[0] * dq_r[0]);
     const scara_real_t t9 = SCARA_C(0.325) * ddq_r[0];
-    const scara_real_t t10 = t1 * t8 + t6 * t9;
-    out[2] = t2 * t5 + t7 * t0 + SCARA_C(0.0625) * t10;
+    const scara_real_t t10 = t4 * t8 + t6 * t9;
+    out[2] = t5 * t3 + t7 * t0 + SCARA_C(0.0625) * t10;
     out[21] = SCARA_C(0.1) * t10;
-    const scara_real_t t11 = t6 * t8 - t1 * t9;
-    out[3] = t2 * t0 - t7 * t5 + SCARA_C(0.0625) * t11;
+    const scara_real_t t11 = t6 * t8 - t4 * t9;
+    out[3] = t5 * t0 - t7 * t3 + SCARA_C(0.0625) * t11;
     out[22] = SCARA_C(0.1) * t11;
-    const scara_real_t t12 = SCARA_C(-0.275) * t5 - t11;
-    const scara_real_t t13 = t7 + SCARA_C(0.0171875);
-    const scara_real_t t14 = t10 + SCARA_C(0.275) * t0;
-    out[4] = t13 * t14 - t2 * t12;
-    out[23] = SCARA_C(0.027500000000000004) * t14;
+    const scara_real_t t12 = SCARA_C(-0.275) * t3 - t11;
+    const scara_real_t t13 = t10 + SCARA_C(0.275) * t0;
+    const scara_real_t t14 = t7 + SCARA_C(0.0171875);
+    out[4] = t14 * t13 - t5 * t12;
+    out[23] = SCARA_C(0.027500000000000004) * t13;
     out[42] = SCARA_C(0.03183098861837907) * (ddq_r[2] - SCARA_C(9.81));
     const scara_real_t t15 = t0 - ddq_r[3];
     out[5] = SCARA_C(0.0625) * t15;
     out[24] = SCARA_C(0.1) * t15;
     out[62] = SCARA_C(-0.5) * t15;
-    const scara_real_t t18 = t16 * t12 + t17 * t14;
-    const scara_real_t t19 = SCARA_C(0.0625) * t18;
-    const scara_real_t t20 = (dq[3] - t3) * (dq_r[3] - t4);
-    const scara_real_t t21 = t17 * t20 - t16 * t15;
-    const scara_real_t t22 = t16 * t20 + t17 * t15;
-    out[6] = t19 + (t2 * t21 + t13 * t22);
-    out[25] = SCARA_C(1.6) * (t19 + SCARA_C(0.0171875) * t22);
-    out[63] = SCARA_C(-0.5) * t18;
-    const scara_real_t t23 = t16 * t14 - t17 * t12;
+    const scara_real_t t16 = (dq[3] - t1) * (dq_r[3] - t2);
+    const scara_real_t t19 = t17 * t16 - t18 * t15;
+    const scara_real_t t20 = t18 * t16 + t17 * t15;
+    const scara_real_t t21 = t18 * t12 + t17 * t13;
+    const scara_real_t t22 = SCARA_C(0.0625) * t21;
+    out[6] = t5 * t19 + t14 * t20 + t22;
+    out[25] = SCARA_C(1.6) * (t22 + SCARA_C(0.0171875) * t20);
+    out[63] = SCARA_C(-0.5) * t21;
+    const scara_real_t t23 = t18 * t13 - t17 * t12;
     const scara_real_t t24 = SCARA_C(-0.0625) * t23;
-    out[7] = t24 + (t13 * t21 - t2 * t22);
-    out[26] = SCARA_C(1.6) * (t24 + SCARA_C(0.0171875) * t21);
+    out[7] = t14 * t19 - t5 * t20 + t24;
+    out[26] = SCARA_C(1.6) * (t24 + SCARA_C(0.0171875) * t19);
     out[64] = SCARA_C(0.5) * t23;
     out[8] = SCARA_C(4.0e2) * dq[0];
     const scara_real_t t25 = scara_sign(dq[0]);

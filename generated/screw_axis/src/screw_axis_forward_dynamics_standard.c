@@ -35,7 +35,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
+#if SCREW_AXIS_GENERATION != 0xE22EDD8AUL
 #error "screw_axis.h and screw_axis_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -60,17 +60,17 @@ int screw_axis_forward_dynamics_standard(
         return status;
     }
 
-    const screw_axis_real_t t0 = screw_axis_sign(dq[0]);
-    const screw_axis_real_t
-        t1 = SCREW_AXIS_C(1256.6370614359173) * (SCREW_AXIS_C(-1256.6370614359173) * dq[0] * parameters[FV1])
-        + SCREW_AXIS_C(-1256.6370614359173) * (t0 * parameters[FC1]);
-    const screw_axis_real_t t2 = parameters[M1] + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1];
-    if (!(t2 > SCREW_AXIS_C(1.0e-9))) {
+    const screw_axis_real_t t0 = parameters[M1] + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1];
+    if (!(t0 > SCREW_AXIS_C(1.0e-9))) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }
-    const screw_axis_real_t t3 = SCREW_AXIS_C(1.0) / t2;
-    out[0] = (t1 + SCREW_AXIS_C(37.69911184307752) * input[0]) * t3;
+    const screw_axis_real_t t1 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t
+        t2 = SCREW_AXIS_C(1256.6370614359173) * (SCREW_AXIS_C(-1256.6370614359173) * dq[0] * parameters[FV1])
+        + SCREW_AXIS_C(-1256.6370614359173) * (t1 * parameters[FC1]);
+    const screw_axis_real_t t3 = SCREW_AXIS_C(1.0) / t0;
+    out[0] = (t2 + SCREW_AXIS_C(37.69911184307752) * input[0]) * t3;
     if (!(out[0] >= SCREW_AXIS_C(-1.0e15) && out[0] <= SCREW_AXIS_C(1.0e15))) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;

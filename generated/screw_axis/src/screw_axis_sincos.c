@@ -11,7 +11,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x0D8BE076UL
+#if SCREW_AXIS_GENERATION != 0xE22EDD8AUL
 #error "screw_axis.h and screw_axis_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 screw_axis_pair_t screw_axis_sincos(screw_axis_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * SCREW_AXIS_C(0.636619772) + SCREW_AXIS_C(16384.5));
+    const screw_axis_real_t turns = x * SCREW_AXIS_C(0.636619772) + SCREW_AXIS_C(16384.5);
+    const long quarter = (long)turns;
     const screw_axis_real_t k = (screw_axis_real_t)quarter - SCREW_AXIS_C(16384.0);
     const screw_axis_real_t r = x - k * SCREW_AXIS_C(1.5703125) - k * SCREW_AXIS_C(4.83826792e-4);
     const screw_axis_real_t z = r * r;

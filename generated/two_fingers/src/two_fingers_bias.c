@@ -67,7 +67,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -92,148 +92,148 @@ int two_fingers_bias(
         return status;
     }
 
-    two_fingers_real_t t47, t48;
-    TWO_FINGERS_SINCOS(q[1], &t47, &t48);
-    two_fingers_real_t t59, t58;
-    TWO_FINGERS_SINCOS(q[2], &t59, &t58);
-    two_fingers_real_t t1, t2;
-    TWO_FINGERS_SINCOS(q[3], &t1, &t2);
-    two_fingers_real_t t15, t14;
-    TWO_FINGERS_SINCOS(q[4], &t15, &t14);
-    const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t3 = t2 * dq[0];
-    const two_fingers_real_t t4 = dq[3] * t3;
-    const two_fingers_real_t t5 = t1 * dq[0];
-    const two_fingers_real_t t6 = dq[3] * t5;
-    const two_fingers_real_t t7 = TWO_FINGERS_C(-2.0) * t6;
-    const two_fingers_real_t t8 = t5 * t3;
-    const two_fingers_real_t t9 = parameters[XX4R] * t4 + parameters[ZZ4R] * t4 + parameters[XY4] * t7
-        + parameters[XZ4R] * t8;
-    const two_fingers_real_t t10 = dq[3] * dq[3];
-    const two_fingers_real_t t11 = t3 * t3;
-    const two_fingers_real_t t12 = dq[0] * dq[0];
-    const two_fingers_real_t t13 = TWO_FINGERS_C(8.673617379884035e-19) * t12;
-    const two_fingers_real_t t16 = t14 * t3 - t15 * t5;
-    const two_fingers_real_t t17 = dq[3] + dq[4];
-    const two_fingers_real_t t18 = t16 * t17;
-    const two_fingers_real_t t19 = t14 * t5 + t15 * t3;
-    const two_fingers_real_t t20 = t19 * t17;
-    const two_fingers_real_t t21 = TWO_FINGERS_C(-2.0) * t20;
-    const two_fingers_real_t t22 = t19 * t16;
-    const two_fingers_real_t t23 = parameters[XX5R] * t18 + parameters[ZZ5] * t18 + parameters[XY5] * t21
-        + parameters[XZ5] * t22;
-    const two_fingers_real_t t24 = t16 * t16;
-    const two_fingers_real_t t25 = t17 * t17;
-    const two_fingers_real_t t26 = t13 + TWO_FINGERS_C(0.09) * t6;
-    const two_fingers_real_t t27 = t23 + parameters[YZ5] * (t24 - t25) + parameters[MY5] * t26;
-    const two_fingers_real_t t28 = TWO_FINGERS_C(-2.0) * t18;
-    const two_fingers_real_t t29 = t20 * (parameters[XX5R] - parameters[ZZ5]) - parameters[XY5] * t28
-        - parameters[YZ5] * t22;
-    const two_fingers_real_t t30 = t19 * t19;
-    const two_fingers_real_t t31 = t29 - parameters[XZ5] * (t30 - t25) - parameters[MX5] * t26;
-    const two_fingers_real_t t32 = t9 + parameters[YZ4] * (t11 - t10) + parameters[MY4] * t13 + (t14 * t27
-        - t15 * t31);
-    const two_fingers_real_t t33 = TWO_FINGERS_C(2.0) * t4;
-    const two_fingers_real_t t34 = t6 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t33
-        - parameters[YZ4] * t8;
-    const two_fingers_real_t t35 = t5 * t5;
-    const two_fingers_real_t t36 = parameters[MX5] * t21 + parameters[MY5] * t28;
-    const two_fingers_real_t t37 = t34 + parameters[XZ4R] * (t10 - t35) - parameters[MX4R] * t13 + (t15 * t27
-        + t14 * t31 + TWO_FINGERS_C(0.045) * t36);
-    const two_fingers_real_t t38 = t10 + t11;
-    const two_fingers_real_t t39 = parameters[MY5] * t22 - parameters[MX5] * (t24 + t25);
-    const two_fingers_real_t t40 = parameters[MX5] * t22 - parameters[MY5] * (t30 + t25);
-    const two_fingers_real_t t41 = parameters[MX4R] * t38 - parameters[MY4] * t8 + (t15 * t40 - t14 * t39);
-    const two_fingers_real_t t42 = t15 * t39 + t14 * t40;
-    const two_fingers_real_t t43 = t1 * (parameters[MX4R] * t8 - parameters[MY4] * (t10 + t35) + t42);
-    const two_fingers_real_t t44 = t2 * t41 + t43;
-    const two_fingers_real_t t45 = parameters[MX4R] * t7 - parameters[MY4] * t33 + t36;
+    two_fingers_real_t t46, t49;
+    TWO_FINGERS_SINCOS(q[1], &t46, &t49);
+    two_fingers_real_t t48, t51;
+    TWO_FINGERS_SINCOS(q[2], &t48, &t51);
+    two_fingers_real_t t0, t3;
+    TWO_FINGERS_SINCOS(q[3], &t0, &t3);
+    two_fingers_real_t t2, t5;
+    TWO_FINGERS_SINCOS(q[4], &t2, &t5);
+    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t4 = t3 * dq[0];
+    const two_fingers_real_t t6 = t5 * t4 - t2 * t1;
+    const two_fingers_real_t t7 = t6 * t6;
+    const two_fingers_real_t t8 = dq[3] + dq[4];
+    const two_fingers_real_t t9 = t8 * t8;
+    const two_fingers_real_t t10 = t5 * t1 + t2 * t4;
+    const two_fingers_real_t t11 = t10 * t6;
+    const two_fingers_real_t t12 = parameters[MY5] * t11 - parameters[MX5] * (t7 + t9);
+    const two_fingers_real_t t13 = t10 * t10;
+    const two_fingers_real_t t14 = parameters[MX5] * t11 - parameters[MY5] * (t13 + t9);
+    const two_fingers_real_t t15 = t4 * t4;
+    const two_fingers_real_t t16 = dq[3] * dq[3];
+    const two_fingers_real_t t17 = t16 + t15;
+    const two_fingers_real_t t18 = t1 * t4;
+    const two_fingers_real_t t19 = parameters[MX4R] * t17 - parameters[MY4] * t18 + (t2 * t14 - t5 * t12);
+    const two_fingers_real_t t20 = t2 * t12 + t5 * t14;
+    const two_fingers_real_t t21 = t1 * t1;
+    const two_fingers_real_t t22 = t0 * (parameters[MX4R] * t18 - parameters[MY4] * (t16 + t21) + t20);
+    const two_fingers_real_t t23 = t3 * t19 + t22;
+    const two_fingers_real_t t24 = t10 * t8;
+    const two_fingers_real_t t25 = TWO_FINGERS_C(-2.0) * t24;
+    const two_fingers_real_t t26 = t6 * t8;
+    const two_fingers_real_t t27 = TWO_FINGERS_C(-2.0) * t26;
+    const two_fingers_real_t t28 = parameters[MX5] * t25 + parameters[MY5] * t27;
+    const two_fingers_real_t t29 = dq[3] * t1;
+    const two_fingers_real_t t30 = TWO_FINGERS_C(-2.0) * t29;
+    const two_fingers_real_t t31 = dq[3] * t4;
+    const two_fingers_real_t t32 = TWO_FINGERS_C(2.0) * t31;
+    const two_fingers_real_t t33 = parameters[MX4R] * t30 - parameters[MY4] * t32 + t28;
     const two_fingers_real_t
-        t46 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t44
-        + TWO_FINGERS_C(0.984807753012208) * t45)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t44
-        + TWO_FINGERS_C(0.17364817766693028) * t45);
-    const two_fingers_real_t t49 = t48 * dq[0];
-    const two_fingers_real_t t50 = dq[1] * t49;
-    const two_fingers_real_t t51 = t47 * dq[0];
-    const two_fingers_real_t t52 = dq[1] * t51;
-    const two_fingers_real_t t53 = TWO_FINGERS_C(-2.0) * t52;
-    const two_fingers_real_t t54 = t51 * t49;
-    const two_fingers_real_t t55 = parameters[XX2R] * t50 + parameters[ZZ2R] * t50 + parameters[XY2] * t53
-        + parameters[XZ2R] * t54;
-    const two_fingers_real_t t56 = dq[1] * dq[1];
-    const two_fingers_real_t t57 = t49 * t49;
-    const two_fingers_real_t t60 = t58 * t49 - t59 * t51;
-    const two_fingers_real_t t61 = dq[1] + dq[2];
-    const two_fingers_real_t t62 = t60 * t61;
-    const two_fingers_real_t t63 = t58 * t51 + t59 * t49;
-    const two_fingers_real_t t64 = t63 * t61;
-    const two_fingers_real_t t65 = TWO_FINGERS_C(-2.0) * t64;
-    const two_fingers_real_t t66 = t63 * t60;
-    const two_fingers_real_t t67 = parameters[XX3R] * t62 + parameters[ZZ3] * t62 + parameters[XY3] * t65
-        + parameters[XZ3] * t66;
-    const two_fingers_real_t t68 = t60 * t60;
-    const two_fingers_real_t t69 = t61 * t61;
-    const two_fingers_real_t t70 = TWO_FINGERS_C(0.1) * t52;
-    const two_fingers_real_t t71 = t67 + parameters[YZ3] * (t68 - t69) + parameters[MY3] * t70;
-    const two_fingers_real_t t72 = TWO_FINGERS_C(-2.0) * t62;
-    const two_fingers_real_t t73 = t64 * (parameters[XX3R] - parameters[ZZ3]) - parameters[XY3] * t72
-        - parameters[YZ3] * t66;
-    const two_fingers_real_t t74 = t63 * t63;
-    const two_fingers_real_t t75 = t73 - parameters[XZ3] * (t74 - t69) - parameters[MX3] * t70;
-    const two_fingers_real_t t76 = t55 + parameters[YZ2] * (t57 - t56) + (t58 * t71 - t59 * t75);
-    const two_fingers_real_t t77 = TWO_FINGERS_C(2.0) * t50;
-    const two_fingers_real_t t78 = t52 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t77
-        - parameters[YZ2] * t54;
-    const two_fingers_real_t t79 = t51 * t51;
-    const two_fingers_real_t t80 = parameters[MX3] * t65 + parameters[MY3] * t72;
-    const two_fingers_real_t t81 = t78 + parameters[XZ2R] * (t56 - t79) + (t59 * t71 + t58 * t75
-        + TWO_FINGERS_C(0.05) * t80);
-    const two_fingers_real_t t82 = t47 * t76 + t48 * t81 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t53
-        - parameters[MY2] * t77 + t80);
-    const two_fingers_real_t t83 = TWO_FINGERS_C(0.4166666666666667) * (t1 * t32 + t2 * t37 + t46 + t82);
+        t34 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t23
+        + TWO_FINGERS_C(0.984807753012208) * t33)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t23
+        + TWO_FINGERS_C(0.17364817766693028) * t33);
+    const two_fingers_real_t t35 = parameters[XX5R] * t26 + parameters[ZZ5] * t26 + parameters[XY5] * t25
+        + parameters[XZ5] * t11;
+    const two_fingers_real_t t36 = dq[0] * dq[0];
+    const two_fingers_real_t t37 = TWO_FINGERS_C(8.673617379884035e-19) * t36;
+    const two_fingers_real_t t38 = t37 + TWO_FINGERS_C(0.09) * t29;
+    const two_fingers_real_t t39 = t35 + parameters[YZ5] * (t7 - t9) + parameters[MY5] * t38;
+    const two_fingers_real_t t40 = t24 * (parameters[XX5R] - parameters[ZZ5]) - parameters[XY5] * t27
+        - parameters[YZ5] * t11;
+    const two_fingers_real_t t41 = t40 - parameters[XZ5] * (t13 - t9) - parameters[MX5] * t38;
+    const two_fingers_real_t t42 = parameters[XX4R] * t31 + parameters[ZZ4R] * t31 + parameters[XY4] * t30
+        + parameters[XZ4R] * t18;
+    const two_fingers_real_t t43 = t42 + parameters[YZ4] * (t15 - t16) + parameters[MY4] * t37 + (t5 * t39
+        - t2 * t41);
+    const two_fingers_real_t t44 = t29 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t32
+        - parameters[YZ4] * t18;
+    const two_fingers_real_t t45 = t44 + parameters[XZ4R] * (t16 - t21) - parameters[MX4R] * t37 + (t2 * t39
+        + t5 * t41 + TWO_FINGERS_C(0.045) * t28);
+    const two_fingers_real_t t47 = t46 * dq[0];
+    const two_fingers_real_t t50 = t49 * dq[0];
+    const two_fingers_real_t t52 = t51 * t50 - t48 * t47;
+    const two_fingers_real_t t53 = dq[1] + dq[2];
+    const two_fingers_real_t t54 = t52 * t53;
+    const two_fingers_real_t t55 = t51 * t47 + t48 * t50;
+    const two_fingers_real_t t56 = t55 * t53;
+    const two_fingers_real_t t57 = TWO_FINGERS_C(-2.0) * t56;
+    const two_fingers_real_t t58 = t55 * t52;
+    const two_fingers_real_t t59 = parameters[XX3R] * t54 + parameters[ZZ3] * t54 + parameters[XY3] * t57
+        + parameters[XZ3] * t58;
+    const two_fingers_real_t t60 = t52 * t52;
+    const two_fingers_real_t t61 = t53 * t53;
+    const two_fingers_real_t t62 = dq[1] * t47;
+    const two_fingers_real_t t63 = TWO_FINGERS_C(0.1) * t62;
+    const two_fingers_real_t t64 = t59 + parameters[YZ3] * (t60 - t61) + parameters[MY3] * t63;
+    const two_fingers_real_t t65 = TWO_FINGERS_C(-2.0) * t54;
+    const two_fingers_real_t t66 = t56 * (parameters[XX3R] - parameters[ZZ3]) - parameters[XY3] * t65
+        - parameters[YZ3] * t58;
+    const two_fingers_real_t t67 = t55 * t55;
+    const two_fingers_real_t t68 = t66 - parameters[XZ3] * (t67 - t61) - parameters[MX3] * t63;
+    const two_fingers_real_t t69 = dq[1] * t50;
+    const two_fingers_real_t t70 = TWO_FINGERS_C(-2.0) * t62;
+    const two_fingers_real_t t71 = t47 * t50;
+    const two_fingers_real_t t72 = parameters[XX2R] * t69 + parameters[ZZ2R] * t69 + parameters[XY2] * t70
+        + parameters[XZ2R] * t71;
+    const two_fingers_real_t t73 = t50 * t50;
+    const two_fingers_real_t t74 = dq[1] * dq[1];
+    const two_fingers_real_t t75 = t72 + parameters[YZ2] * (t73 - t74) + (t51 * t64 - t48 * t68);
+    const two_fingers_real_t t76 = parameters[MX3] * t57 + parameters[MY3] * t65;
+    const two_fingers_real_t t77 = TWO_FINGERS_C(2.0) * t69;
+    const two_fingers_real_t t78 = t62 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t77
+        - parameters[YZ2] * t71;
+    const two_fingers_real_t t79 = t47 * t47;
+    const two_fingers_real_t t80 = t78 + parameters[XZ2R] * (t74 - t79) + (t48 * t64 + t51 * t68
+        + TWO_FINGERS_C(0.05) * t76);
+    const two_fingers_real_t t81 = t46 * t75 + t49 * t80 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t70
+        - parameters[MY2] * t77 + t76);
+    const two_fingers_real_t t82 = TWO_FINGERS_C(0.4166666666666667) * (t0 * t43 + t3 * t45 + t34 + t81);
+    const two_fingers_real_t t83 = two_fingers_sign(dq[0]);
     const two_fingers_real_t t84 = TWO_FINGERS_C(25.0) * (parameters[FV1] * (TWO_FINGERS_C(60.0) * dq[0])
-        + parameters[FC1] * t0) + t83;
+        + parameters[FC1] * t83) + t82;
     out[0] = t84;
-    const two_fingers_real_t t85 = two_fingers_sign(dq[1]);
-    const two_fingers_real_t t86 = TWO_FINGERS_C(0.03) * t12;
-    const two_fingers_real_t t87 = t47 * t86 + TWO_FINGERS_C(9.81) * t48;
-    const two_fingers_real_t t88 = t48 * t86 + TWO_FINGERS_C(-9.81) * t47;
-    const two_fingers_real_t t89 = parameters[XY2] * (t79 - t57) - parameters[XX2R] * t54
-        + (parameters[MX2R] * t87 + parameters[MY2] * t88);
-    const two_fingers_real_t t90 = t88 + TWO_FINGERS_C(0.05) * (t56 + t57);
-    const two_fingers_real_t t91 = t87 + TWO_FINGERS_C(0.05) * t54;
-    const two_fingers_real_t t92 = parameters[MX3] * (t59 * t90 + t58 * t91) + parameters[MY3] * (t58 * t90
-        - t59 * t91);
-    const two_fingers_real_t t93 = parameters[XY3] * (t74 - t68) - parameters[XX3R] * t66 + t92;
-    const two_fingers_real_t t94 = t59 * (parameters[MY3] * t66 - parameters[MX3] * (t68 + t69))
-        + t58 * (parameters[MX3] * t66 - parameters[MY3] * (t74 + t69));
+    const two_fingers_real_t t85 = TWO_FINGERS_C(0.03) * t36;
+    const two_fingers_real_t t86 = t49 * t85 + TWO_FINGERS_C(-9.81) * t46;
+    const two_fingers_real_t t87 = t86 + TWO_FINGERS_C(0.05) * (t74 + t73);
+    const two_fingers_real_t t88 = t46 * t85 + TWO_FINGERS_C(9.81) * t49;
+    const two_fingers_real_t t89 = t88 + TWO_FINGERS_C(0.05) * t71;
+    const two_fingers_real_t t90 = parameters[MX3] * (t48 * t87 + t51 * t89) + parameters[MY3] * (t51 * t87
+        - t48 * t89);
+    const two_fingers_real_t t91 = parameters[XY3] * (t67 - t60) - parameters[XX3R] * t58 + t90;
+    const two_fingers_real_t t92 = t48 * (parameters[MY3] * t58 - parameters[MX3] * (t60 + t61))
+        + t51 * (parameters[MX3] * t58 - parameters[MY3] * (t67 + t61));
+    const two_fingers_real_t t93 = parameters[XY2] * (t79 - t73) - parameters[XX2R] * t71
+        + (parameters[MX2R] * t88 + parameters[MY2] * t86);
+    const two_fingers_real_t t94 = two_fingers_sign(dq[1]);
     const two_fingers_real_t t95 = TWO_FINGERS_C(50.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
-        + parameters[FC2] * t85) + TWO_FINGERS_C(1.6666666666666667) * (t89 + (t93
-        + TWO_FINGERS_C(0.05) * t94));
+        + parameters[FC2] * t94) + TWO_FINGERS_C(1.6666666666666667) * (t93 + (t91
+        + TWO_FINGERS_C(0.05) * t92));
     out[1] = t95;
     const two_fingers_real_t t96 = two_fingers_sign(dq[2]);
     const two_fingers_real_t t97 = TWO_FINGERS_C(50.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
-        + parameters[FC3] * t96) + TWO_FINGERS_C(1.6666666666666667) * t93;
+        + parameters[FC3] * t96) + TWO_FINGERS_C(1.6666666666666667) * t91;
     out[2] = t97;
-    const two_fingers_real_t t98 = two_fingers_sign(dq[3]);
-    const two_fingers_real_t t99 = TWO_FINGERS_C(0.034999999999999996) * t12;
-    const two_fingers_real_t t100 = t1 * t99 + TWO_FINGERS_C(9.81) * t2;
-    const two_fingers_real_t t101 = t2 * t99 + TWO_FINGERS_C(-9.81) * t1;
-    const two_fingers_real_t t102 = parameters[XY4] * (t35 - t11) - parameters[XX4R] * t8
-        + (parameters[MX4R] * t100 + parameters[MY4] * t101);
-    const two_fingers_real_t t103 = t101 + TWO_FINGERS_C(0.045) * t38;
-    const two_fingers_real_t t104 = t100 + TWO_FINGERS_C(0.045) * t8;
-    const two_fingers_real_t t105 = parameters[MX5] * (t15 * t103 + t14 * t104)
-        + parameters[MY5] * (t14 * t103 - t15 * t104);
-    const two_fingers_real_t t106 = parameters[XY5] * (t30 - t24) - parameters[XX5R] * t22 + t105;
+    const two_fingers_real_t t98 = TWO_FINGERS_C(0.034999999999999996) * t36;
+    const two_fingers_real_t t99 = t3 * t98 + TWO_FINGERS_C(-9.81) * t0;
+    const two_fingers_real_t t100 = t99 + TWO_FINGERS_C(0.045) * t17;
+    const two_fingers_real_t t101 = t0 * t98 + TWO_FINGERS_C(9.81) * t3;
+    const two_fingers_real_t t102 = t101 + TWO_FINGERS_C(0.045) * t18;
+    const two_fingers_real_t t103 = parameters[MX5] * (t2 * t100 + t5 * t102) + parameters[MY5] * (t5 * t100
+        - t2 * t102);
+    const two_fingers_real_t t104 = parameters[XY5] * (t13 - t7) - parameters[XX5R] * t11 + t103;
+    const two_fingers_real_t t105 = parameters[XY4] * (t21 - t15) - parameters[XX4R] * t18
+        + (parameters[MX4R] * t101 + parameters[MY4] * t99);
+    const two_fingers_real_t t106 = two_fingers_sign(dq[3]);
     const two_fingers_real_t t107 = TWO_FINGERS_C(50.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
-        + parameters[FC4] * t98) + TWO_FINGERS_C(1.6666666666666667) * (t102 + (t106
-        + TWO_FINGERS_C(0.045) * t42));
+        + parameters[FC4] * t106) + TWO_FINGERS_C(1.6666666666666667) * (t105 + (t104
+        + TWO_FINGERS_C(0.045) * t20));
     out[3] = t107;
     const two_fingers_real_t t108 = two_fingers_sign(dq[4]);
     const two_fingers_real_t t109 = TWO_FINGERS_C(50.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
-        + parameters[FC5] * t108) + TWO_FINGERS_C(1.6666666666666667) * t106;
+        + parameters[FC5] * t108) + TWO_FINGERS_C(1.6666666666666667) * t104;
     out[4] = t109;
     return TWO_FINGERS_STATUS_OK;
 }

@@ -68,7 +68,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -120,11 +120,11 @@ int two_fingers_energy(
     const two_fingers_real_t t14 = dq[3] * (parameters[XZ4R] * t10 + parameters[YZ4] * t12
         + parameters[ZZ4R] * dq[3]);
     const two_fingers_real_t t15 = t13 + t12 * (parameters[XY4] * t10 + parameters[YZ4] * dq[3]) + t14;
-    const two_fingers_real_t t16 = TWO_FINGERS_C(8.673617379884035e-19) * dq[0];
-    const two_fingers_real_t t17 = t9 * t16;
-    const two_fingers_real_t t18 = TWO_FINGERS_C(-0.034999999999999996) * dq[0];
-    const two_fingers_real_t t19 = t11 * t16;
-    const two_fingers_real_t t20 = parameters[MX4R] * (dq[3] * t17 - t12 * t18) + parameters[MY4] * (t10 * t18
+    const two_fingers_real_t t16 = TWO_FINGERS_C(-0.034999999999999996) * dq[0];
+    const two_fingers_real_t t17 = TWO_FINGERS_C(8.673617379884035e-19) * dq[0];
+    const two_fingers_real_t t18 = t9 * t17;
+    const two_fingers_real_t t19 = t11 * t17;
+    const two_fingers_real_t t20 = parameters[MX4R] * (dq[3] * t18 - t12 * t16) + parameters[MY4] * (t10 * t16
         + dq[3] * t19);
     const two_fingers_real_t t23 = t21 * t1 + t22 * t3;
     const two_fingers_real_t t24 = t21 * t3 - t22 * t1;
@@ -134,10 +134,10 @@ int two_fingers_energy(
     const two_fingers_real_t t27 = t25 * (parameters[XZ3] * t23 + parameters[YZ3] * t24
         + parameters[ZZ3] * t25);
     const two_fingers_real_t t28 = t26 + t24 * (parameters[XY3] * t23 + parameters[YZ3] * t25) + t27;
-    const two_fingers_real_t t29 = TWO_FINGERS_C(0.05) * dq[1];
-    const two_fingers_real_t t30 = t7 + TWO_FINGERS_C(-0.05) * t3;
-    const two_fingers_real_t t31 = parameters[MX3] * (t25 * (t21 * t29) - t24 * t30)
-        + parameters[MY3] * (t23 * t30 - t25 * (t22 * t29));
+    const two_fingers_real_t t29 = t7 + TWO_FINGERS_C(-0.05) * t3;
+    const two_fingers_real_t t30 = TWO_FINGERS_C(0.05) * dq[1];
+    const two_fingers_real_t t31 = parameters[MX3] * (t25 * (t21 * t30) - t24 * t29)
+        + parameters[MY3] * (t23 * t29 - t25 * (t22 * t30));
     const two_fingers_real_t t32 = t8 + TWO_FINGERS_C(0.5) * t15 + t20 + TWO_FINGERS_C(0.5) * t28 + t31;
     const two_fingers_real_t t35 = t33 * t10 + t34 * t12;
     const two_fingers_real_t t36 = t33 * t12 - t34 * t10;
@@ -147,10 +147,10 @@ int two_fingers_energy(
     const two_fingers_real_t t39 = t37 * (parameters[XZ5] * t35 + parameters[YZ5] * t36
         + parameters[ZZ5] * t37);
     const two_fingers_real_t t40 = t38 + t36 * (parameters[XY5] * t35 + parameters[YZ5] * t37) + t39;
-    const two_fingers_real_t t41 = t17 + TWO_FINGERS_C(0.045) * dq[3];
-    const two_fingers_real_t t42 = t18 + TWO_FINGERS_C(-0.045) * t12;
-    const two_fingers_real_t t43 = t37 * (t34 * t19 + t33 * t41) - t36 * t42;
-    const two_fingers_real_t t44 = t35 * t42 + t37 * (t33 * t19 - t34 * t41);
+    const two_fingers_real_t t41 = t16 + TWO_FINGERS_C(-0.045) * t12;
+    const two_fingers_real_t t42 = t18 + TWO_FINGERS_C(0.045) * dq[3];
+    const two_fingers_real_t t43 = t37 * (t34 * t19 + t33 * t42) - t36 * t41;
+    const two_fingers_real_t t44 = t35 * t41 + t37 * (t33 * t19 - t34 * t42);
     const two_fingers_real_t t45 = t32 + TWO_FINGERS_C(0.5) * t40 + (parameters[MX5] * t43
         + parameters[MY5] * t44);
     const two_fingers_real_t t46 = t45

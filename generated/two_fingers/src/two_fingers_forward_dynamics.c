@@ -69,7 +69,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -96,250 +96,248 @@ int two_fingers_forward_dynamics(
         return status;
     }
 
-    two_fingers_real_t t48, t49;
-    TWO_FINGERS_SINCOS(q[1], &t48, &t49);
-    two_fingers_real_t t60, t59;
-    TWO_FINGERS_SINCOS(q[2], &t60, &t59);
+    two_fingers_real_t t34, t32;
+    TWO_FINGERS_SINCOS(q[1], &t34, &t32);
+    two_fingers_real_t t10, t11;
+    TWO_FINGERS_SINCOS(q[2], &t10, &t11);
+    two_fingers_real_t t23, t21;
+    TWO_FINGERS_SINCOS(q[3], &t23, &t21);
     two_fingers_real_t t2, t3;
-    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
-    two_fingers_real_t t16, t15;
-    TWO_FINGERS_SINCOS(q[4], &t16, &t15);
-    const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0]))
-        + TWO_FINGERS_C(-60.0) * (parameters[FC1] * t0);
-    const two_fingers_real_t t4 = t3 * dq[0];
-    const two_fingers_real_t t5 = dq[3] * t4;
-    const two_fingers_real_t t6 = t2 * dq[0];
-    const two_fingers_real_t t7 = dq[3] * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(2.0) * t7;
-    const two_fingers_real_t t9 = t6 * t4;
-    const two_fingers_real_t t10 = parameters[XY4] * t8 - (parameters[XX4R] * t5 + parameters[ZZ4R] * t5)
-        - parameters[XZ4R] * t9;
-    const two_fingers_real_t t11 = dq[3] * dq[3];
-    const two_fingers_real_t t12 = t4 * t4;
-    const two_fingers_real_t t13 = dq[0] * dq[0];
-    const two_fingers_real_t t14 = TWO_FINGERS_C(-8.673617379884035e-19) * t13;
-    const two_fingers_real_t t17 = t16 * t6 - t15 * t4;
-    const two_fingers_real_t t18 = dq[3] + dq[4];
-    const two_fingers_real_t t19 = t17 * t18;
-    const two_fingers_real_t t20 = t15 * t6 + t16 * t4;
-    const two_fingers_real_t t21 = t20 * t18;
-    const two_fingers_real_t t22 = TWO_FINGERS_C(2.0) * t21;
-    const two_fingers_real_t t23 = t20 * t17;
-    const two_fingers_real_t t24 = parameters[XX5R] * t19 + parameters[ZZ5] * t19 + parameters[XY5] * t22
-        + parameters[XZ5] * t23;
-    const two_fingers_real_t t25 = t17 * t17;
-    const two_fingers_real_t t26 = t18 * t18;
-    const two_fingers_real_t t27 = t14 + TWO_FINGERS_C(-0.09) * t7;
-    const two_fingers_real_t t28 = t24 + parameters[YZ5] * (t26 - t25) + parameters[MY5] * t27;
-    const two_fingers_real_t t29 = TWO_FINGERS_C(-2.0) * t19;
-    const two_fingers_real_t t30 = t21 * (parameters[XX5R] - parameters[ZZ5]) + parameters[XY5] * t29
-        + parameters[YZ5] * t23;
-    const two_fingers_real_t t31 = t20 * t20;
-    const two_fingers_real_t t32 = t30 - parameters[XZ5] * (t31 - t26) + parameters[MX5] * t27;
-    const two_fingers_real_t t33 = t10 + parameters[YZ4] * (t11 - t12) + parameters[MY4] * t14 + (t15 * t28
-        + t16 * t32);
-    const two_fingers_real_t t34 = TWO_FINGERS_C(2.0) * t5;
-    const two_fingers_real_t t35 = t7 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t34
-        + parameters[YZ4] * t9;
-    const two_fingers_real_t t36 = t6 * t6;
-    const two_fingers_real_t t37 = parameters[MX5] * t22 + parameters[MY5] * t29;
-    const two_fingers_real_t t38 = t35 + parameters[XZ4R] * (t36 - t11) - parameters[MX4R] * t14 + (t16 * t28
-        - t15 * t32 + TWO_FINGERS_C(0.045) * t37);
-    const two_fingers_real_t t39 = t11 + t12;
-    const two_fingers_real_t t40 = parameters[MX5] * (t25 + t26) + parameters[MY5] * t23;
-    const two_fingers_real_t t41 = parameters[MX5] * t23 + parameters[MY5] * (t31 + t26);
-    const two_fingers_real_t t42 = parameters[MX4R] * t39 - parameters[MY4] * t9 + (t15 * t40 - t16 * t41);
-    const two_fingers_real_t t43 = t16 * t40 + t15 * t41;
-    const two_fingers_real_t t44 = t2 * (parameters[MX4R] * t9 - parameters[MY4] * (t11 + t36) - t43);
-    const two_fingers_real_t t45 = t3 * t42 + t44;
-    const two_fingers_real_t t46 = parameters[MX4R] * t8 + parameters[MY4] * t34 + t37;
+    TWO_FINGERS_SINCOS(q[4], &t2, &t3);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    if (!(t0 > TWO_FINGERS_C(1.0e-9))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    if (!(t1 > TWO_FINGERS_C(1.0e-9))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
+    const two_fingers_real_t t5 = TWO_FINGERS_C(0.045) * t4 - parameters[ZZ5];
+    const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
+    const two_fingers_real_t t7 = t5 * t6;
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4;
+    const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8) - t5 * t7;
+    if (!(t9 > TWO_FINGERS_C(1.0e-9))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t12 = t11 * parameters[MX3] - t10 * parameters[MY3];
+    const two_fingers_real_t t13 = TWO_FINGERS_C(-0.05) * t12 - parameters[ZZ3];
+    const two_fingers_real_t t14 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t15 = t13 * t14;
+    const two_fingers_real_t t16 = TWO_FINGERS_C(0.1) * t12;
+    const two_fingers_real_t t17 = parameters[ZZ2R] + (parameters[ZZ3] + t16) - t13 * t15;
+    if (!(t17 > TWO_FINGERS_C(1.0e-9))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t18 = t3 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
+    const two_fingers_real_t t19 = t3 * t18;
+    const two_fingers_real_t t20 = parameters[XX4R] + t19;
+    const two_fingers_real_t t22 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t24 = (parameters[XY4] + (parameters[XY5] + t2 * t18
+        + TWO_FINGERS_C(-0.045) * t22)) * (TWO_FINGERS_C(2.0) * t23);
+    const two_fingers_real_t t25 = t21 * (t21 * (parameters[XX5R] - t19 + t8 - t20) + t24);
+    const two_fingers_real_t t26 = parameters[MY4] + t22;
+    const two_fingers_real_t t27 = parameters[MX4R] - t4;
+    const two_fingers_real_t t28 = t20 + t25 + TWO_FINGERS_C(0.06999999999999999) * (t21 * t27 - t23 * t26);
+    const two_fingers_real_t t29 = t11 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t10);
+    const two_fingers_real_t t30 = t11 * t29;
+    const two_fingers_real_t t31 = parameters[XX2R] + t30;
+    const two_fingers_real_t t33 = t11 * parameters[MY3] + t10 * parameters[MX3];
+    const two_fingers_real_t t35 = (parameters[XY2] + (parameters[XY3] + t10 * t29
+        + TWO_FINGERS_C(-0.05) * t33)) * (TWO_FINGERS_C(2.0) * t34);
+    const two_fingers_real_t t36 = t32 * (t32 * (parameters[XX3R] - t30 + t16 - t31) + t35);
+    const two_fingers_real_t t37 = TWO_FINGERS_C(0.06) * (t32 * (parameters[MX2R] + t12)
+        - t34 * (parameters[MY2] + t33));
+    const two_fingers_real_t t38 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t39 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t40 = t23 * t38 - t21 * t39 + TWO_FINGERS_C(8.673617379884035e-19) * (t23 * t4
+        - t21 * t22);
+    const two_fingers_real_t t41 = t40 * t6;
+    const two_fingers_real_t t42 = parameters[ZZ1R] + t28 + (t31 + t36 + t37) - t40 * t41;
+    const two_fingers_real_t t43 = t23 * (t38 - parameters[XZ4R]) - t21 * (parameters[YZ4] + t39)
+        + TWO_FINGERS_C(-8.673617379884035e-19) * (t21 * t26 + t23 * t27);
+    const two_fingers_real_t t44 = t43 + t40 * t7;
+    const two_fingers_real_t t45 = TWO_FINGERS_C(1.0) / t9;
+    const two_fingers_real_t t46 = t44 * t45;
+    const two_fingers_real_t t47 = t10 * parameters[YZ3] - t11 * parameters[XZ3];
+    const two_fingers_real_t t48 = t10 * parameters[XZ3] + t11 * parameters[YZ3];
+    const two_fingers_real_t t49 = t34 * t47 - t32 * t48;
+    const two_fingers_real_t t50 = t49 * t14;
+    const two_fingers_real_t t51 = t34 * (t47 - parameters[XZ2R]) - t32 * (parameters[YZ2] + t48) + t49 * t15;
+    const two_fingers_real_t t52 = TWO_FINGERS_C(1.0) / t17;
+    const two_fingers_real_t t53 = t51 * t52;
+    const two_fingers_real_t t54 = t42 - t44 * t46 - t49 * t50 - t51 * t53;
+    if (!(t54 > TWO_FINGERS_C(1.0e-9))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t55 = t23 * dq[0];
+    const two_fingers_real_t t56 = t21 * dq[0];
+    const two_fingers_real_t t57 = t2 * t55 - t3 * t56;
+    const two_fingers_real_t t58 = t57 * t57;
+    const two_fingers_real_t t59 = dq[3] + dq[4];
+    const two_fingers_real_t t60 = t59 * t59;
+    const two_fingers_real_t t61 = t3 * t55 + t2 * t56;
+    const two_fingers_real_t t62 = t61 * t57;
+    const two_fingers_real_t t63 = parameters[MX5] * (t58 + t60) + parameters[MY5] * t62;
+    const two_fingers_real_t t64 = t61 * t61;
+    const two_fingers_real_t t65 = parameters[MX5] * t62 + parameters[MY5] * (t64 + t60);
+    const two_fingers_real_t t66 = t56 * t56;
+    const two_fingers_real_t t67 = dq[3] * dq[3];
+    const two_fingers_real_t t68 = t67 + t66;
+    const two_fingers_real_t t69 = t55 * t56;
+    const two_fingers_real_t t70 = parameters[MX4R] * t68 - parameters[MY4] * t69 + (t3 * t63 - t2 * t65);
+    const two_fingers_real_t t71 = t2 * t63 + t3 * t65;
+    const two_fingers_real_t t72 = t55 * t55;
+    const two_fingers_real_t t73 = t23 * (parameters[MX4R] * t69 - parameters[MY4] * (t67 + t72) - t71);
+    const two_fingers_real_t t74 = t21 * t70 + t73;
+    const two_fingers_real_t t75 = t61 * t59;
+    const two_fingers_real_t t76 = TWO_FINGERS_C(2.0) * t75;
+    const two_fingers_real_t t77 = t57 * t59;
+    const two_fingers_real_t t78 = TWO_FINGERS_C(-2.0) * t77;
+    const two_fingers_real_t t79 = parameters[MX5] * t76 + parameters[MY5] * t78;
+    const two_fingers_real_t t80 = dq[3] * t55;
+    const two_fingers_real_t t81 = TWO_FINGERS_C(2.0) * t80;
+    const two_fingers_real_t t82 = dq[3] * t56;
+    const two_fingers_real_t t83 = TWO_FINGERS_C(2.0) * t82;
+    const two_fingers_real_t t84 = parameters[MX4R] * t81 + parameters[MY4] * t83 + t79;
     const two_fingers_real_t
-        t47 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t45
-        + TWO_FINGERS_C(0.984807753012208) * t46)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t45
-        + TWO_FINGERS_C(0.17364817766693028) * t46);
-    const two_fingers_real_t t50 = t49 * dq[0];
-    const two_fingers_real_t t51 = dq[1] * t50;
-    const two_fingers_real_t t52 = t48 * dq[0];
-    const two_fingers_real_t t53 = dq[1] * t52;
-    const two_fingers_real_t t54 = TWO_FINGERS_C(2.0) * t53;
-    const two_fingers_real_t t55 = t52 * t50;
-    const two_fingers_real_t t56 = parameters[XY2] * t54 - (parameters[XX2R] * t51 + parameters[ZZ2R] * t51)
-        - parameters[XZ2R] * t55;
-    const two_fingers_real_t t57 = dq[1] * dq[1];
-    const two_fingers_real_t t58 = t50 * t50;
-    const two_fingers_real_t t61 = t60 * t52 - t59 * t50;
-    const two_fingers_real_t t62 = dq[1] + dq[2];
-    const two_fingers_real_t t63 = t61 * t62;
-    const two_fingers_real_t t64 = t59 * t52 + t60 * t50;
-    const two_fingers_real_t t65 = t64 * t62;
-    const two_fingers_real_t t66 = TWO_FINGERS_C(2.0) * t65;
-    const two_fingers_real_t t67 = t64 * t61;
-    const two_fingers_real_t t68 = parameters[XX3R] * t63 + parameters[ZZ3] * t63 + parameters[XY3] * t66
-        + parameters[XZ3] * t67;
-    const two_fingers_real_t t69 = t61 * t61;
-    const two_fingers_real_t t70 = t62 * t62;
-    const two_fingers_real_t t71 = TWO_FINGERS_C(-0.1) * t53;
-    const two_fingers_real_t t72 = t68 + parameters[YZ3] * (t70 - t69) + parameters[MY3] * t71;
-    const two_fingers_real_t t73 = TWO_FINGERS_C(-2.0) * t63;
-    const two_fingers_real_t t74 = t65 * (parameters[XX3R] - parameters[ZZ3]) + parameters[XY3] * t73
-        + parameters[YZ3] * t67;
-    const two_fingers_real_t t75 = t64 * t64;
-    const two_fingers_real_t t76 = t74 - parameters[XZ3] * (t75 - t70) + parameters[MX3] * t71;
-    const two_fingers_real_t t77 = t56 + parameters[YZ2] * (t57 - t58) + (t59 * t72 + t60 * t76);
-    const two_fingers_real_t t78 = TWO_FINGERS_C(2.0) * t51;
-    const two_fingers_real_t t79 = t53 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t78
-        + parameters[YZ2] * t55;
-    const two_fingers_real_t t80 = t52 * t52;
-    const two_fingers_real_t t81 = parameters[MX3] * t66 + parameters[MY3] * t73;
-    const two_fingers_real_t t82 = t79 + parameters[XZ2R] * (t80 - t57) + (t60 * t72 - t59 * t76
-        + TWO_FINGERS_C(0.05) * t81);
-    const two_fingers_real_t t83 = t48 * t77 + t49 * t82 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t54
-        + parameters[MY2] * t78 + t81);
-    const two_fingers_real_t t84 = t1 + (t2 * t33 + t3 * t38 + t47 + t83);
-    const two_fingers_real_t t85 = two_fingers_sign(dq[4]);
-    const two_fingers_real_t t86 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]))
-        + TWO_FINGERS_C(30.0) * (parameters[FC5] * t85);
-    const two_fingers_real_t t87 = TWO_FINGERS_C(0.034999999999999996) * t13;
-    const two_fingers_real_t t88 = t3 * t87 - TWO_FINGERS_C(9.81) * t2;
-    const two_fingers_real_t t89 = t88 + TWO_FINGERS_C(0.045) * t39;
-    const two_fingers_real_t t90 = t2 * t87 + TWO_FINGERS_C(9.81) * t3;
-    const two_fingers_real_t t91 = t90 + TWO_FINGERS_C(0.045) * t9;
-    const two_fingers_real_t t92 = parameters[MX5] * (t16 * t89 + t15 * t91) + parameters[MY5] * (t15 * t89
-        - t16 * t91);
-    const two_fingers_real_t t93 = parameters[XX5R] * t23 + parameters[XY5] * (t31 - t25) + t92;
-    const two_fingers_real_t t94 = TWO_FINGERS_C(0.6) * input[4] - (t86 + t93);
-    const two_fingers_real_t t95 = t16 * parameters[YZ5] - t15 * parameters[XZ5];
-    const two_fingers_real_t t96 = t16 * parameters[XZ5] + t15 * parameters[YZ5];
-    const two_fingers_real_t t97 = t15 * parameters[MY5] + t16 * parameters[MX5];
-    const two_fingers_real_t t98 = t16 * parameters[MY5] - t15 * parameters[MX5];
-    const two_fingers_real_t t99 = t2 * t95 - t3 * t96 + TWO_FINGERS_C(8.673617379884035e-19) * (t2 * t98
-        - t3 * t97);
-    const two_fingers_real_t t100 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
-    if (!(t100 > TWO_FINGERS_C(1.0e-9))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t101 = TWO_FINGERS_C(1.0) / t100;
-    const two_fingers_real_t t102 = t99 * t101;
-    const two_fingers_real_t t103 = two_fingers_sign(dq[3]);
-    const two_fingers_real_t t104 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3]))
-        + TWO_FINGERS_C(30.0) * (parameters[FC4] * t103);
-    const two_fingers_real_t t105 = parameters[XX4R] * t9 - parameters[XY4] * (t36 - t12)
-        - (parameters[MX4R] * t90 + parameters[MY4] * t88);
-    const two_fingers_real_t t106 = TWO_FINGERS_C(0.6) * input[3] - (t104 - (t105 - (t93
-        - TWO_FINGERS_C(0.045) * t43)));
-    const two_fingers_real_t t107 = TWO_FINGERS_C(0.045) * t98 - parameters[ZZ5];
-    const two_fingers_real_t t108 = t107 * t101;
-    const two_fingers_real_t t109 = t106 + t94 * t108;
-    const two_fingers_real_t t110 = parameters[MY4] + t97;
-    const two_fingers_real_t t111 = parameters[MX4R] - t98;
-    const two_fingers_real_t t112 = t2 * (t95 - parameters[XZ4R]) - t3 * (parameters[YZ4] + t96)
-        + TWO_FINGERS_C(-8.673617379884035e-19) * (t3 * t110 + t2 * t111);
-    const two_fingers_real_t t113 = t112 + t99 * t108;
-    const two_fingers_real_t t114 = TWO_FINGERS_C(-0.09) * t98;
-    const two_fingers_real_t t115 = parameters[ZZ4R] + (parameters[ZZ5] + t114) - t107 * t108;
-    if (!(t115 > TWO_FINGERS_C(1.0e-9))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t116 = TWO_FINGERS_C(1.0) / t115;
-    const two_fingers_real_t t117 = t113 * t116;
-    const two_fingers_real_t t118 = TWO_FINGERS_C(2.4) * input[0] + t84 + t94 * t102 + t109 * t117;
-    const two_fingers_real_t t119 = two_fingers_sign(dq[2]);
-    const two_fingers_real_t t120 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2]))
-        + TWO_FINGERS_C(30.0) * (parameters[FC3] * t119);
-    const two_fingers_real_t t121 = TWO_FINGERS_C(0.03) * t13;
-    const two_fingers_real_t t122 = t49 * t121 - TWO_FINGERS_C(9.81) * t48;
-    const two_fingers_real_t t123 = t122 + TWO_FINGERS_C(0.05) * (t57 + t58);
-    const two_fingers_real_t t124 = t48 * t121 + TWO_FINGERS_C(9.81) * t49;
-    const two_fingers_real_t t125 = t124 + TWO_FINGERS_C(0.05) * t55;
-    const two_fingers_real_t t126 = parameters[MX3] * (t60 * t123 + t59 * t125)
-        + parameters[MY3] * (t59 * t123 - t60 * t125);
-    const two_fingers_real_t t127 = parameters[XX3R] * t67 + parameters[XY3] * (t75 - t69) + t126;
-    const two_fingers_real_t t128 = TWO_FINGERS_C(0.6) * input[2] - (t120 + t127);
-    const two_fingers_real_t t129 = t60 * parameters[YZ3] - t59 * parameters[XZ3];
-    const two_fingers_real_t t130 = t60 * parameters[XZ3] + t59 * parameters[YZ3];
-    const two_fingers_real_t t131 = t48 * t129 - t49 * t130;
-    const two_fingers_real_t t132 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
-    if (!(t132 > TWO_FINGERS_C(1.0e-9))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t133 = TWO_FINGERS_C(1.0) / t132;
-    const two_fingers_real_t t134 = t131 * t133;
-    const two_fingers_real_t t135 = two_fingers_sign(dq[1]);
-    const two_fingers_real_t t136 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1]))
-        + TWO_FINGERS_C(30.0) * (parameters[FC2] * t135);
-    const two_fingers_real_t t137 = parameters[XX2R] * t55 - parameters[XY2] * (t80 - t58)
-        - (parameters[MX2R] * t124 + parameters[MY2] * t122);
-    const two_fingers_real_t t138 = t60 * (parameters[MX3] * (t69 + t70) + parameters[MY3] * t67)
-        + t59 * (parameters[MX3] * t67 + parameters[MY3] * (t75 + t70));
-    const two_fingers_real_t t139 = TWO_FINGERS_C(0.6) * input[1] - (t136 - (t137 - (t127
-        - TWO_FINGERS_C(0.05) * t138)));
-    const two_fingers_real_t t140 = t59 * parameters[MX3] - t60 * parameters[MY3];
-    const two_fingers_real_t t141 = TWO_FINGERS_C(-0.05) * t140 - parameters[ZZ3];
-    const two_fingers_real_t t142 = t141 * t133;
-    const two_fingers_real_t t143 = t139 + t128 * t142;
-    const two_fingers_real_t t144 = t48 * (t129 - parameters[XZ2R]) - t49 * (parameters[YZ2] + t130)
-        + t131 * t142;
-    const two_fingers_real_t t145 = TWO_FINGERS_C(0.1) * t140;
-    const two_fingers_real_t t146 = parameters[ZZ2R] + (parameters[ZZ3] + t145) - t141 * t142;
-    if (!(t146 > TWO_FINGERS_C(1.0e-9))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t147 = TWO_FINGERS_C(1.0) / t146;
-    const two_fingers_real_t t148 = t144 * t147;
-    const two_fingers_real_t t149 = t15 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t16);
-    const two_fingers_real_t t150 = t15 * t149;
-    const two_fingers_real_t t151 = parameters[XX4R] + t150;
-    const two_fingers_real_t t152 = (parameters[XY4] + (parameters[XY5] + t16 * t149
-        + TWO_FINGERS_C(-0.045) * t97)) * (TWO_FINGERS_C(2.0) * t2);
-    const two_fingers_real_t t153 = t3 * (t3 * (parameters[XX5R] - t150 + t114 - t151) + t152);
-    const two_fingers_real_t t154 = t151 + t153 + TWO_FINGERS_C(0.06999999999999999) * (t3 * t111
-        - t2 * t110);
-    const two_fingers_real_t t155 = t59 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t60);
-    const two_fingers_real_t t156 = t59 * t155;
-    const two_fingers_real_t t157 = parameters[XX2R] + t156;
-    const two_fingers_real_t t158 = t59 * parameters[MY3] + t60 * parameters[MX3];
-    const two_fingers_real_t t159 = (parameters[XY2] + (parameters[XY3] + t60 * t155
-        + TWO_FINGERS_C(-0.05) * t158)) * (TWO_FINGERS_C(2.0) * t48);
-    const two_fingers_real_t t160 = t49 * (t49 * (parameters[XX3R] - t156 + t145 - t157) + t159);
-    const two_fingers_real_t t161 = TWO_FINGERS_C(0.06) * (t49 * (parameters[MX2R] + t140)
-        - t48 * (parameters[MY2] + t158));
-    const two_fingers_real_t t162 = parameters[ZZ1R] + t154 + (t157 + t160 + t161) - t99 * t102;
-    const two_fingers_real_t t163 = t162 - t113 * t117 - t131 * t134 - t144 * t148;
-    if (!(t163 > TWO_FINGERS_C(1.0e-9))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t164 = TWO_FINGERS_C(1.0) / t163;
-    const two_fingers_real_t t165 = (t118 + t128 * t134 + t143 * t148) * t164;
+        t85 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t74
+        + TWO_FINGERS_C(0.984807753012208) * t84)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t74
+        + TWO_FINGERS_C(0.17364817766693028) * t84);
+    const two_fingers_real_t t86 = parameters[XX5R] * t77 + parameters[ZZ5] * t77 + parameters[XY5] * t76
+        + parameters[XZ5] * t62;
+    const two_fingers_real_t t87 = dq[0] * dq[0];
+    const two_fingers_real_t t88 = TWO_FINGERS_C(-8.673617379884035e-19) * t87;
+    const two_fingers_real_t t89 = t88 + TWO_FINGERS_C(-0.09) * t80;
+    const two_fingers_real_t t90 = t86 + parameters[YZ5] * (t60 - t58) + parameters[MY5] * t89;
+    const two_fingers_real_t t91 = t75 * (parameters[XX5R] - parameters[ZZ5]) + parameters[XY5] * t78
+        + parameters[YZ5] * t62;
+    const two_fingers_real_t t92 = t91 - parameters[XZ5] * (t64 - t60) + parameters[MX5] * t89;
+    const two_fingers_real_t t93 = parameters[XY4] * t81 - (parameters[XX4R] * t82 + parameters[ZZ4R] * t82)
+        - parameters[XZ4R] * t69;
+    const two_fingers_real_t t94 = t93 + parameters[YZ4] * (t67 - t66) + parameters[MY4] * t88 + (t3 * t90
+        + t2 * t92);
+    const two_fingers_real_t t95 = t80 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t83
+        + parameters[YZ4] * t69;
+    const two_fingers_real_t t96 = t95 + parameters[XZ4R] * (t72 - t67) - parameters[MX4R] * t88 + (t2 * t90
+        - t3 * t92 + TWO_FINGERS_C(0.045) * t79);
+    const two_fingers_real_t t97 = t34 * dq[0];
+    const two_fingers_real_t t98 = t32 * dq[0];
+    const two_fingers_real_t t99 = t10 * t97 - t11 * t98;
+    const two_fingers_real_t t100 = dq[1] + dq[2];
+    const two_fingers_real_t t101 = t99 * t100;
+    const two_fingers_real_t t102 = t11 * t97 + t10 * t98;
+    const two_fingers_real_t t103 = t102 * t100;
+    const two_fingers_real_t t104 = TWO_FINGERS_C(2.0) * t103;
+    const two_fingers_real_t t105 = t102 * t99;
+    const two_fingers_real_t t106 = parameters[XX3R] * t101 + parameters[ZZ3] * t101 + parameters[XY3] * t104
+        + parameters[XZ3] * t105;
+    const two_fingers_real_t t107 = t99 * t99;
+    const two_fingers_real_t t108 = t100 * t100;
+    const two_fingers_real_t t109 = dq[1] * t97;
+    const two_fingers_real_t t110 = TWO_FINGERS_C(-0.1) * t109;
+    const two_fingers_real_t t111 = t106 + parameters[YZ3] * (t108 - t107) + parameters[MY3] * t110;
+    const two_fingers_real_t t112 = TWO_FINGERS_C(-2.0) * t101;
+    const two_fingers_real_t t113 = t103 * (parameters[XX3R] - parameters[ZZ3]) + parameters[XY3] * t112
+        + parameters[YZ3] * t105;
+    const two_fingers_real_t t114 = t102 * t102;
+    const two_fingers_real_t t115 = t113 - parameters[XZ3] * (t114 - t108) + parameters[MX3] * t110;
+    const two_fingers_real_t t116 = dq[1] * t98;
+    const two_fingers_real_t t117 = TWO_FINGERS_C(2.0) * t109;
+    const two_fingers_real_t t118 = t97 * t98;
+    const two_fingers_real_t t119 = parameters[XY2] * t117 - (parameters[XX2R] * t116
+        + parameters[ZZ2R] * t116) - parameters[XZ2R] * t118;
+    const two_fingers_real_t t120 = t98 * t98;
+    const two_fingers_real_t t121 = dq[1] * dq[1];
+    const two_fingers_real_t t122 = t119 + parameters[YZ2] * (t121 - t120) + (t11 * t111 + t10 * t115);
+    const two_fingers_real_t t123 = parameters[MX3] * t104 + parameters[MY3] * t112;
+    const two_fingers_real_t t124 = TWO_FINGERS_C(2.0) * t116;
+    const two_fingers_real_t t125 = t109 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t124
+        + parameters[YZ2] * t118;
+    const two_fingers_real_t t126 = t97 * t97;
+    const two_fingers_real_t t127 = t125 + parameters[XZ2R] * (t126 - t121) + (t10 * t111 - t11 * t115
+        + TWO_FINGERS_C(0.05) * t123);
+    const two_fingers_real_t t128 = t34 * t122 + t32 * t127 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t117
+        + parameters[MY2] * t124 + t123);
+    const two_fingers_real_t t129 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t130 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0]))
+        + TWO_FINGERS_C(-60.0) * (parameters[FC1] * t129);
+    const two_fingers_real_t t131 = t130 + (t23 * t94 + t21 * t96 + t85 + t128);
+    const two_fingers_real_t t132 = TWO_FINGERS_C(0.034999999999999996) * t87;
+    const two_fingers_real_t t133 = t21 * t132 - TWO_FINGERS_C(9.81) * t23;
+    const two_fingers_real_t t134 = t133 + TWO_FINGERS_C(0.045) * t68;
+    const two_fingers_real_t t135 = t23 * t132 + TWO_FINGERS_C(9.81) * t21;
+    const two_fingers_real_t t136 = t135 + TWO_FINGERS_C(0.045) * t69;
+    const two_fingers_real_t t137 = parameters[MX5] * (t2 * t134 + t3 * t136) + parameters[MY5] * (t3 * t134
+        - t2 * t136);
+    const two_fingers_real_t t138 = parameters[XX5R] * t62 + parameters[XY5] * (t64 - t58) + t137;
+    const two_fingers_real_t t139 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t140 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]))
+        + TWO_FINGERS_C(30.0) * (parameters[FC5] * t139);
+    const two_fingers_real_t t141 = TWO_FINGERS_C(0.6) * input[4] - (t140 + t138);
+    const two_fingers_real_t t142 = parameters[XX4R] * t69 - parameters[XY4] * (t72 - t66)
+        - (parameters[MX4R] * t135 + parameters[MY4] * t133);
+    const two_fingers_real_t t143 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t144 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3]))
+        + TWO_FINGERS_C(30.0) * (parameters[FC4] * t143);
+    const two_fingers_real_t t145 = TWO_FINGERS_C(0.6) * input[3] - (t144 - (t142 - (t138
+        - TWO_FINGERS_C(0.045) * t71)));
+    const two_fingers_real_t t146 = t145 + t141 * t7;
+    const two_fingers_real_t t147 = TWO_FINGERS_C(2.4) * input[0] + t131 + t141 * t41 + t146 * t46;
+    const two_fingers_real_t t148 = TWO_FINGERS_C(0.03) * t87;
+    const two_fingers_real_t t149 = t32 * t148 - TWO_FINGERS_C(9.81) * t34;
+    const two_fingers_real_t t150 = t149 + TWO_FINGERS_C(0.05) * (t121 + t120);
+    const two_fingers_real_t t151 = t34 * t148 + TWO_FINGERS_C(9.81) * t32;
+    const two_fingers_real_t t152 = t151 + TWO_FINGERS_C(0.05) * t118;
+    const two_fingers_real_t t153 = parameters[MX3] * (t10 * t150 + t11 * t152)
+        + parameters[MY3] * (t11 * t150 - t10 * t152);
+    const two_fingers_real_t t154 = parameters[XX3R] * t105 + parameters[XY3] * (t114 - t107) + t153;
+    const two_fingers_real_t t155 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t156 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2]))
+        + TWO_FINGERS_C(30.0) * (parameters[FC3] * t155);
+    const two_fingers_real_t t157 = TWO_FINGERS_C(0.6) * input[2] - (t156 + t154);
+    const two_fingers_real_t t158 = t10 * (parameters[MX3] * (t107 + t108) + parameters[MY3] * t105)
+        + t11 * (parameters[MX3] * t105 + parameters[MY3] * (t114 + t108));
+    const two_fingers_real_t t159 = parameters[XX2R] * t118 - parameters[XY2] * (t126 - t120)
+        - (parameters[MX2R] * t151 + parameters[MY2] * t149);
+    const two_fingers_real_t t160 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t161 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1]))
+        + TWO_FINGERS_C(30.0) * (parameters[FC2] * t160);
+    const two_fingers_real_t t162 = TWO_FINGERS_C(0.6) * input[1] - (t161 - (t159 - (t154
+        - TWO_FINGERS_C(0.05) * t158)));
+    const two_fingers_real_t t163 = t162 + t157 * t15;
+    const two_fingers_real_t t164 = TWO_FINGERS_C(1.0) / t54;
+    const two_fingers_real_t t165 = (t147 + t157 * t50 + t163 * t53) * t164;
     out[0] = t165;
     if (!(t165 >= TWO_FINGERS_C(-1.0e15) && t165 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t166 = t143 * t147 + t148 * t165;
+    const two_fingers_real_t t166 = t163 * t52 + t53 * t165;
     out[1] = t166;
     if (!(t166 >= TWO_FINGERS_C(-1.0e15) && t166 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    out[2] = t128 * t133 + t134 * t165 + t142 * t166;
+    out[2] = t157 * t14 + t50 * t165 + t15 * t166;
     if (!(out[2] >= TWO_FINGERS_C(-1.0e15) && out[2] <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t167 = t109 * t116 + t117 * t165;
+    const two_fingers_real_t t167 = t146 * t45 + t46 * t165;
     out[3] = t167;
     if (!(t167 >= TWO_FINGERS_C(-1.0e15) && t167 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    out[4] = t94 * t101 + t102 * t165 + t108 * t167;
+    out[4] = t141 * t6 + t41 * t165 + t7 * t167;
     if (!(out[4] >= TWO_FINGERS_C(-1.0e15) && out[4] <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;

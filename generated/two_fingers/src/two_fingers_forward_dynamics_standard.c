@@ -92,7 +92,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -120,292 +120,292 @@ int two_fingers_forward_dynamics_standard(
         return status;
     }
 
-    two_fingers_real_t t59, t60;
-    TWO_FINGERS_SINCOS(q[1], &t59, &t60);
-    two_fingers_real_t t75, t73;
-    TWO_FINGERS_SINCOS(q[2], &t75, &t73);
+    two_fingers_real_t t43, t41;
+    TWO_FINGERS_SINCOS(q[1], &t43, &t41);
+    two_fingers_real_t t11, t12;
+    TWO_FINGERS_SINCOS(q[2], &t11, &t12);
+    two_fingers_real_t t26, t24;
+    TWO_FINGERS_SINCOS(q[3], &t26, &t24);
     two_fingers_real_t t2, t3;
-    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
-    two_fingers_real_t t20, t18;
-    TWO_FINGERS_SINCOS(q[4], &t20, &t18);
-    const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1])
-        + TWO_FINGERS_C(-60.0) * (t0 * parameters[FC1]);
-    const two_fingers_real_t t4 = t3 * dq[0];
-    const two_fingers_real_t t5 = dq[3] * t4;
-    const two_fingers_real_t t6 = t2 * dq[0];
-    const two_fingers_real_t t7 = dq[3] * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(2.0) * t7;
-    const two_fingers_real_t t9 = t5 * (parameters[YY4] - parameters[ZZ4]) - t5 * parameters[XX4]
-        + t8 * parameters[XY4];
-    const two_fingers_real_t t10 = t6 * t4;
-    const two_fingers_real_t t11 = t4 * t4;
-    const two_fingers_real_t t12 = dq[3] * dq[3];
-    const two_fingers_real_t t13 = dq[0] * dq[0];
-    const two_fingers_real_t t14 = TWO_FINGERS_C(8.673617379884035e-19) * t13;
-    const two_fingers_real_t t15 = TWO_FINGERS_C(0.034999999999999996) * t13;
-    const two_fingers_real_t t16 = TWO_FINGERS_C(9.81) * t3 + t2 * t15;
-    const two_fingers_real_t t17 = t9 - t10 * parameters[XZ4] + (t12 - t11) * parameters[YZ4]
-        + (parameters[MZ4] * t16 - parameters[MY4] * t14);
-    const two_fingers_real_t t19 = dq[3] + dq[4];
-    const two_fingers_real_t t21 = t18 * t4 - t20 * t6;
-    const two_fingers_real_t t22 = t19 * t21;
-    const two_fingers_real_t t23 = t18 * t6 + t20 * t4;
-    const two_fingers_real_t t24 = t19 * t23;
-    const two_fingers_real_t t25 = TWO_FINGERS_C(2.0) * t24;
-    const two_fingers_real_t t26 = parameters[XY5] * t25 - (parameters[XX5] * t22 + t22 * (parameters[ZZ5]
-        - parameters[YY5]));
-    const two_fingers_real_t t27 = t23 * t21;
-    const two_fingers_real_t t28 = t19 * t19;
-    const two_fingers_real_t t29 = t21 * t21;
-    const two_fingers_real_t t30 = t14 + TWO_FINGERS_C(0.09) * t7;
-    const two_fingers_real_t t31 = t11 + t12;
-    const two_fingers_real_t t32 = TWO_FINGERS_C(-9.81) * t2 + t3 * t15;
-    const two_fingers_real_t t33 = TWO_FINGERS_C(0.045) * t31 + t32;
-    const two_fingers_real_t t34 = t16 + TWO_FINGERS_C(0.045) * t10;
-    const two_fingers_real_t t35 = t20 * t33 + t18 * t34;
-    const two_fingers_real_t t36 = t26 - parameters[XZ5] * t27 + parameters[YZ5] * (t28 - t29)
-        + (parameters[MZ5] * t35 - parameters[MY5] * t30);
-    const two_fingers_real_t t37 = TWO_FINGERS_C(2.0) * t22;
-    const two_fingers_real_t t38 = parameters[YY5] * t24 - t24 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t37;
-    const two_fingers_real_t t39 = t23 * t23;
-    const two_fingers_real_t t40 = t18 * t33 - t20 * t34;
-    const two_fingers_real_t t41 = t38 + parameters[YZ5] * t27 - parameters[XZ5] * (t28 - t39)
-        + (parameters[MZ5] * t40 + parameters[MX5] * t30);
-    const two_fingers_real_t t42 = TWO_FINGERS_C(2.0) * t5;
-    const two_fingers_real_t t43 = t7 * parameters[YY4] + t7 * (parameters[ZZ4] - parameters[XX4])
-        - t42 * parameters[XY4];
-    const two_fingers_real_t t44 = t6 * t6;
-    const two_fingers_real_t t45 = t43 + t10 * parameters[YZ4] + (t44 - t12) * parameters[XZ4]
-        + (parameters[MZ4] * t32 + parameters[MX4] * t14);
-    const two_fingers_real_t t46 = parameters[MX5] * t25 + parameters[MY5] * t37 - parameters[MZ5] * (t39
-        + t29);
-    const two_fingers_real_t t47 = parameters[M5] * t30 + t46;
-    const two_fingers_real_t t48 = t45 + (t20 * t36 + t18 * t41 + TWO_FINGERS_C(0.045) * t47);
-    const two_fingers_real_t t49 = t2 * (t17 + (t18 * t36 - t20 * t41)) + t3 * t48;
-    const two_fingers_real_t t50 = parameters[M5] * t40 + (parameters[MX5] * (t28 + t29)
-        - parameters[MY5] * t27);
-    const two_fingers_real_t t51 = parameters[M5] * t35 - (parameters[MY5] * (t28 + t39)
-        - parameters[MX5] * t27);
-    const two_fingers_real_t t52 = parameters[M4] * t32 + (t31 * parameters[MX4] - t10 * parameters[MY4])
-        + (t18 * t50 + t20 * t51);
-    const two_fingers_real_t t53 = parameters[M4] * t16 + (t10 * parameters[MX4] - (t44
-        + t12) * parameters[MY4]);
-    const two_fingers_real_t t54 = t20 * t50 - t18 * t51;
-    const two_fingers_real_t t55 = t3 * t52 + t2 * (t53 - t54);
-    const two_fingers_real_t t56 = t8 * parameters[MX4] + t42 * parameters[MY4] - (t44
-        + t11) * parameters[MZ4];
-    const two_fingers_real_t t57 = parameters[M4] * t14 + t56 + t47;
-    const two_fingers_real_t
-        t58 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t55
-        + TWO_FINGERS_C(0.984807753012208) * t57)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t55
-        + TWO_FINGERS_C(0.17364817766693028) * t57);
-    const two_fingers_real_t t61 = t60 * dq[0];
-    const two_fingers_real_t t62 = dq[1] * t61;
-    const two_fingers_real_t t63 = t59 * dq[0];
-    const two_fingers_real_t t64 = dq[1] * t63;
-    const two_fingers_real_t t65 = TWO_FINGERS_C(2.0) * t64;
-    const two_fingers_real_t t66 = t62 * (parameters[YY2] - parameters[ZZ2]) - t62 * parameters[XX2]
-        + t65 * parameters[XY2];
-    const two_fingers_real_t t67 = t63 * t61;
-    const two_fingers_real_t t68 = t61 * t61;
-    const two_fingers_real_t t69 = dq[1] * dq[1];
-    const two_fingers_real_t t70 = TWO_FINGERS_C(0.03) * t13;
-    const two_fingers_real_t t71 = t59 * t70 + TWO_FINGERS_C(9.81) * t60;
-    const two_fingers_real_t t72 = t66 - t67 * parameters[XZ2] + (t69 - t68) * parameters[YZ2]
-        + t71 * parameters[MZ2];
-    const two_fingers_real_t t74 = dq[1] + dq[2];
-    const two_fingers_real_t t76 = t73 * t61 - t75 * t63;
-    const two_fingers_real_t t77 = t74 * t76;
-    const two_fingers_real_t t78 = t73 * t63 + t75 * t61;
-    const two_fingers_real_t t79 = t74 * t78;
-    const two_fingers_real_t t80 = TWO_FINGERS_C(2.0) * t79;
-    const two_fingers_real_t t81 = parameters[XY3] * t80 - (parameters[XX3] * t77 + t77 * (parameters[ZZ3]
-        - parameters[YY3]));
-    const two_fingers_real_t t82 = t78 * t76;
-    const two_fingers_real_t t83 = t74 * t74;
-    const two_fingers_real_t t84 = t76 * t76;
-    const two_fingers_real_t t85 = TWO_FINGERS_C(0.1) * t64;
-    const two_fingers_real_t t86 = t60 * t70 + TWO_FINGERS_C(-9.81) * t59;
-    const two_fingers_real_t t87 = t86 + TWO_FINGERS_C(0.05) * (t68 + t69);
-    const two_fingers_real_t t88 = t71 + TWO_FINGERS_C(0.05) * t67;
-    const two_fingers_real_t t89 = t75 * t87 + t73 * t88;
-    const two_fingers_real_t t90 = t81 - parameters[XZ3] * t82 + parameters[YZ3] * (t83 - t84)
-        + (parameters[MZ3] * t89 - parameters[MY3] * t85);
-    const two_fingers_real_t t91 = TWO_FINGERS_C(2.0) * t77;
-    const two_fingers_real_t t92 = parameters[YY3] * t79 - t79 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t91;
-    const two_fingers_real_t t93 = t78 * t78;
-    const two_fingers_real_t t94 = t73 * t87 - t75 * t88;
-    const two_fingers_real_t t95 = t92 + parameters[YZ3] * t82 - parameters[XZ3] * (t83 - t93)
-        + (parameters[MZ3] * t94 + parameters[MX3] * t85);
-    const two_fingers_real_t t96 = TWO_FINGERS_C(2.0) * t62;
-    const two_fingers_real_t t97 = t64 * parameters[YY2] + t64 * (parameters[ZZ2] - parameters[XX2])
-        - t96 * parameters[XY2];
-    const two_fingers_real_t t98 = t63 * t63;
-    const two_fingers_real_t t99 = t97 + t67 * parameters[YZ2] + (t98 - t69) * parameters[XZ2]
-        + t86 * parameters[MZ2];
-    const two_fingers_real_t t100 = parameters[MX3] * t80 + parameters[MY3] * t91 - parameters[MZ3] * (t93
-        + t84);
-    const two_fingers_real_t t101 = parameters[M3] * t85 + t100;
-    const two_fingers_real_t t102 = t99 + (t75 * t90 + t73 * t95 + TWO_FINGERS_C(0.05) * t101);
-    const two_fingers_real_t t103 = t59 * (t72 + (t73 * t90 - t75 * t95)) + t60 * t102;
-    const two_fingers_real_t t104 = t65 * parameters[MX2] + t96 * parameters[MY2] - (t98
-        + t68) * parameters[MZ2];
-    const two_fingers_real_t t105 = t1 + (t49 + t58 + (t103 + TWO_FINGERS_C(0.03) * (t104 + t101)));
-    const two_fingers_real_t t106 = two_fingers_sign(dq[4]);
-    const two_fingers_real_t t107 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5])
-        + TWO_FINGERS_C(30.0) * (t106 * parameters[FC5]);
-    const two_fingers_real_t t108 = parameters[XX5] - parameters[YY5];
-    const two_fingers_real_t t109 = parameters[XY5] * (t39 - t29) - t108 * t27 + (parameters[MX5] * t35
-        + parameters[MY5] * t40);
-    const two_fingers_real_t t110 = TWO_FINGERS_C(0.6) * input[4] - (t107 + t109);
-    const two_fingers_real_t t111 = t20 * parameters[YZ5] - t18 * parameters[XZ5];
-    const two_fingers_real_t t112 = t20 * parameters[XZ5] + t18 * parameters[YZ5];
-    const two_fingers_real_t t113 = t18 * parameters[MY5] + t20 * parameters[MX5];
-    const two_fingers_real_t t114 = t20 * parameters[MY5] - t18 * parameters[MX5];
-    const two_fingers_real_t t115 = t2 * t111 - t3 * t112 + TWO_FINGERS_C(8.673617379884035e-19) * (t2 * t114
-        - t3 * t113);
-    const two_fingers_real_t t116 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
-    if (!(t116 > TWO_FINGERS_C(1.0e-9))) {
+    TWO_FINGERS_SINCOS(q[4], &t2, &t3);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    if (!(t0 > TWO_FINGERS_C(1.0e-9))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t117 = TWO_FINGERS_C(1.0) / t116;
-    const two_fingers_real_t t118 = t115 * t117;
-    const two_fingers_real_t t119 = two_fingers_sign(dq[3]);
-    const two_fingers_real_t t120 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4])
-        + TWO_FINGERS_C(30.0) * (t119 * parameters[FC4]);
-    const two_fingers_real_t t121 = t10 * (parameters[XX4] - parameters[YY4]) - (t44 - t11) * parameters[XY4]
-        - (parameters[MX4] * t16 + parameters[MY4] * t32);
-    const two_fingers_real_t t122 = TWO_FINGERS_C(0.6) * input[3] - (t120 - (t121 - (t109
-        - TWO_FINGERS_C(0.045) * t54)));
-    const two_fingers_real_t t123 = TWO_FINGERS_C(0.045) * t114 - parameters[ZZ5];
-    const two_fingers_real_t t124 = t123 * t117;
-    const two_fingers_real_t t125 = t122 + t110 * t124;
-    const two_fingers_real_t t126 = t2 * (t111 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4])
-        - t3 * (parameters[YZ4] + t112);
-    const two_fingers_real_t t127 = parameters[MY4] + t113;
-    const two_fingers_real_t t128 = TWO_FINGERS_C(0.045) * parameters[M5];
-    const two_fingers_real_t t129 = parameters[MX4] - (t114 - t128);
-    const two_fingers_real_t t130 = t126 + TWO_FINGERS_C(-8.673617379884035e-19) * (t3 * t127 + t2 * t129)
-        + t115 * t124;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(0.045) * (t128 + TWO_FINGERS_C(-2.0) * t114);
-    const two_fingers_real_t t132 = parameters[ZZ4] + (parameters[ZZ5] + t131)
-        + TWO_FINGERS_C(9.0e2) * parameters[IA4] - t123 * t124;
-    if (!(t132 > TWO_FINGERS_C(1.0e-9))) {
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    if (!(t1 > TWO_FINGERS_C(1.0e-9))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t133 = TWO_FINGERS_C(1.0) / t132;
-    const two_fingers_real_t t134 = t130 * t133;
-    const two_fingers_real_t t135 = TWO_FINGERS_C(2.4) * input[0] + t105 + t110 * t118 + t125 * t134;
-    const two_fingers_real_t t136 = two_fingers_sign(dq[2]);
-    const two_fingers_real_t t137 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3])
-        + TWO_FINGERS_C(30.0) * (t136 * parameters[FC3]);
-    const two_fingers_real_t t138 = parameters[XX3] - parameters[YY3];
-    const two_fingers_real_t t139 = parameters[XY3] * (t93 - t84) - t138 * t82 + (parameters[MX3] * t89
-        + parameters[MY3] * t94);
-    const two_fingers_real_t t140 = TWO_FINGERS_C(0.6) * input[2] - (t137 + t139);
-    const two_fingers_real_t t141 = t75 * parameters[YZ3] - t73 * parameters[XZ3];
-    const two_fingers_real_t t142 = t75 * parameters[XZ3] + t73 * parameters[YZ3];
-    const two_fingers_real_t t143 = t59 * t141 - t60 * t142;
-    const two_fingers_real_t t144 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
-    if (!(t144 > TWO_FINGERS_C(1.0e-9))) {
+    const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
+    const two_fingers_real_t t5 = TWO_FINGERS_C(0.045) * t4 - parameters[ZZ5];
+    const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
+    const two_fingers_real_t t7 = t5 * t6;
+    const two_fingers_real_t t8 = TWO_FINGERS_C(0.045) * parameters[M5];
+    const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
+    const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9)
+        + TWO_FINGERS_C(9.0e2) * parameters[IA4] - t5 * t7;
+    if (!(t10 > TWO_FINGERS_C(1.0e-9))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t145 = TWO_FINGERS_C(1.0) / t144;
-    const two_fingers_real_t t146 = t143 * t145;
-    const two_fingers_real_t t147 = two_fingers_sign(dq[1]);
-    const two_fingers_real_t t148 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2])
-        + TWO_FINGERS_C(30.0) * (t147 * parameters[FC2]);
-    const two_fingers_real_t t149 = t67 * (parameters[XX2] - parameters[YY2]) - (t98 - t68) * parameters[XY2]
-        - (t71 * parameters[MX2] + t86 * parameters[MY2]);
-    const two_fingers_real_t t150 = parameters[M3] * t94 + (parameters[MX3] * (t83 + t84)
-        - parameters[MY3] * t82);
-    const two_fingers_real_t t151 = parameters[M3] * t89 - (parameters[MY3] * (t83 + t93)
-        - parameters[MX3] * t82);
-    const two_fingers_real_t t152 = t149 - (t139 - TWO_FINGERS_C(0.05) * (t75 * t150 - t73 * t151));
-    const two_fingers_real_t t153 = t73 * parameters[MX3] - t75 * parameters[MY3];
-    const two_fingers_real_t t154 = TWO_FINGERS_C(-0.05) * t153 - parameters[ZZ3];
-    const two_fingers_real_t t155 = t154 * t145;
-    const two_fingers_real_t t156 = TWO_FINGERS_C(0.6) * input[1] - (t148 - t152) + t140 * t155;
-    const two_fingers_real_t t157 = t59 * (t141 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2])
-        - t60 * (parameters[YZ2] + t142);
-    const two_fingers_real_t t158 = t157 + t143 * t155;
-    const two_fingers_real_t t159 = TWO_FINGERS_C(0.05) * parameters[M3];
-    const two_fingers_real_t t160 = TWO_FINGERS_C(0.05) * (t159 + TWO_FINGERS_C(2.0) * t153);
-    const two_fingers_real_t t161 = parameters[ZZ2] + (parameters[ZZ3] + t160)
-        + TWO_FINGERS_C(9.0e2) * parameters[IA2] - t154 * t155;
-    if (!(t161 > TWO_FINGERS_C(1.0e-9))) {
+    const two_fingers_real_t t13 = t12 * parameters[MX3] - t11 * parameters[MY3];
+    const two_fingers_real_t t14 = TWO_FINGERS_C(-0.05) * t13 - parameters[ZZ3];
+    const two_fingers_real_t t15 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t16 = t14 * t15;
+    const two_fingers_real_t t17 = TWO_FINGERS_C(0.05) * parameters[M3];
+    const two_fingers_real_t t18 = TWO_FINGERS_C(0.05) * (t17 + TWO_FINGERS_C(2.0) * t13);
+    const two_fingers_real_t t19 = parameters[ZZ2] + (parameters[ZZ3] + t18)
+        + TWO_FINGERS_C(9.0e2) * parameters[IA2] - t14 * t16;
+    if (!(t19 > TWO_FINGERS_C(1.0e-9))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t162 = TWO_FINGERS_C(1.0) / t161;
-    const two_fingers_real_t t163 = t158 * t162;
-    const two_fingers_real_t t164 = t18 * t108 - parameters[XY5] * (TWO_FINGERS_C(2.0) * t20);
-    const two_fingers_real_t t165 = t18 * t164;
-    const two_fingers_real_t t166 = parameters[XX4] + (parameters[YY5] + t165);
-    const two_fingers_real_t t167 = (parameters[XY4] + (parameters[XY5] + t20 * t164
-        + TWO_FINGERS_C(-0.045) * t113)) * (TWO_FINGERS_C(2.0) * t2);
-    const two_fingers_real_t t168 = t3 * (parameters[YY4] + (parameters[XX5] - t165 + t131) - t166) + t167;
-    const two_fingers_real_t t169 = parameters[M4] + parameters[M5];
-    const two_fingers_real_t t170 = t3 * t129 - t2 * t127;
-    const two_fingers_real_t t171 = parameters[MZ4] + parameters[MZ5];
-    const two_fingers_real_t t172 = TWO_FINGERS_C(0.03446827135542729) * t169
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t170
-        + TWO_FINGERS_C(-0.17364817766693028) * t171);
-    const two_fingers_real_t t173 = TWO_FINGERS_C(0.00607768621834256) * t169
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t170
-        + TWO_FINGERS_C(0.984807753012208) * t171);
-    const two_fingers_real_t t174 = t166 + t3 * t168 + (TWO_FINGERS_C(0.03446827135542729) * t172
-        + TWO_FINGERS_C(0.00607768621834256) * t173);
-    const two_fingers_real_t t175 = t73 * t138 - parameters[XY3] * (TWO_FINGERS_C(2.0) * t75);
-    const two_fingers_real_t t176 = t73 * t175;
-    const two_fingers_real_t t177 = parameters[XX2] + (parameters[YY3] + t176);
-    const two_fingers_real_t t178 = t73 * parameters[MY3] + t75 * parameters[MX3];
-    const two_fingers_real_t t179 = (parameters[XY2] + (parameters[XY3] + t75 * t175
-        + TWO_FINGERS_C(-0.05) * t178)) * (TWO_FINGERS_C(2.0) * t59);
-    const two_fingers_real_t t180 = t60 * (parameters[YY2] + (parameters[XX3] - t176 + t160) - t177) + t179;
-    const two_fingers_real_t t181 = t60 * (parameters[MX2] + (t153 + t159)) - t59 * (parameters[MY2] + t178);
-    const two_fingers_real_t t182 = t177 + t60 * t180
+    const two_fingers_real_t t20 = parameters[XX5] - parameters[YY5];
+    const two_fingers_real_t t21 = t3 * t20 - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
+    const two_fingers_real_t t22 = t3 * t21;
+    const two_fingers_real_t t23 = parameters[XX4] + (parameters[YY5] + t22);
+    const two_fingers_real_t t25 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t27 = (parameters[XY4] + (parameters[XY5] + t2 * t21
+        + TWO_FINGERS_C(-0.045) * t25)) * (TWO_FINGERS_C(2.0) * t26);
+    const two_fingers_real_t t28 = t24 * (parameters[YY4] + (parameters[XX5] - t22 + t9) - t23) + t27;
+    const two_fingers_real_t t29 = parameters[MY4] + t25;
+    const two_fingers_real_t t30 = parameters[MX4] - (t4 - t8);
+    const two_fingers_real_t t31 = t24 * t30 - t26 * t29;
+    const two_fingers_real_t t32 = parameters[MZ4] + parameters[MZ5];
+    const two_fingers_real_t t33 = parameters[M4] + parameters[M5];
+    const two_fingers_real_t t34 = TWO_FINGERS_C(0.03446827135542729) * t33
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t31
+        + TWO_FINGERS_C(-0.17364817766693028) * t32);
+    const two_fingers_real_t t35 = TWO_FINGERS_C(0.00607768621834256) * t33
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t31
+        + TWO_FINGERS_C(0.984807753012208) * t32);
+    const two_fingers_real_t t36 = t23 + t24 * t28 + (TWO_FINGERS_C(0.03446827135542729) * t34
+        + TWO_FINGERS_C(0.00607768621834256) * t35);
+    const two_fingers_real_t t37 = parameters[XX3] - parameters[YY3];
+    const two_fingers_real_t t38 = t12 * t37 - parameters[XY3] * (TWO_FINGERS_C(2.0) * t11);
+    const two_fingers_real_t t39 = t12 * t38;
+    const two_fingers_real_t t40 = parameters[XX2] + (parameters[YY3] + t39);
+    const two_fingers_real_t t42 = t12 * parameters[MY3] + t11 * parameters[MX3];
+    const two_fingers_real_t t44 = (parameters[XY2] + (parameters[XY3] + t11 * t38
+        + TWO_FINGERS_C(-0.05) * t42)) * (TWO_FINGERS_C(2.0) * t43);
+    const two_fingers_real_t t45 = t41 * (parameters[YY2] + (parameters[XX3] - t39 + t18) - t40) + t44;
+    const two_fingers_real_t t46 = t41 * (parameters[MX2] + (t13 + t17)) - t43 * (parameters[MY2] + t42);
+    const two_fingers_real_t t47 = t40 + t41 * t45
         + TWO_FINGERS_C(0.03) * (TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
-        + TWO_FINGERS_C(2.0) * t181);
-    const two_fingers_real_t t183 = parameters[ZZ1] + t174 + t182 + TWO_FINGERS_C(3.6e3) * parameters[IA1]
-        - t115 * t118;
-    const two_fingers_real_t t184 = t183 - t130 * t134 - t143 * t146 - t158 * t163;
-    if (!(t184 > TWO_FINGERS_C(1.0e-9))) {
+        + TWO_FINGERS_C(2.0) * t46);
+    const two_fingers_real_t t48 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t49 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t50 = t26 * t48 - t24 * t49 + TWO_FINGERS_C(8.673617379884035e-19) * (t26 * t4
+        - t24 * t25);
+    const two_fingers_real_t t51 = t50 * t6;
+    const two_fingers_real_t t52 = parameters[ZZ1] + t36 + t47 + TWO_FINGERS_C(3.6e3) * parameters[IA1]
+        - t50 * t51;
+    const two_fingers_real_t t53 = t26 * (t48 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4])
+        - t24 * (parameters[YZ4] + t49);
+    const two_fingers_real_t t54 = t53 + TWO_FINGERS_C(-8.673617379884035e-19) * (t24 * t29 + t26 * t30)
+        + t50 * t7;
+    const two_fingers_real_t t55 = TWO_FINGERS_C(1.0) / t10;
+    const two_fingers_real_t t56 = t54 * t55;
+    const two_fingers_real_t t57 = t11 * parameters[YZ3] - t12 * parameters[XZ3];
+    const two_fingers_real_t t58 = t11 * parameters[XZ3] + t12 * parameters[YZ3];
+    const two_fingers_real_t t59 = t43 * t57 - t41 * t58;
+    const two_fingers_real_t t60 = t59 * t15;
+    const two_fingers_real_t t61 = t43 * (t57 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2])
+        - t41 * (parameters[YZ2] + t58);
+    const two_fingers_real_t t62 = t61 + t59 * t16;
+    const two_fingers_real_t t63 = TWO_FINGERS_C(1.0) / t19;
+    const two_fingers_real_t t64 = t62 * t63;
+    const two_fingers_real_t t65 = t52 - t54 * t56 - t59 * t60 - t62 * t64;
+    if (!(t65 > TWO_FINGERS_C(1.0e-9))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t185 = TWO_FINGERS_C(1.0) / t184;
-    const two_fingers_real_t t186 = (t135 + t140 * t146 + t156 * t163) * t185;
+    const two_fingers_real_t t66 = t24 * dq[0];
+    const two_fingers_real_t t67 = t66 * t66;
+    const two_fingers_real_t t68 = dq[3] * dq[3];
+    const two_fingers_real_t t69 = t67 + t68;
+    const two_fingers_real_t t70 = dq[0] * dq[0];
+    const two_fingers_real_t t71 = TWO_FINGERS_C(0.034999999999999996) * t70;
+    const two_fingers_real_t t72 = TWO_FINGERS_C(-9.81) * t26 + t24 * t71;
+    const two_fingers_real_t t73 = TWO_FINGERS_C(0.045) * t69 + t72;
+    const two_fingers_real_t t74 = TWO_FINGERS_C(9.81) * t24 + t26 * t71;
+    const two_fingers_real_t t75 = t26 * dq[0];
+    const two_fingers_real_t t76 = t75 * t66;
+    const two_fingers_real_t t77 = t74 + TWO_FINGERS_C(0.045) * t76;
+    const two_fingers_real_t t78 = t3 * t73 - t2 * t77;
+    const two_fingers_real_t t79 = t3 * t66 - t2 * t75;
+    const two_fingers_real_t t80 = t79 * t79;
+    const two_fingers_real_t t81 = dq[3] + dq[4];
+    const two_fingers_real_t t82 = t81 * t81;
+    const two_fingers_real_t t83 = t3 * t75 + t2 * t66;
+    const two_fingers_real_t t84 = t83 * t79;
+    const two_fingers_real_t t85 = parameters[M5] * t78 + (parameters[MX5] * (t82 + t80)
+        - parameters[MY5] * t84);
+    const two_fingers_real_t t86 = t2 * t73 + t3 * t77;
+    const two_fingers_real_t t87 = t83 * t83;
+    const two_fingers_real_t t88 = parameters[M5] * t86 - (parameters[MY5] * (t82 + t87)
+        - parameters[MX5] * t84);
+    const two_fingers_real_t t89 = parameters[M4] * t72 + (t69 * parameters[MX4] - t76 * parameters[MY4])
+        + (t3 * t85 + t2 * t88);
+    const two_fingers_real_t t90 = t2 * t85 - t3 * t88;
+    const two_fingers_real_t t91 = t75 * t75;
+    const two_fingers_real_t t92 = parameters[M4] * t74 + (t76 * parameters[MX4] - (t91
+        + t68) * parameters[MY4]);
+    const two_fingers_real_t t93 = t24 * t89 + t26 * (t92 - t90);
+    const two_fingers_real_t t94 = t81 * t83;
+    const two_fingers_real_t t95 = TWO_FINGERS_C(2.0) * t94;
+    const two_fingers_real_t t96 = t81 * t79;
+    const two_fingers_real_t t97 = TWO_FINGERS_C(2.0) * t96;
+    const two_fingers_real_t t98 = parameters[MX5] * t95 + parameters[MY5] * t97 - parameters[MZ5] * (t87
+        + t80);
+    const two_fingers_real_t t99 = TWO_FINGERS_C(8.673617379884035e-19) * t70;
+    const two_fingers_real_t t100 = dq[3] * t75;
+    const two_fingers_real_t t101 = t99 + TWO_FINGERS_C(0.09) * t100;
+    const two_fingers_real_t t102 = parameters[M5] * t101 + t98;
+    const two_fingers_real_t t103 = TWO_FINGERS_C(2.0) * t100;
+    const two_fingers_real_t t104 = dq[3] * t66;
+    const two_fingers_real_t t105 = TWO_FINGERS_C(2.0) * t104;
+    const two_fingers_real_t t106 = t103 * parameters[MX4] + t105 * parameters[MY4] - (t91
+        + t67) * parameters[MZ4];
+    const two_fingers_real_t t107 = parameters[M4] * t99 + t106 + t102;
+    const two_fingers_real_t
+        t108 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t93
+        + TWO_FINGERS_C(0.984807753012208) * t107)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t93
+        + TWO_FINGERS_C(0.17364817766693028) * t107);
+    const two_fingers_real_t t109 = parameters[XY5] * t95 - (parameters[XX5] * t96 + t96 * (parameters[ZZ5]
+        - parameters[YY5]));
+    const two_fingers_real_t t110 = t109 - parameters[XZ5] * t84 + parameters[YZ5] * (t82 - t80)
+        + (parameters[MZ5] * t86 - parameters[MY5] * t101);
+    const two_fingers_real_t t111 = parameters[YY5] * t94 - t94 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t97;
+    const two_fingers_real_t t112 = t111 + parameters[YZ5] * t84 - parameters[XZ5] * (t82 - t87)
+        + (parameters[MZ5] * t78 + parameters[MX5] * t101);
+    const two_fingers_real_t t113 = t104 * (parameters[YY4] - parameters[ZZ4]) - t104 * parameters[XX4]
+        + t103 * parameters[XY4];
+    const two_fingers_real_t t114 = t113 - t76 * parameters[XZ4] + (t68 - t67) * parameters[YZ4]
+        + (parameters[MZ4] * t74 - parameters[MY4] * t99);
+    const two_fingers_real_t t115 = t100 * parameters[YY4] + t100 * (parameters[ZZ4] - parameters[XX4])
+        - t105 * parameters[XY4];
+    const two_fingers_real_t t116 = t115 + t76 * parameters[YZ4] + (t91 - t68) * parameters[XZ4]
+        + (parameters[MZ4] * t72 + parameters[MX4] * t99);
+    const two_fingers_real_t t117 = t116 + (t2 * t110 + t3 * t112 + TWO_FINGERS_C(0.045) * t102);
+    const two_fingers_real_t t118 = t26 * (t114 + (t3 * t110 - t2 * t112)) + t24 * t117;
+    const two_fingers_real_t t119 = t43 * dq[0];
+    const two_fingers_real_t t120 = t41 * dq[0];
+    const two_fingers_real_t t121 = t12 * t120 - t11 * t119;
+    const two_fingers_real_t t122 = dq[1] + dq[2];
+    const two_fingers_real_t t123 = t122 * t121;
+    const two_fingers_real_t t124 = t12 * t119 + t11 * t120;
+    const two_fingers_real_t t125 = t122 * t124;
+    const two_fingers_real_t t126 = TWO_FINGERS_C(2.0) * t125;
+    const two_fingers_real_t t127 = parameters[XY3] * t126 - (parameters[XX3] * t123 + t123 * (parameters[ZZ3]
+        - parameters[YY3]));
+    const two_fingers_real_t t128 = t124 * t121;
+    const two_fingers_real_t t129 = t121 * t121;
+    const two_fingers_real_t t130 = t122 * t122;
+    const two_fingers_real_t t131 = TWO_FINGERS_C(0.03) * t70;
+    const two_fingers_real_t t132 = t41 * t131 + TWO_FINGERS_C(-9.81) * t43;
+    const two_fingers_real_t t133 = t120 * t120;
+    const two_fingers_real_t t134 = dq[1] * dq[1];
+    const two_fingers_real_t t135 = t132 + TWO_FINGERS_C(0.05) * (t133 + t134);
+    const two_fingers_real_t t136 = t43 * t131 + TWO_FINGERS_C(9.81) * t41;
+    const two_fingers_real_t t137 = t119 * t120;
+    const two_fingers_real_t t138 = t136 + TWO_FINGERS_C(0.05) * t137;
+    const two_fingers_real_t t139 = t11 * t135 + t12 * t138;
+    const two_fingers_real_t t140 = dq[1] * t119;
+    const two_fingers_real_t t141 = TWO_FINGERS_C(0.1) * t140;
+    const two_fingers_real_t t142 = t127 - parameters[XZ3] * t128 + parameters[YZ3] * (t130 - t129)
+        + (parameters[MZ3] * t139 - parameters[MY3] * t141);
+    const two_fingers_real_t t143 = TWO_FINGERS_C(2.0) * t123;
+    const two_fingers_real_t t144 = parameters[YY3] * t125 - t125 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t143;
+    const two_fingers_real_t t145 = t124 * t124;
+    const two_fingers_real_t t146 = t12 * t135 - t11 * t138;
+    const two_fingers_real_t t147 = t144 + parameters[YZ3] * t128 - parameters[XZ3] * (t130 - t145)
+        + (parameters[MZ3] * t146 + parameters[MX3] * t141);
+    const two_fingers_real_t t148 = dq[1] * t120;
+    const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t140;
+    const two_fingers_real_t t150 = t148 * (parameters[YY2] - parameters[ZZ2]) - t148 * parameters[XX2]
+        + t149 * parameters[XY2];
+    const two_fingers_real_t t151 = t150 - t137 * parameters[XZ2] + (t134 - t133) * parameters[YZ2]
+        + t136 * parameters[MZ2];
+    const two_fingers_real_t t152 = parameters[MX3] * t126 + parameters[MY3] * t143 - parameters[MZ3] * (t145
+        + t129);
+    const two_fingers_real_t t153 = parameters[M3] * t141 + t152;
+    const two_fingers_real_t t154 = TWO_FINGERS_C(2.0) * t148;
+    const two_fingers_real_t t155 = t140 * parameters[YY2] + t140 * (parameters[ZZ2] - parameters[XX2])
+        - t154 * parameters[XY2];
+    const two_fingers_real_t t156 = t119 * t119;
+    const two_fingers_real_t t157 = t155 + t137 * parameters[YZ2] + (t156 - t134) * parameters[XZ2]
+        + t132 * parameters[MZ2];
+    const two_fingers_real_t t158 = t157 + (t11 * t142 + t12 * t147 + TWO_FINGERS_C(0.05) * t153);
+    const two_fingers_real_t t159 = t43 * (t151 + (t12 * t142 - t11 * t147)) + t41 * t158;
+    const two_fingers_real_t t160 = t149 * parameters[MX2] + t154 * parameters[MY2] - (t156
+        + t133) * parameters[MZ2];
+    const two_fingers_real_t t161 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t162 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1])
+        + TWO_FINGERS_C(-60.0) * (t161 * parameters[FC1]);
+    const two_fingers_real_t t163 = t162 + (t118 + t108 + (t159 + TWO_FINGERS_C(0.03) * (t160 + t153)));
+    const two_fingers_real_t t164 = parameters[XY5] * (t87 - t80) - t20 * t84 + (parameters[MX5] * t86
+        + parameters[MY5] * t78);
+    const two_fingers_real_t t165 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t166 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5])
+        + TWO_FINGERS_C(30.0) * (t165 * parameters[FC5]);
+    const two_fingers_real_t t167 = TWO_FINGERS_C(0.6) * input[4] - (t166 + t164);
+    const two_fingers_real_t t168 = t76 * (parameters[XX4] - parameters[YY4]) - (t91 - t67) * parameters[XY4]
+        - (parameters[MX4] * t74 + parameters[MY4] * t72);
+    const two_fingers_real_t t169 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t170 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4])
+        + TWO_FINGERS_C(30.0) * (t169 * parameters[FC4]);
+    const two_fingers_real_t t171 = TWO_FINGERS_C(0.6) * input[3] - (t170 - (t168 - (t164
+        - TWO_FINGERS_C(0.045) * t90)));
+    const two_fingers_real_t t172 = t171 + t167 * t7;
+    const two_fingers_real_t t173 = TWO_FINGERS_C(2.4) * input[0] + t163 + t167 * t51 + t172 * t56;
+    const two_fingers_real_t t174 = parameters[XY3] * (t145 - t129) - t37 * t128 + (parameters[MX3] * t139
+        + parameters[MY3] * t146);
+    const two_fingers_real_t t175 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t176 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3])
+        + TWO_FINGERS_C(30.0) * (t175 * parameters[FC3]);
+    const two_fingers_real_t t177 = TWO_FINGERS_C(0.6) * input[2] - (t176 + t174);
+    const two_fingers_real_t t178 = parameters[M3] * t146 + (parameters[MX3] * (t130 + t129)
+        - parameters[MY3] * t128);
+    const two_fingers_real_t t179 = parameters[M3] * t139 - (parameters[MY3] * (t130 + t145)
+        - parameters[MX3] * t128);
+    const two_fingers_real_t t180 = t137 * (parameters[XX2] - parameters[YY2]) - (t156
+        - t133) * parameters[XY2] - (t136 * parameters[MX2] + t132 * parameters[MY2]);
+    const two_fingers_real_t t181 = t180 - (t174 - TWO_FINGERS_C(0.05) * (t11 * t178 - t12 * t179));
+    const two_fingers_real_t t182 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t183 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2])
+        + TWO_FINGERS_C(30.0) * (t182 * parameters[FC2]);
+    const two_fingers_real_t t184 = TWO_FINGERS_C(0.6) * input[1] - (t183 - t181) + t177 * t16;
+    const two_fingers_real_t t185 = TWO_FINGERS_C(1.0) / t65;
+    const two_fingers_real_t t186 = (t173 + t177 * t60 + t184 * t64) * t185;
     out[0] = t186;
     if (!(t186 >= TWO_FINGERS_C(-1.0e15) && t186 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t187 = t156 * t162 + t163 * t186;
+    const two_fingers_real_t t187 = t184 * t63 + t64 * t186;
     out[1] = t187;
     if (!(t187 >= TWO_FINGERS_C(-1.0e15) && t187 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    out[2] = t140 * t145 + t146 * t186 + t155 * t187;
+    out[2] = t177 * t15 + t60 * t186 + t16 * t187;
     if (!(out[2] >= TWO_FINGERS_C(-1.0e15) && out[2] <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t188 = t125 * t133 + t134 * t186;
+    const two_fingers_real_t t188 = t172 * t55 + t56 * t186;
     out[3] = t188;
     if (!(t188 >= TWO_FINGERS_C(-1.0e15) && t188 <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    out[4] = t110 * t117 + t118 * t186 + t124 * t188;
+    out[4] = t167 * t6 + t51 * t186 + t7 * t188;
     if (!(out[4] >= TWO_FINGERS_C(-1.0e15) && out[4] <= TWO_FINGERS_C(1.0e15))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;

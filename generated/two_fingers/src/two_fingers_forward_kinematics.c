@@ -25,7 +25,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
@@ -49,8 +49,8 @@ int two_fingers_forward_kinematics(
     TWO_FINGERS_SINCOS(q[1], &t4, &t2);
     two_fingers_real_t t11, t10;
     TWO_FINGERS_SINCOS(q[2], &t11, &t10);
-    two_fingers_real_t t15, t12;
-    TWO_FINGERS_SINCOS(q[3], &t15, &t12);
+    two_fingers_real_t t15, t13;
+    TWO_FINGERS_SINCOS(q[3], &t15, &t13);
     two_fingers_real_t t23, t22;
     TWO_FINGERS_SINCOS(q[4], &t23, &t22);
     out[0] = t0;
@@ -90,11 +90,11 @@ int two_fingers_forward_kinematics(
     out[41] = t2 * t10 - t4 * t11;
     out[43] = TWO_FINGERS_C(0.05) * t4 + TWO_FINGERS_C(0.28);
     out[47] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t13 = TWO_FINGERS_C(0.984807753012208) * t0
+    const two_fingers_real_t t12 = TWO_FINGERS_C(0.984807753012208) * t0
         + TWO_FINGERS_C(0.17364817766693028) * t1;
-    const two_fingers_real_t t14 = t12 * t13;
+    const two_fingers_real_t t14 = t13 * t12;
     out[48] = -t14;
-    const two_fingers_real_t t16 = t15 * t13;
+    const two_fingers_real_t t16 = t15 * t12;
     out[49] = t16;
     const two_fingers_real_t t17 = TWO_FINGERS_C(0.17364817766693028) * t0
         + TWO_FINGERS_C(-0.984807753012208) * t1;
@@ -102,16 +102,16 @@ int two_fingers_forward_kinematics(
     const two_fingers_real_t t18 = TWO_FINGERS_C(-0.03446827135542729) * t0
         + TWO_FINGERS_C(-0.00607768621834256) * t1;
     out[51] = t18;
-    const two_fingers_real_t t19 = t12 * t17;
+    const two_fingers_real_t t19 = t13 * t17;
     out[52] = t19;
     const two_fingers_real_t t20 = t15 * t17;
     out[53] = -t20;
-    out[54] = t13;
+    out[54] = t12;
     const two_fingers_real_t t21 = TWO_FINGERS_C(-0.03446827135542729) * t1
         + TWO_FINGERS_C(0.00607768621834256) * t0;
     out[55] = t21;
     out[56] = t15;
-    out[57] = t12;
+    out[57] = t13;
     out[59] = TWO_FINGERS_C(0.27);
     out[63] = TWO_FINGERS_C(1.0);
     out[64] = t23 * t16 - t22 * t14;
@@ -120,10 +120,10 @@ int two_fingers_forward_kinematics(
     out[67] = t18 + TWO_FINGERS_C(-0.045) * t14;
     out[68] = t22 * t19 - t23 * t20;
     out[69] = -(t23 * t19 + t22 * t20);
-    out[70] = t13;
+    out[70] = t12;
     out[71] = t21 + TWO_FINGERS_C(0.045) * t19;
-    out[72] = t15 * t22 + t12 * t23;
-    out[73] = t12 * t22 - t15 * t23;
+    out[72] = t15 * t22 + t13 * t23;
+    out[73] = t13 * t22 - t15 * t23;
     out[75] = TWO_FINGERS_C(0.045) * t15 + TWO_FINGERS_C(0.27);
     out[79] = TWO_FINGERS_C(1.0);
     /* always zero */

@@ -66,7 +66,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -89,25 +89,25 @@ int two_fingers_gravity(
         return status;
     }
 
-    two_fingers_real_t t2, t0;
-    TWO_FINGERS_SINCOS(q[1], &t2, &t0);
-    two_fingers_real_t t4, t5;
-    TWO_FINGERS_SINCOS(q[2], &t4, &t5);
-    two_fingers_real_t t9, t7;
-    TWO_FINGERS_SINCOS(q[3], &t9, &t7);
-    two_fingers_real_t t11, t12;
-    TWO_FINGERS_SINCOS(q[4], &t11, &t12);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(9.81) * t0;
-    const two_fingers_real_t t3 = TWO_FINGERS_C(-9.81) * t2;
-    const two_fingers_real_t t6 = parameters[MX3] * (t4 * t3 + t5 * t1) + parameters[MY3] * (t5 * t3
-        - t4 * t1);
-    out[1] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX2R] * t1 + parameters[MY2] * t3 + t6);
+    two_fingers_real_t t0, t3;
+    TWO_FINGERS_SINCOS(q[1], &t0, &t3);
+    two_fingers_real_t t2, t5;
+    TWO_FINGERS_SINCOS(q[2], &t2, &t5);
+    two_fingers_real_t t7, t10;
+    TWO_FINGERS_SINCOS(q[3], &t7, &t10);
+    two_fingers_real_t t9, t12;
+    TWO_FINGERS_SINCOS(q[4], &t9, &t12);
+    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0;
+    const two_fingers_real_t t4 = TWO_FINGERS_C(9.81) * t3;
+    const two_fingers_real_t t6 = parameters[MX3] * (t2 * t1 + t5 * t4) + parameters[MY3] * (t5 * t1
+        - t2 * t4);
+    out[1] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t6);
     out[2] = TWO_FINGERS_C(1.6666666666666667) * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(9.81) * t7;
-    const two_fingers_real_t t10 = TWO_FINGERS_C(-9.81) * t9;
-    const two_fingers_real_t t13 = parameters[MX5] * (t11 * t10 + t12 * t8) + parameters[MY5] * (t12 * t10
-        - t11 * t8);
-    out[3] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX4R] * t8 + parameters[MY4] * t10 + t13);
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-9.81) * t7;
+    const two_fingers_real_t t11 = TWO_FINGERS_C(9.81) * t10;
+    const two_fingers_real_t t13 = parameters[MX5] * (t9 * t8 + t12 * t11) + parameters[MY5] * (t12 * t8
+        - t9 * t11);
+    out[3] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX4R] * t11 + parameters[MY4] * t8 + t13);
     out[4] = TWO_FINGERS_C(1.6666666666666667) * t13;
     /* always zero */
     out[0] = TWO_FINGERS_C(0.0);

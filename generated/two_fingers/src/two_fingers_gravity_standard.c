@@ -89,7 +89,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -113,46 +113,46 @@ int two_fingers_gravity_standard(
         return status;
     }
 
-    two_fingers_real_t t17, t18;
-    TWO_FINGERS_SINCOS(q[1], &t17, &t18);
-    two_fingers_real_t t21, t20;
-    TWO_FINGERS_SINCOS(q[2], &t21, &t20);
-    two_fingers_real_t t0, t1;
-    TWO_FINGERS_SINCOS(q[3], &t0, &t1);
-    two_fingers_real_t t4, t3;
-    TWO_FINGERS_SINCOS(q[4], &t4, &t3);
-    const two_fingers_real_t t2 = TWO_FINGERS_C(9.81) * t1;
-    const two_fingers_real_t t5 = TWO_FINGERS_C(-9.81) * t0;
-    const two_fingers_real_t t6 = t4 * t5 + t3 * t2;
+    two_fingers_real_t t17, t20;
+    TWO_FINGERS_SINCOS(q[1], &t17, &t20);
+    two_fingers_real_t t19, t22;
+    TWO_FINGERS_SINCOS(q[2], &t19, &t22);
+    two_fingers_real_t t0, t3;
+    TWO_FINGERS_SINCOS(q[3], &t0, &t3);
+    two_fingers_real_t t2, t5;
+    TWO_FINGERS_SINCOS(q[4], &t2, &t5);
+    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0;
+    const two_fingers_real_t t4 = TWO_FINGERS_C(9.81) * t3;
+    const two_fingers_real_t t6 = t2 * t1 + t5 * t4;
     const two_fingers_real_t t7 = t6 * parameters[MZ5];
-    const two_fingers_real_t t8 = t3 * t5 - t4 * t2;
+    const two_fingers_real_t t8 = t5 * t1 - t2 * t4;
     const two_fingers_real_t t9 = t8 * parameters[MZ5];
-    const two_fingers_real_t t10 = t0 * (t4 * t9 - t3 * t7 - t2 * parameters[MZ4]);
-    const two_fingers_real_t t11 = t1 * (t5 * parameters[MZ4] + (t4 * t7 + t3 * t9));
+    const two_fingers_real_t t10 = t0 * (t2 * t9 - t5 * t7 - t4 * parameters[MZ4]);
+    const two_fingers_real_t t11 = t3 * (t1 * parameters[MZ4] + (t2 * t7 + t5 * t9));
     const two_fingers_real_t t12 = t8 * parameters[M5];
     const two_fingers_real_t t13 = t6 * parameters[M5];
-    const two_fingers_real_t t14 = t1 * (t5 * parameters[M4] + (t3 * t12 + t4 * t13));
-    const two_fingers_real_t t15 = t3 * t13 - t4 * t12;
+    const two_fingers_real_t t14 = t3 * (t1 * parameters[M4] + (t5 * t12 + t2 * t13));
+    const two_fingers_real_t t15 = t5 * t13 - t2 * t12;
     const two_fingers_real_t t16 = t10 - t11 + TWO_FINGERS_C(8.673617379884035e-19) * (t14
-        + t0 * (t2 * parameters[M4] + t15));
-    const two_fingers_real_t t19 = TWO_FINGERS_C(9.81) * t18;
-    const two_fingers_real_t t22 = TWO_FINGERS_C(-9.81) * t17;
-    const two_fingers_real_t t23 = t21 * t22 + t20 * t19;
+        + t0 * (t4 * parameters[M4] + t15));
+    const two_fingers_real_t t18 = TWO_FINGERS_C(-9.81) * t17;
+    const two_fingers_real_t t21 = TWO_FINGERS_C(9.81) * t20;
+    const two_fingers_real_t t23 = t19 * t18 + t22 * t21;
     const two_fingers_real_t t24 = t23 * parameters[MZ3];
-    const two_fingers_real_t t25 = t21 * t19 - t20 * t22;
+    const two_fingers_real_t t25 = t19 * t21 - t22 * t18;
     const two_fingers_real_t t26 = t25 * parameters[MZ3];
-    const two_fingers_real_t t27 = t17 * (t19 * parameters[MZ2] + (t20 * t24 + t21 * t26));
-    const two_fingers_real_t t28 = t18 * (t20 * t26 - t21 * t24 - t22 * parameters[MZ2]);
+    const two_fingers_real_t t27 = t17 * (t21 * parameters[MZ2] + (t22 * t24 + t19 * t26));
+    const two_fingers_real_t t28 = t20 * (t22 * t26 - t19 * t24 - t18 * parameters[MZ2]);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * (t16 + (t28 - t27));
     const two_fingers_real_t t29 = t23 * parameters[MX3] - t25 * parameters[MY3];
-    const two_fingers_real_t t30 = TWO_FINGERS_C(0.05) * (t21 * (t25 * parameters[M3])
-        + t20 * (t23 * parameters[M3]));
-    const two_fingers_real_t t31 = TWO_FINGERS_C(1.6666666666666667) * (t19 * parameters[MX2]
-        + t22 * parameters[MY2] + (t29 + t30));
+    const two_fingers_real_t t30 = TWO_FINGERS_C(0.05) * (t19 * (t25 * parameters[M3])
+        + t22 * (t23 * parameters[M3]));
+    const two_fingers_real_t t31 = TWO_FINGERS_C(1.6666666666666667) * (t21 * parameters[MX2]
+        + t18 * parameters[MY2] + (t29 + t30));
     out[1] = t31;
     out[2] = TWO_FINGERS_C(1.6666666666666667) * t29;
     const two_fingers_real_t t32 = t6 * parameters[MX5] + t8 * parameters[MY5];
-    const two_fingers_real_t t33 = t2 * parameters[MX4] + t5 * parameters[MY4] + (t32
+    const two_fingers_real_t t33 = t4 * parameters[MX4] + t1 * parameters[MY4] + (t32
         + TWO_FINGERS_C(0.045) * t15);
     out[3] = TWO_FINGERS_C(1.6666666666666667) * t33;
     out[4] = TWO_FINGERS_C(1.6666666666666667) * t32;

@@ -68,7 +68,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -95,189 +95,189 @@ int two_fingers_inverse_dynamics(
         return status;
     }
 
+    two_fingers_real_t t62, t64;
+    TWO_FINGERS_SINCOS(q[1], &t62, &t64);
     two_fingers_real_t t63, t65;
-    TWO_FINGERS_SINCOS(q[1], &t63, &t65);
-    two_fingers_real_t t83, t79;
-    TWO_FINGERS_SINCOS(q[2], &t83, &t79);
+    TWO_FINGERS_SINCOS(q[2], &t63, &t65);
+    two_fingers_real_t t0, t2;
+    TWO_FINGERS_SINCOS(q[3], &t0, &t2);
     two_fingers_real_t t1, t3;
-    TWO_FINGERS_SINCOS(q[3], &t1, &t3);
-    two_fingers_real_t t24, t20;
-    TWO_FINGERS_SINCOS(q[4], &t24, &t20);
-    const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t2 = dq[3] * dq[3];
-    const two_fingers_real_t t4 = t3 * dq[0];
-    const two_fingers_real_t t5 = t4 * t4;
-    const two_fingers_real_t t6 = dq[3] * t4;
-    const two_fingers_real_t t7 = t1 * ddq[0];
-    const two_fingers_real_t t8 = t6 + t7;
-    const two_fingers_real_t t9 = t1 * dq[0];
-    const two_fingers_real_t t10 = dq[3] * t9;
-    const two_fingers_real_t t11 = t3 * ddq[0];
-    const two_fingers_real_t t12 = t11 - t10 - t10;
-    const two_fingers_real_t t13 = t9 * t4;
-    const two_fingers_real_t t14 = ddq[3] + t13;
-    const two_fingers_real_t t15 = parameters[ZZ4R] * t6 + parameters[XX4R] * t8 + parameters[XY4] * t12
-        + parameters[XZ4R] * t14;
-    const two_fingers_real_t t16 = dq[0] * dq[0];
-    const two_fingers_real_t t17 = TWO_FINGERS_C(0.03446827135542729) * t16
-        + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
-    const two_fingers_real_t t18 = TWO_FINGERS_C(0.00607768621834256) * t16
-        + TWO_FINGERS_C(0.03446827135542729) * ddq[0];
-    const two_fingers_real_t t19 = TWO_FINGERS_C(0.17364817766693028) * t17
-        + TWO_FINGERS_C(-0.984807753012208) * t18;
-    const two_fingers_real_t t21 = t19 + TWO_FINGERS_C(-0.045) * t12;
-    const two_fingers_real_t t22 = dq[3] + dq[4];
-    const two_fingers_real_t t23 = t22 * t22;
-    const two_fingers_real_t t25 = t3 * t20 - t1 * t24;
-    const two_fingers_real_t t26 = dq[0] * t25;
-    const two_fingers_real_t t27 = t26 * t26;
-    const two_fingers_real_t t28 = t22 * t26;
-    const two_fingers_real_t t29 = t1 * t20 + t3 * t24;
-    const two_fingers_real_t t30 = ddq[0] * t29;
-    const two_fingers_real_t t31 = t28 + t30;
-    const two_fingers_real_t t32 = dq[0] * t29;
-    const two_fingers_real_t t33 = t22 * t32;
-    const two_fingers_real_t t34 = ddq[0] * t25;
-    const two_fingers_real_t t35 = t34 - t33 - t33;
-    const two_fingers_real_t t36 = t32 * t26;
-    const two_fingers_real_t t37 = ddq[3] + ddq[4];
-    const two_fingers_real_t t38 = t36 + t37;
-    const two_fingers_real_t t39 = parameters[ZZ5] * t28 + parameters[XX5R] * t31 + parameters[XY5] * t35
-        + parameters[XZ5] * t38;
-    const two_fingers_real_t t40 = parameters[MY5] * t21 + (parameters[YZ5] * (t27 - t23) + t39);
-    const two_fingers_real_t t41 = t32 * t32;
-    const two_fingers_real_t t42 = t28 + t31;
-    const two_fingers_real_t t43 = t36 - t37;
-    const two_fingers_real_t t44 = (parameters[XX5R] - parameters[ZZ5]) * t33 + parameters[XY5] * t42
-        - parameters[YZ5] * t43;
-    const two_fingers_real_t t45 = parameters[MX5] * t21 - (parameters[XZ5] * (t23 - t41) + t44);
-    const two_fingers_real_t t46 = parameters[YZ4] * (t5 - t2) + t15 + parameters[MY4] * t19 + (t20 * t40
-        + t24 * t45);
-    const two_fingers_real_t t47 = t9 * t9;
-    const two_fingers_real_t t48 = t6 + t8;
-    const two_fingers_real_t t49 = ddq[3] - t13;
-    const two_fingers_real_t t50 = t10 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t48
-        + parameters[YZ4] * t49;
-    const two_fingers_real_t t51 = parameters[MX5] * t35 - parameters[MY5] * t42;
-    const two_fingers_real_t t52 = parameters[XZ4R] * (t2 - t47) + t50 - parameters[MX4R] * t19 + (t24 * t40
-        - t20 * t45 + TWO_FINGERS_C(0.045) * t51);
-    const two_fingers_real_t t53 = t2 + t5;
-    const two_fingers_real_t t54 = parameters[MY5] * t43 - parameters[MX5] * (t23 + t27);
-    const two_fingers_real_t t55 = parameters[MX5] * t38 - parameters[MY5] * (t23 + t41);
-    const two_fingers_real_t t56 = parameters[MX4R] * t53 + parameters[MY4] * t49 + (t24 * t55 - t20 * t54);
-    const two_fingers_real_t t57 = t24 * t54 + t20 * t55;
-    const two_fingers_real_t t58 = t1 * (parameters[MY4] * (t2 + t47) - parameters[MX4R] * t14 - t57);
-    const two_fingers_real_t t59 = t3 * t56 - t58;
-    const two_fingers_real_t t60 = parameters[MX4R] * t12 - parameters[MY4] * t48 + t51;
+    TWO_FINGERS_SINCOS(q[4], &t1, &t3);
+    const two_fingers_real_t t4 = t2 * t3 - t0 * t1;
+    const two_fingers_real_t t5 = dq[0] * t4;
+    const two_fingers_real_t t6 = t5 * t5;
+    const two_fingers_real_t t7 = dq[3] + dq[4];
+    const two_fingers_real_t t8 = t7 * t7;
+    const two_fingers_real_t t9 = t0 * t3 + t2 * t1;
+    const two_fingers_real_t t10 = dq[0] * t9;
+    const two_fingers_real_t t11 = t10 * t5;
+    const two_fingers_real_t t12 = ddq[3] + ddq[4];
+    const two_fingers_real_t t13 = t11 - t12;
+    const two_fingers_real_t t14 = parameters[MY5] * t13 - parameters[MX5] * (t8 + t6);
+    const two_fingers_real_t t15 = t10 * t10;
+    const two_fingers_real_t t16 = t11 + t12;
+    const two_fingers_real_t t17 = parameters[MX5] * t16 - parameters[MY5] * (t8 + t15);
+    const two_fingers_real_t t18 = t2 * dq[0];
+    const two_fingers_real_t t19 = t18 * t18;
+    const two_fingers_real_t t20 = dq[3] * dq[3];
+    const two_fingers_real_t t21 = t20 + t19;
+    const two_fingers_real_t t22 = t0 * dq[0];
+    const two_fingers_real_t t23 = t22 * t18;
+    const two_fingers_real_t t24 = ddq[3] - t23;
+    const two_fingers_real_t t25 = parameters[MX4R] * t21 + parameters[MY4] * t24 + (t1 * t17 - t3 * t14);
+    const two_fingers_real_t t26 = t1 * t14 + t3 * t17;
+    const two_fingers_real_t t27 = t22 * t22;
+    const two_fingers_real_t t28 = ddq[3] + t23;
+    const two_fingers_real_t t29 = t0 * (parameters[MY4] * (t20 + t27) - parameters[MX4R] * t28 - t26);
+    const two_fingers_real_t t30 = t2 * t25 - t29;
+    const two_fingers_real_t t31 = t7 * t10;
+    const two_fingers_real_t t32 = ddq[0] * t4;
+    const two_fingers_real_t t33 = t32 - t31 - t31;
+    const two_fingers_real_t t34 = t7 * t5;
+    const two_fingers_real_t t35 = ddq[0] * t9;
+    const two_fingers_real_t t36 = t34 + t35;
+    const two_fingers_real_t t37 = t34 + t36;
+    const two_fingers_real_t t38 = parameters[MX5] * t33 - parameters[MY5] * t37;
+    const two_fingers_real_t t39 = dq[3] * t22;
+    const two_fingers_real_t t40 = t2 * ddq[0];
+    const two_fingers_real_t t41 = t40 - t39 - t39;
+    const two_fingers_real_t t42 = dq[3] * t18;
+    const two_fingers_real_t t43 = t0 * ddq[0];
+    const two_fingers_real_t t44 = t42 + t43;
+    const two_fingers_real_t t45 = t42 + t44;
+    const two_fingers_real_t t46 = parameters[MX4R] * t41 - parameters[MY4] * t45 + t38;
     const two_fingers_real_t
-        t61 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t59
-        + TWO_FINGERS_C(0.984807753012208) * t60)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t59
-        + TWO_FINGERS_C(0.17364817766693028) * t60);
-    const two_fingers_real_t t62 = parameters[ZZ1R] * ddq[0] + (t1 * t46 + t3 * t52 + t61);
-    const two_fingers_real_t t64 = dq[1] * dq[1];
-    const two_fingers_real_t t66 = t65 * dq[0];
-    const two_fingers_real_t t67 = t66 * t66;
-    const two_fingers_real_t t68 = dq[1] * t66;
-    const two_fingers_real_t t69 = t63 * ddq[0];
-    const two_fingers_real_t t70 = t68 + t69;
-    const two_fingers_real_t t71 = t63 * dq[0];
-    const two_fingers_real_t t72 = dq[1] * t71;
-    const two_fingers_real_t t73 = t65 * ddq[0];
-    const two_fingers_real_t t74 = t73 - t72 - t72;
-    const two_fingers_real_t t75 = t71 * t66;
-    const two_fingers_real_t t76 = ddq[1] + t75;
-    const two_fingers_real_t t77 = parameters[ZZ2R] * t68 + parameters[XX2R] * t70 + parameters[XY2] * t74
-        + parameters[XZ2R] * t76;
-    const two_fingers_real_t t78 = TWO_FINGERS_C(-0.03) * ddq[0];
-    const two_fingers_real_t t80 = t78 + TWO_FINGERS_C(-0.05) * t74;
-    const two_fingers_real_t t81 = dq[1] + dq[2];
-    const two_fingers_real_t t82 = t81 * t81;
-    const two_fingers_real_t t84 = t65 * t79 - t63 * t83;
-    const two_fingers_real_t t85 = dq[0] * t84;
-    const two_fingers_real_t t86 = t85 * t85;
-    const two_fingers_real_t t87 = t81 * t85;
-    const two_fingers_real_t t88 = t63 * t79 + t65 * t83;
-    const two_fingers_real_t t89 = ddq[0] * t88;
-    const two_fingers_real_t t90 = t87 + t89;
-    const two_fingers_real_t t91 = dq[0] * t88;
-    const two_fingers_real_t t92 = t81 * t91;
-    const two_fingers_real_t t93 = ddq[0] * t84;
-    const two_fingers_real_t t94 = t93 - t92 - t92;
-    const two_fingers_real_t t95 = t91 * t85;
-    const two_fingers_real_t t96 = ddq[1] + ddq[2];
-    const two_fingers_real_t t97 = t95 + t96;
-    const two_fingers_real_t t98 = parameters[ZZ3] * t87 + parameters[XX3R] * t90 + parameters[XY3] * t94
-        + parameters[XZ3] * t97;
-    const two_fingers_real_t t99 = parameters[MY3] * t80 + (parameters[YZ3] * (t86 - t82) + t98);
-    const two_fingers_real_t t100 = t91 * t91;
-    const two_fingers_real_t t101 = t87 + t90;
-    const two_fingers_real_t t102 = t95 - t96;
-    const two_fingers_real_t t103 = (parameters[XX3R] - parameters[ZZ3]) * t92 + parameters[XY3] * t101
-        - parameters[YZ3] * t102;
-    const two_fingers_real_t t104 = parameters[XZ3] * (t82 - t100) + t103 - parameters[MX3] * t80;
-    const two_fingers_real_t t105 = parameters[YZ2] * (t67 - t64) + t77 + parameters[MY2] * t78 + (t79 * t99
-        - t83 * t104);
-    const two_fingers_real_t t106 = t71 * t71;
-    const two_fingers_real_t t107 = t68 + t70;
-    const two_fingers_real_t t108 = t72 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t107
-        + parameters[YZ2] * (ddq[1] - t75);
-    const two_fingers_real_t t109 = parameters[MX3] * t94 - parameters[MY3] * t101;
-    const two_fingers_real_t t110 = parameters[XZ2R] * (t64 - t106) + t108 - parameters[MX2R] * t78
-        + (t83 * t99 + t79 * t104 + TWO_FINGERS_C(0.05) * t109);
-    const two_fingers_real_t t111 = t63 * t105 + t65 * t110 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t74
-        - parameters[MY2] * t107 + t109);
+        t47 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t30
+        + TWO_FINGERS_C(0.984807753012208) * t46)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t30
+        + TWO_FINGERS_C(0.17364817766693028) * t46);
+    const two_fingers_real_t t48 = parameters[ZZ5] * t34 + parameters[XX5R] * t36 + parameters[XY5] * t33
+        + parameters[XZ5] * t16;
+    const two_fingers_real_t t49 = dq[0] * dq[0];
+    const two_fingers_real_t t50 = TWO_FINGERS_C(0.03446827135542729) * t49
+        + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
+    const two_fingers_real_t t51 = TWO_FINGERS_C(0.00607768621834256) * t49
+        + TWO_FINGERS_C(0.03446827135542729) * ddq[0];
+    const two_fingers_real_t t52 = TWO_FINGERS_C(0.17364817766693028) * t50
+        + TWO_FINGERS_C(-0.984807753012208) * t51;
+    const two_fingers_real_t t53 = t52 + TWO_FINGERS_C(-0.045) * t41;
+    const two_fingers_real_t t54 = parameters[MY5] * t53 + (parameters[YZ5] * (t6 - t8) + t48);
+    const two_fingers_real_t t55 = (parameters[XX5R] - parameters[ZZ5]) * t31 + parameters[XY5] * t37
+        - parameters[YZ5] * t13;
+    const two_fingers_real_t t56 = parameters[MX5] * t53 - (parameters[XZ5] * (t8 - t15) + t55);
+    const two_fingers_real_t t57 = parameters[ZZ4R] * t42 + parameters[XX4R] * t44 + parameters[XY4] * t41
+        + parameters[XZ4R] * t28;
+    const two_fingers_real_t t58 = parameters[YZ4] * (t19 - t20) + t57 + parameters[MY4] * t52 + (t3 * t54
+        + t1 * t56);
+    const two_fingers_real_t t59 = t39 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t45
+        + parameters[YZ4] * t24;
+    const two_fingers_real_t t60 = parameters[XZ4R] * (t20 - t27) + t59 - parameters[MX4R] * t52 + (t1 * t54
+        - t3 * t56 + TWO_FINGERS_C(0.045) * t38);
+    const two_fingers_real_t t61 = parameters[ZZ1R] * ddq[0] + (t0 * t58 + t2 * t60 + t47);
+    const two_fingers_real_t t66 = t64 * t65 - t62 * t63;
+    const two_fingers_real_t t67 = dq[0] * t66;
+    const two_fingers_real_t t68 = dq[1] + dq[2];
+    const two_fingers_real_t t69 = t68 * t67;
+    const two_fingers_real_t t70 = t62 * t65 + t64 * t63;
+    const two_fingers_real_t t71 = ddq[0] * t70;
+    const two_fingers_real_t t72 = t69 + t71;
+    const two_fingers_real_t t73 = dq[0] * t70;
+    const two_fingers_real_t t74 = t68 * t73;
+    const two_fingers_real_t t75 = ddq[0] * t66;
+    const two_fingers_real_t t76 = t75 - t74 - t74;
+    const two_fingers_real_t t77 = t73 * t67;
+    const two_fingers_real_t t78 = ddq[1] + ddq[2];
+    const two_fingers_real_t t79 = t77 + t78;
+    const two_fingers_real_t t80 = parameters[ZZ3] * t69 + parameters[XX3R] * t72 + parameters[XY3] * t76
+        + parameters[XZ3] * t79;
+    const two_fingers_real_t t81 = t67 * t67;
+    const two_fingers_real_t t82 = t68 * t68;
+    const two_fingers_real_t t83 = t62 * dq[0];
+    const two_fingers_real_t t84 = dq[1] * t83;
+    const two_fingers_real_t t85 = t64 * ddq[0];
+    const two_fingers_real_t t86 = t85 - t84 - t84;
+    const two_fingers_real_t t87 = TWO_FINGERS_C(-0.03) * ddq[0];
+    const two_fingers_real_t t88 = t87 + TWO_FINGERS_C(-0.05) * t86;
+    const two_fingers_real_t t89 = parameters[MY3] * t88 + (parameters[YZ3] * (t81 - t82) + t80);
+    const two_fingers_real_t t90 = t69 + t72;
+    const two_fingers_real_t t91 = t77 - t78;
+    const two_fingers_real_t t92 = (parameters[XX3R] - parameters[ZZ3]) * t74 + parameters[XY3] * t90
+        - parameters[YZ3] * t91;
+    const two_fingers_real_t t93 = t73 * t73;
+    const two_fingers_real_t t94 = parameters[XZ3] * (t82 - t93) + t92 - parameters[MX3] * t88;
+    const two_fingers_real_t t95 = t64 * dq[0];
+    const two_fingers_real_t t96 = dq[1] * t95;
+    const two_fingers_real_t t97 = t62 * ddq[0];
+    const two_fingers_real_t t98 = t96 + t97;
+    const two_fingers_real_t t99 = t83 * t95;
+    const two_fingers_real_t t100 = ddq[1] + t99;
+    const two_fingers_real_t t101 = parameters[ZZ2R] * t96 + parameters[XX2R] * t98 + parameters[XY2] * t86
+        + parameters[XZ2R] * t100;
+    const two_fingers_real_t t102 = t95 * t95;
+    const two_fingers_real_t t103 = dq[1] * dq[1];
+    const two_fingers_real_t t104 = parameters[YZ2] * (t102 - t103) + t101 + parameters[MY2] * t87
+        + (t65 * t89 - t63 * t94);
+    const two_fingers_real_t t105 = parameters[MX3] * t76 - parameters[MY3] * t90;
+    const two_fingers_real_t t106 = t96 + t98;
+    const two_fingers_real_t t107 = t84 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t106
+        + parameters[YZ2] * (ddq[1] - t99);
+    const two_fingers_real_t t108 = t83 * t83;
+    const two_fingers_real_t t109 = parameters[XZ2R] * (t103 - t108) + t107 - parameters[MX2R] * t87
+        + (t63 * t89 + t65 * t94 + TWO_FINGERS_C(0.05) * t105);
+    const two_fingers_real_t t110 = t62 * t104 + t64 * t109 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t86
+        - parameters[MY2] * t106 + t105);
+    const two_fingers_real_t t111 = two_fingers_sign(dq[0]);
     const two_fingers_real_t t112 = TWO_FINGERS_C(25.0) * (parameters[FV1] * (TWO_FINGERS_C(60.0) * dq[0])
-        + parameters[FC1] * t0) + TWO_FINGERS_C(0.4166666666666667) * (t62 + t111);
+        + parameters[FC1] * t111) + TWO_FINGERS_C(0.4166666666666667) * (t61 + t110);
     out[0] = t112;
-    const two_fingers_real_t t113 = two_fingers_sign(dq[1]);
-    const two_fingers_real_t t114 = TWO_FINGERS_C(0.03) * t16;
-    const two_fingers_real_t t115 = t63 * t114 + TWO_FINGERS_C(9.81) * t65;
-    const two_fingers_real_t t116 = t65 * t114 + TWO_FINGERS_C(-9.81) * t63;
-    const two_fingers_real_t t117 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t75 + parameters[YZ2] * t73
-        + parameters[XZ2R] * t69;
-    const two_fingers_real_t t118 = parameters[MX2R] * t115 + parameters[MY2] * t116
-        + (parameters[XY2] * (t106 - t67) + t117);
-    const two_fingers_real_t t119 = t116 + TWO_FINGERS_C(0.05) * (t64 + t67);
-    const two_fingers_real_t t120 = t115 + TWO_FINGERS_C(0.05) * t76;
-    const two_fingers_real_t t121 = parameters[MX3] * (t83 * t119 + t79 * t120)
-        + parameters[MY3] * (t79 * t119 - t83 * t120);
-    const two_fingers_real_t t122 = parameters[ZZ3] * t96 - parameters[XX3R] * t95 + parameters[YZ3] * t93
-        + parameters[XZ3] * t89;
-    const two_fingers_real_t t123 = t121 + (parameters[XY3] * (t100 - t86) + t122);
-    const two_fingers_real_t t124 = t83 * (parameters[MY3] * t102 - parameters[MX3] * (t82 + t86))
-        + t79 * (parameters[MX3] * t97 - parameters[MY3] * (t82 + t100));
+    const two_fingers_real_t t113 = TWO_FINGERS_C(0.03) * t49;
+    const two_fingers_real_t t114 = t64 * t113 + TWO_FINGERS_C(-9.81) * t62;
+    const two_fingers_real_t t115 = t114 + TWO_FINGERS_C(0.05) * (t103 + t102);
+    const two_fingers_real_t t116 = t62 * t113 + TWO_FINGERS_C(9.81) * t64;
+    const two_fingers_real_t t117 = t116 + TWO_FINGERS_C(0.05) * t100;
+    const two_fingers_real_t t118 = parameters[MX3] * (t63 * t115 + t65 * t117)
+        + parameters[MY3] * (t65 * t115 - t63 * t117);
+    const two_fingers_real_t t119 = parameters[ZZ3] * t78 - parameters[XX3R] * t77 + parameters[YZ3] * t75
+        + parameters[XZ3] * t71;
+    const two_fingers_real_t t120 = t118 + (parameters[XY3] * (t93 - t81) + t119);
+    const two_fingers_real_t t121 = t63 * (parameters[MY3] * t91 - parameters[MX3] * (t82 + t81))
+        + t65 * (parameters[MX3] * t79 - parameters[MY3] * (t82 + t93));
+    const two_fingers_real_t t122 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t99 + parameters[YZ2] * t85
+        + parameters[XZ2R] * t97;
+    const two_fingers_real_t t123 = parameters[MX2R] * t116 + parameters[MY2] * t114
+        + (parameters[XY2] * (t108 - t102) + t122);
+    const two_fingers_real_t t124 = two_fingers_sign(dq[1]);
     const two_fingers_real_t t125 = TWO_FINGERS_C(50.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
-        + parameters[FC2] * t113) + TWO_FINGERS_C(1.6666666666666667) * (t118 + (t123
-        + TWO_FINGERS_C(0.05) * t124));
+        + parameters[FC2] * t124) + TWO_FINGERS_C(1.6666666666666667) * (t123 + (t120
+        + TWO_FINGERS_C(0.05) * t121));
     out[1] = t125;
     const two_fingers_real_t t126 = two_fingers_sign(dq[2]);
     const two_fingers_real_t t127 = parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2]) + parameters[FC3] * t126
         + parameters[IA3] * (TWO_FINGERS_C(30.0) * ddq[2]);
-    out[2] = TWO_FINGERS_C(50.0) * t127 + TWO_FINGERS_C(1.6666666666666667) * t123;
-    const two_fingers_real_t t128 = two_fingers_sign(dq[3]);
-    const two_fingers_real_t t129 = parameters[ZZ4R] * ddq[3] - parameters[XX4R] * t13 + parameters[YZ4] * t11
-        + parameters[XZ4R] * t7;
-    const two_fingers_real_t t130 = TWO_FINGERS_C(0.984807753012208) * t17
-        + TWO_FINGERS_C(0.17364817766693028) * t18;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(9.81) * t3 + t1 * t130;
-    const two_fingers_real_t t132 = TWO_FINGERS_C(-9.81) * t1 + t3 * t130;
-    const two_fingers_real_t t133 = parameters[XY4] * (t47 - t5) + t129 + (parameters[MX4R] * t131
-        + parameters[MY4] * t132);
-    const two_fingers_real_t t134 = TWO_FINGERS_C(0.045) * t53 + t132;
-    const two_fingers_real_t t135 = t131 + TWO_FINGERS_C(0.045) * t14;
-    const two_fingers_real_t t136 = parameters[MX5] * (t24 * t134 + t20 * t135)
-        + parameters[MY5] * (t20 * t134 - t24 * t135);
-    const two_fingers_real_t t137 = parameters[ZZ5] * t37 - parameters[XX5R] * t36 + parameters[YZ5] * t34
-        + parameters[XZ5] * t30;
-    const two_fingers_real_t t138 = t136 + (parameters[XY5] * (t41 - t27) + t137);
+    out[2] = TWO_FINGERS_C(50.0) * t127 + TWO_FINGERS_C(1.6666666666666667) * t120;
+    const two_fingers_real_t t128 = TWO_FINGERS_C(0.984807753012208) * t50
+        + TWO_FINGERS_C(0.17364817766693028) * t51;
+    const two_fingers_real_t t129 = TWO_FINGERS_C(-9.81) * t0 + t2 * t128;
+    const two_fingers_real_t t130 = TWO_FINGERS_C(0.045) * t21 + t129;
+    const two_fingers_real_t t131 = TWO_FINGERS_C(9.81) * t2 + t0 * t128;
+    const two_fingers_real_t t132 = t131 + TWO_FINGERS_C(0.045) * t28;
+    const two_fingers_real_t t133 = parameters[MX5] * (t1 * t130 + t3 * t132) + parameters[MY5] * (t3 * t130
+        - t1 * t132);
+    const two_fingers_real_t t134 = parameters[ZZ5] * t12 - parameters[XX5R] * t11 + parameters[YZ5] * t32
+        + parameters[XZ5] * t35;
+    const two_fingers_real_t t135 = t133 + (parameters[XY5] * (t15 - t6) + t134);
+    const two_fingers_real_t t136 = parameters[ZZ4R] * ddq[3] - parameters[XX4R] * t23 + parameters[YZ4] * t40
+        + parameters[XZ4R] * t43;
+    const two_fingers_real_t t137 = parameters[XY4] * (t27 - t19) + t136 + (parameters[MX4R] * t131
+        + parameters[MY4] * t129);
+    const two_fingers_real_t t138 = two_fingers_sign(dq[3]);
     const two_fingers_real_t t139 = TWO_FINGERS_C(50.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
-        + parameters[FC4] * t128) + TWO_FINGERS_C(1.6666666666666667) * (t133 + (t138
-        + TWO_FINGERS_C(0.045) * t57));
+        + parameters[FC4] * t138) + TWO_FINGERS_C(1.6666666666666667) * (t137 + (t135
+        + TWO_FINGERS_C(0.045) * t26));
     out[3] = t139;
     const two_fingers_real_t t140 = two_fingers_sign(dq[4]);
     const two_fingers_real_t t141 = parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]) + parameters[FC5] * t140
         + parameters[IA5] * (TWO_FINGERS_C(30.0) * ddq[4]);
-    out[4] = TWO_FINGERS_C(50.0) * t141 + TWO_FINGERS_C(1.6666666666666667) * t138;
+    out[4] = TWO_FINGERS_C(50.0) * t141 + TWO_FINGERS_C(1.6666666666666667) * t135;
     return TWO_FINGERS_STATUS_OK;
 }

@@ -91,7 +91,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -119,224 +119,224 @@ int two_fingers_inverse_dynamics_standard(
         return status;
     }
 
-    two_fingers_real_t t78, t79;
-    TWO_FINGERS_SINCOS(q[1], &t78, &t79);
-    two_fingers_real_t t100, t98;
-    TWO_FINGERS_SINCOS(q[2], &t100, &t98);
-    two_fingers_real_t t2, t3;
-    TWO_FINGERS_SINCOS(q[3], &t2, &t3);
-    two_fingers_real_t t27, t25;
-    TWO_FINGERS_SINCOS(q[4], &t27, &t25);
-    const two_fingers_real_t t0 = two_fingers_sign(dq[0]);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
-        + TWO_FINGERS_C(60.0) * ddq[0] * parameters[IA1];
-    const two_fingers_real_t t4 = t3 * dq[0];
-    const two_fingers_real_t t5 = t4 * t4;
-    const two_fingers_real_t t6 = dq[3] * dq[3];
-    const two_fingers_real_t t7 = dq[3] * t4;
-    const two_fingers_real_t t8 = t2 * ddq[0];
-    const two_fingers_real_t t9 = t8 + t7;
-    const two_fingers_real_t t10 = t2 * dq[0];
-    const two_fingers_real_t t11 = dq[3] * t10;
-    const two_fingers_real_t t12 = t3 * ddq[0];
-    const two_fingers_real_t t13 = t12 - t11;
-    const two_fingers_real_t t14 = t13 - t11;
-    const two_fingers_real_t t15 = t7 * (parameters[ZZ4] - parameters[YY4]) + t9 * parameters[XX4]
-        + t14 * parameters[XY4];
-    const two_fingers_real_t t16 = t10 * t4;
-    const two_fingers_real_t t17 = ddq[3] + t16;
-    const two_fingers_real_t t18 = dq[0] * dq[0];
-    const two_fingers_real_t t19 = TWO_FINGERS_C(0.03446827135542729) * t18
+    two_fingers_real_t t78, t77;
+    TWO_FINGERS_SINCOS(q[1], &t78, &t77);
+    two_fingers_real_t t84, t90;
+    TWO_FINGERS_SINCOS(q[2], &t84, &t90);
+    two_fingers_real_t t5, t4;
+    TWO_FINGERS_SINCOS(q[3], &t5, &t4);
+    two_fingers_real_t t18, t12;
+    TWO_FINGERS_SINCOS(q[4], &t18, &t12);
+    const two_fingers_real_t t0 = dq[0] * dq[0];
+    const two_fingers_real_t t1 = TWO_FINGERS_C(0.03446827135542729) * t0
         - TWO_FINGERS_C(0.00607768621834256) * ddq[0];
-    const two_fingers_real_t t20 = TWO_FINGERS_C(0.03446827135542729) * ddq[0]
-        + TWO_FINGERS_C(0.00607768621834256) * t18;
-    const two_fingers_real_t t21 = TWO_FINGERS_C(-0.17364817766693028) * t19
-        + TWO_FINGERS_C(0.984807753012208) * t20;
-    const two_fingers_real_t t22 = TWO_FINGERS_C(0.984807753012208) * t19
-        + TWO_FINGERS_C(0.17364817766693028) * t20;
-    const two_fingers_real_t t23 = t2 * t22 + TWO_FINGERS_C(9.81) * t3;
-    const two_fingers_real_t t24 = (t5 - t6) * parameters[YZ4] + (t15 + t17 * parameters[XZ4])
-        - (t21 * parameters[MY4] + t23 * parameters[MZ4]);
-    const two_fingers_real_t t26 = TWO_FINGERS_C(-0.045) * t14 - t21;
-    const two_fingers_real_t t28 = t3 * t22 + TWO_FINGERS_C(-9.81) * t2;
-    const two_fingers_real_t t29 = t5 + t6;
-    const two_fingers_real_t t30 = t28 + TWO_FINGERS_C(0.045) * t29;
-    const two_fingers_real_t t31 = t23 + TWO_FINGERS_C(0.045) * t17;
-    const two_fingers_real_t t32 = t27 * t30 + t25 * t31;
-    const two_fingers_real_t t33 = t3 * t25 - t2 * t27;
-    const two_fingers_real_t t34 = dq[0] * t33;
-    const two_fingers_real_t t35 = t34 * t34;
-    const two_fingers_real_t t36 = dq[3] + dq[4];
-    const two_fingers_real_t t37 = t36 * t36;
-    const two_fingers_real_t t38 = t34 * t36;
-    const two_fingers_real_t t39 = t2 * t25 + t3 * t27;
-    const two_fingers_real_t t40 = ddq[0] * t39;
-    const two_fingers_real_t t41 = t40 + t38;
-    const two_fingers_real_t t42 = dq[0] * t39;
-    const two_fingers_real_t t43 = t42 * t36;
-    const two_fingers_real_t t44 = ddq[0] * t33;
-    const two_fingers_real_t t45 = t44 - t43;
-    const two_fingers_real_t t46 = t45 - t43;
-    const two_fingers_real_t t47 = t41 * parameters[XX5] - t38 * (parameters[YY5] - parameters[ZZ5])
-        + t46 * parameters[XY5];
-    const two_fingers_real_t t48 = ddq[3] + ddq[4];
-    const two_fingers_real_t t49 = t42 * t34;
-    const two_fingers_real_t t50 = t48 + t49;
-    const two_fingers_real_t t51 = t26 * parameters[MY5] - t32 * parameters[MZ5] + ((t35
-        - t37) * parameters[YZ5] + (t47 + t50 * parameters[XZ5]));
-    const two_fingers_real_t t52 = t25 * t30 - t27 * t31;
-    const two_fingers_real_t t53 = t42 * t42;
-    const two_fingers_real_t t54 = t38 + t41;
-    const two_fingers_real_t t55 = t43 * (parameters[XX5] - parameters[ZZ5]) + t45 * parameters[YY5]
-        + t54 * parameters[XY5];
-    const two_fingers_real_t t56 = t49 - t48;
-    const two_fingers_real_t t57 = t52 * parameters[MZ5] + t26 * parameters[MX5] + ((t53
-        - t37) * parameters[XZ5] - (t55 - t56 * parameters[YZ5]));
-    const two_fingers_real_t t58 = t10 * t10;
-    const two_fingers_real_t t59 = t7 + t9;
-    const two_fingers_real_t t60 = t11 * (parameters[XX4] - parameters[ZZ4]) + t13 * parameters[YY4]
-        + t59 * parameters[XY4];
-    const two_fingers_real_t t61 = ddq[3] - t16;
-    const two_fingers_real_t t62 = (t6 - t58) * parameters[XZ4] + (t60 + t61 * parameters[YZ4])
-        + (t21 * parameters[MX4] - t28 * parameters[MZ4]);
-    const two_fingers_real_t t63 = (t53 + t35) * parameters[MZ5] + (t46 * parameters[MX5]
-        - t54 * parameters[MY5]);
-    const two_fingers_real_t t64 = t63 - t26 * parameters[M5];
-    const two_fingers_real_t t65 = t62 + (t27 * t51 - t25 * t57 + TWO_FINGERS_C(0.045) * t64);
-    const two_fingers_real_t t66 = t2 * (t24 + (t25 * t51 + t27 * t57)) + t3 * t65;
-    const two_fingers_real_t t67 = t28 * parameters[M4] + (t29 * parameters[MX4] + t61 * parameters[MY4]
-        - t12 * parameters[MZ4]);
-    const two_fingers_real_t t68 = t56 * parameters[MY5] - (t35 + t37) * parameters[MX5]
-        + t44 * parameters[MZ5];
-    const two_fingers_real_t t69 = t68 - t52 * parameters[M5];
-    const two_fingers_real_t t70 = t50 * parameters[MX5] - (t53 + t37) * parameters[MY5]
-        - t40 * parameters[MZ5];
-    const two_fingers_real_t t71 = t32 * parameters[M5] + t70;
-    const two_fingers_real_t t72 = (t58 + t6) * parameters[MY4] - t17 * parameters[MX4]
-        + t8 * parameters[MZ4];
-    const two_fingers_real_t t73 = t27 * t69 + t25 * t71;
-    const two_fingers_real_t t74 = t3 * (t67 + (t27 * t71 - t25 * t69)) + t2 * (t23 * parameters[M4] - t72
-        + t73);
-    const two_fingers_real_t t75 = (t58 + t5) * parameters[MZ4] + (t14 * parameters[MX4]
-        - t59 * parameters[MY4]);
-    const two_fingers_real_t t76 = t21 * parameters[M4] + t75 + t64;
+    const two_fingers_real_t t2 = TWO_FINGERS_C(0.03446827135542729) * ddq[0]
+        + TWO_FINGERS_C(0.00607768621834256) * t0;
+    const two_fingers_real_t t3 = TWO_FINGERS_C(0.984807753012208) * t1
+        + TWO_FINGERS_C(0.17364817766693028) * t2;
+    const two_fingers_real_t t6 = t4 * t3 + TWO_FINGERS_C(-9.81) * t5;
+    const two_fingers_real_t t7 = t4 * dq[0];
+    const two_fingers_real_t t8 = t7 * t7;
+    const two_fingers_real_t t9 = dq[3] * dq[3];
+    const two_fingers_real_t t10 = t8 + t9;
+    const two_fingers_real_t t11 = t6 + TWO_FINGERS_C(0.045) * t10;
+    const two_fingers_real_t t13 = t5 * t3 + TWO_FINGERS_C(9.81) * t4;
+    const two_fingers_real_t t14 = t5 * dq[0];
+    const two_fingers_real_t t15 = t14 * t7;
+    const two_fingers_real_t t16 = ddq[3] + t15;
+    const two_fingers_real_t t17 = t13 + TWO_FINGERS_C(0.045) * t16;
+    const two_fingers_real_t t19 = t12 * t11 - t18 * t17;
+    const two_fingers_real_t t20 = t4 * t12 - t5 * t18;
+    const two_fingers_real_t t21 = dq[0] * t20;
+    const two_fingers_real_t t22 = t21 * t21;
+    const two_fingers_real_t t23 = dq[3] + dq[4];
+    const two_fingers_real_t t24 = t23 * t23;
+    const two_fingers_real_t t25 = t5 * t12 + t4 * t18;
+    const two_fingers_real_t t26 = dq[0] * t25;
+    const two_fingers_real_t t27 = t26 * t21;
+    const two_fingers_real_t t28 = ddq[3] + ddq[4];
+    const two_fingers_real_t t29 = t27 - t28;
+    const two_fingers_real_t t30 = ddq[0] * t20;
+    const two_fingers_real_t t31 = t29 * parameters[MY5] - (t22 + t24) * parameters[MX5]
+        + t30 * parameters[MZ5];
+    const two_fingers_real_t t32 = t31 - t19 * parameters[M5];
+    const two_fingers_real_t t33 = t18 * t11 + t12 * t17;
+    const two_fingers_real_t t34 = t26 * t26;
+    const two_fingers_real_t t35 = t28 + t27;
+    const two_fingers_real_t t36 = ddq[0] * t25;
+    const two_fingers_real_t t37 = t35 * parameters[MX5] - (t34 + t24) * parameters[MY5]
+        - t36 * parameters[MZ5];
+    const two_fingers_real_t t38 = t33 * parameters[M5] + t37;
+    const two_fingers_real_t t39 = ddq[3] - t15;
+    const two_fingers_real_t t40 = t4 * ddq[0];
+    const two_fingers_real_t t41 = t6 * parameters[M4] + (t10 * parameters[MX4] + t39 * parameters[MY4]
+        - t40 * parameters[MZ4]);
+    const two_fingers_real_t t42 = t18 * t32 + t12 * t38;
+    const two_fingers_real_t t43 = t14 * t14;
+    const two_fingers_real_t t44 = t5 * ddq[0];
+    const two_fingers_real_t t45 = (t43 + t9) * parameters[MY4] - t16 * parameters[MX4]
+        + t44 * parameters[MZ4];
+    const two_fingers_real_t t46 = t4 * (t41 + (t18 * t38 - t12 * t32)) + t5 * (t13 * parameters[M4] - t45
+        + t42);
+    const two_fingers_real_t t47 = t26 * t23;
+    const two_fingers_real_t t48 = t30 - t47;
+    const two_fingers_real_t t49 = t48 - t47;
+    const two_fingers_real_t t50 = t21 * t23;
+    const two_fingers_real_t t51 = t36 + t50;
+    const two_fingers_real_t t52 = t50 + t51;
+    const two_fingers_real_t t53 = (t34 + t22) * parameters[MZ5] + (t49 * parameters[MX5]
+        - t52 * parameters[MY5]);
+    const two_fingers_real_t t54 = TWO_FINGERS_C(-0.17364817766693028) * t1
+        + TWO_FINGERS_C(0.984807753012208) * t2;
+    const two_fingers_real_t t55 = dq[3] * t14;
+    const two_fingers_real_t t56 = t40 - t55;
+    const two_fingers_real_t t57 = t56 - t55;
+    const two_fingers_real_t t58 = TWO_FINGERS_C(-0.045) * t57 - t54;
+    const two_fingers_real_t t59 = t53 - t58 * parameters[M5];
+    const two_fingers_real_t t60 = dq[3] * t7;
+    const two_fingers_real_t t61 = t44 + t60;
+    const two_fingers_real_t t62 = t60 + t61;
+    const two_fingers_real_t t63 = (t43 + t8) * parameters[MZ4] + (t57 * parameters[MX4]
+        - t62 * parameters[MY4]);
+    const two_fingers_real_t t64 = t54 * parameters[M4] + t63 + t59;
     const two_fingers_real_t
-        t77 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t74
-        + TWO_FINGERS_C(0.984807753012208) * t76)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t74
-        + TWO_FINGERS_C(0.17364817766693028) * t76);
-    const two_fingers_real_t t80 = t79 * dq[0];
+        t65 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t46
+        + TWO_FINGERS_C(0.984807753012208) * t64)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t46
+        + TWO_FINGERS_C(0.17364817766693028) * t64);
+    const two_fingers_real_t t66 = t51 * parameters[XX5] - t50 * (parameters[YY5] - parameters[ZZ5])
+        + t49 * parameters[XY5];
+    const two_fingers_real_t t67 = t58 * parameters[MY5] - t33 * parameters[MZ5] + ((t22
+        - t24) * parameters[YZ5] + (t66 + t35 * parameters[XZ5]));
+    const two_fingers_real_t t68 = t47 * (parameters[XX5] - parameters[ZZ5]) + t48 * parameters[YY5]
+        + t52 * parameters[XY5];
+    const two_fingers_real_t t69 = t19 * parameters[MZ5] + t58 * parameters[MX5] + ((t34
+        - t24) * parameters[XZ5] - (t68 - t29 * parameters[YZ5]));
+    const two_fingers_real_t t70 = t60 * (parameters[ZZ4] - parameters[YY4]) + t61 * parameters[XX4]
+        + t57 * parameters[XY4];
+    const two_fingers_real_t t71 = (t8 - t9) * parameters[YZ4] + (t70 + t16 * parameters[XZ4])
+        - (t54 * parameters[MY4] + t13 * parameters[MZ4]);
+    const two_fingers_real_t t72 = t55 * (parameters[XX4] - parameters[ZZ4]) + t56 * parameters[YY4]
+        + t62 * parameters[XY4];
+    const two_fingers_real_t t73 = (t9 - t43) * parameters[XZ4] + (t72 + t39 * parameters[YZ4])
+        + (t54 * parameters[MX4] - t6 * parameters[MZ4]);
+    const two_fingers_real_t t74 = t73 + (t18 * t67 - t12 * t69 + TWO_FINGERS_C(0.045) * t59);
+    const two_fingers_real_t t75 = t5 * (t71 + (t12 * t67 + t18 * t69)) + t4 * t74;
+    const two_fingers_real_t t76 = TWO_FINGERS_C(0.03) * t0;
+    const two_fingers_real_t t79 = t77 * t76 + TWO_FINGERS_C(-9.81) * t78;
+    const two_fingers_real_t t80 = t77 * dq[0];
     const two_fingers_real_t t81 = t80 * t80;
     const two_fingers_real_t t82 = dq[1] * dq[1];
-    const two_fingers_real_t t83 = dq[1] * t80;
-    const two_fingers_real_t t84 = t78 * ddq[0];
-    const two_fingers_real_t t85 = t84 + t83;
+    const two_fingers_real_t t83 = t79 + TWO_FINGERS_C(0.05) * (t81 + t82);
+    const two_fingers_real_t t85 = t78 * t76 + TWO_FINGERS_C(9.81) * t77;
     const two_fingers_real_t t86 = t78 * dq[0];
-    const two_fingers_real_t t87 = dq[1] * t86;
-    const two_fingers_real_t t88 = t79 * ddq[0];
-    const two_fingers_real_t t89 = t88 - t87;
-    const two_fingers_real_t t90 = t89 - t87;
-    const two_fingers_real_t t91 = t83 * (parameters[ZZ2] - parameters[YY2]) + t85 * parameters[XX2]
-        + t90 * parameters[XY2];
-    const two_fingers_real_t t92 = t86 * t80;
-    const two_fingers_real_t t93 = ddq[1] + t92;
-    const two_fingers_real_t t94 = TWO_FINGERS_C(0.03) * t18;
-    const two_fingers_real_t t95 = t78 * t94 + TWO_FINGERS_C(9.81) * t79;
+    const two_fingers_real_t t87 = t86 * t80;
+    const two_fingers_real_t t88 = ddq[1] + t87;
+    const two_fingers_real_t t89 = t85 + TWO_FINGERS_C(0.05) * t88;
+    const two_fingers_real_t t91 = t84 * t83 + t90 * t89;
+    const two_fingers_real_t t92 = t77 * ddq[0];
+    const two_fingers_real_t t93 = dq[1] * t86;
+    const two_fingers_real_t t94 = t92 - t93;
+    const two_fingers_real_t t95 = t94 - t93;
     const two_fingers_real_t t96 = TWO_FINGERS_C(0.03) * ddq[0];
-    const two_fingers_real_t t97 = (t81 - t82) * parameters[YZ2] + (t91 + t93 * parameters[XZ2])
-        - (t95 * parameters[MZ2] + t96 * parameters[MY2]);
-    const two_fingers_real_t t99 = t96 - TWO_FINGERS_C(-0.05) * t90;
-    const two_fingers_real_t t101 = t79 * t94 + TWO_FINGERS_C(-9.81) * t78;
-    const two_fingers_real_t t102 = t101 + TWO_FINGERS_C(0.05) * (t81 + t82);
-    const two_fingers_real_t t103 = t95 + TWO_FINGERS_C(0.05) * t93;
-    const two_fingers_real_t t104 = t100 * t102 + t98 * t103;
-    const two_fingers_real_t t105 = t79 * t98 - t78 * t100;
-    const two_fingers_real_t t106 = dq[0] * t105;
-    const two_fingers_real_t t107 = t106 * t106;
-    const two_fingers_real_t t108 = dq[1] + dq[2];
-    const two_fingers_real_t t109 = t108 * t108;
-    const two_fingers_real_t t110 = t106 * t108;
-    const two_fingers_real_t t111 = t78 * t98 + t79 * t100;
-    const two_fingers_real_t t112 = ddq[0] * t111;
-    const two_fingers_real_t t113 = t112 + t110;
-    const two_fingers_real_t t114 = dq[0] * t111;
-    const two_fingers_real_t t115 = t114 * t108;
-    const two_fingers_real_t t116 = ddq[0] * t105;
-    const two_fingers_real_t t117 = t116 - t115;
-    const two_fingers_real_t t118 = t117 - t115;
-    const two_fingers_real_t t119 = t113 * parameters[XX3] - t110 * (parameters[YY3] - parameters[ZZ3])
+    const two_fingers_real_t t97 = t96 - TWO_FINGERS_C(-0.05) * t95;
+    const two_fingers_real_t t98 = t78 * t90 + t77 * t84;
+    const two_fingers_real_t t99 = ddq[0] * t98;
+    const two_fingers_real_t t100 = t77 * t90 - t78 * t84;
+    const two_fingers_real_t t101 = dq[0] * t100;
+    const two_fingers_real_t t102 = dq[1] + dq[2];
+    const two_fingers_real_t t103 = t101 * t102;
+    const two_fingers_real_t t104 = t99 + t103;
+    const two_fingers_real_t t105 = ddq[0] * t100;
+    const two_fingers_real_t t106 = dq[0] * t98;
+    const two_fingers_real_t t107 = t106 * t102;
+    const two_fingers_real_t t108 = t105 - t107;
+    const two_fingers_real_t t109 = t108 - t107;
+    const two_fingers_real_t t110 = t104 * parameters[XX3] - t103 * (parameters[YY3] - parameters[ZZ3])
+        + t109 * parameters[XY3];
+    const two_fingers_real_t t111 = t106 * t101;
+    const two_fingers_real_t t112 = ddq[1] + ddq[2];
+    const two_fingers_real_t t113 = t112 + t111;
+    const two_fingers_real_t t114 = t101 * t101;
+    const two_fingers_real_t t115 = t102 * t102;
+    const two_fingers_real_t t116 = (t114 - t115) * parameters[YZ3] + (t110 + t113 * parameters[XZ3])
+        - (t97 * parameters[MY3] + t91 * parameters[MZ3]);
+    const two_fingers_real_t t117 = t90 * t83 - t84 * t89;
+    const two_fingers_real_t t118 = t103 + t104;
+    const two_fingers_real_t t119 = t107 * (parameters[XX3] - parameters[ZZ3]) + t108 * parameters[YY3]
         + t118 * parameters[XY3];
-    const two_fingers_real_t t120 = ddq[1] + ddq[2];
-    const two_fingers_real_t t121 = t114 * t106;
-    const two_fingers_real_t t122 = t120 + t121;
-    const two_fingers_real_t t123 = (t107 - t109) * parameters[YZ3] + (t119 + t122 * parameters[XZ3])
-        - (t99 * parameters[MY3] + t104 * parameters[MZ3]);
-    const two_fingers_real_t t124 = t98 * t102 - t100 * t103;
-    const two_fingers_real_t t125 = t114 * t114;
-    const two_fingers_real_t t126 = t110 + t113;
-    const two_fingers_real_t t127 = t115 * (parameters[XX3] - parameters[ZZ3]) + t117 * parameters[YY3]
-        + t126 * parameters[XY3];
-    const two_fingers_real_t t128 = t121 - t120;
-    const two_fingers_real_t t129 = t124 * parameters[MZ3] - t99 * parameters[MX3] + ((t125
-        - t109) * parameters[XZ3] - (t127 - t128 * parameters[YZ3]));
-    const two_fingers_real_t t130 = t86 * t86;
-    const two_fingers_real_t t131 = t83 + t85;
-    const two_fingers_real_t t132 = t87 * (parameters[XX2] - parameters[ZZ2]) + t89 * parameters[YY2]
-        + t131 * parameters[XY2];
-    const two_fingers_real_t t133 = (t82 - t130) * parameters[XZ2] + (t132 + (ddq[1]
-        - t92) * parameters[YZ2]);
-    const two_fingers_real_t t134 = (t125 + t107) * parameters[MZ3] + (t118 * parameters[MX3]
-        - t126 * parameters[MY3]);
-    const two_fingers_real_t t135 = t99 * parameters[M3] + t134;
-    const two_fingers_real_t t136 = t133 + (t96 * parameters[MX2] - t101 * parameters[MZ2]) + (t100 * t123
-        - t98 * t129 + TWO_FINGERS_C(0.05) * t135);
-    const two_fingers_real_t t137 = t78 * (t97 + (t98 * t123 + t100 * t129)) + t79 * t136;
-    const two_fingers_real_t t138 = (t130 + t81) * parameters[MZ2] + (t90 * parameters[MX2]
-        - t131 * parameters[MY2]);
-    const two_fingers_real_t t139 = ddq[0] * parameters[ZZ1] + (t66 + t77) + (t137
-        + TWO_FINGERS_C(0.03) * (t96 * parameters[M2] + t138 + t135));
-    out[0] = TWO_FINGERS_C(25.0) * t1 + TWO_FINGERS_C(0.4166666666666667) * t139;
-    const two_fingers_real_t t140 = two_fingers_sign(dq[1]);
-    const two_fingers_real_t t141 = TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2] + t140 * parameters[FC2]
+    const two_fingers_real_t t120 = t111 - t112;
+    const two_fingers_real_t t121 = t106 * t106;
+    const two_fingers_real_t t122 = t117 * parameters[MZ3] - t97 * parameters[MX3] + ((t121
+        - t115) * parameters[XZ3] - (t119 - t120 * parameters[YZ3]));
+    const two_fingers_real_t t123 = dq[1] * t80;
+    const two_fingers_real_t t124 = t78 * ddq[0];
+    const two_fingers_real_t t125 = t124 + t123;
+    const two_fingers_real_t t126 = t123 * (parameters[ZZ2] - parameters[YY2]) + t125 * parameters[XX2]
+        + t95 * parameters[XY2];
+    const two_fingers_real_t t127 = (t81 - t82) * parameters[YZ2] + (t126 + t88 * parameters[XZ2])
+        - (t85 * parameters[MZ2] + t96 * parameters[MY2]);
+    const two_fingers_real_t t128 = (t121 + t114) * parameters[MZ3] + (t109 * parameters[MX3]
+        - t118 * parameters[MY3]);
+    const two_fingers_real_t t129 = t97 * parameters[M3] + t128;
+    const two_fingers_real_t t130 = t123 + t125;
+    const two_fingers_real_t t131 = t93 * (parameters[XX2] - parameters[ZZ2]) + t94 * parameters[YY2]
+        + t130 * parameters[XY2];
+    const two_fingers_real_t t132 = t86 * t86;
+    const two_fingers_real_t t133 = (t82 - t132) * parameters[XZ2] + (t131 + (ddq[1]
+        - t87) * parameters[YZ2]);
+    const two_fingers_real_t t134 = t133 + (t96 * parameters[MX2] - t79 * parameters[MZ2]) + (t84 * t116
+        - t90 * t122 + TWO_FINGERS_C(0.05) * t129);
+    const two_fingers_real_t t135 = t78 * (t127 + (t90 * t116 + t84 * t122)) + t77 * t134;
+    const two_fingers_real_t t136 = (t132 + t81) * parameters[MZ2] + (t95 * parameters[MX2]
+        - t130 * parameters[MY2]);
+    const two_fingers_real_t t137 = ddq[0] * parameters[ZZ1] + (t75 + t65) + (t135
+        + TWO_FINGERS_C(0.03) * (t96 * parameters[M2] + t136 + t129));
+    const two_fingers_real_t t138 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t139 = TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1] + t138 * parameters[FC1]
+        + TWO_FINGERS_C(60.0) * ddq[0] * parameters[IA1];
+    out[0] = TWO_FINGERS_C(25.0) * t139 + TWO_FINGERS_C(0.4166666666666667) * t137;
+    const two_fingers_real_t t140 = t120 * parameters[MY3] - (t114 + t115) * parameters[MX3]
+        + t105 * parameters[MZ3];
+    const two_fingers_real_t t141 = t113 * parameters[MX3] - (t121 + t115) * parameters[MY3]
+        - t99 * parameters[MZ3];
+    const two_fingers_real_t t142 = t84 * (t140 - t117 * parameters[M3]) + t90 * (t91 * parameters[M3]
+        + t141);
+    const two_fingers_real_t t143 = t112 * parameters[ZZ3] - t111 * (parameters[XX3] - parameters[YY3])
+        + t105 * parameters[YZ3];
+    const two_fingers_real_t t144 = t91 * parameters[MX3] + t117 * parameters[MY3] + ((t121
+        - t114) * parameters[XY3] + (t143 + t99 * parameters[XZ3]));
+    const two_fingers_real_t t145 = t87 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t92 * parameters[YZ2];
+    const two_fingers_real_t t146 = t85 * parameters[MX2] + t79 * parameters[MY2] + ((t132
+        - t81) * parameters[XY2] + (t145 + t124 * parameters[XZ2]));
+    const two_fingers_real_t t147 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t148 = TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2] + t147 * parameters[FC2]
         + TWO_FINGERS_C(30.0) * ddq[1] * parameters[IA2];
-    const two_fingers_real_t t142 = t92 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t88 * parameters[YZ2];
-    const two_fingers_real_t t143 = t95 * parameters[MX2] + t101 * parameters[MY2] + ((t130
-        - t81) * parameters[XY2] + (t142 + t84 * parameters[XZ2]));
-    const two_fingers_real_t t144 = t120 * parameters[ZZ3] - t121 * (parameters[XX3] - parameters[YY3])
-        + t116 * parameters[YZ3];
-    const two_fingers_real_t t145 = t104 * parameters[MX3] + t124 * parameters[MY3] + ((t125
-        - t107) * parameters[XY3] + (t144 + t112 * parameters[XZ3]));
-    const two_fingers_real_t t146 = t128 * parameters[MY3] - (t107 + t109) * parameters[MX3]
-        + t116 * parameters[MZ3];
-    const two_fingers_real_t t147 = t122 * parameters[MX3] - (t125 + t109) * parameters[MY3]
-        - t112 * parameters[MZ3];
-    const two_fingers_real_t t148 = t100 * (t146 - t124 * parameters[M3]) + t98 * (t104 * parameters[M3]
-        + t147);
-    const two_fingers_real_t t149 = TWO_FINGERS_C(50.0) * t141 + TWO_FINGERS_C(1.6666666666666667) * (t143
-        + (t145 + TWO_FINGERS_C(0.05) * t148));
+    const two_fingers_real_t t149 = TWO_FINGERS_C(50.0) * t148 + TWO_FINGERS_C(1.6666666666666667) * (t146
+        + (t144 + TWO_FINGERS_C(0.05) * t142));
     out[1] = t149;
     const two_fingers_real_t t150 = two_fingers_sign(dq[2]);
     const two_fingers_real_t t151 = TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3] + t150 * parameters[FC3]
         + TWO_FINGERS_C(30.0) * ddq[2] * parameters[IA3];
-    out[2] = TWO_FINGERS_C(50.0) * t151 + TWO_FINGERS_C(1.6666666666666667) * t145;
-    const two_fingers_real_t t152 = two_fingers_sign(dq[3]);
-    const two_fingers_real_t t153 = TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4] + t152 * parameters[FC4]
+    out[2] = TWO_FINGERS_C(50.0) * t151 + TWO_FINGERS_C(1.6666666666666667) * t144;
+    const two_fingers_real_t t152 = t28 * parameters[ZZ5] - t27 * (parameters[XX5] - parameters[YY5])
+        + t30 * parameters[YZ5];
+    const two_fingers_real_t t153 = t33 * parameters[MX5] + t19 * parameters[MY5] + ((t34
+        - t22) * parameters[XY5] + (t152 + t36 * parameters[XZ5]));
+    const two_fingers_real_t t154 = t15 * (parameters[YY4] - parameters[XX4]) + ddq[3] * parameters[ZZ4]
+        + t40 * parameters[YZ4];
+    const two_fingers_real_t t155 = (t43 - t8) * parameters[XY4] + (t154 + t44 * parameters[XZ4])
+        + (t13 * parameters[MX4] + t6 * parameters[MY4]);
+    const two_fingers_real_t t156 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t157 = TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4] + t156 * parameters[FC4]
         + TWO_FINGERS_C(30.0) * ddq[3] * parameters[IA4];
-    const two_fingers_real_t t154 = t16 * (parameters[YY4] - parameters[XX4]) + ddq[3] * parameters[ZZ4]
-        + t12 * parameters[YZ4];
-    const two_fingers_real_t t155 = (t58 - t5) * parameters[XY4] + (t154 + t8 * parameters[XZ4])
-        + (t23 * parameters[MX4] + t28 * parameters[MY4]);
-    const two_fingers_real_t t156 = t48 * parameters[ZZ5] - t49 * (parameters[XX5] - parameters[YY5])
-        + t44 * parameters[YZ5];
-    const two_fingers_real_t t157 = t32 * parameters[MX5] + t52 * parameters[MY5] + ((t53
-        - t35) * parameters[XY5] + (t156 + t40 * parameters[XZ5]));
-    const two_fingers_real_t t158 = TWO_FINGERS_C(50.0) * t153 + TWO_FINGERS_C(1.6666666666666667) * (t155
-        + (t157 + TWO_FINGERS_C(0.045) * t73));
+    const two_fingers_real_t t158 = TWO_FINGERS_C(50.0) * t157 + TWO_FINGERS_C(1.6666666666666667) * (t155
+        + (t153 + TWO_FINGERS_C(0.045) * t42));
     out[3] = t158;
     const two_fingers_real_t t159 = two_fingers_sign(dq[4]);
     const two_fingers_real_t t160 = TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5] + t159 * parameters[FC5]
         + TWO_FINGERS_C(30.0) * ddq[4] * parameters[IA5];
-    out[4] = TWO_FINGERS_C(50.0) * t160 + TWO_FINGERS_C(1.6666666666666667) * t157;
+    out[4] = TWO_FINGERS_C(50.0) * t160 + TWO_FINGERS_C(1.6666666666666667) * t153;
     return TWO_FINGERS_STATUS_OK;
 }

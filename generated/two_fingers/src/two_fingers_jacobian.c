@@ -20,7 +20,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -40,22 +40,22 @@ int two_fingers_jacobian(
 
     two_fingers_real_t t0, t1;
     TWO_FINGERS_SINCOS(q[0], &t0, &t1);
-    two_fingers_real_t t6, t2;
-    TWO_FINGERS_SINCOS(q[3], &t6, &t2);
-    const two_fingers_real_t t3 = TWO_FINGERS_C(0.17364817766693028) * t1
+    two_fingers_real_t t6, t3;
+    TWO_FINGERS_SINCOS(q[3], &t6, &t3);
+    const two_fingers_real_t t2 = TWO_FINGERS_C(0.17364817766693028) * t1
         + TWO_FINGERS_C(-0.984807753012208) * t0;
-    const two_fingers_real_t t4 = TWO_FINGERS_C(0.045) * (t2 * t3);
+    const two_fingers_real_t t4 = TWO_FINGERS_C(0.045) * (t3 * t2);
     out[0] = TWO_FINGERS_C(0.03446827135542729) * t0 + TWO_FINGERS_C(-0.00607768621834256) * t1 - t4;
     const two_fingers_real_t t5 = TWO_FINGERS_C(0.984807753012208) * t1
         + TWO_FINGERS_C(0.17364817766693028) * t0;
     const two_fingers_real_t t7 = TWO_FINGERS_C(0.045) * t6;
     out[3] = t5 * t7;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.045) * (t2 * t5);
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.045) * (t3 * t5);
     out[5] = TWO_FINGERS_C(-0.03446827135542729) * t1 + TWO_FINGERS_C(-0.00607768621834256) * t0 + t8;
-    out[8] = -(t3 * t7);
-    out[13] = t3 * t4 - t5 * t8;
-    out[18] = t3;
-    out[19] = t3;
+    out[8] = -(t2 * t7);
+    out[13] = t2 * t4 - t5 * t8;
+    out[18] = t2;
+    out[19] = t2;
     out[23] = t5;
     out[24] = t5;
     out[25] = TWO_FINGERS_C(1.0);

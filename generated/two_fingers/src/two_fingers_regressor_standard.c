@@ -32,7 +32,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -87,12 +87,12 @@ int two_fingers_regressor_standard(
     out[76] = TWO_FINGERS_C(1.6666666666666667) * (t18 - t19);
     const two_fingers_real_t t20 = ddq[1] + t13;
     const two_fingers_real_t t21 = dq[1] * dq[1];
-    const two_fingers_real_t t22 = t20 * t7 + t10 * (t21 - t18);
+    const two_fingers_real_t t22 = t20 * t7 + (t21 - t18) * t10;
     out[12] = t22;
     out[77] = TWO_FINGERS_C(1.6666666666666667) * t2;
     out[13] = t0 - t12;
     out[78] = t14;
-    out[14] = (ddq[1] - t13) * t10 + t7 * (t19 - t21);
+    out[14] = (ddq[1] - t13) * t10 + (t19 - t21) * t7;
     out[79] = TWO_FINGERS_C(1.6666666666666667) * t16;
     out[15] = t5 * t7 - t11;
     out[80] = TWO_FINGERS_C(1.6666666666666667) * ddq[1];
@@ -127,7 +127,7 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t45 = ddq[0] * t32;
     const two_fingers_real_t t46 = t45 - t39;
     const two_fingers_real_t t47 = t46 - t39;
-    out[21] = t40 * t44 + t37 * t47;
+    out[21] = t44 * t40 + t47 * t37;
     const two_fingers_real_t t48 = t38 * t38;
     const two_fingers_real_t t49 = t33 * t33;
     const two_fingers_real_t t50 = TWO_FINGERS_C(1.6666666666666667) * (t48 - t49);
@@ -136,7 +136,7 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t51 = ddq[1] + ddq[2];
     const two_fingers_real_t t52 = t51 + t42;
     const two_fingers_real_t t53 = t34 * t34;
-    out[22] = t37 * t52 - t40 * (t48 - t53);
+    out[22] = t52 * t37 - (t48 - t53) * t40;
     const two_fingers_real_t t54 = TWO_FINGERS_C(1.6666666666666667) * t31;
     out[87] = t54;
     out[152] = t54;
@@ -145,7 +145,7 @@ int two_fingers_regressor_standard(
     out[88] = -t43;
     out[153] = -t43;
     const two_fingers_real_t t56 = t42 - t51;
-    out[24] = t37 * (t49 - t53) - t40 * t56;
+    out[24] = (t49 - t53) * t37 - t56 * t40;
     const two_fingers_real_t t57 = TWO_FINGERS_C(1.6666666666666667) * t45;
     out[89] = t57;
     out[154] = t57;
@@ -155,24 +155,24 @@ int two_fingers_regressor_standard(
     out[155] = t58;
     const two_fingers_real_t t59 = TWO_FINGERS_C(0.020833333333333336) * t3 + TWO_FINGERS_C(0.0125);
     const two_fingers_real_t t60 = t23 + TWO_FINGERS_C(-0.05) * t17;
-    out[26] = t59 * t47 - t60 * t40;
-    const two_fingers_real_t t61 = TWO_FINGERS_C(-0.08333333333333334) * t29;
-    const two_fingers_real_t t62 = TWO_FINGERS_C(0.08333333333333334) * t28;
-    const two_fingers_real_t t63 = t27 + TWO_FINGERS_C(0.05) * (t19 + t21);
-    const two_fingers_real_t t64 = t26 + TWO_FINGERS_C(0.05) * t20;
-    const two_fingers_real_t t65 = t29 * t63 + t28 * t64;
-    const two_fingers_real_t t66 = TWO_FINGERS_C(1.6666666666666667) * t65;
-    out[91] = t61 * (t49 + t53) + t62 * t52 + t66;
-    out[156] = t66;
-    out[27] = t60 * t37 - t59 * t44;
-    const two_fingers_real_t t67 = t28 * t63 - t29 * t64;
+    out[26] = t47 * t59 - t60 * t40;
+    const two_fingers_real_t t61 = t27 + TWO_FINGERS_C(0.05) * (t19 + t21);
+    const two_fingers_real_t t62 = t26 + TWO_FINGERS_C(0.05) * t20;
+    const two_fingers_real_t t63 = t29 * t61 + t28 * t62;
+    const two_fingers_real_t t64 = TWO_FINGERS_C(1.6666666666666667) * t63;
+    const two_fingers_real_t t65 = TWO_FINGERS_C(-0.08333333333333334) * t29;
+    const two_fingers_real_t t66 = TWO_FINGERS_C(0.08333333333333334) * t28;
+    out[91] = t64 + ((t49 + t53) * t65 + t52 * t66);
+    out[156] = t64;
+    out[27] = t60 * t37 - t44 * t59;
+    const two_fingers_real_t t67 = t28 * t61 - t29 * t62;
     const two_fingers_real_t t68 = TWO_FINGERS_C(1.6666666666666667) * t67;
-    out[92] = t68 - (t61 * t56 + t62 * (t48 + t53));
+    out[92] = t68 - (t56 * t65 + (t48 + t53) * t66);
     out[157] = t68;
     out[28] = TWO_FINGERS_C(-0.05) * t22;
     out[93] = TWO_FINGERS_C(-0.08333333333333334) * t2;
     out[29] = -(t60 * t59);
-    out[94] = t67 * t61 + t65 * t62;
+    out[94] = t67 * t65 + t63 * t66;
     const two_fingers_real_t t70 = t69 * ddq[0];
     const two_fingers_real_t t72 = t71 * dq[0];
     const two_fingers_real_t t73 = dq[3] * t72;
@@ -196,12 +196,12 @@ int two_fingers_regressor_standard(
     out[226] = TWO_FINGERS_C(1.6666666666666667) * (t86 - t87);
     const two_fingers_real_t t88 = ddq[3] + t81;
     const two_fingers_real_t t89 = dq[3] * dq[3];
-    const two_fingers_real_t t90 = t88 * t75 + t78 * (t89 - t86);
+    const two_fingers_real_t t90 = t88 * t75 + (t89 - t86) * t78;
     out[32] = t90;
     out[227] = TWO_FINGERS_C(1.6666666666666667) * t70;
     out[33] = t0 - t80;
     out[228] = t82;
-    out[34] = (ddq[3] - t81) * t78 + t75 * (t87 - t89);
+    out[34] = (ddq[3] - t81) * t78 + (t87 - t89) * t75;
     out[229] = TWO_FINGERS_C(1.6666666666666667) * t84;
     out[35] = t73 * t75 - t79;
     out[230] = TWO_FINGERS_C(1.6666666666666667) * ddq[3];
@@ -243,7 +243,7 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t115 = ddq[0] * t102;
     const two_fingers_real_t t116 = t115 - t109;
     const two_fingers_real_t t117 = t116 - t109;
-    out[41] = t107 * t117 - t110 * t114;
+    out[41] = t117 * t107 - t114 * t110;
     const two_fingers_real_t t118 = t108 * t108;
     const two_fingers_real_t t119 = t103 * t103;
     const two_fingers_real_t t120 = TWO_FINGERS_C(1.6666666666666667) * (t118 - t119);
@@ -252,7 +252,7 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t121 = ddq[3] + ddq[4];
     const two_fingers_real_t t122 = t121 + t112;
     const two_fingers_real_t t123 = t104 * t104;
-    out[42] = t107 * t122 + t110 * (t118 - t123);
+    out[42] = t122 * t107 + (t118 - t123) * t110;
     const two_fingers_real_t t124 = TWO_FINGERS_C(1.6666666666666667) * t101;
     out[237] = t124;
     out[302] = t124;
@@ -261,7 +261,7 @@ int two_fingers_regressor_standard(
     out[238] = -t113;
     out[303] = -t113;
     const two_fingers_real_t t126 = t112 - t121;
-    out[44] = t110 * t126 + t107 * (t119 - t123);
+    out[44] = t126 * t110 + (t119 - t123) * t107;
     const two_fingers_real_t t127 = TWO_FINGERS_C(1.6666666666666667) * t115;
     out[239] = t127;
     out[304] = t127;
@@ -271,24 +271,24 @@ int two_fingers_regressor_standard(
     out[305] = t128;
     const two_fingers_real_t t129 = TWO_FINGERS_C(-0.01875) * t71 - TWO_FINGERS_C(0.014583333333333334);
     const two_fingers_real_t t130 = t93 + TWO_FINGERS_C(-0.045) * t85;
-    out[46] = t130 * t110 - t129 * t117;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(-0.075) * t99;
-    const two_fingers_real_t t132 = TWO_FINGERS_C(0.075) * t98;
-    const two_fingers_real_t t133 = t96 + TWO_FINGERS_C(0.045) * (t87 + t89);
-    const two_fingers_real_t t134 = t95 + TWO_FINGERS_C(0.045) * t88;
-    const two_fingers_real_t t135 = t99 * t133 + t98 * t134;
-    const two_fingers_real_t t136 = TWO_FINGERS_C(1.6666666666666667) * t135;
-    out[241] = t131 * (t119 + t123) + t132 * t122 + t136;
-    out[306] = t136;
-    out[47] = t129 * t114 + t130 * t107;
-    const two_fingers_real_t t137 = t98 * t133 - t99 * t134;
+    out[46] = t130 * t110 - t117 * t129;
+    const two_fingers_real_t t131 = t96 + TWO_FINGERS_C(0.045) * (t87 + t89);
+    const two_fingers_real_t t132 = t95 + TWO_FINGERS_C(0.045) * t88;
+    const two_fingers_real_t t133 = t99 * t131 + t98 * t132;
+    const two_fingers_real_t t134 = TWO_FINGERS_C(1.6666666666666667) * t133;
+    const two_fingers_real_t t135 = TWO_FINGERS_C(-0.075) * t99;
+    const two_fingers_real_t t136 = TWO_FINGERS_C(0.075) * t98;
+    out[241] = t134 + ((t119 + t123) * t135 + t122 * t136);
+    out[306] = t134;
+    out[47] = t114 * t129 + t130 * t107;
+    const two_fingers_real_t t137 = t98 * t131 - t99 * t132;
     const two_fingers_real_t t138 = TWO_FINGERS_C(1.6666666666666667) * t137;
-    out[242] = t138 - (t131 * t126 + t132 * (t118 + t123));
+    out[242] = t138 - (t126 * t135 + (t118 + t123) * t136);
     out[307] = t138;
-    out[48] = TWO_FINGERS_C(-0.045) * t90 + t97;
+    out[48] = t97 + TWO_FINGERS_C(-0.045) * t90;
     out[243] = TWO_FINGERS_C(-0.075) * t70;
     out[49] = t130 * t129;
-    out[244] = t137 * t131 + t135 * t132;
+    out[244] = t137 * t135 + t133 * t136;
     out[50] = TWO_FINGERS_C(1.5e3) * dq[0];
     const two_fingers_real_t t139 = two_fingers_sign(dq[0]);
     out[51] = TWO_FINGERS_C(25.0) * t139;

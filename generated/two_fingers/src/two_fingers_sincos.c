@@ -11,7 +11,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xC24492A1UL
+#if TWO_FINGERS_GENERATION != 0x7845F1EFUL
 #error "two_fingers.h and two_fingers_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 two_fingers_pair_t two_fingers_sincos(two_fingers_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * TWO_FINGERS_C(0.636619772) + TWO_FINGERS_C(16384.5));
+    const two_fingers_real_t turns = x * TWO_FINGERS_C(0.636619772) + TWO_FINGERS_C(16384.5);
+    const long quarter = (long)turns;
     const two_fingers_real_t k = (two_fingers_real_t)quarter - TWO_FINGERS_C(16384.0);
     const two_fingers_real_t r = x - k * TWO_FINGERS_C(1.5703125) - k * TWO_FINGERS_C(4.83826792e-4);
     const two_fingers_real_t z = r * r;

@@ -82,7 +82,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0x15D6C590UL
+#define UR10E_GENERATION 0x07143C7AUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef UR10E_REAL
@@ -373,7 +373,7 @@ int ur10e_energy(
  *                                                         row-major
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 656 (419 mul, 234 add, 3 neg), 10 trig, 6 other.
+ * Operations: 654 (419 mul, 234 add, 1 neg), 10 trig, 6 other.
  */
 int ur10e_regressor(
     const ur10e_real_t q[],
@@ -408,7 +408,7 @@ int ur10e_regressor_standard(
  * @param[out]  out  [155]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 656 (419 mul, 234 add, 3 neg), 10 trig, 6 other.
+ * Operations: 654 (419 mul, 234 add, 1 neg), 10 trig, 6 other.
  */
 int ur10e_regressor_packed(
     const ur10e_real_t q[],

@@ -79,7 +79,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -104,192 +104,191 @@ int ur10e_bias(
         return status;
     }
 
-    ur10e_real_t t1, t2;
-    UR10E_SINCOS(q[1], &t1, &t2);
-    ur10e_real_t t12, t11;
-    UR10E_SINCOS(q[2], &t12, &t11);
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
+    ur10e_real_t t9, t7;
+    UR10E_SINCOS(q[3], &t9, &t7);
+    ur10e_real_t t18, t13;
+    UR10E_SINCOS(q[4], &t18, &t13);
     ur10e_real_t t25, t24;
-    UR10E_SINCOS(q[3], &t25, &t24);
-    ur10e_real_t t39, t38;
-    UR10E_SINCOS(q[4], &t39, &t38);
-    ur10e_real_t t70, t69;
-    UR10E_SINCOS(q[5], &t70, &t69);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t3 = t2 * dq[0];
-    const ur10e_real_t t4 = dq[1] * t3;
-    const ur10e_real_t t5 = t1 * dq[0];
-    const ur10e_real_t t6 = dq[1] * t5;
-    const ur10e_real_t t7 = parameters[XX2R] * t4 + parameters[ZZ2R] * t4
-        + parameters[XY2] * (UR10E_C(-2.0) * t6);
-    const ur10e_real_t t8 = t5 * t3;
-    const ur10e_real_t t9 = dq[1] * dq[1];
-    const ur10e_real_t t10 = t3 * t3;
-    const ur10e_real_t t13 = t11 * t3 - t12 * t5;
+    UR10E_SINCOS(q[5], &t25, &t24);
+    const ur10e_real_t t1 = t0 * dq[0];
+    const ur10e_real_t t4 = t3 * dq[0];
+    const ur10e_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_real_t t8 = t2 * t4 - t5 * t1;
+    const ur10e_real_t t10 = t7 * t6 + t9 * t8;
+    const ur10e_real_t t11 = t9 * t6 - t7 * t8;
+    const ur10e_real_t t12 = t10 * t11;
     const ur10e_real_t t14 = dq[1] + dq[2];
-    const ur10e_real_t t15 = t13 * t14;
-    const ur10e_real_t t16 = t11 * t5 + t12 * t3;
-    const ur10e_real_t t17 = t16 * t14;
-    const ur10e_real_t t18 = UR10E_C(2.0) * t17;
-    const ur10e_real_t t19 = t16 * t13;
-    const ur10e_real_t t20 = parameters[XX3R] * t15 + parameters[ZZ3R] * t15 - parameters[XY3] * t18
-        + parameters[XZ3R] * t19;
-    const ur10e_real_t t21 = t13 * t13;
-    const ur10e_real_t t22 = t14 * t14;
-    const ur10e_real_t t23 = UR10E_C(-1.2254) * t6;
-    const ur10e_real_t t26 = t25 * t16 - t24 * t13;
-    const ur10e_real_t t27 = dq[3] + t14;
+    const ur10e_real_t t15 = dq[3] + t14;
+    const ur10e_real_t t16 = t11 * t15;
+    const ur10e_real_t t17 = UR10E_C(2.0) * t16;
+    const ur10e_real_t t19 = t13 * t12 + t18 * t17;
+    const ur10e_real_t t20 = t13 * t10 + t18 * t15;
+    const ur10e_real_t t21 = dq[4] + t11;
+    const ur10e_real_t t22 = t20 * t21;
+    const ur10e_real_t t23 = t19 - t22;
+    const ur10e_real_t t26 = t24 * t20 - t25 * t21;
+    const ur10e_real_t t27 = t25 * t20 + t24 * t21;
     const ur10e_real_t t28 = t26 * t27;
-    const ur10e_real_t t29 = t24 * t16 + t25 * t13;
-    const ur10e_real_t t30 = t29 * t27;
-    const ur10e_real_t t31 = UR10E_C(2.0) * t30;
-    const ur10e_real_t t32 = t29 * t26;
-    const ur10e_real_t t33 = parameters[XX4R] * t28 + parameters[ZZ4R] * t28 + parameters[XY4] * t31
-        + parameters[XZ4] * t32;
-    const ur10e_real_t t34 = t26 * t26;
-    const ur10e_real_t t35 = t27 * t27;
-    const ur10e_real_t t36 = t16 * t16;
-    const ur10e_real_t t37 = t23 + (UR10E_C(-1.1431) * t17 + UR10E_C(-0.17415) * (t36 + t21));
-    const ur10e_real_t t40 = UR10E_C(2.0) * t28;
-    const ur10e_real_t t41 = t39 * t32 - t38 * t40;
-    const ur10e_real_t t42 = t39 * t29 - t38 * t27;
-    const ur10e_real_t t43 = dq[4] + t26;
-    const ur10e_real_t t44 = t42 * t43;
-    const ur10e_real_t t45 = t41 - t44;
-    const ur10e_real_t t46 = t38 * t29 + t39 * t27;
-    const ur10e_real_t t47 = t46 * t43;
-    const ur10e_real_t t48 = t38 * t32 + t39 * t40;
-    const ur10e_real_t t49 = t48 - t47;
-    const ur10e_real_t t50 = t49 - t47;
-    const ur10e_real_t t51 = t46 * t42;
-    const ur10e_real_t t52 = t30 - t51;
-    const ur10e_real_t t53 = parameters[XX5R] * t45 - parameters[ZZ5R] * t44 + parameters[XY5] * t50
-        + parameters[XZ5] * t52;
-    const ur10e_real_t t54 = t42 * t42;
-    const ur10e_real_t t55 = t43 * t43;
-    const ur10e_real_t t56 = UR10E_C(-9.81) * t1;
-    const ur10e_real_t t57 = UR10E_C(0.6127) * (t9 + t10) - t56;
-    const ur10e_real_t t58 = UR10E_C(-9.81) * t2;
-    const ur10e_real_t t59 = t58 + UR10E_C(0.6127) * t8;
-    const ur10e_real_t t60 = t12 * t59 - t11 * t57;
-    const ur10e_real_t t61 = t21 + t22;
-    const ur10e_real_t t62 = UR10E_C(0.57155) * t61 - t60;
-    const ur10e_real_t t63 = t12 * t57 + t11 * t59;
-    const ur10e_real_t t64 = t63 + UR10E_C(0.57155) * t19;
-    const ur10e_real_t t65 = t25 * t62 + t24 * t64;
-    const ur10e_real_t t66 = t29 * t29;
-    const ur10e_real_t t67 = t66 + t35;
-    const ur10e_real_t t68 = t65 + UR10E_C(-0.11985) * t67;
-    const ur10e_real_t t71 = t30 + t51;
-    const ur10e_real_t t72 = t45 - t44;
-    const ur10e_real_t t73 = t69 * t72 - t70 * t71;
-    const ur10e_real_t t74 = t70 * t46 + t69 * t43;
-    const ur10e_real_t t75 = t42 - dq[5];
-    const ur10e_real_t t76 = t74 * t75;
-    const ur10e_real_t t77 = t73 + t76;
-    const ur10e_real_t t78 = t69 * t46 - t70 * t43;
-    const ur10e_real_t t79 = t78 * t75;
-    const ur10e_real_t t80 = t69 * t71 + t70 * t72;
-    const ur10e_real_t t81 = t80 - t79 - t79;
-    const ur10e_real_t t82 = t78 * t74;
-    const ur10e_real_t t83 = t49 - t82;
-    const ur10e_real_t t84 = parameters[XY6] * t81 - (parameters[XX6R] * t77 + parameters[ZZ6] * t76)
-        - parameters[XZ6R] * t83;
-    const ur10e_real_t t85 = t74 * t74;
-    const ur10e_real_t t86 = t75 * t75;
-    const ur10e_real_t t87 = t25 * t64 - t24 * t62;
-    const ur10e_real_t t88 = t87 + UR10E_C(-0.11985) * t32;
-    const ur10e_real_t t89 = t37 + UR10E_C(0.2397) * t28;
-    const ur10e_real_t t90 = t39 * t88 + t38 * t89;
-    const ur10e_real_t t91 = t84 - parameters[YZ6R] * (t85 - t86) - parameters[MY6] * t90;
-    const ur10e_real_t t92 = t76 + t77;
-    const ur10e_real_t t93 = t49 + t82;
-    const ur10e_real_t t94 = t79 * (parameters[ZZ6] - parameters[XX6R]) + parameters[XY6] * t92
-        + parameters[YZ6R] * t93;
-    const ur10e_real_t t95 = t78 * t78;
-    const ur10e_real_t t96 = parameters[XZ6R] * (t95 - t86) - t94 + parameters[MX6] * t90;
-    const ur10e_real_t t97 = t53 + parameters[YZ5] * (t54 - t55) + parameters[MY5R] * t68 + (t70 * t96
-        - t69 * t91);
-    const ur10e_real_t t98 = t47 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t72
-        + parameters[YZ5] * t71;
-    const ur10e_real_t t99 = t46 * t46;
-    const ur10e_real_t t100 = parameters[ZZ6] * t49 + parameters[XX6R] * t82 - parameters[YZ6R] * t80
-        + parameters[XZ6R] * t73;
-    const ur10e_real_t t101 = t38 * t88 - t39 * t89;
-    const ur10e_real_t t102 = parameters[MX6] * (t70 * t101 - t69 * t68) + parameters[MY6] * (t69 * t101
-        + t70 * t68);
-    const ur10e_real_t t103 = t100 + parameters[XY6] * (t95 - t85) + t102;
-    const ur10e_real_t t104 = t98 - parameters[XZ5] * (t99 - t55) - parameters[MX5] * t68 + t103;
-    const ur10e_real_t t105 = parameters[MX6] * (t85 + t86) + parameters[MY6] * t93;
-    const ur10e_real_t t106 = parameters[MX6] * t83 - parameters[MY6] * (t95 + t86);
-    const ur10e_real_t t107 = parameters[MX5] * (t54 + t55) + parameters[MY5R] * t71 + (t69 * t105
-        + t70 * t106);
-    const ur10e_real_t t108 = parameters[MX5] * t52 - parameters[MY5R] * (t99 + t55) + (parameters[MX6] * t81
-        + parameters[MY6] * t92);
-    const ur10e_real_t t109 = t38 * t108 - t39 * t107;
-    const ur10e_real_t t110 = parameters[YZ4] * (t34 - t35) - t33 + parameters[MY4R] * t37 + (t38 * t97
-        - t39 * t104 + UR10E_C(-0.11985) * t109);
-    const ur10e_real_t t111 = t30 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t40
-        - parameters[YZ4] * t32;
-    const ur10e_real_t t112 = parameters[ZZ5R] * t30 + parameters[XX5R] * t51 + parameters[YZ5] * t48
-        + parameters[XZ5] * t41;
-    const ur10e_real_t t113 = t112 + parameters[XY5] * (t99 - t54) + (parameters[MX5] * t90
-        + parameters[MY5R] * t101);
-    const ur10e_real_t t114 = t113 + (t70 * t91 + t69 * t96);
-    const ur10e_real_t t115 = t111 + parameters[XZ4] * (t66 - t35) + parameters[MX4] * t37 + t114;
-    const ur10e_real_t t116 = t38 * t107 + t39 * t108;
-    const ur10e_real_t t117 = parameters[MX4] * (t34 + t35) + parameters[MY4R] * t32 + t116;
-    const ur10e_real_t t118 = parameters[MY5R] * t72 - parameters[MX5] * t50 + (t70 * t105 - t69 * t106);
-    const ur10e_real_t t119 = parameters[MX4] * t32 + parameters[MY4R] * t67 + t118;
-    const ur10e_real_t t120 = t25 * t117 + t24 * t119;
-    const ur10e_real_t t121 = t20 + parameters[YZ3] * (t21 - t22) + parameters[MY3] * t23 + (t24 * t110
-        + t25 * t115 + UR10E_C(0.17415) * t120);
-    const ur10e_real_t t122 = UR10E_C(2.0) * t15;
-    const ur10e_real_t t123 = t17 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t122
-        - parameters[YZ3] * t19;
-    const ur10e_real_t t124 = t24 * t117 - t25 * t119;
-    const ur10e_real_t t125 = parameters[MX4] * t31 - parameters[MY4R] * t40 + t109;
-    const ur10e_real_t t126 = t24 * t115 - t25 * t110 + (UR10E_C(0.17415) * t124 - UR10E_C(0.57155) * t125);
-    const ur10e_real_t t127 = t123 - parameters[XZ3R] * (t36 - t22) - parameters[MX3R] * t23 - t126;
-    const ur10e_real_t t128 = t7 + parameters[XZ2R] * t8 + parameters[YZ2] * (t10 - t9) + (t11 * t121
-        - t12 * t127);
-    const ur10e_real_t t129 = t6 * (parameters[XX2R] - parameters[ZZ2R])
-        + parameters[XY2] * (UR10E_C(2.0) * t4) - parameters[YZ2] * t8;
-    const ur10e_real_t t130 = t5 * t5;
-    const ur10e_real_t t131 = t12 * t121 + t11 * t127 + UR10E_C(0.6127) * (parameters[MX3R] * t18
-        + parameters[MY3] * t122 + t125);
-    const ur10e_real_t t132 = t1 * t128 + t2 * (t129 + parameters[XZ2R] * (t9 - t130) + t131);
+    const ur10e_real_t t29 = t18 * t12 - t13 * t17;
+    const ur10e_real_t t30 = t18 * t10 - t13 * t15;
+    const ur10e_real_t t31 = t30 * t21;
+    const ur10e_real_t t32 = t29 - t31;
+    const ur10e_real_t t33 = t32 - t31;
+    const ur10e_real_t t34 = t20 * t30;
+    const ur10e_real_t t35 = t10 * t15;
+    const ur10e_real_t t36 = t35 + t34;
+    const ur10e_real_t t37 = t24 * t36 + t25 * t33;
+    const ur10e_real_t t38 = t24 * t33 - t25 * t36;
+    const ur10e_real_t t39 = parameters[ZZ6] * t23 + parameters[XX6R] * t28 - parameters[YZ6R] * t37
+        + parameters[XZ6R] * t38;
+    const ur10e_real_t t40 = t26 * t26;
+    const ur10e_real_t t41 = t27 * t27;
+    const ur10e_real_t t42 = t4 * t4;
+    const ur10e_real_t t43 = dq[1] * dq[1];
+    const ur10e_real_t t44 = UR10E_C(-9.81) * t0;
+    const ur10e_real_t t45 = UR10E_C(0.6127) * (t43 + t42) - t44;
+    const ur10e_real_t t46 = t1 * t4;
+    const ur10e_real_t t47 = UR10E_C(-9.81) * t3;
+    const ur10e_real_t t48 = t47 + UR10E_C(0.6127) * t46;
+    const ur10e_real_t t49 = t5 * t48 - t2 * t45;
+    const ur10e_real_t t50 = t8 * t8;
+    const ur10e_real_t t51 = t14 * t14;
+    const ur10e_real_t t52 = t50 + t51;
+    const ur10e_real_t t53 = UR10E_C(0.57155) * t52 - t49;
+    const ur10e_real_t t54 = t5 * t45 + t2 * t48;
+    const ur10e_real_t t55 = t6 * t8;
+    const ur10e_real_t t56 = t54 + UR10E_C(0.57155) * t55;
+    const ur10e_real_t t57 = t9 * t56 - t7 * t53;
+    const ur10e_real_t t58 = t57 + UR10E_C(-0.11985) * t12;
+    const ur10e_real_t t59 = t6 * t6;
+    const ur10e_real_t t60 = t6 * t14;
+    const ur10e_real_t t61 = dq[1] * t1;
+    const ur10e_real_t t62 = UR10E_C(-1.2254) * t61;
+    const ur10e_real_t t63 = t62 + (UR10E_C(-1.1431) * t60 + UR10E_C(-0.17415) * (t59 + t50));
+    const ur10e_real_t t64 = t63 + UR10E_C(0.2397) * t16;
+    const ur10e_real_t t65 = t13 * t58 - t18 * t64;
+    const ur10e_real_t t66 = t9 * t53 + t7 * t56;
+    const ur10e_real_t t67 = t10 * t10;
+    const ur10e_real_t t68 = t15 * t15;
+    const ur10e_real_t t69 = t67 + t68;
+    const ur10e_real_t t70 = t66 + UR10E_C(-0.11985) * t69;
+    const ur10e_real_t t71 = parameters[MX6] * (t25 * t65 - t24 * t70) + parameters[MY6] * (t24 * t65
+        + t25 * t70);
+    const ur10e_real_t t72 = t39 + parameters[XY6] * (t40 - t41) + t71;
+    const ur10e_real_t t73 = t22 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t33
+        + parameters[YZ5] * t36;
+    const ur10e_real_t t74 = t20 * t20;
+    const ur10e_real_t t75 = t21 * t21;
+    const ur10e_real_t t76 = t73 - parameters[XZ5] * (t74 - t75) - parameters[MX5] * t70 + t72;
+    const ur10e_real_t t77 = t30 - dq[5];
+    const ur10e_real_t t78 = t27 * t77;
+    const ur10e_real_t t79 = t38 + t78;
+    const ur10e_real_t t80 = t26 * t77;
+    const ur10e_real_t t81 = t37 - t80 - t80;
+    const ur10e_real_t t82 = t23 - t28;
+    const ur10e_real_t t83 = parameters[XY6] * t81 - (parameters[XX6R] * t79 + parameters[ZZ6] * t78)
+        - parameters[XZ6R] * t82;
+    const ur10e_real_t t84 = t77 * t77;
+    const ur10e_real_t t85 = t18 * t58 + t13 * t64;
+    const ur10e_real_t t86 = t83 - parameters[YZ6R] * (t41 - t84) - parameters[MY6] * t85;
+    const ur10e_real_t t87 = t23 + t28;
+    const ur10e_real_t t88 = t78 + t79;
+    const ur10e_real_t t89 = t80 * (parameters[ZZ6] - parameters[XX6R]) + parameters[XY6] * t88
+        + parameters[YZ6R] * t87;
+    const ur10e_real_t t90 = parameters[XZ6R] * (t40 - t84) - t89 + parameters[MX6] * t85;
+    const ur10e_real_t t91 = t23 - t22;
+    const ur10e_real_t t92 = t35 - t34;
+    const ur10e_real_t t93 = parameters[XX5R] * t32 - parameters[ZZ5R] * t31 + parameters[XY5] * t91
+        + parameters[XZ5] * t92;
+    const ur10e_real_t t94 = t30 * t30;
+    const ur10e_real_t t95 = t93 + parameters[YZ5] * (t94 - t75) + parameters[MY5R] * t70 + (t25 * t90
+        - t24 * t86);
+    const ur10e_real_t t96 = parameters[MX6] * (t41 + t84) + parameters[MY6] * t87;
+    const ur10e_real_t t97 = parameters[MX6] * t82 - parameters[MY6] * (t40 + t84);
+    const ur10e_real_t t98 = parameters[MX5] * (t94 + t75) + parameters[MY5R] * t36 + (t24 * t96 + t25 * t97);
+    const ur10e_real_t t99 = parameters[MX5] * t92 - parameters[MY5R] * (t74 + t75) + (parameters[MX6] * t81
+        + parameters[MY6] * t88);
+    const ur10e_real_t t100 = t13 * t99 - t18 * t98;
+    const ur10e_real_t t101 = UR10E_C(2.0) * t35;
+    const ur10e_real_t t102 = parameters[XX4R] * t16 + parameters[ZZ4R] * t16 + parameters[XY4] * t101
+        + parameters[XZ4] * t12;
+    const ur10e_real_t t103 = t11 * t11;
+    const ur10e_real_t t104 = parameters[YZ4] * (t103 - t68) - t102 + parameters[MY4R] * t63 + (t13 * t95
+        - t18 * t76 + UR10E_C(-0.11985) * t100);
+    const ur10e_real_t t105 = parameters[ZZ5R] * t35 + parameters[XX5R] * t34 + parameters[YZ5] * t19
+        + parameters[XZ5] * t29;
+    const ur10e_real_t t106 = t105 + parameters[XY5] * (t74 - t94) + (parameters[MX5] * t85
+        + parameters[MY5R] * t65);
+    const ur10e_real_t t107 = t106 + (t25 * t86 + t24 * t90);
+    const ur10e_real_t t108 = t35 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t17
+        - parameters[YZ4] * t12;
+    const ur10e_real_t t109 = t108 + parameters[XZ4] * (t67 - t68) + parameters[MX4] * t63 + t107;
+    const ur10e_real_t t110 = t13 * t98 + t18 * t99;
+    const ur10e_real_t t111 = parameters[MX4] * (t103 + t68) + parameters[MY4R] * t12 + t110;
+    const ur10e_real_t t112 = parameters[MY5R] * t33 - parameters[MX5] * t91 + (t25 * t96 - t24 * t97);
+    const ur10e_real_t t113 = parameters[MX4] * t12 + parameters[MY4R] * t69 + t112;
+    const ur10e_real_t t114 = t9 * t111 + t7 * t113;
+    const ur10e_real_t t115 = t8 * t14;
+    const ur10e_real_t t116 = UR10E_C(2.0) * t60;
+    const ur10e_real_t t117 = parameters[XX3R] * t115 + parameters[ZZ3R] * t115 - parameters[XY3] * t116
+        + parameters[XZ3R] * t55;
+    const ur10e_real_t t118 = t117 + parameters[YZ3] * (t50 - t51) + parameters[MY3] * t62 + (t7 * t104
+        + t9 * t109 + UR10E_C(0.17415) * t114);
+    const ur10e_real_t t119 = t7 * t111 - t9 * t113;
+    const ur10e_real_t t120 = parameters[MX4] * t101 - parameters[MY4R] * t17 + t100;
+    const ur10e_real_t t121 = t7 * t109 - t9 * t104 + (UR10E_C(0.17415) * t119 - UR10E_C(0.57155) * t120);
+    const ur10e_real_t t122 = UR10E_C(2.0) * t115;
+    const ur10e_real_t t123 = t60 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t122
+        - parameters[YZ3] * t55;
+    const ur10e_real_t t124 = t123 - parameters[XZ3R] * (t59 - t51) - parameters[MX3R] * t62 - t121;
+    const ur10e_real_t t125 = dq[1] * t4;
+    const ur10e_real_t t126 = parameters[XX2R] * t125 + parameters[ZZ2R] * t125
+        + parameters[XY2] * (UR10E_C(-2.0) * t61);
+    const ur10e_real_t t127 = t126 + parameters[XZ2R] * t46 + parameters[YZ2] * (t42 - t43) + (t2 * t118
+        - t5 * t124);
+    const ur10e_real_t t128 = t5 * t118 + t2 * t124 + UR10E_C(0.6127) * (parameters[MX3R] * t116
+        + parameters[MY3] * t122 + t120);
+    const ur10e_real_t t129 = t61 * (parameters[XX2R] - parameters[ZZ2R])
+        + parameters[XY2] * (UR10E_C(2.0) * t125) - parameters[YZ2] * t46;
+    const ur10e_real_t t130 = t1 * t1;
+    const ur10e_real_t t131 = t0 * t127 + t3 * (t129 + parameters[XZ2R] * (t43 - t130) + t128);
+    const ur10e_real_t t132 = ur10e_sign(dq[0]);
     const ur10e_real_t t133 = UR10E_C(8.333333333333334) * (parameters[FV1] * (UR10E_C(101.0) * dq[0])
-        + parameters[FC1] * t0) + UR10E_C(0.08250825082508251) * t132;
+        + parameters[FC1] * t132) + UR10E_C(0.08250825082508251) * t131;
     out[0] = t133;
-    const ur10e_real_t t134 = ur10e_sign(dq[1]);
-    const ur10e_real_t t135 = parameters[XY2] * (t130 - t10) - parameters[XX2R] * t8 + (parameters[MY2] * t56
-        - parameters[MX2R] * t58);
-    const ur10e_real_t t136 = parameters[XY3] * (t36 - t21) - parameters[XX3R] * t19 + (parameters[MY3] * t60
-        - parameters[MX3R] * t63);
-    const ur10e_real_t t137 = parameters[XX4R] * t32 + parameters[XY4] * (t66 - t34) + (parameters[MY4R] * t87
-        - parameters[MX4] * t65);
-    const ur10e_real_t t138 = t137 + (t39 * t97 + t38 * t104 + UR10E_C(-0.11985) * t116);
-    const ur10e_real_t t139 = t136 + (t138 + UR10E_C(0.57155) * t120);
-    const ur10e_real_t t140 = t11 * (parameters[MY3] * (t36 + t22) - parameters[MX3R] * t19 + t120);
-    const ur10e_real_t t141 = t12 * (parameters[MX3R] * t61 - parameters[MY3] * t19 + t124) + t140;
+    const ur10e_real_t t134 = parameters[XX4R] * t12 + parameters[XY4] * (t67 - t103)
+        + (parameters[MY4R] * t57 - parameters[MX4] * t66);
+    const ur10e_real_t t135 = t134 + (t18 * t95 + t13 * t76 + UR10E_C(-0.11985) * t110);
+    const ur10e_real_t t136 = parameters[XY3] * (t59 - t50) - parameters[XX3R] * t55 + (parameters[MY3] * t49
+        - parameters[MX3R] * t54);
+    const ur10e_real_t t137 = t136 + (t135 + UR10E_C(0.57155) * t114);
+    const ur10e_real_t t138 = t2 * (parameters[MY3] * (t59 + t51) - parameters[MX3R] * t55 + t114);
+    const ur10e_real_t t139 = t5 * (parameters[MX3R] * t52 - parameters[MY3] * t55 + t119) + t138;
+    const ur10e_real_t t140 = parameters[XY2] * (t130 - t42) - parameters[XX2R] * t46 + (parameters[MY2] * t44
+        - parameters[MX2R] * t47);
+    const ur10e_real_t t141 = ur10e_sign(dq[1]);
     const ur10e_real_t t142 = UR10E_C(8.333333333333334) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
-        + parameters[FC2] * t134) + UR10E_C(0.08250825082508251) * (t135 + (t139 + UR10E_C(0.6127) * t141));
+        + parameters[FC2] * t141) + UR10E_C(0.08250825082508251) * (t140 + (t137 + UR10E_C(0.6127) * t139));
     out[1] = t142;
     const ur10e_real_t t143 = ur10e_sign(dq[2]);
     const ur10e_real_t t144 = UR10E_C(10.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2])
-        + parameters[FC3] * t143) + UR10E_C(0.099009900990099) * t139;
+        + parameters[FC3] * t143) + UR10E_C(0.099009900990099) * t137;
     out[2] = t144;
     const ur10e_real_t t145 = ur10e_sign(dq[3]);
     const ur10e_real_t t146 = UR10E_C(11.11111111111111) * (parameters[FV4] * (UR10E_C(101.0) * dq[3])
-        + parameters[FC4] * t145) + UR10E_C(0.11001100110011001) * t138;
+        + parameters[FC4] * t145) + UR10E_C(0.11001100110011001) * t135;
     out[3] = t146;
     const ur10e_real_t t147 = ur10e_sign(dq[4]);
     const ur10e_real_t t148 = UR10E_C(11.11111111111111) * (parameters[FV5] * (UR10E_C(101.0) * dq[4])
-        + parameters[FC5] * t147) + UR10E_C(0.11001100110011001) * t114;
+        + parameters[FC5] * t147) + UR10E_C(0.11001100110011001) * t107;
     out[4] = t148;
     const ur10e_real_t t149 = ur10e_sign(dq[5]);
     const ur10e_real_t t150 = UR10E_C(11.11111111111111) * (parameters[FV6] * (UR10E_C(101.0) * dq[5])
-        + parameters[FC6] * t149) + UR10E_C(0.11001100110011001) * t103;
+        + parameters[FC6] * t149) + UR10E_C(0.11001100110011001) * t72;
     out[5] = t150;
     return UR10E_STATUS_OK;
 }

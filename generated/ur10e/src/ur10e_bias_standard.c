@@ -104,7 +104,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -130,222 +130,223 @@ int ur10e_bias_standard(
         return status;
     }
 
-    ur10e_real_t t1, t2;
-    UR10E_SINCOS(q[1], &t1, &t2);
-    ur10e_real_t t15, t13;
-    UR10E_SINCOS(q[2], &t15, &t13);
-    ur10e_real_t t33, t31;
-    UR10E_SINCOS(q[3], &t33, &t31);
-    ur10e_real_t t53, t52;
-    UR10E_SINCOS(q[4], &t53, &t52);
-    ur10e_real_t t79, t78;
-    UR10E_SINCOS(q[5], &t79, &t78);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t3 = t2 * dq[0];
-    const ur10e_real_t t4 = dq[1] * t3;
-    const ur10e_real_t t5 = t1 * dq[0];
-    const ur10e_real_t t6 = dq[1] * t5;
-    const ur10e_real_t t7 = t4 * parameters[XX2] + t4 * (parameters[ZZ2] - parameters[YY2])
-        + UR10E_C(-2.0) * t6 * parameters[XY2];
-    const ur10e_real_t t8 = t5 * t3;
-    const ur10e_real_t t9 = t3 * t3;
-    const ur10e_real_t t10 = dq[1] * dq[1];
-    const ur10e_real_t t11 = UR10E_C(-9.81) * t2;
-    const ur10e_real_t t12 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2] + t11 * parameters[MZ2];
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
+    ur10e_real_t t9, t7;
+    UR10E_SINCOS(q[3], &t9, &t7);
+    ur10e_real_t t13, t18;
+    UR10E_SINCOS(q[4], &t13, &t18);
+    ur10e_real_t t30, t25;
+    UR10E_SINCOS(q[5], &t30, &t25);
+    const ur10e_real_t t1 = t0 * dq[0];
+    const ur10e_real_t t4 = t3 * dq[0];
+    const ur10e_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_real_t t8 = t2 * t4 - t5 * t1;
+    const ur10e_real_t t10 = t7 * t6 + t9 * t8;
+    const ur10e_real_t t11 = t7 * t8 - t9 * t6;
+    const ur10e_real_t t12 = t10 * t11;
     const ur10e_real_t t14 = dq[1] + dq[2];
-    const ur10e_real_t t16 = t13 * t3 - t15 * t5;
-    const ur10e_real_t t17 = t14 * t16;
-    const ur10e_real_t t18 = t13 * t5 + t15 * t3;
-    const ur10e_real_t t19 = t14 * t18;
-    const ur10e_real_t t20 = UR10E_C(2.0) * t19;
-    const ur10e_real_t t21 = parameters[XX3] * t17 - t17 * (parameters[YY3] - parameters[ZZ3])
-        - parameters[XY3] * t20;
-    const ur10e_real_t t22 = t18 * t16;
-    const ur10e_real_t t23 = t14 * t14;
-    const ur10e_real_t t24 = t16 * t16;
-    const ur10e_real_t t25 = UR10E_C(-1.2254) * t6;
-    const ur10e_real_t t26 = UR10E_C(9.81) * t1;
-    const ur10e_real_t t27 = t26 + UR10E_C(0.6127) * (t9 + t10);
-    const ur10e_real_t t28 = t11 + UR10E_C(0.6127) * t8;
-    const ur10e_real_t t29 = t15 * t27 + t13 * t28;
-    const ur10e_real_t t30 = t21 + parameters[XZ3] * t22 + parameters[YZ3] * (t24 - t23)
-        + (parameters[MY3] * t25 + parameters[MZ3] * t29);
-    const ur10e_real_t t32 = dq[3] + t14;
-    const ur10e_real_t t34 = t31 * t16 - t33 * t18;
-    const ur10e_real_t t35 = t32 * t34;
-    const ur10e_real_t t36 = t31 * t18 + t33 * t16;
-    const ur10e_real_t t37 = t32 * t36;
-    const ur10e_real_t t38 = UR10E_C(2.0) * t37;
-    const ur10e_real_t t39 = parameters[XX4] * t35 - t35 * (parameters[YY4] - parameters[ZZ4])
-        - parameters[XY4] * t38;
-    const ur10e_real_t t40 = t36 * t34;
-    const ur10e_real_t t41 = t32 * t32;
-    const ur10e_real_t t42 = t34 * t34;
-    const ur10e_real_t t43 = t18 * t18;
-    const ur10e_real_t t44 = t43 + t24;
-    const ur10e_real_t t45 = t25 + (UR10E_C(-1.1431) * t19 + UR10E_C(-0.17415) * t44);
-    const ur10e_real_t t46 = t15 * t28 - t13 * t27;
-    const ur10e_real_t t47 = t23 + t24;
-    const ur10e_real_t t48 = UR10E_C(0.57155) * t47 - t46;
-    const ur10e_real_t t49 = t29 + UR10E_C(0.57155) * t22;
-    const ur10e_real_t t50 = t33 * t48 + t31 * t49;
-    const ur10e_real_t t51 = t39 + parameters[XZ4] * t40 + parameters[YZ4] * (t42 - t41)
-        + (parameters[MY4] * t45 + parameters[MZ4] * t50);
-    const ur10e_real_t t54 = UR10E_C(-2.0) * t35;
-    const ur10e_real_t t55 = t53 * t40 + t52 * t54;
-    const ur10e_real_t t56 = t52 * t32 - t53 * t36;
-    const ur10e_real_t t57 = t34 - dq[4];
-    const ur10e_real_t t58 = t56 * t57;
-    const ur10e_real_t t59 = t55 + t58;
-    const ur10e_real_t t60 = t53 * t32 + t52 * t36;
-    const ur10e_real_t t61 = t60 * t57;
-    const ur10e_real_t t62 = t53 * t54 - t52 * t40;
-    const ur10e_real_t t63 = t62 + t61;
-    const ur10e_real_t t64 = t61 + t63;
-    const ur10e_real_t t65 = parameters[XY5] * t64 - (parameters[XX5] * t59 + t58 * (parameters[ZZ5]
+    const ur10e_real_t t15 = dq[3] + t14;
+    const ur10e_real_t t16 = t15 * t11;
+    const ur10e_real_t t17 = UR10E_C(-2.0) * t16;
+    const ur10e_real_t t19 = t13 * t12 + t18 * t17;
+    const ur10e_real_t t20 = t18 * t15 - t13 * t10;
+    const ur10e_real_t t21 = t11 - dq[4];
+    const ur10e_real_t t22 = t20 * t21;
+    const ur10e_real_t t23 = t19 + t22;
+    const ur10e_real_t t24 = t22 + t23;
+    const ur10e_real_t t26 = t13 * t15 + t18 * t10;
+    const ur10e_real_t t27 = t26 * t20;
+    const ur10e_real_t t28 = t15 * t10;
+    const ur10e_real_t t29 = t28 - t27;
+    const ur10e_real_t t31 = t30 * t29 + t25 * t24;
+    const ur10e_real_t t32 = t25 * t21 - t30 * t26;
+    const ur10e_real_t t33 = dq[5] + t20;
+    const ur10e_real_t t34 = t32 * t33;
+    const ur10e_real_t t35 = t31 - t34;
+    const ur10e_real_t t36 = t25 * t29 - t30 * t24;
+    const ur10e_real_t t37 = t25 * t26 + t30 * t21;
+    const ur10e_real_t t38 = t37 * t33;
+    const ur10e_real_t t39 = t36 + t38;
+    const ur10e_real_t t40 = t38 + t39;
+    const ur10e_real_t t41 = parameters[XX6] * t35 + t34 * (parameters[YY6] - parameters[ZZ6])
+        + parameters[XY6] * t40;
+    const ur10e_real_t t42 = t13 * t17 - t18 * t12;
+    const ur10e_real_t t43 = t26 * t21;
+    const ur10e_real_t t44 = t42 + t43;
+    const ur10e_real_t t45 = t37 * t32;
+    const ur10e_real_t t46 = t44 + t45;
+    const ur10e_real_t t47 = t32 * t32;
+    const ur10e_real_t t48 = t33 * t33;
+    const ur10e_real_t t49 = t4 * t4;
+    const ur10e_real_t t50 = dq[1] * dq[1];
+    const ur10e_real_t t51 = UR10E_C(9.81) * t0;
+    const ur10e_real_t t52 = t51 + UR10E_C(0.6127) * (t49 + t50);
+    const ur10e_real_t t53 = t1 * t4;
+    const ur10e_real_t t54 = UR10E_C(-9.81) * t3;
+    const ur10e_real_t t55 = t54 + UR10E_C(0.6127) * t53;
+    const ur10e_real_t t56 = t5 * t55 - t2 * t52;
+    const ur10e_real_t t57 = t8 * t8;
+    const ur10e_real_t t58 = t14 * t14;
+    const ur10e_real_t t59 = t58 + t57;
+    const ur10e_real_t t60 = UR10E_C(0.57155) * t59 - t56;
+    const ur10e_real_t t61 = t5 * t52 + t2 * t55;
+    const ur10e_real_t t62 = t6 * t8;
+    const ur10e_real_t t63 = t61 + UR10E_C(0.57155) * t62;
+    const ur10e_real_t t64 = t9 * t63 - t7 * t60;
+    const ur10e_real_t t65 = t64 + UR10E_C(0.11985) * t12;
+    const ur10e_real_t t66 = t6 * t6;
+    const ur10e_real_t t67 = t66 + t57;
+    const ur10e_real_t t68 = t14 * t6;
+    const ur10e_real_t t69 = dq[1] * t1;
+    const ur10e_real_t t70 = UR10E_C(-1.2254) * t69;
+    const ur10e_real_t t71 = t70 + (UR10E_C(-1.1431) * t68 + UR10E_C(-0.17415) * t67);
+    const ur10e_real_t t72 = t71 + UR10E_C(-0.2397) * t16;
+    const ur10e_real_t t73 = t13 * t65 + t18 * t72;
+    const ur10e_real_t t74 = t26 * t26;
+    const ur10e_real_t t75 = t21 * t21;
+    const ur10e_real_t t76 = t74 + t75;
+    const ur10e_real_t t77 = t73 + UR10E_C(-0.11655) * t76;
+    const ur10e_real_t t78 = t9 * t60 + t7 * t63;
+    const ur10e_real_t t79 = t10 * t10;
+    const ur10e_real_t t80 = t15 * t15;
+    const ur10e_real_t t81 = t80 + t79;
+    const ur10e_real_t t82 = t78 + UR10E_C(-0.11985) * t81;
+    const ur10e_real_t t83 = t82 + UR10E_C(-0.11655) * t24;
+    const ur10e_real_t t84 = t18 * t65 - t13 * t72;
+    const ur10e_real_t t85 = t84 + UR10E_C(0.11655) * t29;
+    const ur10e_real_t t86 = t30 * t85 - t25 * t83;
+    const ur10e_real_t t87 = t41 - parameters[XZ6] * t46 - parameters[YZ6] * (t47 - t48)
+        + (parameters[MZ6] * t86 - parameters[MY6] * t77);
+    const ur10e_real_t t88 = t35 - t34;
+    const ur10e_real_t t89 = parameters[YY6] * t39 + t38 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t88;
+    const ur10e_real_t t90 = t44 - t45;
+    const ur10e_real_t t91 = t37 * t37;
+    const ur10e_real_t t92 = t25 * t85 + t30 * t83;
+    const ur10e_real_t t93 = t89 - parameters[YZ6] * t90 + parameters[XZ6] * (t91 - t48)
+        + (parameters[MZ6] * t92 + parameters[MX6] * t77);
+    const ur10e_real_t t94 = parameters[MX6] * (t47 + t48) + parameters[MY6] * t90 + parameters[MZ6] * t36;
+    const ur10e_real_t t95 = parameters[M6] * t92 + t94;
+    const ur10e_real_t t96 = parameters[MX6] * t46 - parameters[MY6] * (t91 + t48) + parameters[MZ6] * t31;
+    const ur10e_real_t t97 = parameters[M6] * t86 + t96;
+    const ur10e_real_t t98 = t30 * t95 - t25 * t97;
+    const ur10e_real_t t99 = t43 + t44;
+    const ur10e_real_t t100 = parameters[XY5] * t99 - (parameters[XX5] * t23 + t22 * (parameters[ZZ5]
         - parameters[YY5]));
-    const ur10e_real_t t66 = t60 * t56;
-    const ur10e_real_t t67 = t37 + t66;
-    const ur10e_real_t t68 = t56 * t56;
-    const ur10e_real_t t69 = t57 * t57;
-    const ur10e_real_t t70 = t36 * t36;
-    const ur10e_real_t t71 = t41 + t70;
-    const ur10e_real_t t72 = t50 + UR10E_C(-0.11985) * t71;
-    const ur10e_real_t t73 = t33 * t49 - t31 * t48;
-    const ur10e_real_t t74 = t73 + UR10E_C(0.11985) * t40;
-    const ur10e_real_t t75 = t45 + UR10E_C(-0.2397) * t35;
-    const ur10e_real_t t76 = t53 * t74 + t52 * t75;
-    const ur10e_real_t t77 = t65 + parameters[XZ5] * t67 + parameters[YZ5] * (t68 - t69)
-        + (parameters[MY5] * t72 - parameters[MZ5] * t76);
-    const ur10e_real_t t80 = t37 - t66;
-    const ur10e_real_t t81 = t58 + t59;
-    const ur10e_real_t t82 = t79 * t80 + t78 * t81;
-    const ur10e_real_t t83 = t78 * t57 - t79 * t60;
-    const ur10e_real_t t84 = dq[5] + t56;
-    const ur10e_real_t t85 = t83 * t84;
-    const ur10e_real_t t86 = t82 - t85;
-    const ur10e_real_t t87 = t78 * t60 + t79 * t57;
-    const ur10e_real_t t88 = t87 * t84;
-    const ur10e_real_t t89 = t78 * t80 - t79 * t81;
-    const ur10e_real_t t90 = t89 + t88;
-    const ur10e_real_t t91 = t88 + t90;
-    const ur10e_real_t t92 = parameters[XX6] * t86 + t85 * (parameters[YY6] - parameters[ZZ6])
-        + parameters[XY6] * t91;
-    const ur10e_real_t t93 = t87 * t83;
-    const ur10e_real_t t94 = t63 + t93;
-    const ur10e_real_t t95 = t83 * t83;
-    const ur10e_real_t t96 = t84 * t84;
-    const ur10e_real_t t97 = t60 * t60;
-    const ur10e_real_t t98 = t97 + t69;
-    const ur10e_real_t t99 = t76 + UR10E_C(-0.11655) * t98;
-    const ur10e_real_t t100 = t52 * t74 - t53 * t75;
-    const ur10e_real_t t101 = t100 + UR10E_C(0.11655) * t80;
-    const ur10e_real_t t102 = t72 + UR10E_C(-0.11655) * t81;
-    const ur10e_real_t t103 = t79 * t101 - t78 * t102;
-    const ur10e_real_t t104 = t92 - parameters[XZ6] * t94 - parameters[YZ6] * (t95 - t96)
-        + (parameters[MZ6] * t103 - parameters[MY6] * t99);
-    const ur10e_real_t t105 = t86 - t85;
-    const ur10e_real_t t106 = parameters[YY6] * t90 + t88 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t105;
-    const ur10e_real_t t107 = t63 - t93;
-    const ur10e_real_t t108 = t87 * t87;
-    const ur10e_real_t t109 = t78 * t101 + t79 * t102;
-    const ur10e_real_t t110 = t106 - parameters[YZ6] * t107 + parameters[XZ6] * (t108 - t96)
-        + (parameters[MZ6] * t109 + parameters[MX6] * t99);
-    const ur10e_real_t t111 = parameters[MX6] * (t95 + t96) + parameters[MY6] * t107 + parameters[MZ6] * t89;
-    const ur10e_real_t t112 = parameters[M6] * t109 + t111;
-    const ur10e_real_t t113 = parameters[MX6] * t94 - parameters[MY6] * (t108 + t96) + parameters[MZ6] * t82;
-    const ur10e_real_t t114 = parameters[M6] * t103 + t113;
-    const ur10e_real_t t115 = t79 * t112 - t78 * t114;
-    const ur10e_real_t t116 = t77 + (t79 * t110 - t78 * t104 + UR10E_C(0.11655) * t115);
-    const ur10e_real_t t117 = parameters[YY5] * t63 - t61 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t81;
-    const ur10e_real_t t118 = t117 + parameters[YZ5] * t80 - parameters[XZ5] * (t97 - t69)
-        - (parameters[MZ5] * t100 + parameters[MX5] * t72);
-    const ur10e_real_t t119 = parameters[ZZ6] * t63 - (parameters[XX6] - parameters[YY6]) * t93
-        - parameters[YZ6] * t89;
-    const ur10e_real_t t120 = t119 - parameters[XZ6] * t82 + parameters[XY6] * (t108 - t95)
-        + (parameters[MX6] * t103 + parameters[MY6] * t109);
-    const ur10e_real_t t121 = t118 + t120;
-    const ur10e_real_t t122 = parameters[MX5] * (t68 + t69) + parameters[MY5] * t80 - parameters[MZ5] * t62;
-    const ur10e_real_t t123 = t78 * t112 + t79 * t114;
-    const ur10e_real_t t124 = parameters[M5] * t100 + t122 + t123;
-    const ur10e_real_t t125 = parameters[M5] * t76 + (parameters[MX5] * t67 - parameters[MY5] * t98
-        + parameters[MZ5] * t55);
-    const ur10e_real_t t126 = parameters[MX6] * t91 - parameters[MY6] * t105 - parameters[MZ6] * (t108 + t95);
-    const ur10e_real_t t127 = t125 + (parameters[M6] * t99 + t126);
-    const ur10e_real_t t128 = t52 * t127 - t53 * t124;
-    const ur10e_real_t t129 = t51 + (t52 * t116 - t53 * t121 + UR10E_C(-0.11985) * t128);
-    const ur10e_real_t t130 = parameters[YY4] * t37 + t37 * (parameters[ZZ4] - parameters[XX4])
-        + parameters[XY4] * t54;
-    const ur10e_real_t t131 = t130 + parameters[YZ4] * t40 + parameters[XZ4] * (t70 - t41)
-        + (parameters[MZ4] * t73 + parameters[MX4] * t45);
-    const ur10e_real_t t132 = parameters[ZZ5] * t37 + t66 * (parameters[YY5] - parameters[XX5])
-        + parameters[YZ5] * t62;
-    const ur10e_real_t t133 = t132 - parameters[XZ5] * t55 + parameters[XY5] * (t97 - t68)
-        + (parameters[MX5] * t76 + parameters[MY5] * t100);
-    const ur10e_real_t t134 = t133 + (t79 * t104 + t78 * t110 + UR10E_C(0.11655) * t123);
-    const ur10e_real_t t135 = t131 + t134;
-    const ur10e_real_t t136 = parameters[M4] * t73 + (parameters[MX4] * (t41 + t42) - parameters[MY4] * t40);
-    const ur10e_real_t t137 = t52 * t124 + t53 * t127;
-    const ur10e_real_t t138 = t136 + t137;
-    const ur10e_real_t t139 = parameters[MX5] * t64 + parameters[MY5] * t81 + parameters[MZ5] * (t97 + t68);
-    const ur10e_real_t t140 = parameters[M4] * t50 + (parameters[MY4] * t71 - parameters[MX4] * t40)
-        + (parameters[M5] * t72 - t139 + t115);
-    const ur10e_real_t t141 = t33 * t138 + t31 * t140;
-    const ur10e_real_t t142 = t30 + (t31 * t129 + t33 * t135 + UR10E_C(0.17415) * t141);
-    const ur10e_real_t t143 = UR10E_C(2.0) * t17;
-    const ur10e_real_t t144 = parameters[YY3] * t19 - t19 * (parameters[XX3] - parameters[ZZ3])
+    const ur10e_real_t t101 = t28 + t27;
+    const ur10e_real_t t102 = t20 * t20;
+    const ur10e_real_t t103 = t100 + parameters[XZ5] * t101 + parameters[YZ5] * (t102 - t75)
+        + (parameters[MY5] * t82 - parameters[MZ5] * t73);
+    const ur10e_real_t t104 = t103 + (t30 * t93 - t25 * t87 + UR10E_C(0.11655) * t98);
+    const ur10e_real_t t105 = parameters[ZZ6] * t44 - (parameters[XX6] - parameters[YY6]) * t45
+        - parameters[YZ6] * t36;
+    const ur10e_real_t t106 = t105 - parameters[XZ6] * t31 + parameters[XY6] * (t91 - t47)
+        + (parameters[MX6] * t86 + parameters[MY6] * t92);
+    const ur10e_real_t t107 = parameters[YY5] * t44 - t43 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t24;
+    const ur10e_real_t t108 = t107 + parameters[YZ5] * t29 - parameters[XZ5] * (t74 - t75)
+        - (parameters[MZ5] * t84 + parameters[MX5] * t82);
+    const ur10e_real_t t109 = t108 + t106;
+    const ur10e_real_t t110 = t25 * t95 + t30 * t97;
+    const ur10e_real_t t111 = parameters[MX5] * (t102 + t75) + parameters[MY5] * t29 - parameters[MZ5] * t42;
+    const ur10e_real_t t112 = parameters[M5] * t84 + t111 + t110;
+    const ur10e_real_t t113 = parameters[MX6] * t40 - parameters[MY6] * t88 - parameters[MZ6] * (t91 + t47);
+    const ur10e_real_t t114 = parameters[M5] * t73 + (parameters[MX5] * t101 - parameters[MY5] * t76
+        + parameters[MZ5] * t19);
+    const ur10e_real_t t115 = t114 + (parameters[M6] * t77 + t113);
+    const ur10e_real_t t116 = t18 * t115 - t13 * t112;
+    const ur10e_real_t t117 = UR10E_C(2.0) * t28;
+    const ur10e_real_t t118 = parameters[XX4] * t16 - t16 * (parameters[YY4] - parameters[ZZ4])
+        - parameters[XY4] * t117;
+    const ur10e_real_t t119 = t11 * t11;
+    const ur10e_real_t t120 = t118 + parameters[XZ4] * t12 + parameters[YZ4] * (t119 - t80)
+        + (parameters[MY4] * t71 + parameters[MZ4] * t78);
+    const ur10e_real_t t121 = t120 + (t18 * t104 - t13 * t109 + UR10E_C(-0.11985) * t116);
+    const ur10e_real_t t122 = parameters[ZZ5] * t28 + t27 * (parameters[YY5] - parameters[XX5])
+        + parameters[YZ5] * t42;
+    const ur10e_real_t t123 = t122 - parameters[XZ5] * t19 + parameters[XY5] * (t74 - t102)
+        + (parameters[MX5] * t73 + parameters[MY5] * t84);
+    const ur10e_real_t t124 = t123 + (t30 * t87 + t25 * t93 + UR10E_C(0.11655) * t110);
+    const ur10e_real_t t125 = parameters[YY4] * t28 + t28 * (parameters[ZZ4] - parameters[XX4])
+        + parameters[XY4] * t17;
+    const ur10e_real_t t126 = t125 + parameters[YZ4] * t12 + parameters[XZ4] * (t79 - t80)
+        + (parameters[MZ4] * t64 + parameters[MX4] * t71);
+    const ur10e_real_t t127 = t126 + t124;
+    const ur10e_real_t t128 = t18 * t112 + t13 * t115;
+    const ur10e_real_t t129 = parameters[M4] * t64 + (parameters[MX4] * (t80 + t119) - parameters[MY4] * t12);
+    const ur10e_real_t t130 = t129 + t128;
+    const ur10e_real_t t131 = parameters[MX5] * t99 + parameters[MY5] * t24 + parameters[MZ5] * (t74 + t102);
+    const ur10e_real_t t132 = parameters[M4] * t78 + (parameters[MY4] * t81 - parameters[MX4] * t12)
+        + (parameters[M5] * t82 - t131 + t98);
+    const ur10e_real_t t133 = t9 * t130 + t7 * t132;
+    const ur10e_real_t t134 = t14 * t8;
+    const ur10e_real_t t135 = UR10E_C(2.0) * t68;
+    const ur10e_real_t t136 = parameters[XX3] * t134 - t134 * (parameters[YY3] - parameters[ZZ3])
+        - parameters[XY3] * t135;
+    const ur10e_real_t t137 = t136 + parameters[XZ3] * t62 + parameters[YZ3] * (t57 - t58)
+        + (parameters[MY3] * t70 + parameters[MZ3] * t61);
+    const ur10e_real_t t138 = t137 + (t7 * t121 + t9 * t127 + UR10E_C(0.17415) * t133);
+    const ur10e_real_t t139 = t7 * t130 - t9 * t132;
+    const ur10e_real_t t140 = parameters[MX4] * t117 - parameters[MY4] * t17 - parameters[MZ4] * (t79 + t119);
+    const ur10e_real_t t141 = parameters[M4] * t71 + t140 + t116;
+    const ur10e_real_t t142 = t7 * t127 - t9 * t121 - (UR10E_C(-0.17415) * t139 - UR10E_C(-0.57155) * t141);
+    const ur10e_real_t t143 = UR10E_C(2.0) * t134;
+    const ur10e_real_t t144 = parameters[YY3] * t68 - t68 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t143;
-    const ur10e_real_t t145 = t144 + parameters[YZ3] * t22 - parameters[XZ3] * (t23 - t43)
-        + (parameters[MZ3] * t46 + parameters[MX3] * t25);
-    const ur10e_real_t t146 = t31 * t138 - t33 * t140;
-    const ur10e_real_t t147 = parameters[MX4] * t38 - parameters[MY4] * t54 - parameters[MZ4] * (t70 + t42);
-    const ur10e_real_t t148 = parameters[M4] * t45 + t147 + t128;
-    const ur10e_real_t t149 = t31 * t135 - t33 * t129 - (UR10E_C(-0.17415) * t146 - UR10E_C(-0.57155) * t148);
-    const ur10e_real_t t150 = t145 + t149;
-    const ur10e_real_t t151 = t6 * (parameters[XX2] - parameters[ZZ2]) - t6 * parameters[YY2]
-        + UR10E_C(2.0) * t4 * parameters[XY2];
-    const ur10e_real_t t152 = t5 * t5;
-    const ur10e_real_t t153 = t151 - t8 * parameters[YZ2] + (t10 - t152) * parameters[XZ2]
-        + t26 * parameters[MZ2];
-    const ur10e_real_t t154 = parameters[M3] * t25 + (parameters[MX3] * t20 + parameters[MY3] * t143
-        - parameters[MZ3] * t44);
-    const ur10e_real_t t155 = t15 * t142 - t13 * t150 + UR10E_C(0.6127) * (t154 + t148);
-    const ur10e_real_t t156 = t1 * (t12 + (t13 * t142 + t15 * t150)) + t2 * (t153 + t155);
+    const ur10e_real_t t145 = t144 + parameters[YZ3] * t62 - parameters[XZ3] * (t58 - t66)
+        + (parameters[MZ3] * t56 + parameters[MX3] * t70);
+    const ur10e_real_t t146 = t145 + t142;
+    const ur10e_real_t t147 = dq[1] * t4;
+    const ur10e_real_t t148 = t147 * parameters[XX2] + t147 * (parameters[ZZ2] - parameters[YY2])
+        + UR10E_C(-2.0) * t69 * parameters[XY2];
+    const ur10e_real_t t149 = t148 + t53 * parameters[XZ2] + (t49 - t50) * parameters[YZ2]
+        + t54 * parameters[MZ2];
+    const ur10e_real_t t150 = parameters[M3] * t70 + (parameters[MX3] * t135 + parameters[MY3] * t143
+        - parameters[MZ3] * t67);
+    const ur10e_real_t t151 = t5 * t138 - t2 * t146 + UR10E_C(0.6127) * (t150 + t141);
+    const ur10e_real_t t152 = t69 * (parameters[XX2] - parameters[ZZ2]) - t69 * parameters[YY2]
+        + UR10E_C(2.0) * t147 * parameters[XY2];
+    const ur10e_real_t t153 = t1 * t1;
+    const ur10e_real_t t154 = t152 - t53 * parameters[YZ2] + (t50 - t153) * parameters[XZ2]
+        + t51 * parameters[MZ2];
+    const ur10e_real_t t155 = t0 * (t149 + (t2 * t138 + t5 * t146)) + t3 * (t154 + t151);
+    const ur10e_real_t t156 = ur10e_sign(dq[0]);
     const ur10e_real_t t157 = UR10E_C(8.333333333333334) * (UR10E_C(101.0) * dq[0] * parameters[FV1]
-        + t0 * parameters[FC1]) + UR10E_C(0.08250825082508251) * t156;
+        + t156 * parameters[FC1]) + UR10E_C(0.08250825082508251) * t155;
     out[0] = t157;
-    const ur10e_real_t t158 = ur10e_sign(dq[1]);
-    const ur10e_real_t t159 = t8 * (parameters[YY2] - parameters[XX2]) + (t152 - t9) * parameters[XY2]
-        - (t11 * parameters[MX2] + t26 * parameters[MY2]);
-    const ur10e_real_t t160 = parameters[XY3] * (t43 - t24) - t22 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MY3] * t46 - parameters[MX3] * t29);
-    const ur10e_real_t t161 = parameters[XY4] * (t70 - t42) - t40 * (parameters[XX4] - parameters[YY4])
-        + (parameters[MY4] * t73 - parameters[MX4] * t50);
-    const ur10e_real_t t162 = t161 + (t53 * t116 + t52 * t121 + UR10E_C(-0.11985) * t137);
-    const ur10e_real_t t163 = t160 + (t162 + UR10E_C(0.57155) * t141);
-    const ur10e_real_t t164 = parameters[M3] * t46 + (parameters[MX3] * t47 - parameters[MY3] * t22) + t146;
-    const ur10e_real_t t165 = parameters[M3] * t29 + (parameters[MY3] * (t23 + t43) - parameters[MX3] * t22);
-    const ur10e_real_t t166 = t163 + UR10E_C(0.6127) * (t15 * t164 + t13 * (t165 + t141));
+    const ur10e_real_t t158 = parameters[XY4] * (t79 - t119) - t12 * (parameters[XX4] - parameters[YY4])
+        + (parameters[MY4] * t64 - parameters[MX4] * t78);
+    const ur10e_real_t t159 = t158 + (t13 * t104 + t18 * t109 + UR10E_C(-0.11985) * t128);
+    const ur10e_real_t t160 = parameters[XY3] * (t66 - t57) - t62 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MY3] * t56 - parameters[MX3] * t61);
+    const ur10e_real_t t161 = t160 + (t159 + UR10E_C(0.57155) * t133);
+    const ur10e_real_t t162 = parameters[M3] * t56 + (parameters[MX3] * t59 - parameters[MY3] * t62) + t139;
+    const ur10e_real_t t163 = parameters[M3] * t61 + (parameters[MY3] * (t58 + t66) - parameters[MX3] * t62);
+    const ur10e_real_t t164 = t161 + UR10E_C(0.6127) * (t5 * t162 + t2 * (t163 + t133));
+    const ur10e_real_t t165 = t53 * (parameters[YY2] - parameters[XX2]) + (t153 - t49) * parameters[XY2]
+        - (t54 * parameters[MX2] + t51 * parameters[MY2]);
+    const ur10e_real_t t166 = ur10e_sign(dq[1]);
     const ur10e_real_t t167 = UR10E_C(8.333333333333334) * (UR10E_C(101.0) * dq[1] * parameters[FV2]
-        + t158 * parameters[FC2]) + UR10E_C(0.08250825082508251) * (t159 + t166);
+        + t166 * parameters[FC2]) + UR10E_C(0.08250825082508251) * (t165 + t164);
     out[1] = t167;
     const ur10e_real_t t168 = ur10e_sign(dq[2]);
     const ur10e_real_t t169 = UR10E_C(10.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3]
-        + t168 * parameters[FC3]) + UR10E_C(0.099009900990099) * t163;
+        + t168 * parameters[FC3]) + UR10E_C(0.099009900990099) * t161;
     out[2] = t169;
     const ur10e_real_t t170 = ur10e_sign(dq[3]);
     const ur10e_real_t t171 = UR10E_C(11.11111111111111) * (UR10E_C(101.0) * dq[3] * parameters[FV4]
-        + t170 * parameters[FC4]) + UR10E_C(0.11001100110011001) * t162;
+        + t170 * parameters[FC4]) + UR10E_C(0.11001100110011001) * t159;
     out[3] = t171;
     const ur10e_real_t t172 = ur10e_sign(dq[4]);
     const ur10e_real_t t173 = UR10E_C(11.11111111111111) * (UR10E_C(101.0) * dq[4] * parameters[FV5]
-        + t172 * parameters[FC5]) + UR10E_C(0.11001100110011001) * t134;
+        + t172 * parameters[FC5]) + UR10E_C(0.11001100110011001) * t124;
     out[4] = t173;
     const ur10e_real_t t174 = ur10e_sign(dq[5]);
     const ur10e_real_t t175 = UR10E_C(11.11111111111111) * (UR10E_C(101.0) * dq[5] * parameters[FV6]
-        + t174 * parameters[FC6]) + UR10E_C(0.11001100110011001) * t120;
+        + t174 * parameters[FC6]) + UR10E_C(0.11001100110011001) * t106;
     out[5] = t175;
     return UR10E_STATUS_OK;
 }

@@ -80,7 +80,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -107,10 +107,10 @@ int ur10e_energy(
         return status;
     }
 
-    ur10e_real_t t0, t2;
-    UR10E_SINCOS(q[1], &t0, &t2);
-    ur10e_real_t t8, t7;
-    UR10E_SINCOS(q[2], &t8, &t7);
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
     ur10e_real_t t22, t21;
     UR10E_SINCOS(q[3], &t22, &t21);
     ur10e_real_t t36, t35;
@@ -118,34 +118,35 @@ int ur10e_energy(
     ur10e_real_t t50, t49;
     UR10E_SINCOS(q[5], &t50, &t49);
     const ur10e_real_t t1 = t0 * dq[0];
-    const ur10e_real_t t3 = t2 * dq[0];
-    const ur10e_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
-    const ur10e_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3 + parameters[ZZ2R] * dq[1]);
-    const ur10e_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const ur10e_real_t t9 = t7 * t1 + t8 * t3;
-    const ur10e_real_t t10 = t7 * t3 - t8 * t1;
-    const ur10e_real_t t11 = dq[1] + dq[2];
-    const ur10e_real_t t12 = t9 * (parameters[XX3R] * t9 + parameters[XY3] * t10 + parameters[XZ3R] * t11);
-    const ur10e_real_t t13 = t11 * (parameters[XZ3R] * t9 + parameters[YZ3] * t10 + parameters[ZZ3R] * t11);
-    const ur10e_real_t t14 = t12 + t10 * (parameters[XY3] * t9 + parameters[YZ3] * t11) + t13;
-    const ur10e_real_t t15 = UR10E_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + UR10E_C(0.5) * t6
-        + UR10E_C(0.5) * t14;
+    const ur10e_real_t t4 = t3 * dq[0];
+    const ur10e_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_real_t t7 = t2 * t4 - t5 * t1;
+    const ur10e_real_t t8 = dq[1] + dq[2];
+    const ur10e_real_t t9 = t6 * (parameters[XX3R] * t6 + parameters[XY3] * t7 + parameters[XZ3R] * t8);
+    const ur10e_real_t t10 = t8 * (parameters[XZ3R] * t6 + parameters[YZ3] * t7 + parameters[ZZ3R] * t8);
+    const ur10e_real_t t11 = t9 + t7 * (parameters[XY3] * t6 + parameters[YZ3] * t8) + t10;
+    const ur10e_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t4 + parameters[XZ2R] * dq[1]);
+    const ur10e_real_t t13 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t4
+        + parameters[ZZ2R] * dq[1]);
+    const ur10e_real_t t14 = t12 + t4 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t13;
+    const ur10e_real_t t15 = UR10E_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + UR10E_C(0.5) * t14
+        + UR10E_C(0.5) * t11;
     const ur10e_real_t t16 = UR10E_C(0.6127) * dq[1];
-    const ur10e_real_t t17 = t7 * t16;
-    const ur10e_real_t t18 = UR10E_C(0.6127) * t3;
-    const ur10e_real_t t19 = t8 * t16;
-    const ur10e_real_t t20 = parameters[MY3] * (t9 * t18 + t11 * t19) - parameters[MX3R] * (t11 * t17
-        + t10 * t18);
-    const ur10e_real_t t23 = t21 * t9 + t22 * t10;
-    const ur10e_real_t t24 = t22 * t9 - t21 * t10;
-    const ur10e_real_t t25 = dq[3] + t11;
+    const ur10e_real_t t17 = t2 * t16;
+    const ur10e_real_t t18 = UR10E_C(0.6127) * t4;
+    const ur10e_real_t t19 = t5 * t16;
+    const ur10e_real_t t20 = parameters[MY3] * (t6 * t18 + t8 * t19) - parameters[MX3R] * (t8 * t17
+        + t7 * t18);
+    const ur10e_real_t t23 = t21 * t6 + t22 * t7;
+    const ur10e_real_t t24 = t22 * t6 - t21 * t7;
+    const ur10e_real_t t25 = dq[3] + t8;
     const ur10e_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4] * t24 + parameters[XZ4] * t25);
     const ur10e_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24 + parameters[ZZ4R] * t25);
     const ur10e_real_t t28 = t26 - t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25) + t27;
-    const ur10e_real_t t29 = t19 + UR10E_C(-0.17415) * t10;
-    const ur10e_real_t t30 = t17 + (UR10E_C(0.57155) * t11 + UR10E_C(0.17415) * t9);
+    const ur10e_real_t t29 = t19 + UR10E_C(-0.17415) * t7;
+    const ur10e_real_t t30 = t17 + (UR10E_C(0.57155) * t8 + UR10E_C(0.17415) * t6);
     const ur10e_real_t t31 = t21 * t30 - t22 * t29;
-    const ur10e_real_t t32 = t18 + UR10E_C(0.57155) * t10;
+    const ur10e_real_t t32 = t18 + UR10E_C(0.57155) * t7;
     const ur10e_real_t t33 = t21 * t29 + t22 * t30;
     const ur10e_real_t t34 = parameters[MX4] * (t24 * t32 - t25 * t31) + parameters[MY4R] * (t23 * t32
         + t25 * t33);
@@ -177,17 +178,17 @@ int ur10e_energy(
         + UR10E_C(0.5) * (UR10E_C(10201.0) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t61;
     const ur10e_real_t t62 = UR10E_C(9.81) * t0;
-    const ur10e_real_t t63 = UR10E_C(9.81) * t2;
-    const ur10e_real_t t64 = t7 * t62 + t8 * t63;
-    const ur10e_real_t t65 = t7 * t63 - t8 * t62;
-    const ur10e_real_t t66 = parameters[MX2R] * t62 + parameters[MY2] * t63 + (parameters[MX3R] * t64
+    const ur10e_real_t t63 = UR10E_C(9.81) * t3;
+    const ur10e_real_t t64 = t2 * t62 + t5 * t63;
+    const ur10e_real_t t65 = t2 * t63 - t5 * t62;
+    const ur10e_real_t t66 = t21 * t64 + t22 * t65;
+    const ur10e_real_t t67 = t21 * t65 - t22 * t64;
+    const ur10e_real_t t68 = parameters[MX2R] * t62 + parameters[MY2] * t63 + (parameters[MX3R] * t64
         + parameters[MY3] * t65);
-    const ur10e_real_t t67 = t21 * t64 + t22 * t65;
-    const ur10e_real_t t68 = t21 * t65 - t22 * t64;
-    const ur10e_real_t t69 = t35 * t67;
-    const ur10e_real_t t70 = t66 + (parameters[MX4] * t67 + parameters[MY4R] * t68) + (parameters[MX5] * t69
-        - parameters[MY5R] * (t36 * t67));
-    const ur10e_real_t t71 = parameters[MX6] * (t49 * t69 + t50 * t68) + parameters[MY6] * (t49 * t68
+    const ur10e_real_t t69 = t35 * t66;
+    const ur10e_real_t t70 = t68 + (parameters[MX4] * t66 + parameters[MY4R] * t67) + (parameters[MX5] * t69
+        - parameters[MY5R] * (t36 * t66));
+    const ur10e_real_t t71 = parameters[MX6] * (t49 * t69 + t50 * t67) + parameters[MY6] * (t49 * t67
         - t50 * t69);
     potential[0] = t70 + t71;
     return UR10E_STATUS_OK;

@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,83 +133,83 @@ int ur10e_energy_standard(
         return status;
     }
 
-    ur10e_real_t t0, t2;
-    UR10E_SINCOS(q[1], &t0, &t2);
-    ur10e_real_t t9, t8;
-    UR10E_SINCOS(q[2], &t9, &t8);
-    ur10e_real_t t24, t23;
-    UR10E_SINCOS(q[3], &t24, &t23);
-    ur10e_real_t t40, t41;
-    UR10E_SINCOS(q[4], &t40, &t41);
-    ur10e_real_t t57, t56;
-    UR10E_SINCOS(q[5], &t57, &t56);
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
+    ur10e_real_t t9, t7;
+    UR10E_SINCOS(q[3], &t9, &t7);
+    ur10e_real_t t43, t41;
+    UR10E_SINCOS(q[4], &t43, &t41);
+    ur10e_real_t t59, t57;
+    UR10E_SINCOS(q[5], &t59, &t57);
     const ur10e_real_t t1 = t0 * dq[0];
-    const ur10e_real_t t3 = t2 * dq[0];
-    const ur10e_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
-    const ur10e_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
-    const ur10e_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
-    const ur10e_real_t t7 = UR10E_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + UR10E_C(0.5) * (t4 + t5
-        + t6);
-    const ur10e_real_t t10 = t8 * t1 + t9 * t3;
-    const ur10e_real_t t11 = t9 * t1 - t8 * t3;
+    const ur10e_real_t t4 = t3 * dq[0];
+    const ur10e_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_real_t t8 = t5 * t1 - t2 * t4;
+    const ur10e_real_t t10 = t7 * t6 - t9 * t8;
+    const ur10e_real_t t11 = t9 * t6 + t7 * t8;
     const ur10e_real_t t12 = dq[1] + dq[2];
-    const ur10e_real_t t13 = t10 * (parameters[XX3] * t10 - parameters[XY3] * t11 + t12 * parameters[XZ3]);
-    const ur10e_real_t t14 = t11 * (parameters[YY3] * t11 - parameters[XY3] * t10 - t12 * parameters[YZ3]);
-    const ur10e_real_t t15 = t12 * (parameters[XZ3] * t10 - parameters[YZ3] * t11 + t12 * parameters[ZZ3]);
-    const ur10e_real_t t16 = UR10E_C(0.6127) * dq[1];
-    const ur10e_real_t t17 = t9 * t16;
-    const ur10e_real_t t18 = t8 * t16;
-    const ur10e_real_t t19 = UR10E_C(0.6127) * t3;
-    const ur10e_real_t t20 = parameters[M3] * (t17 * t17 + t18 * t18 + t19 * t19);
-    const ur10e_real_t t21 = parameters[MX3] * (t11 * t19 - t12 * t18) + parameters[MY3] * (t10 * t19
-        + t12 * t17);
-    const ur10e_real_t t22 = t7 + UR10E_C(0.5) * (t13 + t14 + t15 + t20) + (t21 + parameters[MZ3] * (t11 * t17
-        + t10 * t18));
-    const ur10e_real_t t25 = t23 * t10 - t24 * t11;
-    const ur10e_real_t t26 = t24 * t10 + t23 * t11;
-    const ur10e_real_t t27 = dq[3] + t12;
-    const ur10e_real_t t28 = t25 * (parameters[XX4] * t25 - parameters[XY4] * t26 + t27 * parameters[XZ4]);
-    const ur10e_real_t t29 = t26 * (parameters[YY4] * t26 - parameters[XY4] * t25 - t27 * parameters[YZ4]);
-    const ur10e_real_t t30 = t27 * (parameters[XZ4] * t25 - parameters[YZ4] * t26 + t27 * parameters[ZZ4]);
-    const ur10e_real_t t31 = t17 + UR10E_C(0.17415) * t11;
-    const ur10e_real_t t32 = t18 + (UR10E_C(0.57155) * t12 + UR10E_C(0.17415) * t10);
-    const ur10e_real_t t33 = t23 * t31 + t24 * t32;
-    const ur10e_real_t t34 = t24 * t31 - t23 * t32;
-    const ur10e_real_t t35 = t34 * t34;
-    const ur10e_real_t t36 = t19 + UR10E_C(-0.57155) * t11;
-    const ur10e_real_t t37 = t28 + t29 + t30 + parameters[M4] * (t33 * t33 + t35 + t36 * t36);
-    const ur10e_real_t t38 = parameters[MX4] * (t27 * t34 + t26 * t36) + parameters[MY4] * (t25 * t36
-        + t27 * t33);
-    const ur10e_real_t t39 = t22 + UR10E_C(0.5) * t37 + (t38 + parameters[MZ4] * (t26 * t33 - t25 * t34));
-    const ur10e_real_t t42 = t40 * t27 + t41 * t25;
-    const ur10e_real_t t43 = t41 * t27 - t40 * t25;
-    const ur10e_real_t t44 = dq[4] + t26;
-    const ur10e_real_t t45 = t42 * (parameters[XX5] * t42 + parameters[XY5] * t43 + parameters[XZ5] * t44);
-    const ur10e_real_t t46 = t43 * (parameters[XY5] * t42 + parameters[YY5] * t43 + parameters[YZ5] * t44);
-    const ur10e_real_t t47 = t44 * (parameters[XZ5] * t42 + parameters[YZ5] * t43 + parameters[ZZ5] * t44);
-    const ur10e_real_t t48 = t33 + UR10E_C(-0.11985) * t27;
-    const ur10e_real_t t49 = t36 - UR10E_C(0.11985) * t25;
-    const ur10e_real_t t50 = t41 * t48 - t40 * t49;
-    const ur10e_real_t t51 = t40 * t48 + t41 * t49;
-    const ur10e_real_t t52 = t51 * t51;
-    const ur10e_real_t t53 = t45 + t46 + t47 + parameters[M5] * (t35 + (t50 * t50 + t52));
-    const ur10e_real_t t54 = parameters[MX5] * (t44 * t51 + t43 * t34) + parameters[MY5] * (t44 * t50
-        - t42 * t34);
-    const ur10e_real_t t55 = t39 + UR10E_C(0.5) * t53 + (t54 - parameters[MZ5] * (t43 * t50 + t42 * t51));
-    const ur10e_real_t t58 = t56 * t42 - t57 * t44;
-    const ur10e_real_t t59 = t57 * t42 + t56 * t44;
-    const ur10e_real_t t60 = dq[5] + t43;
-    const ur10e_real_t t61 = t58 * (parameters[XX6] * t58 - parameters[XY6] * t59 + parameters[XZ6] * t60);
-    const ur10e_real_t t62 = t59 * (parameters[YY6] * t59 - parameters[XY6] * t58 - parameters[YZ6] * t60);
-    const ur10e_real_t t63 = t60 * (parameters[XZ6] * t58 - parameters[YZ6] * t59 + parameters[ZZ6] * t60);
-    const ur10e_real_t t64 = t50 + UR10E_C(0.11655) * t44;
-    const ur10e_real_t t65 = t34 - UR10E_C(0.11655) * t42;
-    const ur10e_real_t t66 = t56 * t64 - t57 * t65;
-    const ur10e_real_t t67 = t57 * t64 + t56 * t65;
-    const ur10e_real_t t68 = t61 + t62 + t63 + parameters[M6] * (t52 + (t66 * t66 + t67 * t67));
-    const ur10e_real_t t69 = parameters[MX6] * (t60 * t67 + t59 * t51) + parameters[MY6] * (t58 * t51
-        + t60 * t66);
-    const ur10e_real_t t70 = t55 + UR10E_C(0.5) * t68 + (t69 + parameters[MZ6] * (t59 * t66 - t58 * t67));
+    const ur10e_real_t t13 = dq[3] + t12;
+    const ur10e_real_t t14 = t10 * (parameters[XX4] * t10 - parameters[XY4] * t11 + t13 * parameters[XZ4]);
+    const ur10e_real_t t15 = t11 * (parameters[YY4] * t11 - parameters[XY4] * t10 - t13 * parameters[YZ4]);
+    const ur10e_real_t t16 = t13 * (parameters[XZ4] * t10 - parameters[YZ4] * t11 + t13 * parameters[ZZ4]);
+    const ur10e_real_t t17 = UR10E_C(0.6127) * dq[1];
+    const ur10e_real_t t18 = t5 * t17;
+    const ur10e_real_t t19 = t18 + UR10E_C(0.17415) * t8;
+    const ur10e_real_t t20 = t2 * t17;
+    const ur10e_real_t t21 = t20 + (UR10E_C(0.57155) * t12 + UR10E_C(0.17415) * t6);
+    const ur10e_real_t t22 = t7 * t19 + t9 * t21;
+    const ur10e_real_t t23 = t9 * t19 - t7 * t21;
+    const ur10e_real_t t24 = t23 * t23;
+    const ur10e_real_t t25 = UR10E_C(0.6127) * t4;
+    const ur10e_real_t t26 = t25 + UR10E_C(-0.57155) * t8;
+    const ur10e_real_t t27 = t14 + t15 + t16 + parameters[M4] * (t22 * t22 + t24 + t26 * t26);
+    const ur10e_real_t t28 = t6 * (parameters[XX3] * t6 - parameters[XY3] * t8 + t12 * parameters[XZ3]);
+    const ur10e_real_t t29 = t8 * (parameters[YY3] * t8 - parameters[XY3] * t6 - t12 * parameters[YZ3]);
+    const ur10e_real_t t30 = t12 * (parameters[XZ3] * t6 - parameters[YZ3] * t8 + t12 * parameters[ZZ3]);
+    const ur10e_real_t t31 = parameters[M3] * (t18 * t18 + t20 * t20 + t25 * t25);
+    const ur10e_real_t t32 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
+    const ur10e_real_t t33 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
+    const ur10e_real_t t34 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2] + dq[1] * parameters[ZZ2]);
+    const ur10e_real_t t35 = UR10E_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + UR10E_C(0.5) * (t32 + t33
+        + t34);
+    const ur10e_real_t t36 = parameters[MX3] * (t8 * t25 - t12 * t20) + parameters[MY3] * (t6 * t25
+        + t12 * t18);
+    const ur10e_real_t t37 = t35 + UR10E_C(0.5) * (t28 + t29 + t30 + t31) + (t36 + parameters[MZ3] * (t8 * t18
+        + t6 * t20));
+    const ur10e_real_t t38 = parameters[MX4] * (t13 * t23 + t11 * t26) + parameters[MY4] * (t10 * t26
+        + t13 * t22);
+    const ur10e_real_t t39 = t37 + UR10E_C(0.5) * t27 + (t38 + parameters[MZ4] * (t11 * t22 - t10 * t23));
+    const ur10e_real_t t40 = t22 + UR10E_C(-0.11985) * t13;
+    const ur10e_real_t t42 = t26 - UR10E_C(0.11985) * t10;
+    const ur10e_real_t t44 = t41 * t40 - t43 * t42;
+    const ur10e_real_t t45 = t43 * t40 + t41 * t42;
+    const ur10e_real_t t46 = t45 * t45;
+    const ur10e_real_t t47 = t43 * t13 + t41 * t10;
+    const ur10e_real_t t48 = t41 * t13 - t43 * t10;
+    const ur10e_real_t t49 = dq[4] + t11;
+    const ur10e_real_t t50 = t47 * (parameters[XX5] * t47 + parameters[XY5] * t48 + parameters[XZ5] * t49);
+    const ur10e_real_t t51 = t48 * (parameters[XY5] * t47 + parameters[YY5] * t48 + parameters[YZ5] * t49);
+    const ur10e_real_t t52 = t49 * (parameters[XZ5] * t47 + parameters[YZ5] * t48 + parameters[ZZ5] * t49);
+    const ur10e_real_t t53 = t50 + t51 + t52 + parameters[M5] * (t24 + (t44 * t44 + t46));
+    const ur10e_real_t t54 = parameters[MX5] * (t49 * t45 + t48 * t23) + parameters[MY5] * (t49 * t44
+        - t47 * t23);
+    const ur10e_real_t t55 = t39 + UR10E_C(0.5) * t53 + (t54 - parameters[MZ5] * (t48 * t44 + t47 * t45));
+    const ur10e_real_t t56 = t44 + UR10E_C(0.11655) * t49;
+    const ur10e_real_t t58 = t23 - UR10E_C(0.11655) * t47;
+    const ur10e_real_t t60 = t57 * t56 - t59 * t58;
+    const ur10e_real_t t61 = t59 * t56 + t57 * t58;
+    const ur10e_real_t t62 = t57 * t47 - t59 * t49;
+    const ur10e_real_t t63 = t59 * t47 + t57 * t49;
+    const ur10e_real_t t64 = dq[5] + t48;
+    const ur10e_real_t t65 = t62 * (parameters[XX6] * t62 - parameters[XY6] * t63 + parameters[XZ6] * t64);
+    const ur10e_real_t t66 = t63 * (parameters[YY6] * t63 - parameters[XY6] * t62 - parameters[YZ6] * t64);
+    const ur10e_real_t t67 = t64 * (parameters[XZ6] * t62 - parameters[YZ6] * t63 + parameters[ZZ6] * t64);
+    const ur10e_real_t t68 = t65 + t66 + t67 + parameters[M6] * (t46 + (t60 * t60 + t61 * t61));
+    const ur10e_real_t t69 = parameters[MX6] * (t64 * t61 + t63 * t45) + parameters[MY6] * (t62 * t45
+        + t64 * t60);
+    const ur10e_real_t t70 = t55 + UR10E_C(0.5) * t68 + (t69 + parameters[MZ6] * (t63 * t60 - t62 * t61));
     const ur10e_real_t t71 = t70 + UR10E_C(0.5) * (dq[0] * dq[0] * (UR10E_C(10201.0) * parameters[IA1]))
         + UR10E_C(0.5) * (dq[1] * dq[1] * (UR10E_C(10201.0) * parameters[IA2]));
     const ur10e_real_t t72 = t71 + UR10E_C(0.5) * (dq[2] * dq[2] * (UR10E_C(10201.0) * parameters[IA3]))
@@ -218,24 +218,24 @@ int ur10e_energy_standard(
         + UR10E_C(0.5) * (dq[5] * dq[5] * (UR10E_C(10201.0) * parameters[IA6]));
     kinetic[0] = t73;
     const ur10e_real_t t74 = UR10E_C(9.81) * t0;
-    const ur10e_real_t t75 = UR10E_C(9.81) * t2;
+    const ur10e_real_t t75 = UR10E_C(9.81) * t3;
     const ur10e_real_t t76 = UR10E_C(9.81) * parameters[MZ1] + UR10E_C(1.772667) * parameters[M1]
         + (t74 * parameters[MX2] + t75 * parameters[MY2] + UR10E_C(1.772667) * parameters[M2]);
-    const ur10e_real_t t77 = t8 * t74 + t9 * t75;
-    const ur10e_real_t t78 = t8 * t75 - t9 * t74;
+    const ur10e_real_t t77 = t2 * t74 + t5 * t75;
+    const ur10e_real_t t78 = t2 * t75 - t5 * t74;
     const ur10e_real_t t79 = UR10E_C(-6.010587) * t0 + UR10E_C(1.772667);
     const ur10e_real_t t80 = t76 + (t77 * parameters[MX3] + t78 * parameters[MY3] + parameters[M3] * t79);
-    const ur10e_real_t t81 = t23 * t77 + t24 * t78;
-    const ur10e_real_t t82 = t23 * t78 - t24 * t77;
+    const ur10e_real_t t81 = t7 * t77 + t9 * t78;
+    const ur10e_real_t t82 = t7 * t78 - t9 * t77;
     const ur10e_real_t t83 = t79 + UR10E_C(-0.57155) * t77;
     const ur10e_real_t t84 = t80 + (t81 * parameters[MX4] + t82 * parameters[MY4] + parameters[M4] * t83);
     const ur10e_real_t t85 = t41 * t81;
-    const ur10e_real_t t86 = t40 * t81;
+    const ur10e_real_t t86 = t43 * t81;
     const ur10e_real_t t87 = t83 + UR10E_C(-0.11985) * t82;
     const ur10e_real_t t88 = t85 * parameters[MX5] - t86 * parameters[MY5] - t82 * parameters[MZ5]
         + parameters[M5] * t87;
-    const ur10e_real_t t89 = (t56 * t85 + t57 * t82) * parameters[MX6] + (t56 * t82
-        - t57 * t85) * parameters[MY6];
+    const ur10e_real_t t89 = (t57 * t85 + t59 * t82) * parameters[MX6] + (t57 * t82
+        - t59 * t85) * parameters[MY6];
     const ur10e_real_t t90 = t89 - t86 * parameters[MZ6] + parameters[M6] * (t87 + UR10E_C(-0.11655) * t86);
     potential[0] = t84 + t88 + t90;
     return UR10E_STATUS_OK;

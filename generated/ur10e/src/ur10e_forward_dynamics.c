@@ -81,7 +81,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -108,375 +108,374 @@ int ur10e_forward_dynamics(
         return status;
     }
 
-    ur10e_real_t t2, t3;
-    UR10E_SINCOS(q[1], &t2, &t3);
-    ur10e_real_t t13, t12;
-    UR10E_SINCOS(q[2], &t13, &t12);
-    ur10e_real_t t26, t25;
-    UR10E_SINCOS(q[3], &t26, &t25);
-    ur10e_real_t t40, t39;
-    UR10E_SINCOS(q[4], &t40, &t39);
-    ur10e_real_t t71, t70;
-    UR10E_SINCOS(q[5], &t71, &t70);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0]))
-        + UR10E_C(-101.0) * (parameters[FC1] * t0);
-    const ur10e_real_t t4 = t3 * dq[0];
-    const ur10e_real_t t5 = dq[1] * t4;
-    const ur10e_real_t t6 = t2 * dq[0];
-    const ur10e_real_t t7 = dq[1] * t6;
-    const ur10e_real_t t8 = parameters[XY2] * (UR10E_C(2.0) * t7) - (parameters[XX2R] * t5
-        + parameters[ZZ2R] * t5);
-    const ur10e_real_t t9 = t6 * t4;
-    const ur10e_real_t t10 = dq[1] * dq[1];
-    const ur10e_real_t t11 = t4 * t4;
-    const ur10e_real_t t14 = t13 * t6 - t12 * t4;
-    const ur10e_real_t t15 = dq[1] + dq[2];
-    const ur10e_real_t t16 = t14 * t15;
-    const ur10e_real_t t17 = t12 * t6 + t13 * t4;
-    const ur10e_real_t t18 = t17 * t15;
-    const ur10e_real_t t19 = UR10E_C(2.0) * t18;
-    const ur10e_real_t t20 = t17 * t14;
-    const ur10e_real_t t21 = parameters[XX3R] * t16 + parameters[ZZ3R] * t16 + parameters[XY3] * t19
-        + parameters[XZ3R] * t20;
-    const ur10e_real_t t22 = t14 * t14;
-    const ur10e_real_t t23 = t15 * t15;
-    const ur10e_real_t t24 = UR10E_C(1.2254) * t7;
-    const ur10e_real_t t27 = t26 * t17 + t25 * t14;
-    const ur10e_real_t t28 = dq[3] + t15;
-    const ur10e_real_t t29 = t27 * t28;
-    const ur10e_real_t t30 = t26 * t14 - t25 * t17;
-    const ur10e_real_t t31 = t30 * t28;
-    const ur10e_real_t t32 = UR10E_C(-2.0) * t31;
-    const ur10e_real_t t33 = t30 * t27;
-    const ur10e_real_t t34 = parameters[XX4R] * t29 + parameters[ZZ4R] * t29 + parameters[XY4] * t32
-        - parameters[XZ4] * t33;
-    const ur10e_real_t t35 = t27 * t27;
-    const ur10e_real_t t36 = t28 * t28;
-    const ur10e_real_t t37 = t17 * t17;
-    const ur10e_real_t t38 = t24 + (UR10E_C(1.1431) * t18 + UR10E_C(0.17415) * (t37 + t22));
-    const ur10e_real_t t41 = UR10E_C(2.0) * t29;
-    const ur10e_real_t t42 = t40 * t33 + t39 * t41;
-    const ur10e_real_t t43 = t40 * t30 + t39 * t28;
-    const ur10e_real_t t44 = dq[4] + t27;
-    const ur10e_real_t t45 = t43 * t44;
-    const ur10e_real_t t46 = t42 - t45;
-    const ur10e_real_t t47 = t39 * t30 - t40 * t28;
-    const ur10e_real_t t48 = t47 * t44;
-    const ur10e_real_t t49 = t40 * t41 - t39 * t33;
-    const ur10e_real_t t50 = t49 + t48;
-    const ur10e_real_t t51 = t48 + t50;
-    const ur10e_real_t t52 = t47 * t43;
-    const ur10e_real_t t53 = t31 + t52;
-    const ur10e_real_t t54 = parameters[XX5R] * t46 - parameters[ZZ5R] * t45 - parameters[XY5] * t51
-        + parameters[XZ5] * t53;
-    const ur10e_real_t t55 = t43 * t43;
-    const ur10e_real_t t56 = t44 * t44;
-    const ur10e_real_t t57 = UR10E_C(-9.81) * t2;
-    const ur10e_real_t t58 = t57 + UR10E_C(-0.6127) * (t10 + t11);
-    const ur10e_real_t t59 = UR10E_C(9.81) * t3;
-    const ur10e_real_t t60 = t59 - UR10E_C(0.6127) * t9;
-    const ur10e_real_t t61 = t12 * t58 - t13 * t60;
-    const ur10e_real_t t62 = t22 + t23;
-    const ur10e_real_t t63 = t61 + UR10E_C(-0.57155) * t62;
-    const ur10e_real_t t64 = t13 * t58 + t12 * t60;
-    const ur10e_real_t t65 = t64 + UR10E_C(0.57155) * t20;
-    const ur10e_real_t t66 = t26 * t63 + t25 * t65;
-    const ur10e_real_t t67 = t30 * t30;
-    const ur10e_real_t t68 = t67 + t36;
-    const ur10e_real_t t69 = t66 + UR10E_C(0.11985) * t68;
-    const ur10e_real_t t72 = t31 - t52;
-    const ur10e_real_t t73 = t46 - t45;
-    const ur10e_real_t t74 = t71 * t72 - t70 * t73;
-    const ur10e_real_t t75 = t71 * t47 - t70 * t44;
-    const ur10e_real_t t76 = dq[5] + t43;
-    const ur10e_real_t t77 = t75 * t76;
-    const ur10e_real_t t78 = t74 + t77;
-    const ur10e_real_t t79 = t70 * t47 + t71 * t44;
-    const ur10e_real_t t80 = t79 * t76;
-    const ur10e_real_t t81 = t70 * t72 + t71 * t73;
-    const ur10e_real_t t82 = t80 + (t81 + t80);
-    const ur10e_real_t t83 = t79 * t75;
-    const ur10e_real_t t84 = t50 - t83;
-    const ur10e_real_t t85 = parameters[XX6R] * t78 + parameters[ZZ6] * t77 + parameters[XY6] * t82
-        + parameters[XZ6R] * t84;
-    const ur10e_real_t t86 = t75 * t75;
-    const ur10e_real_t t87 = t76 * t76;
-    const ur10e_real_t t88 = t26 * t65 - t25 * t63;
-    const ur10e_real_t t89 = t88 + UR10E_C(-0.11985) * t33;
-    const ur10e_real_t t90 = t38 + UR10E_C(-0.2397) * t29;
-    const ur10e_real_t t91 = t40 * t89 + t39 * t90;
-    const ur10e_real_t t92 = parameters[MY6] * t91 - (t85 + parameters[YZ6R] * (t86 - t87));
-    const ur10e_real_t t93 = t77 + t78;
-    const ur10e_real_t t94 = t50 + t83;
-    const ur10e_real_t t95 = parameters[XY6] * t93 - t80 * (parameters[XX6R] - parameters[ZZ6])
-        + parameters[YZ6R] * t94;
-    const ur10e_real_t t96 = t79 * t79;
-    const ur10e_real_t t97 = t95 + parameters[XZ6R] * (t87 - t96) + parameters[MX6] * t91;
-    const ur10e_real_t t98 = t54 + parameters[YZ5] * (t56 - t55) + parameters[MY5R] * t69 + (t70 * t92
-        + t71 * t97);
-    const ur10e_real_t t99 = t48 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t73
-        + parameters[YZ5] * t72;
-    const ur10e_real_t t100 = t47 * t47;
-    const ur10e_real_t t101 = parameters[ZZ6] * t50 + parameters[XX6R] * t83 + parameters[YZ6R] * t81
-        + parameters[XZ6R] * t74;
-    const ur10e_real_t t102 = t40 * t90 - t39 * t89;
-    const ur10e_real_t t103 = parameters[MX6] * (t71 * t102 + t70 * t69) + parameters[MY6] * (t70 * t102
-        - t71 * t69);
-    const ur10e_real_t t104 = t101 + parameters[XY6] * (t96 - t86) + t103;
-    const ur10e_real_t t105 = parameters[XZ5] * (t56 - t100) - t99 + parameters[MX5] * t69 + t104;
-    const ur10e_real_t t106 = parameters[MX6] * (t86 + t87) + parameters[MY6] * t94;
-    const ur10e_real_t t107 = parameters[MX6] * t84 - parameters[MY6] * (t96 + t87);
-    const ur10e_real_t t108 = parameters[MX5] * (t55 + t56) - parameters[MY5R] * t72 + (t70 * t106
-        + t71 * t107);
-    const ur10e_real_t t109 = parameters[MX5] * t53 + parameters[MY5R] * (t100 + t56) + (parameters[MX6] * t82
-        - parameters[MY6] * t93);
-    const ur10e_real_t t110 = t40 * t108 + t39 * t109;
-    const ur10e_real_t t111 = t34 + parameters[YZ4] * (t36 - t35) + parameters[MY4R] * t38 + (t39 * t98
-        + t40 * t105 + UR10E_C(-0.11985) * t110);
-    const ur10e_real_t t112 = t31 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t41
-        + parameters[YZ4] * t33;
-    const ur10e_real_t t113 = parameters[ZZ5R] * t31 - parameters[XX5R] * t52 - parameters[YZ5] * t49
-        + parameters[XZ5] * t42;
-    const ur10e_real_t t114 = t113 + parameters[XY5] * (t55 - t100) + (parameters[MX5] * t91
-        - parameters[MY5R] * t102);
-    const ur10e_real_t t115 = t114 + (t70 * t97 - t71 * t92);
-    const ur10e_real_t t116 = parameters[XZ4] * (t36 - t67) - t112 + parameters[MX4] * t38 + t115;
-    const ur10e_real_t t117 = t40 * t109 - t39 * t108;
-    const ur10e_real_t t118 = parameters[MY4R] * t33 - parameters[MX4] * (t35 + t36) + t117;
-    const ur10e_real_t t119 = parameters[MX5] * t51 + parameters[MY5R] * t73 + (t70 * t107 - t71 * t106);
-    const ur10e_real_t t120 = parameters[MX4] * t33 - parameters[MY4R] * t68 + t119;
-    const ur10e_real_t t121 = t26 * t118 + t25 * t120;
-    const ur10e_real_t t122 = t21 + parameters[YZ3] * (t23 - t22) + parameters[MY3] * t24 + (t25 * t111
-        + t26 * t116 + UR10E_C(0.17415) * t121);
-    const ur10e_real_t t123 = UR10E_C(2.0) * t16;
-    const ur10e_real_t t124 = t18 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t123
-        + parameters[YZ3] * t20;
-    const ur10e_real_t t125 = t26 * t120 - t25 * t118;
-    const ur10e_real_t t126 = parameters[MY4R] * t41 - parameters[MX4] * t32 + t110;
-    const ur10e_real_t t127 = t26 * t111 - t25 * t116 + (UR10E_C(0.17415) * t125 - UR10E_C(-0.57155) * t126);
-    const ur10e_real_t t128 = t124 - parameters[XZ3R] * (t37 - t23) + parameters[MX3R] * t24 - t127;
-    const ur10e_real_t t129 = t8 - parameters[XZ2R] * t9 + parameters[YZ2] * (t10 - t11) + (t12 * t122
-        + t13 * t128);
-    const ur10e_real_t t130 = t7 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (UR10E_C(-2.0) * t5) + parameters[YZ2] * t9;
-    const ur10e_real_t t131 = t6 * t6;
-    const ur10e_real_t t132 = t13 * t122 - t12 * t128 + UR10E_C(0.6127) * (parameters[MY3] * t123
-        - parameters[MX3R] * t19 + t126);
-    const ur10e_real_t t133 = t2 * t129 + t3 * (t130 + parameters[XZ2R] * (t131 - t10) + t132);
-    const ur10e_real_t t134 = ur10e_sign(dq[5]);
-    const ur10e_real_t t135 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5]))
-        + UR10E_C(101.0) * (parameters[FC6] * t134);
-    const ur10e_real_t t136 = UR10E_C(9.09) * input[5] - (t135 + t104);
-    const ur10e_real_t t137 = t71 * parameters[YZ6R] - t70 * parameters[XZ6R];
-    const ur10e_real_t t138 = t70 * parameters[MY6] + t71 * parameters[MX6];
-    const ur10e_real_t t139 = t40 * t138;
-    const ur10e_real_t t140 = UR10E_C(0.11985) * t139 - (t39 * t137 + t40 * parameters[ZZ6]);
-    const ur10e_real_t t141 = t71 * parameters[XZ6R] + t70 * parameters[YZ6R];
-    const ur10e_real_t t142 = t39 * t138;
-    const ur10e_real_t t143 = t70 * parameters[MX6] - t71 * parameters[MY6];
-    const ur10e_real_t t144 = t26 * t142 - t25 * t143;
-    const ur10e_real_t t145 = t25 * t140 - t26 * t141 + UR10E_C(0.17415) * t144;
-    const ur10e_real_t t146 = t25 * t142 + t26 * t143;
-    const ur10e_real_t t147 = t26 * t140 + t25 * t141 - (UR10E_C(0.17415) * t146 + UR10E_C(0.57155) * t139);
-    const ur10e_real_t t148 = t3 * (t13 * t145 + t12 * t147 - UR10E_C(0.6127) * t139);
-    const ur10e_real_t t149 = t2 * (t12 * t145 - t13 * t147) + t148;
-    const ur10e_real_t t150 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
-    if (!(t150 > UR10E_C(1.0e-9))) {
+    ur10e_real_t t80, t81;
+    UR10E_SINCOS(q[1], &t80, &t81);
+    ur10e_real_t t55, t56;
+    UR10E_SINCOS(q[2], &t55, &t56);
+    ur10e_real_t t34, t37;
+    UR10E_SINCOS(q[3], &t34, &t37);
+    ur10e_real_t t11, t13;
+    UR10E_SINCOS(q[4], &t11, &t13);
+    ur10e_real_t t1, t2;
+    UR10E_SINCOS(q[5], &t1, &t2);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    if (!(t0 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t151 = UR10E_C(-1.0) / t150;
-    const ur10e_real_t t152 = t149 * t151;
-    const ur10e_real_t t153 = ur10e_sign(dq[4]);
-    const ur10e_real_t t154 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4]))
-        + UR10E_C(101.0) * (parameters[FC5] * t153);
-    const ur10e_real_t t155 = t141 * t151;
-    const ur10e_real_t t156 = UR10E_C(9.09) * input[4] - (t154 - t115) - t136 * t155;
-    const ur10e_real_t t157 = t70 * parameters[XX6R] - parameters[XY6] * (UR10E_C(2.0) * t71);
-    const ur10e_real_t t158 = parameters[XY6] + t71 * t157 - parameters[XZ5];
-    const ur10e_real_t t159 = parameters[YZ5] - t141;
-    const ur10e_real_t t160 = parameters[MX5] + t143;
-    const ur10e_real_t t161 = t39 * t160 - t40 * parameters[MY5R];
-    const ur10e_real_t t162 = t39 * t158 + t40 * t159 + UR10E_C(0.11985) * t161;
-    const ur10e_real_t t163 = t70 * t157;
-    const ur10e_real_t t164 = parameters[ZZ5R] + (parameters[XX6R] - t163);
-    const ur10e_real_t t165 = t39 * parameters[MY5R] + t40 * t160;
-    const ur10e_real_t t166 = t26 * t165;
-    const ur10e_real_t t167 = t26 * t164 - t25 * t162 + UR10E_C(0.17415) * t166;
-    const ur10e_real_t t168 = t25 * t165;
-    const ur10e_real_t t169 = t26 * t162 + t25 * t164 + (UR10E_C(0.17415) * t168 + UR10E_C(-0.57155) * t161);
-    const ur10e_real_t t170 = t3 * (t13 * t167 - t12 * t169 - UR10E_C(-0.6127) * t161);
-    const ur10e_real_t t171 = t2 * (t12 * t167 + t13 * t169) + t170 - t149 * t155;
-    const ur10e_real_t t172 = t164 + UR10E_C(10201.0) * parameters[IA5] + t141 * t155;
-    if (!(t172 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t3 = t1 * parameters[XZ6R] + t2 * parameters[YZ6R];
+    const ur10e_real_t t4 = UR10E_C(-1.0) / t0;
+    const ur10e_real_t t5 = t3 * t4;
+    const ur10e_real_t t6 = t2 * parameters[XX6R] - parameters[XY6] * (UR10E_C(2.0) * t1);
+    const ur10e_real_t t7 = t2 * t6;
+    const ur10e_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
+    const ur10e_real_t t9 = t8 + UR10E_C(10201.0) * parameters[IA5] + t3 * t5;
+    if (!(t9 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t173 = UR10E_C(-1.0) / t172;
-    const ur10e_real_t t174 = t171 * t173;
-    const ur10e_real_t t175 = UR10E_C(12.12) * input[0] + (t1 + t133) + t136 * t152 + t156 * t174;
-    const ur10e_real_t t176 = ur10e_sign(dq[3]);
-    const ur10e_real_t t177 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3]))
-        + UR10E_C(101.0) * (parameters[FC4] * t176);
-    const ur10e_real_t t178 = parameters[XY4] * (t67 - t35) - parameters[XX4R] * t33 - (parameters[MY4R] * t88
-        - parameters[MX4] * t66);
-    const ur10e_real_t t179 = t178 + (t39 * t105 - t40 * t98 - UR10E_C(-0.11985) * t117);
-    const ur10e_real_t t180 = t40 * t137 - t39 * parameters[ZZ6] + UR10E_C(0.11985) * t142;
-    const ur10e_real_t t181 = t180 * t151;
-    const ur10e_real_t t182 = t40 * t158 - t39 * t159 + UR10E_C(0.11985) * t165;
-    const ur10e_real_t t183 = t182 - t180 * t155;
-    const ur10e_real_t t184 = t183 * t173;
-    const ur10e_real_t t185 = UR10E_C(9.09) * input[3] - (t177 + t179) - t136 * t181 - t156 * t184;
-    const ur10e_real_t t186 = t137 - parameters[XY5];
-    const ur10e_real_t t187 = parameters[XX5R] + t163;
-    const ur10e_real_t t188 = t39 * (parameters[ZZ6] - t187) - t186 * (UR10E_C(2.0) * t40);
-    const ur10e_real_t t189 = t186 + t40 * t188 - parameters[XZ4];
-    const ur10e_real_t t190 = parameters[YZ4] + t182;
-    const ur10e_real_t t191 = t25 * t189 + t26 * t190;
-    const ur10e_real_t t192 = parameters[MY4R] + t138;
-    const ur10e_real_t t193 = parameters[MX4] + t161;
-    const ur10e_real_t t194 = t25 * t193 - t26 * t192;
-    const ur10e_real_t t195 = UR10E_C(0.17415) * t194;
-    const ur10e_real_t t196 = t191 + t195;
-    const ur10e_real_t t197 = t25 * t192 + t26 * t193;
-    const ur10e_real_t t198 = t25 * t190 - t26 * t189 - UR10E_C(0.17415) * t197;
-    const ur10e_real_t t199 = t3 * (t12 * t198 - t13 * t196) - t2 * (t12 * t196 + t13 * t198);
-    const ur10e_real_t t200 = t199 - t149 * t181 - t171 * t184;
-    const ur10e_real_t t201 = t39 * t188;
-    const ur10e_real_t t202 = UR10E_C(-0.2397) * t138;
-    const ur10e_real_t t203 = parameters[ZZ4R] + (t187 + t201 + t202);
-    const ur10e_real_t t204 = t203 + UR10E_C(10201.0) * parameters[IA4] + t180 * t181 + t183 * t184;
-    if (!(t204 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t10 = parameters[XY6] + t1 * t6 - parameters[XZ5];
+    const ur10e_real_t t12 = parameters[YZ5] - t3;
+    const ur10e_real_t t14 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const ur10e_real_t t15 = parameters[MX5] + t14;
+    const ur10e_real_t t16 = t13 * parameters[MY5R] + t11 * t15;
+    const ur10e_real_t t17 = t11 * t10 - t13 * t12 + UR10E_C(0.11985) * t16;
+    const ur10e_real_t t18 = t1 * parameters[YZ6R] - t2 * parameters[XZ6R];
+    const ur10e_real_t t19 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const ur10e_real_t t20 = t13 * t19;
+    const ur10e_real_t t21 = t11 * t18 - t13 * parameters[ZZ6] + UR10E_C(0.11985) * t20;
+    const ur10e_real_t t22 = t17 - t21 * t5;
+    const ur10e_real_t t23 = UR10E_C(-1.0) / t9;
+    const ur10e_real_t t24 = t22 * t23;
+    const ur10e_real_t t25 = t21 * t4;
+    const ur10e_real_t t26 = parameters[XX5R] + t7;
+    const ur10e_real_t t27 = t18 - parameters[XY5];
+    const ur10e_real_t t28 = t13 * (parameters[ZZ6] - t26) - t27 * (UR10E_C(2.0) * t11);
+    const ur10e_real_t t29 = t13 * t28;
+    const ur10e_real_t t30 = UR10E_C(-0.2397) * t19;
+    const ur10e_real_t t31 = parameters[ZZ4R] + (t26 + t29 + t30);
+    const ur10e_real_t t32 = t31 + UR10E_C(10201.0) * parameters[IA4] + t21 * t25 + t22 * t24;
+    if (!(t32 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t205 = UR10E_C(-1.0) / t204;
-    const ur10e_real_t t206 = t200 * t205;
-    const ur10e_real_t t207 = ur10e_sign(dq[2]);
-    const ur10e_real_t t208 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2]))
-        + UR10E_C(101.0) * (parameters[FC3] * t207);
-    const ur10e_real_t t209 = parameters[XX3R] * t20 + parameters[XY3] * (t37 - t22) + (parameters[MX3R] * t64
-        + parameters[MY3] * t61);
-    const ur10e_real_t t210 = t209 + (t179 + UR10E_C(-0.57155) * t121);
-    const ur10e_real_t t211 = UR10E_C(0.57155) * t144 - t180;
-    const ur10e_real_t t212 = t211 * t151;
-    const ur10e_real_t t213 = UR10E_C(0.57155) * t166 - t182;
-    const ur10e_real_t t214 = t213 - t211 * t155;
-    const ur10e_real_t t215 = t214 * t173;
-    const ur10e_real_t t216 = UR10E_C(10.100000000000001) * input[2] - (t208 + t210) + t136 * t212
-        + t156 * t215;
-    const ur10e_real_t t217 = UR10E_C(0.57155) * t194 - t203;
-    const ur10e_real_t t218 = t217 + t211 * t181 + t214 * t184;
-    const ur10e_real_t t219 = t218 * t205;
-    const ur10e_real_t t220 = t216 - t185 * t219;
-    const ur10e_real_t t221 = t191 + (t195 + UR10E_C(-0.57155) * t165) - parameters[XZ3R];
-    const ur10e_real_t t222 = parameters[YZ3] + t198;
-    const ur10e_real_t t223 = t12 * t221 + t13 * t222;
-    const ur10e_real_t t224 = t13 * t221 - t12 * t222;
-    const ur10e_real_t t225 = t2 * t223 + t3 * t224 - t149 * t212 - t171 * t215;
-    const ur10e_real_t t226 = t225 + t200 * t219;
-    const ur10e_real_t t227 = UR10E_C(-1.1431) * t194;
-    const ur10e_real_t t228 = parameters[ZZ3R] + (t203 + t227);
-    const ur10e_real_t t229 = t228 + UR10E_C(10201.0) * parameters[IA3] + t211 * t212 + t214 * t215;
-    const ur10e_real_t t230 = t229 + t218 * t219;
-    if (!(t230 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t33 = parameters[MY4R] + t19;
+    const ur10e_real_t t35 = t13 * t15 - t11 * parameters[MY5R];
+    const ur10e_real_t t36 = parameters[MX4] + t35;
+    const ur10e_real_t t38 = t37 * t36 - t34 * t33;
+    const ur10e_real_t t39 = UR10E_C(0.57155) * t38 - t31;
+    const ur10e_real_t t40 = t34 * t20 - t37 * t14;
+    const ur10e_real_t t41 = UR10E_C(0.57155) * t40 - t21;
+    const ur10e_real_t t42 = t34 * t16;
+    const ur10e_real_t t43 = UR10E_C(0.57155) * t42 - t17;
+    const ur10e_real_t t44 = t43 - t41 * t5;
+    const ur10e_real_t t45 = t39 + t41 * t25 + t44 * t24;
+    const ur10e_real_t t46 = UR10E_C(-1.0) / t32;
+    const ur10e_real_t t47 = t45 * t46;
+    const ur10e_real_t t48 = t41 * t4;
+    const ur10e_real_t t49 = UR10E_C(-1.1431) * t38;
+    const ur10e_real_t t50 = parameters[ZZ3R] + (t31 + t49);
+    const ur10e_real_t t51 = t44 * t23;
+    const ur10e_real_t t52 = t50 + UR10E_C(10201.0) * parameters[IA3] + t41 * t48 + t44 * t51;
+    const ur10e_real_t t53 = t52 + t45 * t47;
+    if (!(t53 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t231 = UR10E_C(1.0) / t230;
-    const ur10e_real_t t232 = t226 * t231;
-    const ur10e_real_t t233 = ur10e_sign(dq[1]);
-    const ur10e_real_t t234 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1]))
-        + UR10E_C(101.0) * (parameters[FC2] * t233);
-    const ur10e_real_t t235 = parameters[XX2R] * t9 - parameters[XY2] * (t131 - t11) - (parameters[MX2R] * t59
-        + parameters[MY2] * t57);
-    const ur10e_real_t t236 = t12 * (parameters[MX3R] * t20 + parameters[MY3] * (t37 + t23) - t121);
-    const ur10e_real_t t237 = t13 * (parameters[MX3R] * t62 + parameters[MY3] * t20 + t125) + t236;
-    const ur10e_real_t t238 = UR10E_C(12.12) * input[1] - (t234 - (t235 - (t210 + UR10E_C(0.6127) * t237)));
-    const ur10e_real_t t239 = t211 + UR10E_C(0.6127) * (t13 * t146 + t12 * t144);
-    const ur10e_real_t t240 = t239 * t151;
-    const ur10e_real_t t241 = t213 + UR10E_C(0.6127) * (t13 * t168 + t12 * t166) - t239 * t155;
-    const ur10e_real_t t242 = t241 * t173;
-    const ur10e_real_t t243 = t217 + UR10E_C(0.6127) * (t12 * t194 - t13 * t197) + t239 * t181;
-    const ur10e_real_t t244 = t243 + t241 * t184;
-    const ur10e_real_t t245 = t244 * t205;
-    const ur10e_real_t t246 = t238 + t136 * t240 + t156 * t242 - t185 * t245;
-    const ur10e_real_t t247 = parameters[MY3] + t197;
-    const ur10e_real_t t248 = parameters[MX3R] + t194;
-    const ur10e_real_t t249 = t13 * t247 - t12 * t248;
-    const ur10e_real_t t250 = UR10E_C(-0.6127) * t249 - t228 - t239 * t212 - t241 * t215;
-    const ur10e_real_t t251 = t250 - t244 * t219;
-    const ur10e_real_t t252 = t251 * t231;
-    const ur10e_real_t t253 = t246 + t220 * t252;
-    const ur10e_real_t t254 = t2 * (t223 + UR10E_C(-0.6127) * t165 - parameters[XZ2R]) + t3 * (t224
+    const ur10e_real_t t54 = t37 * t20 + t34 * t14;
+    const ur10e_real_t t57 = t41 + UR10E_C(0.6127) * (t55 * t54 + t56 * t40);
+    const ur10e_real_t t58 = t57 * t4;
+    const ur10e_real_t t59 = t37 * t33 + t34 * t36;
+    const ur10e_real_t t60 = parameters[MY3] + t59;
+    const ur10e_real_t t61 = parameters[MX3R] + t38;
+    const ur10e_real_t t62 = t55 * t60 - t56 * t61;
+    const ur10e_real_t t63 = UR10E_C(1.2254) * t62;
+    const ur10e_real_t t64 = t37 * t16;
+    const ur10e_real_t t65 = t43 + UR10E_C(0.6127) * (t55 * t64 + t56 * t42) - t57 * t5;
+    const ur10e_real_t t66 = t65 * t23;
+    const ur10e_real_t t67 = parameters[ZZ2R] + (t50 + t63) + t57 * t58 + t65 * t66;
+    const ur10e_real_t t68 = t39 + UR10E_C(0.6127) * (t56 * t38 - t55 * t59) + t57 * t25;
+    const ur10e_real_t t69 = t68 + t65 * t24;
+    const ur10e_real_t t70 = t69 * t46;
+    const ur10e_real_t t71 = UR10E_C(-0.6127) * t62 - t50 - t57 * t48 - t65 * t51;
+    const ur10e_real_t t72 = t71 - t69 * t47;
+    const ur10e_real_t t73 = UR10E_C(1.0) / t53;
+    const ur10e_real_t t74 = t72 * t73;
+    const ur10e_real_t t75 = t67 + t69 * t70 - t72 * t74;
+    if (!(t75 > UR10E_C(1.0e-9))) {
+        ur10e_zero(out, 6);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t76 = t11 * t19;
+    const ur10e_real_t t77 = UR10E_C(0.11985) * t76 - (t13 * t18 + t11 * parameters[ZZ6]);
+    const ur10e_real_t t78 = t37 * t77 - t34 * t3 + UR10E_C(0.17415) * t40;
+    const ur10e_real_t t79 = t34 * t77 + t37 * t3 - (UR10E_C(0.17415) * t54 + UR10E_C(0.57155) * t76);
+    const ur10e_real_t t82 = t81 * (t55 * t78 + t56 * t79 - UR10E_C(0.6127) * t76);
+    const ur10e_real_t t83 = t80 * (t56 * t78 - t55 * t79) + t82;
+    const ur10e_real_t t84 = t83 * t4;
+    const ur10e_real_t t85 = parameters[XX4R] + (parameters[ZZ6] - t29 + t30);
+    const ur10e_real_t t86 = t13 * t10 + t11 * t12 + UR10E_C(0.11985) * t35;
+    const ur10e_real_t t87 = parameters[XY4] + t86;
+    const ur10e_real_t t88 = t37 * (t85 - t8) + t87 * (UR10E_C(-2.0) * t34);
+    const ur10e_real_t t89 = t37 * t88;
+    const ur10e_real_t t90 = UR10E_C(0.3483) * t16;
+    const ur10e_real_t t91 = t85 - t89 + (t49 + t90);
+    const ur10e_real_t t92 = parameters[XX3R] + (t8 + t89 + t90);
+    const ur10e_real_t t93 = parameters[XY3] + (t87 + t34 * t88 + UR10E_C(0.57155) * t59);
+    const ur10e_real_t t94 = t56 * (t91 - t92) + t93 * (UR10E_C(2.0) * t55);
+    const ur10e_real_t t95 = t56 * t94;
+    const ur10e_real_t t96 = parameters[XX2R] + (t91 - t95);
+    const ur10e_real_t t97 = t93 - t55 * t94 + UR10E_C(0.6127) * (t56 * t60 + t55 * t61);
+    const ur10e_real_t t98 = t81 * (t92 + t95 + t63 - t96) + (parameters[XY2] + t97) * (UR10E_C(2.0) * t80);
+    const ur10e_real_t t99 = t34 * t86 + t37 * t8 + (UR10E_C(0.17415) * t64 + UR10E_C(-0.57155) * t35);
+    const ur10e_real_t t100 = t34 * t8 - t37 * t86 + UR10E_C(0.17415) * t42;
+    const ur10e_real_t t101 = t81 * (t55 * t100 - t56 * t99 - UR10E_C(-0.6127) * t35);
+    const ur10e_real_t t102 = t80 * (t56 * t100 + t55 * t99) + t101 - t83 * t5;
+    const ur10e_real_t t103 = t102 * t23;
+    const ur10e_real_t t104 = parameters[ZZ1R] + (t96 + t81 * t98) + t83 * t84 + t102 * t103;
+    const ur10e_real_t t105 = t27 + t11 * t28 - parameters[XZ4];
+    const ur10e_real_t t106 = parameters[YZ4] + t17;
+    const ur10e_real_t t107 = t37 * t105 + t34 * t106;
+    const ur10e_real_t t108 = UR10E_C(0.17415) * t38;
+    const ur10e_real_t t109 = t107 + t108;
+    const ur10e_real_t t110 = t37 * t106 - t34 * t105 - UR10E_C(0.17415) * t59;
+    const ur10e_real_t t111 = t81 * (t56 * t110 - t55 * t109) - t80 * (t56 * t109 + t55 * t110);
+    const ur10e_real_t t112 = t111 - t83 * t25 - t102 * t24;
+    const ur10e_real_t t113 = t112 * t46;
+    const ur10e_real_t t114 = t107 + (t108 + UR10E_C(-0.57155) * t16) - parameters[XZ3R];
+    const ur10e_real_t t115 = parameters[YZ3] + t110;
+    const ur10e_real_t t116 = t56 * t114 + t55 * t115;
+    const ur10e_real_t t117 = t55 * t114 - t56 * t115;
+    const ur10e_real_t t118 = t80 * t116 + t81 * t117 - t83 * t48 - t102 * t51;
+    const ur10e_real_t t119 = t118 + t112 * t47;
+    const ur10e_real_t t120 = t119 * t73;
+    const ur10e_real_t t121 = t80 * (t116 + UR10E_C(-0.6127) * t16 - parameters[XZ2R]) + t81 * (t117
         - parameters[YZ2]);
-    const ur10e_real_t t255 = t254 - t149 * t240 - t171 * t242 + t200 * t245;
-    const ur10e_real_t t256 = t255 + t226 * t252;
-    const ur10e_real_t t257 = UR10E_C(1.2254) * t249;
-    const ur10e_real_t t258 = parameters[ZZ2R] + (t228 + t257) + t239 * t240 + t241 * t242;
-    const ur10e_real_t t259 = t258 + t244 * t245 - t251 * t252;
-    if (!(t259 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t122 = t121 - t83 * t58 - t102 * t66 + t112 * t70;
+    const ur10e_real_t t123 = t122 + t119 * t74;
+    const ur10e_real_t t124 = UR10E_C(1.0) / t75;
+    const ur10e_real_t t125 = t123 * t124;
+    const ur10e_real_t t126 = t104 + t112 * t113 - t119 * t120 - t123 * t125;
+    if (!(t126 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t260 = UR10E_C(1.0) / t259;
-    const ur10e_real_t t261 = t256 * t260;
-    const ur10e_real_t t262 = t175 + t185 * t206 + t220 * t232 + t253 * t261;
-    const ur10e_real_t t263 = parameters[XX4R] + (parameters[ZZ6] - t201 + t202);
-    const ur10e_real_t t264 = parameters[XY4] + t162;
-    const ur10e_real_t t265 = t25 * (t263 - t164) + t264 * (UR10E_C(-2.0) * t26);
-    const ur10e_real_t t266 = t25 * t265;
-    const ur10e_real_t t267 = UR10E_C(0.3483) * t165;
-    const ur10e_real_t t268 = t263 - t266 + (t227 + t267);
-    const ur10e_real_t t269 = parameters[XX3R] + (t164 + t266 + t267);
-    const ur10e_real_t t270 = parameters[XY3] + (t264 + t26 * t265 + UR10E_C(0.57155) * t197);
-    const ur10e_real_t t271 = t12 * (t268 - t269) + t270 * (UR10E_C(2.0) * t13);
-    const ur10e_real_t t272 = t12 * t271;
-    const ur10e_real_t t273 = parameters[XX2R] + (t268 - t272);
-    const ur10e_real_t t274 = t270 - t13 * t271 + UR10E_C(0.6127) * (t12 * t247 + t13 * t248);
-    const ur10e_real_t t275 = t3 * (t269 + t272 + t257 - t273) + (parameters[XY2]
-        + t274) * (UR10E_C(2.0) * t2);
-    const ur10e_real_t t276 = parameters[ZZ1R] + (t273 + t3 * t275) + t149 * t152 + t171 * t174;
-    const ur10e_real_t t277 = t276 + t200 * t206 - t226 * t232 - t256 * t261;
-    if (!(t277 > UR10E_C(1.0e-9))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t278 = UR10E_C(1.0) / t277;
-    const ur10e_real_t t279 = t262 * t278;
+    const ur10e_real_t t127 = t80 * dq[0];
+    const ur10e_real_t t128 = t81 * dq[0];
+    const ur10e_real_t t129 = t56 * t127 + t55 * t128;
+    const ur10e_real_t t130 = t55 * t127 - t56 * t128;
+    const ur10e_real_t t131 = t34 * t130 - t37 * t129;
+    const ur10e_real_t t132 = t34 * t129 + t37 * t130;
+    const ur10e_real_t t133 = t131 * t132;
+    const ur10e_real_t t134 = dq[1] + dq[2];
+    const ur10e_real_t t135 = dq[3] + t134;
+    const ur10e_real_t t136 = t132 * t135;
+    const ur10e_real_t t137 = UR10E_C(2.0) * t136;
+    const ur10e_real_t t138 = t11 * t137 - t13 * t133;
+    const ur10e_real_t t139 = t13 * t131 - t11 * t135;
+    const ur10e_real_t t140 = dq[4] + t132;
+    const ur10e_real_t t141 = t139 * t140;
+    const ur10e_real_t t142 = t138 + t141;
+    const ur10e_real_t t143 = t2 * t139 + t1 * t140;
+    const ur10e_real_t t144 = t1 * t139 - t2 * t140;
+    const ur10e_real_t t145 = t143 * t144;
+    const ur10e_real_t t146 = t11 * t133 + t13 * t137;
+    const ur10e_real_t t147 = t11 * t131 + t13 * t135;
+    const ur10e_real_t t148 = t147 * t140;
+    const ur10e_real_t t149 = t146 - t148;
+    const ur10e_real_t t150 = t149 - t148;
+    const ur10e_real_t t151 = t139 * t147;
+    const ur10e_real_t t152 = t131 * t135;
+    const ur10e_real_t t153 = t152 - t151;
+    const ur10e_real_t t154 = t2 * t153 + t1 * t150;
+    const ur10e_real_t t155 = t1 * t153 - t2 * t150;
+    const ur10e_real_t t156 = parameters[ZZ6] * t142 + parameters[XX6R] * t145 + parameters[YZ6R] * t154
+        + parameters[XZ6R] * t155;
+    const ur10e_real_t t157 = t143 * t143;
+    const ur10e_real_t t158 = t144 * t144;
+    const ur10e_real_t t159 = t128 * t128;
+    const ur10e_real_t t160 = dq[1] * dq[1];
+    const ur10e_real_t t161 = UR10E_C(-9.81) * t80;
+    const ur10e_real_t t162 = t161 + UR10E_C(-0.6127) * (t160 + t159);
+    const ur10e_real_t t163 = t127 * t128;
+    const ur10e_real_t t164 = UR10E_C(9.81) * t81;
+    const ur10e_real_t t165 = t164 - UR10E_C(0.6127) * t163;
+    const ur10e_real_t t166 = t56 * t162 - t55 * t165;
+    const ur10e_real_t t167 = t130 * t130;
+    const ur10e_real_t t168 = t134 * t134;
+    const ur10e_real_t t169 = t167 + t168;
+    const ur10e_real_t t170 = t166 + UR10E_C(-0.57155) * t169;
+    const ur10e_real_t t171 = t55 * t162 + t56 * t165;
+    const ur10e_real_t t172 = t129 * t130;
+    const ur10e_real_t t173 = t171 + UR10E_C(0.57155) * t172;
+    const ur10e_real_t t174 = t34 * t173 - t37 * t170;
+    const ur10e_real_t t175 = t174 + UR10E_C(-0.11985) * t133;
+    const ur10e_real_t t176 = t129 * t129;
+    const ur10e_real_t t177 = t129 * t134;
+    const ur10e_real_t t178 = dq[1] * t127;
+    const ur10e_real_t t179 = UR10E_C(1.2254) * t178;
+    const ur10e_real_t t180 = t179 + (UR10E_C(1.1431) * t177 + UR10E_C(0.17415) * (t176 + t167));
+    const ur10e_real_t t181 = t180 + UR10E_C(-0.2397) * t136;
+    const ur10e_real_t t182 = t11 * t181 - t13 * t175;
+    const ur10e_real_t t183 = t34 * t170 + t37 * t173;
+    const ur10e_real_t t184 = t131 * t131;
+    const ur10e_real_t t185 = t135 * t135;
+    const ur10e_real_t t186 = t184 + t185;
+    const ur10e_real_t t187 = t183 + UR10E_C(0.11985) * t186;
+    const ur10e_real_t t188 = parameters[MX6] * (t1 * t182 + t2 * t187) + parameters[MY6] * (t2 * t182
+        - t1 * t187);
+    const ur10e_real_t t189 = t156 + parameters[XY6] * (t157 - t158) + t188;
+    const ur10e_real_t t190 = t141 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t150
+        + parameters[YZ5] * t153;
+    const ur10e_real_t t191 = t139 * t139;
+    const ur10e_real_t t192 = t140 * t140;
+    const ur10e_real_t t193 = parameters[XZ5] * (t192 - t191) - t190 + parameters[MX5] * t187 + t189;
+    const ur10e_real_t t194 = dq[5] + t147;
+    const ur10e_real_t t195 = t144 * t194;
+    const ur10e_real_t t196 = t155 + t195;
+    const ur10e_real_t t197 = t143 * t194;
+    const ur10e_real_t t198 = t197 + (t154 + t197);
+    const ur10e_real_t t199 = t142 - t145;
+    const ur10e_real_t t200 = parameters[XX6R] * t196 + parameters[ZZ6] * t195 + parameters[XY6] * t198
+        + parameters[XZ6R] * t199;
+    const ur10e_real_t t201 = t194 * t194;
+    const ur10e_real_t t202 = t11 * t175 + t13 * t181;
+    const ur10e_real_t t203 = parameters[MY6] * t202 - (t200 + parameters[YZ6R] * (t158 - t201));
+    const ur10e_real_t t204 = t142 + t145;
+    const ur10e_real_t t205 = t195 + t196;
+    const ur10e_real_t t206 = parameters[XY6] * t205 - t197 * (parameters[XX6R] - parameters[ZZ6])
+        + parameters[YZ6R] * t204;
+    const ur10e_real_t t207 = t206 + parameters[XZ6R] * (t201 - t157) + parameters[MX6] * t202;
+    const ur10e_real_t t208 = t141 + t142;
+    const ur10e_real_t t209 = t152 + t151;
+    const ur10e_real_t t210 = parameters[XX5R] * t149 - parameters[ZZ5R] * t148 - parameters[XY5] * t208
+        + parameters[XZ5] * t209;
+    const ur10e_real_t t211 = t147 * t147;
+    const ur10e_real_t t212 = t210 + parameters[YZ5] * (t192 - t211) + parameters[MY5R] * t187 + (t2 * t203
+        + t1 * t207);
+    const ur10e_real_t t213 = parameters[MX6] * (t158 + t201) + parameters[MY6] * t204;
+    const ur10e_real_t t214 = parameters[MX6] * t199 - parameters[MY6] * (t157 + t201);
+    const ur10e_real_t t215 = parameters[MX5] * (t211 + t192) - parameters[MY5R] * t153 + (t2 * t213
+        + t1 * t214);
+    const ur10e_real_t t216 = parameters[MX5] * t209 + parameters[MY5R] * (t191 + t192)
+        + (parameters[MX6] * t198 - parameters[MY6] * t205);
+    const ur10e_real_t t217 = t11 * t215 + t13 * t216;
+    const ur10e_real_t t218 = UR10E_C(-2.0) * t152;
+    const ur10e_real_t t219 = parameters[XX4R] * t136 + parameters[ZZ4R] * t136 + parameters[XY4] * t218
+        - parameters[XZ4] * t133;
+    const ur10e_real_t t220 = t132 * t132;
+    const ur10e_real_t t221 = t219 + parameters[YZ4] * (t185 - t220) + parameters[MY4R] * t180 + (t13 * t212
+        + t11 * t193 + UR10E_C(-0.11985) * t217);
+    const ur10e_real_t t222 = parameters[ZZ5R] * t152 - parameters[XX5R] * t151 - parameters[YZ5] * t138
+        + parameters[XZ5] * t146;
+    const ur10e_real_t t223 = t222 + parameters[XY5] * (t211 - t191) + (parameters[MX5] * t202
+        - parameters[MY5R] * t182);
+    const ur10e_real_t t224 = t223 + (t2 * t207 - t1 * t203);
+    const ur10e_real_t t225 = t152 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t137
+        + parameters[YZ4] * t133;
+    const ur10e_real_t t226 = parameters[XZ4] * (t185 - t184) - t225 + parameters[MX4] * t180 + t224;
+    const ur10e_real_t t227 = t11 * t216 - t13 * t215;
+    const ur10e_real_t t228 = parameters[MY4R] * t133 - parameters[MX4] * (t220 + t185) + t227;
+    const ur10e_real_t t229 = parameters[MX5] * t208 + parameters[MY5R] * t150 + (t2 * t214 - t1 * t213);
+    const ur10e_real_t t230 = parameters[MX4] * t133 - parameters[MY4R] * t186 + t229;
+    const ur10e_real_t t231 = t34 * t228 + t37 * t230;
+    const ur10e_real_t t232 = t130 * t134;
+    const ur10e_real_t t233 = UR10E_C(2.0) * t177;
+    const ur10e_real_t t234 = parameters[XX3R] * t232 + parameters[ZZ3R] * t232 + parameters[XY3] * t233
+        + parameters[XZ3R] * t172;
+    const ur10e_real_t t235 = t234 + parameters[YZ3] * (t168 - t167) + parameters[MY3] * t179 + (t37 * t221
+        + t34 * t226 + UR10E_C(0.17415) * t231);
+    const ur10e_real_t t236 = t34 * t230 - t37 * t228;
+    const ur10e_real_t t237 = parameters[MY4R] * t137 - parameters[MX4] * t218 + t217;
+    const ur10e_real_t t238 = t34 * t221 - t37 * t226 + (UR10E_C(0.17415) * t236 - UR10E_C(-0.57155) * t237);
+    const ur10e_real_t t239 = UR10E_C(2.0) * t232;
+    const ur10e_real_t t240 = t177 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t239
+        + parameters[YZ3] * t172;
+    const ur10e_real_t t241 = t240 - parameters[XZ3R] * (t176 - t168) + parameters[MX3R] * t179 - t238;
+    const ur10e_real_t t242 = dq[1] * t128;
+    const ur10e_real_t t243 = parameters[XY2] * (UR10E_C(2.0) * t178) - (parameters[XX2R] * t242
+        + parameters[ZZ2R] * t242);
+    const ur10e_real_t t244 = t243 - parameters[XZ2R] * t163 + parameters[YZ2] * (t160 - t159) + (t56 * t235
+        + t55 * t241);
+    const ur10e_real_t t245 = t55 * t235 - t56 * t241 + UR10E_C(0.6127) * (parameters[MY3] * t239
+        - parameters[MX3R] * t233 + t237);
+    const ur10e_real_t t246 = t178 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (UR10E_C(-2.0) * t242) + parameters[YZ2] * t163;
+    const ur10e_real_t t247 = t127 * t127;
+    const ur10e_real_t t248 = t80 * t244 + t81 * (t246 + parameters[XZ2R] * (t247 - t160) + t245);
+    const ur10e_real_t t249 = ur10e_sign(dq[0]);
+    const ur10e_real_t t250 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0]))
+        + UR10E_C(-101.0) * (parameters[FC1] * t249);
+    const ur10e_real_t t251 = ur10e_sign(dq[5]);
+    const ur10e_real_t t252 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5]))
+        + UR10E_C(101.0) * (parameters[FC6] * t251);
+    const ur10e_real_t t253 = UR10E_C(9.09) * input[5] - (t252 + t189);
+    const ur10e_real_t t254 = ur10e_sign(dq[4]);
+    const ur10e_real_t t255 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4]))
+        + UR10E_C(101.0) * (parameters[FC5] * t254);
+    const ur10e_real_t t256 = UR10E_C(9.09) * input[4] - (t255 - t224) - t253 * t5;
+    const ur10e_real_t t257 = UR10E_C(12.12) * input[0] + (t250 + t248) + t253 * t84 + t256 * t103;
+    const ur10e_real_t t258 = parameters[XY4] * (t184 - t220) - parameters[XX4R] * t133
+        - (parameters[MY4R] * t174 - parameters[MX4] * t183);
+    const ur10e_real_t t259 = t258 + (t13 * t193 - t11 * t212 - UR10E_C(-0.11985) * t227);
+    const ur10e_real_t t260 = ur10e_sign(dq[3]);
+    const ur10e_real_t t261 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3]))
+        + UR10E_C(101.0) * (parameters[FC4] * t260);
+    const ur10e_real_t t262 = UR10E_C(9.09) * input[3] - (t261 + t259) - t253 * t25 - t256 * t24;
+    const ur10e_real_t t263 = parameters[XX3R] * t172 + parameters[XY3] * (t176 - t167)
+        + (parameters[MX3R] * t171 + parameters[MY3] * t166);
+    const ur10e_real_t t264 = t263 + (t259 + UR10E_C(-0.57155) * t231);
+    const ur10e_real_t t265 = ur10e_sign(dq[2]);
+    const ur10e_real_t t266 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2]))
+        + UR10E_C(101.0) * (parameters[FC3] * t265);
+    const ur10e_real_t t267 = UR10E_C(10.100000000000001) * input[2] - (t266 + t264) + t253 * t48
+        + t256 * t51;
+    const ur10e_real_t t268 = t267 - t262 * t47;
+    const ur10e_real_t t269 = t56 * (parameters[MX3R] * t172 + parameters[MY3] * (t176 + t168) - t231);
+    const ur10e_real_t t270 = t55 * (parameters[MX3R] * t169 + parameters[MY3] * t172 + t236) + t269;
+    const ur10e_real_t t271 = parameters[XX2R] * t163 - parameters[XY2] * (t247 - t159)
+        - (parameters[MX2R] * t164 + parameters[MY2] * t161);
+    const ur10e_real_t t272 = ur10e_sign(dq[1]);
+    const ur10e_real_t t273 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1]))
+        + UR10E_C(101.0) * (parameters[FC2] * t272);
+    const ur10e_real_t t274 = UR10E_C(12.12) * input[1] - (t273 - (t271 - (t264 + UR10E_C(0.6127) * t270)));
+    const ur10e_real_t t275 = t274 + t253 * t58 + t256 * t66 - t262 * t70;
+    const ur10e_real_t t276 = t275 + t268 * t74;
+    const ur10e_real_t t277 = t257 + t262 * t113 + t268 * t120 + t276 * t125;
+    const ur10e_real_t t278 = UR10E_C(1.0) / t126;
+    const ur10e_real_t t279 = t277 * t278;
     out[0] = t279;
     if (!(t279 >= UR10E_C(-1.0e15) && t279 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t280 = t253 * t260 + t261 * t279;
+    const ur10e_real_t t280 = t276 * t124 + t125 * t279;
     out[1] = t280;
     if (!(t280 >= UR10E_C(-1.0e15) && t280 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t281 = t220 * t231 + t232 * t279 + t252 * t280;
+    const ur10e_real_t t281 = t268 * t73 + t120 * t279 + t74 * t280;
     out[2] = t281;
     if (!(t281 >= UR10E_C(-1.0e15) && t281 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t282 = t206 * t279 - t185 * t205 - t245 * t280 - t219 * t281;
+    const ur10e_real_t t282 = t113 * t279 - t262 * t46 - t70 * t280 - t47 * t281;
     out[3] = t282;
     if (!(t282 >= UR10E_C(-1.0e15) && t282 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t283 = t174 * t279 - t156 * t173 + t242 * t280 + t215 * t281;
-    const ur10e_real_t t284 = t283 - t184 * t282;
+    const ur10e_real_t t283 = t103 * t279 - t256 * t23 + t66 * t280 + t51 * t281;
+    const ur10e_real_t t284 = t283 - t24 * t282;
     out[4] = t284;
     if (!(t284 >= UR10E_C(-1.0e15) && t284 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t285 = t152 * t279 - t136 * t151 + t240 * t280 + t212 * t281;
-    out[5] = t285 - t181 * t282 - t155 * t284;
+    const ur10e_real_t t285 = t84 * t279 - t253 * t4 + t58 * t280 + t48 * t281;
+    out[5] = t285 - t25 * t282 - t5 * t284;
     if (!(out[5] >= UR10E_C(-1.0e15) && out[5] <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;

@@ -106,7 +106,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -134,423 +134,430 @@ int ur10e_forward_dynamics_standard(
         return status;
     }
 
-    ur10e_real_t t2, t3;
-    UR10E_SINCOS(q[1], &t2, &t3);
-    ur10e_real_t t16, t14;
-    UR10E_SINCOS(q[2], &t16, &t14);
-    ur10e_real_t t34, t32;
-    UR10E_SINCOS(q[3], &t34, &t32);
-    ur10e_real_t t54, t53;
-    UR10E_SINCOS(q[4], &t54, &t53);
-    ur10e_real_t t80, t79;
-    UR10E_SINCOS(q[5], &t80, &t79);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1])
-        + UR10E_C(-101.0) * (t0 * parameters[FC1]);
-    const ur10e_real_t t4 = t3 * dq[0];
-    const ur10e_real_t t5 = dq[1] * t4;
-    const ur10e_real_t t6 = t2 * dq[0];
-    const ur10e_real_t t7 = dq[1] * t6;
-    const ur10e_real_t t8 = t5 * (parameters[YY2] - parameters[ZZ2]) - t5 * parameters[XX2]
-        + UR10E_C(2.0) * t7 * parameters[XY2];
-    const ur10e_real_t t9 = t6 * t4;
-    const ur10e_real_t t10 = t4 * t4;
-    const ur10e_real_t t11 = dq[1] * dq[1];
-    const ur10e_real_t t12 = UR10E_C(9.81) * t3;
-    const ur10e_real_t t13 = t8 - t9 * parameters[XZ2] + (t11 - t10) * parameters[YZ2]
-        + t12 * parameters[MZ2];
-    const ur10e_real_t t15 = dq[1] + dq[2];
-    const ur10e_real_t t17 = t16 * t6 - t14 * t4;
-    const ur10e_real_t t18 = t15 * t17;
-    const ur10e_real_t t19 = t14 * t6 + t16 * t4;
-    const ur10e_real_t t20 = t15 * t19;
-    const ur10e_real_t t21 = UR10E_C(2.0) * t20;
-    const ur10e_real_t t22 = parameters[XX3] * t18 + t18 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t21;
-    const ur10e_real_t t23 = t19 * t17;
-    const ur10e_real_t t24 = t15 * t15;
-    const ur10e_real_t t25 = t17 * t17;
-    const ur10e_real_t t26 = UR10E_C(1.2254) * t7;
-    const ur10e_real_t t27 = UR10E_C(-9.81) * t2;
-    const ur10e_real_t t28 = t27 + UR10E_C(-0.6127) * (t10 + t11);
-    const ur10e_real_t t29 = t12 + UR10E_C(-0.6127) * t9;
-    const ur10e_real_t t30 = t16 * t28 + t14 * t29;
-    const ur10e_real_t t31 = t22 + parameters[XZ3] * t23 + parameters[YZ3] * (t24 - t25)
-        + (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const ur10e_real_t t33 = dq[3] + t15;
-    const ur10e_real_t t35 = t34 * t19 + t32 * t17;
-    const ur10e_real_t t36 = t33 * t35;
-    const ur10e_real_t t37 = t32 * t19 - t34 * t17;
-    const ur10e_real_t t38 = t33 * t37;
-    const ur10e_real_t t39 = UR10E_C(2.0) * t38;
-    const ur10e_real_t t40 = parameters[XX4] * t36 + t36 * (parameters[ZZ4] - parameters[YY4])
-        + parameters[XY4] * t39;
-    const ur10e_real_t t41 = t37 * t35;
-    const ur10e_real_t t42 = t33 * t33;
-    const ur10e_real_t t43 = t35 * t35;
-    const ur10e_real_t t44 = t19 * t19;
-    const ur10e_real_t t45 = t44 + t25;
-    const ur10e_real_t t46 = t26 + (UR10E_C(1.1431) * t20 + UR10E_C(0.17415) * t45);
-    const ur10e_real_t t47 = t16 * t29 - t14 * t28;
-    const ur10e_real_t t48 = t24 + t25;
-    const ur10e_real_t t49 = t47 + UR10E_C(0.57155) * t48;
-    const ur10e_real_t t50 = t30 + UR10E_C(0.57155) * t23;
-    const ur10e_real_t t51 = t32 * t50 - t34 * t49;
-    const ur10e_real_t t52 = t40 + parameters[XZ4] * t41 + parameters[YZ4] * (t42 - t43)
-        + (parameters[MY4] * t46 + parameters[MZ4] * t51);
-    const ur10e_real_t t55 = UR10E_C(2.0) * t36;
-    const ur10e_real_t t56 = t53 * t55 - t54 * t41;
-    const ur10e_real_t t57 = t53 * t33 - t54 * t37;
-    const ur10e_real_t t58 = dq[4] + t35;
-    const ur10e_real_t t59 = t57 * t58;
-    const ur10e_real_t t60 = t56 - t59;
-    const ur10e_real_t t61 = t54 * t33 + t53 * t37;
-    const ur10e_real_t t62 = t61 * t58;
-    const ur10e_real_t t63 = t53 * t41 + t54 * t55;
-    const ur10e_real_t t64 = t63 - t62;
-    const ur10e_real_t t65 = t62 - t64;
-    const ur10e_real_t t66 = parameters[XX5] * t60 + t59 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t65;
-    const ur10e_real_t t67 = t61 * t57;
-    const ur10e_real_t t68 = t38 + t67;
-    const ur10e_real_t t69 = t57 * t57;
-    const ur10e_real_t t70 = t58 * t58;
-    const ur10e_real_t t71 = t37 * t37;
-    const ur10e_real_t t72 = t42 + t71;
-    const ur10e_real_t t73 = t51 + UR10E_C(0.11985) * t72;
-    const ur10e_real_t t74 = t32 * t49 + t34 * t50;
-    const ur10e_real_t t75 = t74 + UR10E_C(0.11985) * t41;
-    const ur10e_real_t t76 = t46 - UR10E_C(0.2397) * t36;
-    const ur10e_real_t t77 = t54 * t75 + t53 * t76;
-    const ur10e_real_t t78 = t66 - parameters[XZ5] * t68 + parameters[YZ5] * (t70 - t69)
-        + (parameters[MY5] * t73 - parameters[MZ5] * t77);
-    const ur10e_real_t t81 = t67 - t38;
-    const ur10e_real_t t82 = t60 - t59;
-    const ur10e_real_t t83 = t80 * t81 - t79 * t82;
-    const ur10e_real_t t84 = t80 * t61 + t79 * t58;
-    const ur10e_real_t t85 = dq[5] + t57;
-    const ur10e_real_t t86 = t84 * t85;
-    const ur10e_real_t t87 = t86 - t83;
-    const ur10e_real_t t88 = t79 * t61 - t80 * t58;
-    const ur10e_real_t t89 = t88 * t85;
-    const ur10e_real_t t90 = t79 * t81 + t80 * t82;
-    const ur10e_real_t t91 = t90 - t89;
-    const ur10e_real_t t92 = t91 - t89;
-    const ur10e_real_t t93 = parameters[XX6] * t87 - t86 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t92;
-    const ur10e_real_t t94 = t88 * t84;
-    const ur10e_real_t t95 = t64 - t94;
-    const ur10e_real_t t96 = t84 * t84;
-    const ur10e_real_t t97 = t85 * t85;
-    const ur10e_real_t t98 = t61 * t61;
-    const ur10e_real_t t99 = t98 + t70;
-    const ur10e_real_t t100 = t77 + UR10E_C(0.11655) * t99;
-    const ur10e_real_t t101 = t53 * t75 - t54 * t76;
-    const ur10e_real_t t102 = t101 - UR10E_C(-0.11655) * t81;
-    const ur10e_real_t t103 = t73 + UR10E_C(0.11655) * t82;
-    const ur10e_real_t t104 = t79 * t103 - t80 * t102;
-    const ur10e_real_t t105 = t93 - parameters[XZ6] * t95 - parameters[YZ6] * (t96 - t97)
-        + (parameters[MY6] * t100 + parameters[MZ6] * t104);
-    const ur10e_real_t t106 = t86 + t87;
-    const ur10e_real_t t107 = parameters[YY6] * t91 + t89 * (parameters[XX6] - parameters[ZZ6])
-        - parameters[XY6] * t106;
-    const ur10e_real_t t108 = t64 + t94;
-    const ur10e_real_t t109 = t88 * t88;
-    const ur10e_real_t t110 = t79 * t102 + t80 * t103;
-    const ur10e_real_t t111 = t107 + parameters[YZ6] * t108 + parameters[XZ6] * (t97 - t109)
-        + (parameters[MZ6] * t110 + parameters[MX6] * t100);
-    const ur10e_real_t t112 = parameters[MZ6] * t90 - (parameters[MX6] * (t96 + t97)
-        + parameters[MY6] * t108);
-    const ur10e_real_t t113 = parameters[M6] * t110 + t112;
-    const ur10e_real_t t114 = parameters[MX6] * t95 - parameters[MY6] * (t109 + t97) - parameters[MZ6] * t83;
-    const ur10e_real_t t115 = parameters[M6] * t104 + t114;
-    const ur10e_real_t t116 = t80 * t113 + t79 * t115;
-    const ur10e_real_t t117 = t78 + (t79 * t105 + t80 * t111 + UR10E_C(0.11655) * t116);
-    const ur10e_real_t t118 = parameters[YY5] * t64 + t62 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t82;
-    const ur10e_real_t t119 = t118 - parameters[YZ5] * t81 + parameters[XZ5] * (t70 - t98)
-        + (parameters[MZ5] * t101 + parameters[MX5] * t73);
-    const ur10e_real_t t120 = parameters[XX6] - parameters[YY6];
-    const ur10e_real_t t121 = parameters[ZZ6] * t64 + t120 * t94 + parameters[YZ6] * t90
-        + parameters[XZ6] * t83;
-    const ur10e_real_t t122 = t121 + parameters[XY6] * (t109 - t96) + (parameters[MX6] * t104
-        - parameters[MY6] * t110);
-    const ur10e_real_t t123 = t119 + t122;
-    const ur10e_real_t t124 = parameters[MX5] * (t69 + t70) - parameters[MY5] * t81 - parameters[MZ5] * t63;
-    const ur10e_real_t t125 = t79 * t113 - t80 * t115;
-    const ur10e_real_t t126 = parameters[M5] * t101 - t124 + t125;
-    const ur10e_real_t t127 = parameters[M5] * t77 + (parameters[MY5] * t99 - parameters[MX5] * t68
-        - parameters[MZ5] * t56);
-    const ur10e_real_t t128 = parameters[MX6] * t92 + parameters[MY6] * t106 + parameters[MZ6] * (t109 + t96);
-    const ur10e_real_t t129 = t127 + (parameters[M6] * t100 + t128);
-    const ur10e_real_t t130 = t53 * t129 - t54 * t126;
-    const ur10e_real_t t131 = t52 + (t53 * t117 + t54 * t123 + UR10E_C(-0.11985) * t130);
-    const ur10e_real_t t132 = t38 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t38
-        - parameters[XY4] * t55;
-    const ur10e_real_t t133 = t132 + parameters[YZ4] * t41 + parameters[XZ4] * (t42 - t71)
-        + (parameters[MZ4] * t74 + parameters[MX4] * t46);
-    const ur10e_real_t t134 = t67 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t38
-        - parameters[YZ5] * t63;
-    const ur10e_real_t t135 = t134 + parameters[XZ5] * t56 + parameters[XY5] * (t69 - t98)
-        + (parameters[MX5] * t77 + parameters[MY5] * t101);
-    const ur10e_real_t t136 = t135 + (t79 * t111 - t80 * t105 + UR10E_C(0.11655) * t125);
-    const ur10e_real_t t137 = t133 + t136;
-    const ur10e_real_t t138 = parameters[M4] * t74 - (parameters[MX4] * (t42 + t43) + parameters[MY4] * t41);
-    const ur10e_real_t t139 = t53 * t126 + t54 * t129;
-    const ur10e_real_t t140 = t138 + t139;
-    const ur10e_real_t t141 = parameters[MY5] * t82 - parameters[MX5] * t65 + parameters[MZ5] * (t98 + t69);
-    const ur10e_real_t t142 = parameters[M4] * t51 - (parameters[MX4] * t41 + parameters[MY4] * t72)
-        + (parameters[M5] * t73 + t141 + t116);
-    const ur10e_real_t t143 = t34 * t140 + t32 * t142;
-    const ur10e_real_t t144 = t31 + (t32 * t131 + t34 * t137 + UR10E_C(0.17415) * t143);
-    const ur10e_real_t t145 = UR10E_C(2.0) * t18;
-    const ur10e_real_t t146 = parameters[YY3] * t20 - t20 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t145;
-    const ur10e_real_t t147 = t146 - parameters[YZ3] * t23 - parameters[XZ3] * (t24 - t44)
-        - (parameters[MZ3] * t47 + parameters[MX3] * t26);
-    const ur10e_real_t t148 = t32 * t140 - t34 * t142;
-    const ur10e_real_t t149 = parameters[MY4] * t55 - parameters[MX4] * t39 + parameters[MZ4] * (t71 + t43);
-    const ur10e_real_t t150 = parameters[M4] * t46 + t149 + t130;
-    const ur10e_real_t t151 = t34 * t131 - t32 * t137 - (UR10E_C(0.17415) * t148 - UR10E_C(0.57155) * t150);
-    const ur10e_real_t t152 = t147 + t151;
-    const ur10e_real_t t153 = t7 * parameters[YY2] + t7 * (parameters[ZZ2] - parameters[XX2])
-        + UR10E_C(-2.0) * t5 * parameters[XY2];
-    const ur10e_real_t t154 = t6 * t6;
-    const ur10e_real_t t155 = t153 + t9 * parameters[YZ2] + (t154 - t11) * parameters[XZ2]
-        + t27 * parameters[MZ2];
-    const ur10e_real_t t156 = parameters[M3] * t26 + (parameters[MY3] * t145 - parameters[MX3] * t21
-        + parameters[MZ3] * t45);
-    const ur10e_real_t t157 = t16 * t144 + t14 * t152 + UR10E_C(0.6127) * (t156 + t150);
-    const ur10e_real_t t158 = t2 * (t13 + (t14 * t144 - t16 * t152)) + t3 * (t155 + t157);
-    const ur10e_real_t t159 = ur10e_sign(dq[5]);
-    const ur10e_real_t t160 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6])
-        + UR10E_C(101.0) * (t159 * parameters[FC6]);
-    const ur10e_real_t t161 = UR10E_C(9.09) * input[5] - (t160 + t122);
-    const ur10e_real_t t162 = t79 * parameters[MX6] - t80 * parameters[MY6];
-    const ur10e_real_t t163 = t80 * parameters[YZ6] - t79 * parameters[XZ6] + UR10E_C(0.11655) * t162;
-    const ur10e_real_t t164 = t79 * parameters[MY6] + t80 * parameters[MX6];
-    const ur10e_real_t t165 = t54 * t164;
-    const ur10e_real_t t166 = UR10E_C(0.11985) * t165 - (t53 * t163 + t54 * parameters[ZZ6]);
-    const ur10e_real_t t167 = UR10E_C(0.11655) * t164 - (t80 * parameters[XZ6] + t79 * parameters[YZ6]);
-    const ur10e_real_t t168 = t53 * t164;
-    const ur10e_real_t t169 = t34 * t168 - t32 * t162;
-    const ur10e_real_t t170 = t32 * t166 + t34 * t167 + UR10E_C(0.17415) * t169;
-    const ur10e_real_t t171 = t32 * t168 + t34 * t162;
-    const ur10e_real_t t172 = t34 * t166 - t32 * t167 - (UR10E_C(0.17415) * t171 + UR10E_C(0.57155) * t165);
-    const ur10e_real_t t173 = t3 * (t16 * t170 + t14 * t172 - UR10E_C(0.6127) * t165);
-    const ur10e_real_t t174 = t2 * (t14 * t170 - t16 * t172) + t173;
-    const ur10e_real_t t175 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
-    if (!(t175 > UR10E_C(1.0e-9))) {
+    ur10e_real_t t104, t102;
+    UR10E_SINCOS(q[1], &t104, &t102);
+    ur10e_real_t t65, t66;
+    UR10E_SINCOS(q[2], &t65, &t66);
+    ur10e_real_t t42, t45;
+    UR10E_SINCOS(q[3], &t42, &t45);
+    ur10e_real_t t20, t16;
+    UR10E_SINCOS(q[4], &t20, &t16);
+    ur10e_real_t t1, t2;
+    UR10E_SINCOS(q[5], &t1, &t2);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    if (!(t0 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t176 = UR10E_C(-1.0) / t175;
-    const ur10e_real_t t177 = t174 * t176;
-    const ur10e_real_t t178 = ur10e_sign(dq[4]);
-    const ur10e_real_t t179 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5])
-        + UR10E_C(101.0) * (t178 * parameters[FC5]);
-    const ur10e_real_t t180 = t167 * t176;
-    const ur10e_real_t t181 = UR10E_C(9.09) * input[4] - (t179 - t136) + t161 * t180;
-    const ur10e_real_t t182 = t79 * t120 - parameters[XY6] * (UR10E_C(2.0) * t80);
-    const ur10e_real_t t183 = parameters[XY6] + t80 * t182 - parameters[XZ5];
-    const ur10e_real_t t184 = parameters[YZ5] + t167;
-    const ur10e_real_t t185 = UR10E_C(0.11655) * parameters[M6];
-    const ur10e_real_t t186 = parameters[MY5] + (parameters[MZ6] + t185);
-    const ur10e_real_t t187 = parameters[MX5] + t162;
-    const ur10e_real_t t188 = t53 * t187 - t54 * t186;
-    const ur10e_real_t t189 = t53 * t183 + t54 * t184 + UR10E_C(0.11985) * t188;
-    const ur10e_real_t t190 = t79 * t182;
-    const ur10e_real_t t191 = UR10E_C(0.11655) * (t185 + UR10E_C(2.0) * parameters[MZ6]);
-    const ur10e_real_t t192 = parameters[ZZ5] + (parameters[XX6] - t190 + t191);
-    const ur10e_real_t t193 = t53 * t186 + t54 * t187;
-    const ur10e_real_t t194 = t34 * t193;
-    const ur10e_real_t t195 = t34 * t192 - t32 * t189 + UR10E_C(0.17415) * t194;
-    const ur10e_real_t t196 = t32 * t193;
-    const ur10e_real_t t197 = t34 * t189 + t32 * t192 + (UR10E_C(0.17415) * t196 + UR10E_C(-0.57155) * t188);
-    const ur10e_real_t t198 = t3 * (t16 * t195 - t14 * t197 - UR10E_C(-0.6127) * t188);
-    const ur10e_real_t t199 = t2 * (t14 * t195 + t16 * t197) + t198 + t174 * t180;
-    const ur10e_real_t t200 = t192 + UR10E_C(10201.0) * parameters[IA5] + t167 * t180;
-    if (!(t200 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const ur10e_real_t t4 = UR10E_C(0.11655) * t3 - (t1 * parameters[XZ6] + t2 * parameters[YZ6]);
+    const ur10e_real_t t5 = UR10E_C(-1.0) / t0;
+    const ur10e_real_t t6 = t4 * t5;
+    const ur10e_real_t t7 = parameters[XX6] - parameters[YY6];
+    const ur10e_real_t t8 = t2 * t7 - parameters[XY6] * (UR10E_C(2.0) * t1);
+    const ur10e_real_t t9 = t2 * t8;
+    const ur10e_real_t t10 = UR10E_C(0.11655) * parameters[M6];
+    const ur10e_real_t t11 = UR10E_C(0.11655) * (t10 + UR10E_C(2.0) * parameters[MZ6]);
+    const ur10e_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
+    const ur10e_real_t t13 = t12 + UR10E_C(10201.0) * parameters[IA5] + t4 * t6;
+    if (!(t13 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t201 = UR10E_C(-1.0) / t200;
-    const ur10e_real_t t202 = t199 * t201;
-    const ur10e_real_t t203 = UR10E_C(12.12) * input[0] + (t1 + t158) + t161 * t177 + t181 * t202;
-    const ur10e_real_t t204 = ur10e_sign(dq[3]);
-    const ur10e_real_t t205 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4])
-        + UR10E_C(101.0) * (t204 * parameters[FC4]);
-    const ur10e_real_t t206 = t41 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t71 - t43)
-        - (parameters[MY4] * t74 - parameters[MX4] * t51);
-    const ur10e_real_t t207 = t206 + (t53 * t123 - t54 * t117 + UR10E_C(0.11985) * t139);
-    const ur10e_real_t t208 = t54 * t163 - t53 * parameters[ZZ6] + UR10E_C(0.11985) * t168;
-    const ur10e_real_t t209 = t208 * t176;
-    const ur10e_real_t t210 = t54 * t183 - t53 * t184 + UR10E_C(0.11985) * t193;
-    const ur10e_real_t t211 = t210 + t208 * t180;
-    const ur10e_real_t t212 = t211 * t201;
-    const ur10e_real_t t213 = UR10E_C(9.09) * input[3] - (t205 + t207) - t161 * t209 - t181 * t212;
-    const ur10e_real_t t214 = t163 - parameters[XY5];
-    const ur10e_real_t t215 = parameters[XX5] + (parameters[YY6] + t190 + t191);
-    const ur10e_real_t t216 = parameters[YY5] + parameters[ZZ6];
-    const ur10e_real_t t217 = t53 * (t216 - t215) - t214 * (UR10E_C(2.0) * t54);
-    const ur10e_real_t t218 = t214 + t54 * t217 - parameters[XZ4];
-    const ur10e_real_t t219 = parameters[YZ4] + t210;
-    const ur10e_real_t t220 = t32 * t218 + t34 * t219;
-    const ur10e_real_t t221 = parameters[MZ5] - t164;
-    const ur10e_real_t t222 = parameters[M5] + parameters[M6];
-    const ur10e_real_t t223 = UR10E_C(0.11985) * t222;
-    const ur10e_real_t t224 = parameters[MY4] - (t221 + t223);
-    const ur10e_real_t t225 = parameters[MX4] + t188;
-    const ur10e_real_t t226 = t32 * t225 - t34 * t224;
-    const ur10e_real_t t227 = UR10E_C(-0.17415) * t226 - t220;
-    const ur10e_real_t t228 = t32 * t224 + t34 * t225;
-    const ur10e_real_t t229 = t32 * t219 - t34 * t218 - UR10E_C(0.17415) * t228;
-    const ur10e_real_t t230 = t2 * (t14 * t227 - t16 * t229) + t3 * (t16 * t227 + t14 * t229);
-    const ur10e_real_t t231 = t230 - t174 * t209 - t199 * t212;
-    const ur10e_real_t t232 = t53 * t217;
-    const ur10e_real_t t233 = UR10E_C(0.11985) * (t223 + UR10E_C(2.0) * t221);
-    const ur10e_real_t t234 = parameters[ZZ4] + (t215 + t232 + t233);
-    const ur10e_real_t t235 = t234 + UR10E_C(10201.0) * parameters[IA4] + t208 * t209 + t211 * t212;
-    if (!(t235 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t14 = parameters[XX5] + (parameters[YY6] + t9 + t11);
+    const ur10e_real_t t15 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_real_t t17 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const ur10e_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + UR10E_C(0.11655) * t17;
+    const ur10e_real_t t19 = t18 - parameters[XY5];
+    const ur10e_real_t t21 = t16 * (t15 - t14) - t19 * (UR10E_C(2.0) * t20);
+    const ur10e_real_t t22 = t16 * t21;
+    const ur10e_real_t t23 = parameters[MZ5] - t3;
+    const ur10e_real_t t24 = parameters[M5] + parameters[M6];
+    const ur10e_real_t t25 = UR10E_C(0.11985) * t24;
+    const ur10e_real_t t26 = UR10E_C(0.11985) * (t25 + UR10E_C(2.0) * t23);
+    const ur10e_real_t t27 = parameters[ZZ4] + (t14 + t22 + t26);
+    const ur10e_real_t t28 = t16 * t3;
+    const ur10e_real_t t29 = t20 * t18 - t16 * parameters[ZZ6] + UR10E_C(0.11985) * t28;
+    const ur10e_real_t t30 = t29 * t5;
+    const ur10e_real_t t31 = parameters[YZ5] + t4;
+    const ur10e_real_t t32 = parameters[XY6] + t1 * t8 - parameters[XZ5];
+    const ur10e_real_t t33 = parameters[MX5] + t17;
+    const ur10e_real_t t34 = parameters[MY5] + (parameters[MZ6] + t10);
+    const ur10e_real_t t35 = t16 * t34 + t20 * t33;
+    const ur10e_real_t t36 = t20 * t32 - t16 * t31 + UR10E_C(0.11985) * t35;
+    const ur10e_real_t t37 = t36 + t29 * t6;
+    const ur10e_real_t t38 = UR10E_C(-1.0) / t13;
+    const ur10e_real_t t39 = t37 * t38;
+    const ur10e_real_t t40 = t27 + UR10E_C(10201.0) * parameters[IA4] + t29 * t30 + t37 * t39;
+    if (!(t40 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t236 = UR10E_C(-1.0) / t235;
-    const ur10e_real_t t237 = t231 * t236;
-    const ur10e_real_t t238 = ur10e_sign(dq[2]);
-    const ur10e_real_t t239 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3])
-        + UR10E_C(101.0) * (t238 * parameters[FC3]);
-    const ur10e_real_t t240 = t23 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t44 - t25)
-        - (parameters[MY3] * t47 - parameters[MX3] * t30);
-    const ur10e_real_t t241 = t240 + (t207 - UR10E_C(0.57155) * t143);
-    const ur10e_real_t t242 = UR10E_C(0.57155) * t169 - t208;
-    const ur10e_real_t t243 = t242 * t176;
-    const ur10e_real_t t244 = UR10E_C(0.57155) * t194 - t210;
-    const ur10e_real_t t245 = t244 + t242 * t180;
-    const ur10e_real_t t246 = t245 * t201;
-    const ur10e_real_t t247 = UR10E_C(10.100000000000001) * input[2] - (t239 + t241) + t161 * t243
-        + t181 * t246;
-    const ur10e_real_t t248 = UR10E_C(0.57155) * t226 - t234;
-    const ur10e_real_t t249 = t248 + t242 * t209 + t245 * t212;
-    const ur10e_real_t t250 = t249 * t236;
-    const ur10e_real_t t251 = t247 - t213 * t250;
-    const ur10e_real_t t252 = parameters[MZ4] + t193;
-    const ur10e_real_t t253 = parameters[M4] + t222;
-    const ur10e_real_t t254 = UR10E_C(0.57155) * t253;
-    const ur10e_real_t t255 = t226 - t254;
-    const ur10e_real_t t256 = t220 + (UR10E_C(-0.57155) * t252 + UR10E_C(0.17415) * t255) - parameters[XZ3];
-    const ur10e_real_t t257 = parameters[YZ3] + t229;
-    const ur10e_real_t t258 = t14 * t256 + t16 * t257;
-    const ur10e_real_t t259 = t16 * t256 - t14 * t257;
-    const ur10e_real_t t260 = t2 * t258 + t3 * t259 - t174 * t243 - t199 * t246;
-    const ur10e_real_t t261 = t260 + t231 * t250;
-    const ur10e_real_t t262 = UR10E_C(0.57155) * (t254 + UR10E_C(-2.0) * t226);
-    const ur10e_real_t t263 = parameters[ZZ3] + (t234 + t262);
-    const ur10e_real_t t264 = t263 + UR10E_C(10201.0) * parameters[IA3] + t242 * t243 + t245 * t246;
-    const ur10e_real_t t265 = t264 + t249 * t250;
-    if (!(t265 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t41 = parameters[MY4] - (t23 + t25);
+    const ur10e_real_t t43 = t16 * t33 - t20 * t34;
+    const ur10e_real_t t44 = parameters[MX4] + t43;
+    const ur10e_real_t t46 = t45 * t44 - t42 * t41;
+    const ur10e_real_t t47 = UR10E_C(0.57155) * t46 - t27;
+    const ur10e_real_t t48 = t42 * t28 - t45 * t17;
+    const ur10e_real_t t49 = UR10E_C(0.57155) * t48 - t29;
+    const ur10e_real_t t50 = t42 * t35;
+    const ur10e_real_t t51 = UR10E_C(0.57155) * t50 - t36;
+    const ur10e_real_t t52 = t51 + t49 * t6;
+    const ur10e_real_t t53 = t47 + t49 * t30 + t52 * t39;
+    const ur10e_real_t t54 = UR10E_C(-1.0) / t40;
+    const ur10e_real_t t55 = t53 * t54;
+    const ur10e_real_t t56 = t49 * t5;
+    const ur10e_real_t t57 = parameters[M4] + t24;
+    const ur10e_real_t t58 = UR10E_C(0.57155) * t57;
+    const ur10e_real_t t59 = UR10E_C(0.57155) * (t58 + UR10E_C(-2.0) * t46);
+    const ur10e_real_t t60 = parameters[ZZ3] + (t27 + t59);
+    const ur10e_real_t t61 = t52 * t38;
+    const ur10e_real_t t62 = t60 + UR10E_C(10201.0) * parameters[IA3] + t49 * t56 + t52 * t61;
+    const ur10e_real_t t63 = t62 + t53 * t55;
+    if (!(t63 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t266 = UR10E_C(1.0) / t265;
-    const ur10e_real_t t267 = t261 * t266;
-    const ur10e_real_t t268 = ur10e_sign(dq[1]);
-    const ur10e_real_t t269 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2])
-        + UR10E_C(101.0) * (t268 * parameters[FC2]);
-    const ur10e_real_t t270 = t9 * (parameters[XX2] - parameters[YY2]) - (t154 - t10) * parameters[XY2]
-        - (t12 * parameters[MX2] + t27 * parameters[MY2]);
-    const ur10e_real_t t271 = parameters[M3] * t47 - (parameters[MX3] * t48 + parameters[MY3] * t23) + t148;
-    const ur10e_real_t t272 = parameters[MX3] * t23 + parameters[MY3] * (t24 + t44) - parameters[M3] * t30;
-    const ur10e_real_t t273 = t241 - UR10E_C(0.6127) * (t16 * t271 - t14 * (t272 - t143));
-    const ur10e_real_t t274 = t242 + UR10E_C(0.6127) * (t16 * t171 + t14 * t169);
-    const ur10e_real_t t275 = t274 * t176;
-    const ur10e_real_t t276 = UR10E_C(12.12) * input[1] - (t269 - (t270 - t273)) + t161 * t275;
-    const ur10e_real_t t277 = t244 + UR10E_C(0.6127) * (t16 * t196 + t14 * t194) + t274 * t180;
-    const ur10e_real_t t278 = t277 * t201;
-    const ur10e_real_t t279 = t248 + UR10E_C(0.6127) * (t14 * t226 - t16 * t228) + t274 * t209;
-    const ur10e_real_t t280 = t279 + t277 * t212;
-    const ur10e_real_t t281 = t280 * t236;
-    const ur10e_real_t t282 = parameters[MY3] + t228;
-    const ur10e_real_t t283 = parameters[MX3] + t255;
-    const ur10e_real_t t284 = t16 * t282 - t14 * t283;
-    const ur10e_real_t t285 = UR10E_C(-0.6127) * t284 - t263 - t274 * t243 - t277 * t246;
-    const ur10e_real_t t286 = t285 - t280 * t250;
-    const ur10e_real_t t287 = t286 * t266;
-    const ur10e_real_t t288 = t276 + t181 * t278 - t213 * t281 + t251 * t287;
-    const ur10e_real_t t289 = UR10E_C(0.17415) * t253;
-    const ur10e_real_t t290 = t2 * (t258 + UR10E_C(-0.6127) * (parameters[MZ3] + (t252 + t289))
+    const ur10e_real_t t64 = t45 * t41 + t42 * t44;
+    const ur10e_real_t t67 = t45 * t28 + t42 * t17;
+    const ur10e_real_t t68 = t49 + UR10E_C(0.6127) * (t65 * t67 + t66 * t48);
+    const ur10e_real_t t69 = t47 + UR10E_C(0.6127) * (t66 * t46 - t65 * t64) + t68 * t30;
+    const ur10e_real_t t70 = t45 * t35;
+    const ur10e_real_t t71 = t51 + UR10E_C(0.6127) * (t65 * t70 + t66 * t50) + t68 * t6;
+    const ur10e_real_t t72 = t69 + t71 * t39;
+    const ur10e_real_t t73 = parameters[MY3] + t64;
+    const ur10e_real_t t74 = t46 - t58;
+    const ur10e_real_t t75 = parameters[MX3] + t74;
+    const ur10e_real_t t76 = t65 * t73 - t66 * t75;
+    const ur10e_real_t t77 = UR10E_C(-0.6127) * t76 - t60 - t68 * t56 - t71 * t61;
+    const ur10e_real_t t78 = t77 - t72 * t55;
+    const ur10e_real_t t79 = UR10E_C(1.0) / t63;
+    const ur10e_real_t t80 = t78 * t79;
+    const ur10e_real_t t81 = t72 * t54;
+    const ur10e_real_t t82 = t68 * t5;
+    const ur10e_real_t t83 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t57)
+        + UR10E_C(2.0) * t76);
+    const ur10e_real_t t84 = parameters[ZZ2] + (t60 + t83) + UR10E_C(10201.0) * parameters[IA2] + t68 * t82;
+    const ur10e_real_t t85 = t71 * t38;
+    const ur10e_real_t t86 = t84 + t71 * t85 + t72 * t81 - t78 * t80;
+    if (!(t86 > UR10E_C(1.0e-9))) {
+        ur10e_zero(out, 6);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t87 = parameters[XX4] + (t15 - t22 + t26);
+    const ur10e_real_t t88 = parameters[YY4] + t12;
+    const ur10e_real_t t89 = t16 * t32 + t20 * t31 + UR10E_C(0.11985) * t43;
+    const ur10e_real_t t90 = parameters[XY4] + t89;
+    const ur10e_real_t t91 = t45 * (t87 - t88) + t90 * (UR10E_C(-2.0) * t42);
+    const ur10e_real_t t92 = t45 * t91;
+    const ur10e_real_t t93 = parameters[MZ4] + t35;
+    const ur10e_real_t t94 = UR10E_C(0.17415) * t57;
+    const ur10e_real_t t95 = UR10E_C(0.17415) * (t94 + UR10E_C(2.0) * t93);
+    const ur10e_real_t t96 = parameters[YY3] + (t87 - t92 + (t59 + t95));
+    const ur10e_real_t t97 = parameters[XX3] + (t88 + t92 + t95);
+    const ur10e_real_t t98 = parameters[XY3] + (t90 + t42 * t91 + UR10E_C(0.57155) * t64);
+    const ur10e_real_t t99 = t66 * (t97 - t96) - t98 * (UR10E_C(2.0) * t65);
+    const ur10e_real_t t100 = t66 * t99;
+    const ur10e_real_t t101 = parameters[XX2] + (t96 + t100);
+    const ur10e_real_t t103 = t98 + t65 * t99 + UR10E_C(0.6127) * (t66 * t73 + t65 * t75);
+    const ur10e_real_t t105 = t102 * (parameters[YY2] + (t97 - t100 + t83) - t101) + (parameters[XY2]
+        + t103) * (UR10E_C(2.0) * t104);
+    const ur10e_real_t t106 = t20 * t3;
+    const ur10e_real_t t107 = UR10E_C(0.11985) * t106 - (t16 * t18 + t20 * parameters[ZZ6]);
+    const ur10e_real_t t108 = t45 * t107 + t42 * t4 + UR10E_C(0.17415) * t48;
+    const ur10e_real_t t109 = t42 * t107 - t45 * t4 - (UR10E_C(0.17415) * t67 + UR10E_C(0.57155) * t106);
+    const ur10e_real_t t110 = t102 * (t65 * t108 + t66 * t109 - UR10E_C(0.6127) * t106);
+    const ur10e_real_t t111 = t104 * (t66 * t108 - t65 * t109) + t110;
+    const ur10e_real_t t112 = t111 * t5;
+    const ur10e_real_t t113 = parameters[ZZ1] + (t101 + t102 * t105) + UR10E_C(10201.0) * parameters[IA1]
+        + t111 * t112;
+    const ur10e_real_t t114 = t42 * t12 - t45 * t89 + UR10E_C(0.17415) * t50;
+    const ur10e_real_t t115 = t42 * t89 + t45 * t12 + (UR10E_C(0.17415) * t70 + UR10E_C(-0.57155) * t43);
+    const ur10e_real_t t116 = t102 * (t65 * t114 - t66 * t115 - UR10E_C(-0.6127) * t43);
+    const ur10e_real_t t117 = t104 * (t66 * t114 + t65 * t115) + t116 + t111 * t6;
+    const ur10e_real_t t118 = t117 * t38;
+    const ur10e_real_t t119 = t19 + t20 * t21 - parameters[XZ4];
+    const ur10e_real_t t120 = parameters[YZ4] + t36;
+    const ur10e_real_t t121 = t45 * t119 + t42 * t120;
+    const ur10e_real_t t122 = UR10E_C(-0.17415) * t46 - t121;
+    const ur10e_real_t t123 = t45 * t120 - t42 * t119 - UR10E_C(0.17415) * t64;
+    const ur10e_real_t t124 = t104 * (t66 * t122 - t65 * t123) + t102 * (t65 * t122 + t66 * t123);
+    const ur10e_real_t t125 = t124 - t111 * t30 - t117 * t39;
+    const ur10e_real_t t126 = t125 * t54;
+    const ur10e_real_t t127 = t121 + (UR10E_C(-0.57155) * t93 + UR10E_C(0.17415) * t74) - parameters[XZ3];
+    const ur10e_real_t t128 = parameters[YZ3] + t123;
+    const ur10e_real_t t129 = t66 * t127 + t65 * t128;
+    const ur10e_real_t t130 = t65 * t127 - t66 * t128;
+    const ur10e_real_t t131 = t104 * t129 + t102 * t130 - t111 * t56 - t117 * t61;
+    const ur10e_real_t t132 = t131 + t125 * t55;
+    const ur10e_real_t t133 = t132 * t79;
+    const ur10e_real_t t134 = t113 + t117 * t118 + t125 * t126 - t132 * t133;
+    const ur10e_real_t t135 = t104 * (t129 + UR10E_C(-0.6127) * (parameters[MZ3] + (t93 + t94))
         - parameters[XZ2]);
-    const ur10e_real_t t291 = t290 + t3 * (t259 - parameters[YZ2]) - t174 * t275 - t199 * t278;
-    const ur10e_real_t t292 = t291 + t231 * t281 + t261 * t287;
-    const ur10e_real_t t293 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t253)
-        + UR10E_C(2.0) * t284);
-    const ur10e_real_t t294 = parameters[ZZ2] + (t263 + t293) + UR10E_C(10201.0) * parameters[IA2]
-        + t274 * t275;
-    const ur10e_real_t t295 = t294 + t277 * t278 + t280 * t281 - t286 * t287;
-    if (!(t295 > UR10E_C(1.0e-9))) {
+    const ur10e_real_t t136 = t135 + t102 * (t130 - parameters[YZ2]) - t111 * t82 - t117 * t85;
+    const ur10e_real_t t137 = t136 + t125 * t81 + t132 * t80;
+    const ur10e_real_t t138 = UR10E_C(1.0) / t86;
+    const ur10e_real_t t139 = t137 * t138;
+    const ur10e_real_t t140 = t134 - t137 * t139;
+    if (!(t140 > UR10E_C(1.0e-9))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t296 = UR10E_C(1.0) / t295;
-    const ur10e_real_t t297 = t292 * t296;
-    const ur10e_real_t t298 = t203 + t213 * t237 + t251 * t267 + t288 * t297;
-    const ur10e_real_t t299 = parameters[XX4] + (t216 - t232 + t233);
-    const ur10e_real_t t300 = parameters[YY4] + t192;
-    const ur10e_real_t t301 = parameters[XY4] + t189;
-    const ur10e_real_t t302 = t32 * (t299 - t300) + t301 * (UR10E_C(-2.0) * t34);
-    const ur10e_real_t t303 = t32 * t302;
-    const ur10e_real_t t304 = UR10E_C(0.17415) * (t289 + UR10E_C(2.0) * t252);
-    const ur10e_real_t t305 = parameters[YY3] + (t299 - t303 + (t262 + t304));
-    const ur10e_real_t t306 = parameters[XX3] + (t300 + t303 + t304);
-    const ur10e_real_t t307 = parameters[XY3] + (t301 + t34 * t302 + UR10E_C(0.57155) * t228);
-    const ur10e_real_t t308 = t14 * (t306 - t305) - t307 * (UR10E_C(2.0) * t16);
-    const ur10e_real_t t309 = t14 * t308;
-    const ur10e_real_t t310 = parameters[XX2] + (t305 + t309);
-    const ur10e_real_t t311 = t307 + t16 * t308 + UR10E_C(0.6127) * (t14 * t282 + t16 * t283);
-    const ur10e_real_t t312 = t3 * (parameters[YY2] + (t306 - t309 + t293) - t310) + (parameters[XY2]
-        + t311) * (UR10E_C(2.0) * t2);
-    const ur10e_real_t t313 = parameters[ZZ1] + (t310 + t3 * t312) + UR10E_C(10201.0) * parameters[IA1]
-        + t174 * t177;
-    const ur10e_real_t t314 = t313 + t199 * t202 + t231 * t237 - t261 * t267;
-    const ur10e_real_t t315 = t314 - t292 * t297;
-    if (!(t315 > UR10E_C(1.0e-9))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t316 = UR10E_C(1.0) / t315;
-    const ur10e_real_t t317 = t298 * t316;
+    const ur10e_real_t t141 = t104 * dq[0];
+    const ur10e_real_t t142 = t102 * dq[0];
+    const ur10e_real_t t143 = t66 * t141 + t65 * t142;
+    const ur10e_real_t t144 = t65 * t141 - t66 * t142;
+    const ur10e_real_t t145 = t45 * t143 - t42 * t144;
+    const ur10e_real_t t146 = t42 * t143 + t45 * t144;
+    const ur10e_real_t t147 = t145 * t146;
+    const ur10e_real_t t148 = dq[1] + dq[2];
+    const ur10e_real_t t149 = dq[3] + t148;
+    const ur10e_real_t t150 = t149 * t146;
+    const ur10e_real_t t151 = UR10E_C(2.0) * t150;
+    const ur10e_real_t t152 = t16 * t151 - t20 * t147;
+    const ur10e_real_t t153 = t16 * t149 - t20 * t145;
+    const ur10e_real_t t154 = dq[4] + t146;
+    const ur10e_real_t t155 = t153 * t154;
+    const ur10e_real_t t156 = t152 - t155;
+    const ur10e_real_t t157 = t156 - t155;
+    const ur10e_real_t t158 = t20 * t149 + t16 * t145;
+    const ur10e_real_t t159 = t158 * t153;
+    const ur10e_real_t t160 = t149 * t145;
+    const ur10e_real_t t161 = t159 - t160;
+    const ur10e_real_t t162 = t1 * t161 - t2 * t157;
+    const ur10e_real_t t163 = t1 * t158 + t2 * t154;
+    const ur10e_real_t t164 = dq[5] + t153;
+    const ur10e_real_t t165 = t163 * t164;
+    const ur10e_real_t t166 = t165 - t162;
+    const ur10e_real_t t167 = t2 * t161 + t1 * t157;
+    const ur10e_real_t t168 = t2 * t158 - t1 * t154;
+    const ur10e_real_t t169 = t168 * t164;
+    const ur10e_real_t t170 = t167 - t169;
+    const ur10e_real_t t171 = t170 - t169;
+    const ur10e_real_t t172 = parameters[XX6] * t166 - t165 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t171;
+    const ur10e_real_t t173 = t16 * t147 + t20 * t151;
+    const ur10e_real_t t174 = t158 * t154;
+    const ur10e_real_t t175 = t173 - t174;
+    const ur10e_real_t t176 = t168 * t163;
+    const ur10e_real_t t177 = t175 - t176;
+    const ur10e_real_t t178 = t163 * t163;
+    const ur10e_real_t t179 = t164 * t164;
+    const ur10e_real_t t180 = t142 * t142;
+    const ur10e_real_t t181 = dq[1] * dq[1];
+    const ur10e_real_t t182 = UR10E_C(-9.81) * t104;
+    const ur10e_real_t t183 = t182 + UR10E_C(-0.6127) * (t180 + t181);
+    const ur10e_real_t t184 = t141 * t142;
+    const ur10e_real_t t185 = UR10E_C(9.81) * t102;
+    const ur10e_real_t t186 = t185 + UR10E_C(-0.6127) * t184;
+    const ur10e_real_t t187 = t65 * t186 - t66 * t183;
+    const ur10e_real_t t188 = t144 * t144;
+    const ur10e_real_t t189 = t148 * t148;
+    const ur10e_real_t t190 = t189 + t188;
+    const ur10e_real_t t191 = t187 + UR10E_C(0.57155) * t190;
+    const ur10e_real_t t192 = t65 * t183 + t66 * t186;
+    const ur10e_real_t t193 = t143 * t144;
+    const ur10e_real_t t194 = t192 + UR10E_C(0.57155) * t193;
+    const ur10e_real_t t195 = t45 * t191 + t42 * t194;
+    const ur10e_real_t t196 = t195 + UR10E_C(0.11985) * t147;
+    const ur10e_real_t t197 = t143 * t143;
+    const ur10e_real_t t198 = t197 + t188;
+    const ur10e_real_t t199 = t148 * t143;
+    const ur10e_real_t t200 = dq[1] * t141;
+    const ur10e_real_t t201 = UR10E_C(1.2254) * t200;
+    const ur10e_real_t t202 = t201 + (UR10E_C(1.1431) * t199 + UR10E_C(0.17415) * t198);
+    const ur10e_real_t t203 = t202 - UR10E_C(0.2397) * t150;
+    const ur10e_real_t t204 = t20 * t196 + t16 * t203;
+    const ur10e_real_t t205 = t158 * t158;
+    const ur10e_real_t t206 = t154 * t154;
+    const ur10e_real_t t207 = t205 + t206;
+    const ur10e_real_t t208 = t204 + UR10E_C(0.11655) * t207;
+    const ur10e_real_t t209 = t45 * t194 - t42 * t191;
+    const ur10e_real_t t210 = t145 * t145;
+    const ur10e_real_t t211 = t149 * t149;
+    const ur10e_real_t t212 = t211 + t210;
+    const ur10e_real_t t213 = t209 + UR10E_C(0.11985) * t212;
+    const ur10e_real_t t214 = t213 + UR10E_C(0.11655) * t157;
+    const ur10e_real_t t215 = t16 * t196 - t20 * t203;
+    const ur10e_real_t t216 = t215 - UR10E_C(-0.11655) * t161;
+    const ur10e_real_t t217 = t2 * t214 - t1 * t216;
+    const ur10e_real_t t218 = t172 - parameters[XZ6] * t177 - parameters[YZ6] * (t178 - t179)
+        + (parameters[MY6] * t208 + parameters[MZ6] * t217);
+    const ur10e_real_t t219 = t165 + t166;
+    const ur10e_real_t t220 = parameters[YY6] * t170 + t169 * (parameters[XX6] - parameters[ZZ6])
+        - parameters[XY6] * t219;
+    const ur10e_real_t t221 = t175 + t176;
+    const ur10e_real_t t222 = t168 * t168;
+    const ur10e_real_t t223 = t2 * t216 + t1 * t214;
+    const ur10e_real_t t224 = t220 + parameters[YZ6] * t221 + parameters[XZ6] * (t179 - t222)
+        + (parameters[MZ6] * t223 + parameters[MX6] * t208);
+    const ur10e_real_t t225 = parameters[MZ6] * t167 - (parameters[MX6] * (t178 + t179)
+        + parameters[MY6] * t221);
+    const ur10e_real_t t226 = parameters[M6] * t223 + t225;
+    const ur10e_real_t t227 = parameters[MX6] * t177 - parameters[MY6] * (t222 + t179)
+        - parameters[MZ6] * t162;
+    const ur10e_real_t t228 = parameters[M6] * t217 + t227;
+    const ur10e_real_t t229 = t1 * t226 + t2 * t228;
+    const ur10e_real_t t230 = t174 - t175;
+    const ur10e_real_t t231 = parameters[XX5] * t156 + t155 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t230;
+    const ur10e_real_t t232 = t160 + t159;
+    const ur10e_real_t t233 = t153 * t153;
+    const ur10e_real_t t234 = t231 - parameters[XZ5] * t232 + parameters[YZ5] * (t206 - t233)
+        + (parameters[MY5] * t213 - parameters[MZ5] * t204);
+    const ur10e_real_t t235 = t234 + (t2 * t218 + t1 * t224 + UR10E_C(0.11655) * t229);
+    const ur10e_real_t t236 = parameters[ZZ6] * t175 + t7 * t176 + parameters[YZ6] * t167
+        + parameters[XZ6] * t162;
+    const ur10e_real_t t237 = t236 + parameters[XY6] * (t222 - t178) + (parameters[MX6] * t217
+        - parameters[MY6] * t223);
+    const ur10e_real_t t238 = parameters[YY5] * t175 + t174 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t157;
+    const ur10e_real_t t239 = t238 - parameters[YZ5] * t161 + parameters[XZ5] * (t206 - t205)
+        + (parameters[MZ5] * t215 + parameters[MX5] * t213);
+    const ur10e_real_t t240 = t239 + t237;
+    const ur10e_real_t t241 = t2 * t226 - t1 * t228;
+    const ur10e_real_t t242 = parameters[MX5] * (t233 + t206) - parameters[MY5] * t161
+        - parameters[MZ5] * t173;
+    const ur10e_real_t t243 = parameters[M5] * t215 - t242 + t241;
+    const ur10e_real_t t244 = parameters[MX6] * t171 + parameters[MY6] * t219 + parameters[MZ6] * (t222
+        + t178);
+    const ur10e_real_t t245 = parameters[M5] * t204 + (parameters[MY5] * t207 - parameters[MX5] * t232
+        - parameters[MZ5] * t152);
+    const ur10e_real_t t246 = t245 + (parameters[M6] * t208 + t244);
+    const ur10e_real_t t247 = t16 * t246 - t20 * t243;
+    const ur10e_real_t t248 = UR10E_C(2.0) * t160;
+    const ur10e_real_t t249 = parameters[XX4] * t150 + t150 * (parameters[ZZ4] - parameters[YY4])
+        + parameters[XY4] * t248;
+    const ur10e_real_t t250 = t146 * t146;
+    const ur10e_real_t t251 = t249 + parameters[XZ4] * t147 + parameters[YZ4] * (t211 - t250)
+        + (parameters[MY4] * t202 + parameters[MZ4] * t209);
+    const ur10e_real_t t252 = t251 + (t16 * t235 + t20 * t240 + UR10E_C(-0.11985) * t247);
+    const ur10e_real_t t253 = t159 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t160
+        - parameters[YZ5] * t173;
+    const ur10e_real_t t254 = t253 + parameters[XZ5] * t152 + parameters[XY5] * (t233 - t205)
+        + (parameters[MX5] * t204 + parameters[MY5] * t215);
+    const ur10e_real_t t255 = t254 + (t2 * t224 - t1 * t218 + UR10E_C(0.11655) * t241);
+    const ur10e_real_t t256 = t160 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t160
+        - parameters[XY4] * t151;
+    const ur10e_real_t t257 = t256 + parameters[YZ4] * t147 + parameters[XZ4] * (t211 - t210)
+        + (parameters[MZ4] * t195 + parameters[MX4] * t202);
+    const ur10e_real_t t258 = t257 + t255;
+    const ur10e_real_t t259 = t16 * t243 + t20 * t246;
+    const ur10e_real_t t260 = parameters[M4] * t195 - (parameters[MX4] * (t211 + t250)
+        + parameters[MY4] * t147);
+    const ur10e_real_t t261 = t260 + t259;
+    const ur10e_real_t t262 = parameters[MY5] * t157 - parameters[MX5] * t230 + parameters[MZ5] * (t205
+        + t233);
+    const ur10e_real_t t263 = parameters[M4] * t209 - (parameters[MX4] * t147 + parameters[MY4] * t212)
+        + (parameters[M5] * t213 + t262 + t229);
+    const ur10e_real_t t264 = t42 * t261 + t45 * t263;
+    const ur10e_real_t t265 = t148 * t144;
+    const ur10e_real_t t266 = UR10E_C(2.0) * t199;
+    const ur10e_real_t t267 = parameters[XX3] * t265 + t265 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t266;
+    const ur10e_real_t t268 = t267 + parameters[XZ3] * t193 + parameters[YZ3] * (t189 - t188)
+        + (parameters[MY3] * t201 + parameters[MZ3] * t192);
+    const ur10e_real_t t269 = t268 + (t45 * t252 + t42 * t258 + UR10E_C(0.17415) * t264);
+    const ur10e_real_t t270 = t45 * t261 - t42 * t263;
+    const ur10e_real_t t271 = parameters[MY4] * t151 - parameters[MX4] * t248 + parameters[MZ4] * (t210
+        + t250);
+    const ur10e_real_t t272 = parameters[M4] * t202 + t271 + t247;
+    const ur10e_real_t t273 = t42 * t252 - t45 * t258 - (UR10E_C(0.17415) * t270 - UR10E_C(0.57155) * t272);
+    const ur10e_real_t t274 = UR10E_C(2.0) * t265;
+    const ur10e_real_t t275 = parameters[YY3] * t199 - t199 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t274;
+    const ur10e_real_t t276 = t275 - parameters[YZ3] * t193 - parameters[XZ3] * (t189 - t197)
+        - (parameters[MZ3] * t187 + parameters[MX3] * t201);
+    const ur10e_real_t t277 = t276 + t273;
+    const ur10e_real_t t278 = dq[1] * t142;
+    const ur10e_real_t t279 = t278 * (parameters[YY2] - parameters[ZZ2]) - t278 * parameters[XX2]
+        + UR10E_C(2.0) * t200 * parameters[XY2];
+    const ur10e_real_t t280 = t279 - t184 * parameters[XZ2] + (t181 - t180) * parameters[YZ2]
+        + t185 * parameters[MZ2];
+    const ur10e_real_t t281 = parameters[M3] * t201 + (parameters[MY3] * t274 - parameters[MX3] * t266
+        + parameters[MZ3] * t198);
+    const ur10e_real_t t282 = t65 * t269 + t66 * t277 + UR10E_C(0.6127) * (t281 + t272);
+    const ur10e_real_t t283 = t200 * parameters[YY2] + t200 * (parameters[ZZ2] - parameters[XX2])
+        + UR10E_C(-2.0) * t278 * parameters[XY2];
+    const ur10e_real_t t284 = t141 * t141;
+    const ur10e_real_t t285 = t283 + t184 * parameters[YZ2] + (t284 - t181) * parameters[XZ2]
+        + t182 * parameters[MZ2];
+    const ur10e_real_t t286 = t104 * (t280 + (t66 * t269 - t65 * t277)) + t102 * (t285 + t282);
+    const ur10e_real_t t287 = ur10e_sign(dq[0]);
+    const ur10e_real_t t288 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1])
+        + UR10E_C(-101.0) * (t287 * parameters[FC1]);
+    const ur10e_real_t t289 = ur10e_sign(dq[5]);
+    const ur10e_real_t t290 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6])
+        + UR10E_C(101.0) * (t289 * parameters[FC6]);
+    const ur10e_real_t t291 = UR10E_C(9.09) * input[5] - (t290 + t237);
+    const ur10e_real_t t292 = ur10e_sign(dq[4]);
+    const ur10e_real_t t293 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5])
+        + UR10E_C(101.0) * (t292 * parameters[FC5]);
+    const ur10e_real_t t294 = UR10E_C(9.09) * input[4] - (t293 - t255) + t291 * t6;
+    const ur10e_real_t t295 = UR10E_C(12.12) * input[0] + (t288 + t286) + t291 * t112 + t294 * t118;
+    const ur10e_real_t t296 = t147 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t210 - t250)
+        - (parameters[MY4] * t195 - parameters[MX4] * t209);
+    const ur10e_real_t t297 = t296 + (t16 * t240 - t20 * t235 + UR10E_C(0.11985) * t259);
+    const ur10e_real_t t298 = ur10e_sign(dq[3]);
+    const ur10e_real_t t299 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4])
+        + UR10E_C(101.0) * (t298 * parameters[FC4]);
+    const ur10e_real_t t300 = UR10E_C(9.09) * input[3] - (t299 + t297) - t291 * t30 - t294 * t39;
+    const ur10e_real_t t301 = t193 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t197 - t188)
+        - (parameters[MY3] * t187 - parameters[MX3] * t192);
+    const ur10e_real_t t302 = t301 + (t297 - UR10E_C(0.57155) * t264);
+    const ur10e_real_t t303 = ur10e_sign(dq[2]);
+    const ur10e_real_t t304 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3])
+        + UR10E_C(101.0) * (t303 * parameters[FC3]);
+    const ur10e_real_t t305 = UR10E_C(10.100000000000001) * input[2] - (t304 + t302) + t291 * t56
+        + t294 * t61;
+    const ur10e_real_t t306 = t305 - t300 * t55;
+    const ur10e_real_t t307 = parameters[M3] * t187 - (parameters[MX3] * t190 + parameters[MY3] * t193)
+        + t270;
+    const ur10e_real_t t308 = parameters[MX3] * t193 + parameters[MY3] * (t189 + t197)
+        - parameters[M3] * t192;
+    const ur10e_real_t t309 = t302 - UR10E_C(0.6127) * (t65 * t307 - t66 * (t308 - t264));
+    const ur10e_real_t t310 = t184 * (parameters[XX2] - parameters[YY2]) - (t284 - t180) * parameters[XY2]
+        - (t185 * parameters[MX2] + t182 * parameters[MY2]);
+    const ur10e_real_t t311 = ur10e_sign(dq[1]);
+    const ur10e_real_t t312 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2])
+        + UR10E_C(101.0) * (t311 * parameters[FC2]);
+    const ur10e_real_t t313 = UR10E_C(12.12) * input[1] - (t312 - (t310 - t309)) + t291 * t82;
+    const ur10e_real_t t314 = t313 + t294 * t85 - t300 * t81 + t306 * t80;
+    const ur10e_real_t t315 = t295 + t300 * t126 + t306 * t133 + t314 * t139;
+    const ur10e_real_t t316 = UR10E_C(1.0) / t140;
+    const ur10e_real_t t317 = t315 * t316;
     out[0] = t317;
     if (!(t317 >= UR10E_C(-1.0e15) && t317 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t318 = t288 * t296 + t297 * t317;
+    const ur10e_real_t t318 = t314 * t138 + t139 * t317;
     out[1] = t318;
     if (!(t318 >= UR10E_C(-1.0e15) && t318 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t319 = t251 * t266 + t267 * t317 + t287 * t318;
+    const ur10e_real_t t319 = t306 * t79 + t133 * t317 + t80 * t318;
     out[2] = t319;
     if (!(t319 >= UR10E_C(-1.0e15) && t319 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t320 = t237 * t317 - t213 * t236 - t281 * t318 - t250 * t319;
+    const ur10e_real_t t320 = t126 * t317 - t300 * t54 - t81 * t318 - t55 * t319;
     out[3] = t320;
     if (!(t320 >= UR10E_C(-1.0e15) && t320 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t321 = t202 * t317 - t181 * t201 + t278 * t318 + t246 * t319;
-    const ur10e_real_t t322 = t321 - t212 * t320;
+    const ur10e_real_t t321 = t118 * t317 - t294 * t38 + t85 * t318 + t61 * t319;
+    const ur10e_real_t t322 = t321 - t39 * t320;
     out[4] = t322;
     if (!(t322 >= UR10E_C(-1.0e15) && t322 <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t323 = t177 * t317 - t161 * t176 + t275 * t318 + t243 * t319;
-    out[5] = t323 - t209 * t320 + t180 * t322;
+    const ur10e_real_t t323 = t112 * t317 - t291 * t5 + t82 * t318 + t56 * t319;
+    out[5] = t323 - t30 * t320 + t6 * t322;
     if (!(out[5] >= UR10E_C(-1.0e15) && out[5] <= UR10E_C(1.0e15))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;

@@ -78,7 +78,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -101,42 +101,42 @@ int ur10e_gravity(
         return status;
     }
 
-    ur10e_real_t t0, t7;
-    UR10E_SINCOS(q[1], &t0, &t7);
-    ur10e_real_t t6, t1;
-    UR10E_SINCOS(q[2], &t6, &t1);
-    ur10e_real_t t4, t2;
-    UR10E_SINCOS(q[3], &t4, &t2);
-    ur10e_real_t t13, t3;
-    UR10E_SINCOS(q[4], &t13, &t3);
-    ur10e_real_t t17, t12;
-    UR10E_SINCOS(q[5], &t17, &t12);
-    const ur10e_real_t t5 = UR10E_C(-9.81) * t0;
-    const ur10e_real_t t8 = UR10E_C(9.81) * t7;
-    const ur10e_real_t t9 = t1 * t5 - t6 * t8;
-    const ur10e_real_t t10 = t6 * t5 + t1 * t8;
-    const ur10e_real_t t11 = t4 * t9 + t2 * t10;
-    const ur10e_real_t t14 = t2 * t9 - t4 * t10;
-    const ur10e_real_t t15 = t13 * t14;
-    const ur10e_real_t t16 = parameters[MY6] * t15;
-    const ur10e_real_t t18 = parameters[MX6] * t15;
-    const ur10e_real_t t19 = t12 * t16 + t17 * t18 - parameters[MY5R] * t11;
-    const ur10e_real_t t20 = t3 * t14;
-    const ur10e_real_t t21 = parameters[MX6] * (t17 * t20 + t12 * t11) + parameters[MY6] * (t12 * t20
-        - t17 * t11);
-    const ur10e_real_t t22 = parameters[MX5] * t11 + t21;
-    const ur10e_real_t t23 = t3 * t19 - t13 * t22;
-    const ur10e_real_t t24 = parameters[MX5] * t15 + parameters[MY5R] * t20 + (t12 * t18 - t17 * t16);
-    const ur10e_real_t t25 = t2 * t23 + t4 * t24;
-    const ur10e_real_t t26 = t4 * t23 - t2 * t24;
-    const ur10e_real_t t27 = t0 * (t1 * t25 - t6 * t26) + t7 * (t6 * t25 + t1 * t26);
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
+    ur10e_real_t t9, t7;
+    UR10E_SINCOS(q[3], &t9, &t7);
+    ur10e_real_t t18, t11;
+    UR10E_SINCOS(q[4], &t18, &t11);
+    ur10e_real_t t13, t15;
+    UR10E_SINCOS(q[5], &t13, &t15);
+    const ur10e_real_t t1 = UR10E_C(-9.81) * t0;
+    const ur10e_real_t t4 = UR10E_C(9.81) * t3;
+    const ur10e_real_t t6 = t2 * t1 - t5 * t4;
+    const ur10e_real_t t8 = t5 * t1 + t2 * t4;
+    const ur10e_real_t t10 = t7 * t6 - t9 * t8;
+    const ur10e_real_t t12 = t11 * t10;
+    const ur10e_real_t t14 = t9 * t6 + t7 * t8;
+    const ur10e_real_t t16 = parameters[MX6] * (t13 * t12 + t15 * t14) + parameters[MY6] * (t15 * t12
+        - t13 * t14);
+    const ur10e_real_t t17 = parameters[MX5] * t14 + t16;
+    const ur10e_real_t t19 = t18 * t10;
+    const ur10e_real_t t20 = parameters[MY6] * t19;
+    const ur10e_real_t t21 = parameters[MX6] * t19;
+    const ur10e_real_t t22 = t15 * t20 + t13 * t21 - parameters[MY5R] * t14;
+    const ur10e_real_t t23 = t11 * t22 - t18 * t17;
+    const ur10e_real_t t24 = parameters[MX5] * t19 + parameters[MY5R] * t12 + (t15 * t21 - t13 * t20);
+    const ur10e_real_t t25 = t7 * t23 + t9 * t24;
+    const ur10e_real_t t26 = t9 * t23 - t7 * t24;
+    const ur10e_real_t t27 = t0 * (t2 * t25 - t5 * t26) + t3 * (t5 * t25 + t2 * t26);
     out[0] = UR10E_C(0.08250825082508251) * t27;
-    const ur10e_real_t t28 = parameters[MX4] * t11 + parameters[MY4R] * t14 + (t13 * t19 + t3 * t22);
-    const ur10e_real_t t29 = parameters[MX3R] * t10 + parameters[MY3] * t9 + t28;
-    out[1] = UR10E_C(0.08250825082508251) * (parameters[MX2R] * t8 + parameters[MY2] * t5 + t29);
+    const ur10e_real_t t28 = parameters[MX4] * t14 + parameters[MY4R] * t10 + (t18 * t22 + t11 * t17);
+    const ur10e_real_t t29 = parameters[MX3R] * t8 + parameters[MY3] * t6 + t28;
+    out[1] = UR10E_C(0.08250825082508251) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t29);
     out[2] = UR10E_C(0.099009900990099) * t29;
     out[3] = UR10E_C(0.11001100110011001) * t28;
     out[4] = UR10E_C(0.11001100110011001) * t24;
-    out[5] = UR10E_C(0.11001100110011001) * t21;
+    out[5] = UR10E_C(0.11001100110011001) * t16;
     return UR10E_STATUS_OK;
 }

@@ -103,7 +103,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -127,59 +127,59 @@ int ur10e_gravity_standard(
         return status;
     }
 
-    ur10e_real_t t0, t1;
-    UR10E_SINCOS(q[1], &t0, &t1);
-    ur10e_real_t t4, t3;
-    UR10E_SINCOS(q[2], &t4, &t3);
-    ur10e_real_t t8, t7;
-    UR10E_SINCOS(q[3], &t8, &t7);
-    ur10e_real_t t12, t11;
-    UR10E_SINCOS(q[4], &t12, &t11);
-    ur10e_real_t t16, t15;
-    UR10E_SINCOS(q[5], &t16, &t15);
-    const ur10e_real_t t2 = UR10E_C(-9.81) * t1;
-    const ur10e_real_t t5 = UR10E_C(9.81) * t0;
-    const ur10e_real_t t6 = t4 * t5 + t3 * t2;
-    const ur10e_real_t t9 = t4 * t2 - t3 * t5;
-    const ur10e_real_t t10 = t7 * t6 - t8 * t9;
-    const ur10e_real_t t13 = t7 * t9 + t8 * t6;
-    const ur10e_real_t t14 = t12 * t13;
-    const ur10e_real_t t17 = t11 * t13;
-    const ur10e_real_t t18 = t16 * t17 - t15 * t10;
-    const ur10e_real_t t19 = t18 * parameters[MZ6] - t14 * parameters[MY6];
-    const ur10e_real_t t20 = t15 * t17 + t16 * t10;
-    const ur10e_real_t t21 = t20 * parameters[MZ6] + t14 * parameters[MX6];
+    ur10e_real_t t0, t3;
+    UR10E_SINCOS(q[1], &t0, &t3);
+    ur10e_real_t t5, t2;
+    UR10E_SINCOS(q[2], &t5, &t2);
+    ur10e_real_t t9, t7;
+    UR10E_SINCOS(q[3], &t9, &t7);
+    ur10e_real_t t17, t11;
+    UR10E_SINCOS(q[4], &t17, &t11);
+    ur10e_real_t t13, t15;
+    UR10E_SINCOS(q[5], &t13, &t15);
+    const ur10e_real_t t1 = UR10E_C(9.81) * t0;
+    const ur10e_real_t t4 = UR10E_C(-9.81) * t3;
+    const ur10e_real_t t6 = t5 * t4 - t2 * t1;
+    const ur10e_real_t t8 = t5 * t1 + t2 * t4;
+    const ur10e_real_t t10 = t7 * t6 + t9 * t8;
+    const ur10e_real_t t12 = t11 * t10;
+    const ur10e_real_t t14 = t7 * t8 - t9 * t6;
+    const ur10e_real_t t16 = t13 * t12 - t15 * t14;
+    const ur10e_real_t t18 = t17 * t10;
+    const ur10e_real_t t19 = t16 * parameters[MZ6] - t18 * parameters[MY6];
+    const ur10e_real_t t20 = t15 * t12 + t13 * t14;
+    const ur10e_real_t t21 = t20 * parameters[MZ6] + t18 * parameters[MX6];
     const ur10e_real_t t22 = t20 * parameters[M6];
-    const ur10e_real_t t23 = t18 * parameters[M6];
-    const ur10e_real_t t24 = t16 * t22 - t15 * t23;
-    const ur10e_real_t t25 = t10 * parameters[MY5] - t14 * parameters[MZ5] + (t16 * t21 - t15 * t19
+    const ur10e_real_t t23 = t16 * parameters[M6];
+    const ur10e_real_t t24 = t13 * t22 - t15 * t23;
+    const ur10e_real_t t25 = t14 * parameters[MY5] - t18 * parameters[MZ5] + (t13 * t21 - t15 * t19
         + UR10E_C(0.11655) * t24);
-    const ur10e_real_t t26 = t18 * parameters[MX6] + t20 * parameters[MY6];
-    const ur10e_real_t t27 = t26 - (t17 * parameters[MZ5] + t10 * parameters[MX5]);
-    const ur10e_real_t t28 = t15 * t22 + t16 * t23;
-    const ur10e_real_t t29 = t17 * parameters[M5] + t28;
-    const ur10e_real_t t30 = t14 * parameters[M5] + t14 * parameters[M6];
-    const ur10e_real_t t31 = t11 * t30 - t12 * t29;
-    const ur10e_real_t t32 = t10 * parameters[MZ4] + (t11 * t25 - t12 * t27 + UR10E_C(-0.11985) * t31);
-    const ur10e_real_t t33 = t14 * parameters[MX5] + t17 * parameters[MY5] + (t16 * t19 + t15 * t21
+    const ur10e_real_t t26 = t16 * parameters[MX6] + t20 * parameters[MY6];
+    const ur10e_real_t t27 = t26 - (t12 * parameters[MZ5] + t14 * parameters[MX5]);
+    const ur10e_real_t t28 = t15 * t22 + t13 * t23;
+    const ur10e_real_t t29 = t12 * parameters[M5] + t28;
+    const ur10e_real_t t30 = t18 * parameters[M5] + t18 * parameters[M6];
+    const ur10e_real_t t31 = t11 * t30 - t17 * t29;
+    const ur10e_real_t t32 = t14 * parameters[MZ4] + (t11 * t25 - t17 * t27 + UR10E_C(-0.11985) * t31);
+    const ur10e_real_t t33 = t18 * parameters[MX5] + t12 * parameters[MY5] + (t13 * t19 + t15 * t21
         + UR10E_C(0.11655) * t28);
-    const ur10e_real_t t34 = t13 * parameters[MZ4] + t33;
-    const ur10e_real_t t35 = t11 * t29 + t12 * t30;
-    const ur10e_real_t t36 = t13 * parameters[M4] + t35;
-    const ur10e_real_t t37 = t10 * parameters[M4] + (t10 * parameters[M5] + t24);
-    const ur10e_real_t t38 = t8 * t36 + t7 * t37;
-    const ur10e_real_t t39 = t6 * parameters[MZ3] + (t7 * t32 + t8 * t34 + UR10E_C(0.17415) * t38);
-    const ur10e_real_t t40 = t7 * t36 - t8 * t37;
-    const ur10e_real_t t41 = t8 * t32 - t7 * t34 + (UR10E_C(-0.17415) * t40 + UR10E_C(0.57155) * t31);
-    const ur10e_real_t t42 = t41 - t9 * parameters[MZ3];
-    const ur10e_real_t t43 = t0 * (t2 * parameters[MZ2] + (t3 * t39 - t4 * t42));
-    const ur10e_real_t t44 = t5 * parameters[MZ2] + (t4 * t39 + t3 * t42 + UR10E_C(0.6127) * t31);
-    out[0] = UR10E_C(0.08250825082508251) * (t43 + t1 * t44);
-    const ur10e_real_t t45 = t13 * parameters[MY4] - t10 * parameters[MX4] + (t12 * t25 + t11 * t27
+    const ur10e_real_t t34 = t10 * parameters[MZ4] + t33;
+    const ur10e_real_t t35 = t11 * t29 + t17 * t30;
+    const ur10e_real_t t36 = t10 * parameters[M4] + t35;
+    const ur10e_real_t t37 = t14 * parameters[M4] + (t14 * parameters[M5] + t24);
+    const ur10e_real_t t38 = t9 * t36 + t7 * t37;
+    const ur10e_real_t t39 = t8 * parameters[MZ3] + (t7 * t32 + t9 * t34 + UR10E_C(0.17415) * t38);
+    const ur10e_real_t t40 = t7 * t36 - t9 * t37;
+    const ur10e_real_t t41 = t9 * t32 - t7 * t34 + (UR10E_C(-0.17415) * t40 + UR10E_C(0.57155) * t31);
+    const ur10e_real_t t42 = t41 - t6 * parameters[MZ3];
+    const ur10e_real_t t43 = t0 * (t4 * parameters[MZ2] + (t2 * t39 - t5 * t42));
+    const ur10e_real_t t44 = t1 * parameters[MZ2] + (t5 * t39 + t2 * t42 + UR10E_C(0.6127) * t31);
+    out[0] = UR10E_C(0.08250825082508251) * (t43 + t3 * t44);
+    const ur10e_real_t t45 = t10 * parameters[MY4] - t14 * parameters[MX4] + (t17 * t25 + t11 * t27
         + UR10E_C(-0.11985) * t35);
-    const ur10e_real_t t46 = t9 * parameters[MY3] - t6 * parameters[MX3] + (t45 + UR10E_C(0.57155) * t38);
-    const ur10e_real_t t47 = t4 * (t9 * parameters[M3] + t40) + t3 * (t6 * parameters[M3] + t38);
-    const ur10e_real_t t48 = t46 + UR10E_C(0.6127) * t47 - (t2 * parameters[MX2] + t5 * parameters[MY2]);
+    const ur10e_real_t t46 = t6 * parameters[MY3] - t8 * parameters[MX3] + (t45 + UR10E_C(0.57155) * t38);
+    const ur10e_real_t t47 = t5 * (t6 * parameters[M3] + t40) + t2 * (t8 * parameters[M3] + t38);
+    const ur10e_real_t t48 = t46 + UR10E_C(0.6127) * t47 - (t4 * parameters[MX2] + t1 * parameters[MY2]);
     out[1] = UR10E_C(0.08250825082508251) * t48;
     out[2] = UR10E_C(0.099009900990099) * t46;
     out[3] = UR10E_C(0.11001100110011001) * t45;

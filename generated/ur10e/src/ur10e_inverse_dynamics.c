@@ -80,7 +80,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -107,221 +107,221 @@ int ur10e_inverse_dynamics(
         return status;
     }
 
-    ur10e_real_t t1, t3;
-    UR10E_SINCOS(q[1], &t1, &t3);
-    ur10e_real_t t20, t16;
-    UR10E_SINCOS(q[2], &t20, &t16);
-    ur10e_real_t t39, t36;
-    UR10E_SINCOS(q[3], &t39, &t36);
-    ur10e_real_t t59, t58;
-    UR10E_SINCOS(q[4], &t59, &t58);
-    ur10e_real_t t92, t91;
-    UR10E_SINCOS(q[5], &t92, &t91);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t2 = dq[1] * dq[1];
-    const ur10e_real_t t4 = t3 * dq[0];
-    const ur10e_real_t t5 = t4 * t4;
-    const ur10e_real_t t6 = dq[1] * t4;
-    const ur10e_real_t t7 = t1 * ddq[0];
-    const ur10e_real_t t8 = t6 + t7;
-    const ur10e_real_t t9 = t1 * dq[0];
-    const ur10e_real_t t10 = dq[1] * t9;
-    const ur10e_real_t t11 = t3 * ddq[0];
-    const ur10e_real_t t12 = t11 - t10 - t10;
-    const ur10e_real_t t13 = t9 * t4;
-    const ur10e_real_t t14 = ddq[1] + t13;
-    const ur10e_real_t t15 = parameters[ZZ2R] * t6 + parameters[XX2R] * t8 + parameters[XY2] * t12
-        + parameters[XZ2R] * t14;
-    const ur10e_real_t t17 = UR10E_C(0.6127) * t12;
-    const ur10e_real_t t18 = dq[1] + dq[2];
-    const ur10e_real_t t19 = t18 * t18;
-    const ur10e_real_t t21 = t3 * t16 - t1 * t20;
-    const ur10e_real_t t22 = dq[0] * t21;
-    const ur10e_real_t t23 = t22 * t22;
-    const ur10e_real_t t24 = t18 * t22;
-    const ur10e_real_t t25 = t1 * t16 + t3 * t20;
-    const ur10e_real_t t26 = ddq[0] * t25;
-    const ur10e_real_t t27 = t24 + t26;
-    const ur10e_real_t t28 = dq[0] * t25;
-    const ur10e_real_t t29 = t18 * t28;
-    const ur10e_real_t t30 = ddq[0] * t21;
-    const ur10e_real_t t31 = t30 - t29 - t29;
-    const ur10e_real_t t32 = t28 * t22;
-    const ur10e_real_t t33 = ddq[1] + ddq[2];
-    const ur10e_real_t t34 = t32 + t33;
-    const ur10e_real_t t35 = parameters[ZZ3R] * t24 + parameters[XX3R] * t27 + parameters[XY3] * t31
-        + parameters[XZ3R] * t34;
-    const ur10e_real_t t37 = dq[3] + t18;
-    const ur10e_real_t t38 = t37 * t37;
-    const ur10e_real_t t40 = t39 * t25 - t36 * t21;
-    const ur10e_real_t t41 = dq[0] * t40;
-    const ur10e_real_t t42 = t41 * t41;
-    const ur10e_real_t t43 = t37 * t41;
-    const ur10e_real_t t44 = t36 * t25 + t39 * t21;
-    const ur10e_real_t t45 = ddq[0] * t44;
-    const ur10e_real_t t46 = t45 - t43;
-    const ur10e_real_t t47 = dq[0] * t44;
-    const ur10e_real_t t48 = t37 * t47;
-    const ur10e_real_t t49 = ddq[0] * t40;
-    const ur10e_real_t t50 = t48 + t49;
-    const ur10e_real_t t51 = t48 + t50;
-    const ur10e_real_t t52 = t47 * t41;
-    const ur10e_real_t t53 = ddq[3] + t33;
-    const ur10e_real_t t54 = t53 - t52;
-    const ur10e_real_t t55 = parameters[XX4R] * t46 - parameters[ZZ4R] * t43 - parameters[XY4] * t51
-        + parameters[XZ4] * t54;
-    const ur10e_real_t t56 = t28 * t28;
-    const ur10e_real_t t57 = t17 + (UR10E_C(-0.17415) * (t56 + t23) + UR10E_C(0.57155) * t31);
-    const ur10e_real_t t60 = t58 * t37 - t59 * t47;
-    const ur10e_real_t t61 = t60 * t60;
-    const ur10e_real_t t62 = dq[4] + t41;
-    const ur10e_real_t t63 = t62 * t62;
-    const ur10e_real_t t64 = t60 * t62;
-    const ur10e_real_t t65 = t52 + t53;
-    const ur10e_real_t t66 = t43 - t46;
-    const ur10e_real_t t67 = t59 * t65 - t58 * t66;
-    const ur10e_real_t t68 = t64 + t67;
-    const ur10e_real_t t69 = t59 * t37 + t58 * t47;
-    const ur10e_real_t t70 = t69 * t62;
-    const ur10e_real_t t71 = t58 * t65 + t59 * t66;
-    const ur10e_real_t t72 = t70 - t71;
-    const ur10e_real_t t73 = t70 + t72;
-    const ur10e_real_t t74 = t69 * t60;
-    const ur10e_real_t t75 = ddq[4] + t50;
-    const ur10e_real_t t76 = t74 + t75;
-    const ur10e_real_t t77 = parameters[ZZ5R] * t64 + parameters[XX5R] * t68 - parameters[XY5] * t73
-        + parameters[XZ5] * t76;
-    const ur10e_real_t t78 = t47 * t47;
-    const ur10e_real_t t79 = t38 + t78;
-    const ur10e_real_t t80 = UR10E_C(-9.81) * t1;
-    const ur10e_real_t t81 = UR10E_C(0.6127) * (t2 + t5) - t80;
-    const ur10e_real_t t82 = UR10E_C(-9.81) * t3;
-    const ur10e_real_t t83 = t82 + UR10E_C(0.6127) * t14;
-    const ur10e_real_t t84 = t20 * t83 - t16 * t81;
-    const ur10e_real_t t85 = t19 + t23;
-    const ur10e_real_t t86 = UR10E_C(0.57155) * t85 - UR10E_C(-0.17415) * t30 - t84;
-    const ur10e_real_t t87 = t20 * t81 + t16 * t83;
-    const ur10e_real_t t88 = t87 + (UR10E_C(0.57155) * t34 + UR10E_C(0.17415) * t26);
-    const ur10e_real_t t89 = t39 * t86 + t36 * t88;
-    const ur10e_real_t t90 = UR10E_C(-0.11985) * t79 + t89;
-    const ur10e_real_t t93 = t92 * t69 + t91 * t62;
-    const ur10e_real_t t94 = t93 * t93;
-    const ur10e_real_t t95 = dq[5] + t60;
-    const ur10e_real_t t96 = t95 * t95;
-    const ur10e_real_t t97 = t93 * t95;
-    const ur10e_real_t t98 = t74 - t75;
-    const ur10e_real_t t99 = t64 + t68;
-    const ur10e_real_t t100 = t92 * t98 + t91 * t99;
-    const ur10e_real_t t101 = t97 - t100;
-    const ur10e_real_t t102 = t91 * t69 - t92 * t62;
-    const ur10e_real_t t103 = t102 * t95;
-    const ur10e_real_t t104 = t92 * t99 - t91 * t98;
-    const ur10e_real_t t105 = t103 + (t103 + t104);
-    const ur10e_real_t t106 = t102 * t93;
-    const ur10e_real_t t107 = t72 - ddq[5];
-    const ur10e_real_t t108 = t106 + t107;
-    const ur10e_real_t t109 = parameters[ZZ6] * t97 + parameters[XX6R] * t101 + parameters[XY6] * t105
-        + parameters[XZ6R] * t108;
-    const ur10e_real_t t110 = t39 * t88 - t36 * t86;
-    const ur10e_real_t t111 = t110 + UR10E_C(-0.11985) * t65;
-    const ur10e_real_t t112 = t57 + UR10E_C(0.11985) * t66;
-    const ur10e_real_t t113 = t59 * t111 + t58 * t112;
-    const ur10e_real_t t114 = parameters[YZ6R] * (t94 - t96) - t109 + parameters[MY6] * t113;
-    const ur10e_real_t t115 = t102 * t102;
-    const ur10e_real_t t116 = t97 + t101;
-    const ur10e_real_t t117 = t107 - t106;
-    const ur10e_real_t t118 = (parameters[ZZ6] - parameters[XX6R]) * t103 + parameters[XY6] * t116
-        + parameters[YZ6R] * t117;
-    const ur10e_real_t t119 = parameters[XZ6R] * (t115 - t96) + t118 + parameters[MX6] * t113;
-    const ur10e_real_t t120 = parameters[YZ5] * (t61 - t63) + t77 + parameters[MY5R] * t90 + (t91 * t114
-        + t92 * t119);
-    const ur10e_real_t t121 = t69 * t69;
-    const ur10e_real_t t122 = (parameters[XX5R] - parameters[ZZ5R]) * t70 + parameters[XY5] * t99
-        - parameters[YZ5] * t98;
-    const ur10e_real_t t123 = parameters[XX6R] * t106 - parameters[ZZ6] * t107 - parameters[YZ6R] * t104
-        + parameters[XZ6R] * t100;
-    const ur10e_real_t t124 = t58 * t111 - t59 * t112;
-    const ur10e_real_t t125 = parameters[MX6] * (t92 * t124 - t91 * t90) + parameters[MY6] * (t91 * t124
-        + t92 * t90);
-    const ur10e_real_t t126 = parameters[XY6] * (t115 - t94) + t123 + t125;
-    const ur10e_real_t t127 = parameters[XZ5] * (t121 - t63) - t122 + parameters[MX5] * t90 - t126;
-    const ur10e_real_t t128 = parameters[MX6] * (t94 + t96) - parameters[MY6] * t117;
-    const ur10e_real_t t129 = parameters[MY6] * (t115 + t96) + parameters[MX6] * t108;
-    const ur10e_real_t t130 = parameters[MX5] * (t61 + t63) - parameters[MY5R] * t98 + (t91 * t128
-        - t92 * t129);
-    const ur10e_real_t t131 = parameters[MX5] * t76 - parameters[MY5R] * (t121 + t63)
-        + (parameters[MX6] * t105 - parameters[MY6] * t116);
-    const ur10e_real_t t132 = t58 * t131 - t59 * t130;
-    const ur10e_real_t t133 = parameters[YZ4] * (t42 - t38) + t55 + parameters[MY4R] * t57 + (t58 * t120
-        + t59 * t127 + UR10E_C(-0.11985) * t132);
-    const ur10e_real_t t134 = (parameters[ZZ4R] - parameters[XX4R]) * t48 + parameters[XY4] * t66
-        - parameters[YZ4] * t65;
-    const ur10e_real_t t135 = parameters[ZZ5R] * t75 - parameters[XX5R] * t74 + parameters[YZ5] * t71
-        + parameters[XZ5] * t67;
-    const ur10e_real_t t136 = parameters[XY5] * (t121 - t61) + t135 + (parameters[MX5] * t113
-        + parameters[MY5R] * t124);
-    const ur10e_real_t t137 = t136 + (t91 * t119 - t92 * t114);
-    const ur10e_real_t t138 = parameters[XZ4] * (t78 - t38) + t134 + parameters[MX4] * t57 + t137;
-    const ur10e_real_t t139 = t58 * t130 + t59 * t131;
-    const ur10e_real_t t140 = parameters[MX4] * (t38 + t42) + parameters[MY4R] * t65 + t139;
-    const ur10e_real_t t141 = parameters[MX5] * t73 + parameters[MY5R] * t99 + (t92 * t128 + t91 * t129);
-    const ur10e_real_t t142 = parameters[MY4R] * t79 - parameters[MX4] * t54 + t141;
-    const ur10e_real_t t143 = t39 * t140 + t36 * t142;
-    const ur10e_real_t t144 = parameters[MY3] * t17 + (parameters[YZ3] * (t23 - t19) + t35) + (t36 * t133
-        + t39 * t138 + UR10E_C(0.17415) * t143);
-    const ur10e_real_t t145 = t24 + t27;
-    const ur10e_real_t t146 = t33 - t32;
-    const ur10e_real_t t147 = (parameters[XX3R] - parameters[ZZ3R]) * t29 + parameters[XY3] * t145
-        + parameters[YZ3] * t146;
-    const ur10e_real_t t148 = t36 * t140 - t39 * t142;
-    const ur10e_real_t t149 = parameters[MX4] * t51 - parameters[MY4R] * t66 + t132;
-    const ur10e_real_t t150 = t36 * t138 - t39 * t133 + (UR10E_C(0.17415) * t148 - UR10E_C(0.57155) * t149);
-    const ur10e_real_t t151 = parameters[XZ3R] * (t19 - t56) + t147 - parameters[MX3R] * t17 - t150;
-    const ur10e_real_t t152 = parameters[YZ2] * (t5 - t2) + t15 + (t16 * t144 - t20 * t151);
-    const ur10e_real_t t153 = t9 * t9;
-    const ur10e_real_t t154 = t10 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t6 + t8)
-        + parameters[YZ2] * (ddq[1] - t13);
-    const ur10e_real_t t155 = t20 * t144 + t16 * t151 + UR10E_C(0.6127) * (parameters[MY3] * t145
-        - parameters[MX3R] * t31 + t149);
-    const ur10e_real_t t156 = t1 * t152 + t3 * (parameters[XZ2R] * (t2 - t153) + t154 + t155);
+    ur10e_real_t t0, t2;
+    UR10E_SINCOS(q[1], &t0, &t2);
+    ur10e_real_t t3, t1;
+    UR10E_SINCOS(q[2], &t3, &t1);
+    ur10e_real_t t7, t5;
+    UR10E_SINCOS(q[3], &t7, &t5);
+    ur10e_real_t t13, t10;
+    UR10E_SINCOS(q[4], &t13, &t10);
+    ur10e_real_t t23, t38;
+    UR10E_SINCOS(q[5], &t23, &t38);
+    const ur10e_real_t t4 = t0 * t1 + t2 * t3;
+    const ur10e_real_t t6 = t2 * t1 - t0 * t3;
+    const ur10e_real_t t8 = t5 * t4 + t7 * t6;
+    const ur10e_real_t t9 = dq[0] * t8;
+    const ur10e_real_t t11 = dq[1] + dq[2];
+    const ur10e_real_t t12 = dq[3] + t11;
+    const ur10e_real_t t14 = t13 * t12 + t10 * t9;
+    const ur10e_real_t t15 = t10 * t12 - t13 * t9;
+    const ur10e_real_t t16 = t14 * t15;
+    const ur10e_real_t t17 = t12 * t9;
+    const ur10e_real_t t18 = t7 * t4 - t5 * t6;
+    const ur10e_real_t t19 = ddq[0] * t18;
+    const ur10e_real_t t20 = t17 + t19;
+    const ur10e_real_t t21 = ddq[4] + t20;
+    const ur10e_real_t t22 = t16 - t21;
+    const ur10e_real_t t24 = dq[0] * t18;
+    const ur10e_real_t t25 = t9 * t24;
+    const ur10e_real_t t26 = ddq[1] + ddq[2];
+    const ur10e_real_t t27 = ddq[3] + t26;
+    const ur10e_real_t t28 = t25 + t27;
+    const ur10e_real_t t29 = t12 * t24;
+    const ur10e_real_t t30 = ddq[0] * t8;
+    const ur10e_real_t t31 = t30 - t29;
+    const ur10e_real_t t32 = t29 - t31;
+    const ur10e_real_t t33 = t13 * t28 - t10 * t32;
+    const ur10e_real_t t34 = dq[4] + t24;
+    const ur10e_real_t t35 = t15 * t34;
+    const ur10e_real_t t36 = t35 + t33;
+    const ur10e_real_t t37 = t35 + t36;
+    const ur10e_real_t t39 = t23 * t22 + t38 * t37;
+    const ur10e_real_t t40 = t23 * t14 + t38 * t34;
+    const ur10e_real_t t41 = dq[5] + t15;
+    const ur10e_real_t t42 = t40 * t41;
+    const ur10e_real_t t43 = t42 - t39;
+    const ur10e_real_t t44 = t23 * t37 - t38 * t22;
+    const ur10e_real_t t45 = t38 * t14 - t23 * t34;
+    const ur10e_real_t t46 = t45 * t41;
+    const ur10e_real_t t47 = t46 + (t46 + t44);
+    const ur10e_real_t t48 = t45 * t40;
+    const ur10e_real_t t49 = t10 * t28 + t13 * t32;
+    const ur10e_real_t t50 = t14 * t34;
+    const ur10e_real_t t51 = t50 - t49;
+    const ur10e_real_t t52 = t51 - ddq[5];
+    const ur10e_real_t t53 = t48 + t52;
+    const ur10e_real_t t54 = parameters[ZZ6] * t42 + parameters[XX6R] * t43 + parameters[XY6] * t47
+        + parameters[XZ6R] * t53;
+    const ur10e_real_t t55 = t40 * t40;
+    const ur10e_real_t t56 = t41 * t41;
+    const ur10e_real_t t57 = t2 * dq[0];
+    const ur10e_real_t t58 = t57 * t57;
+    const ur10e_real_t t59 = dq[1] * dq[1];
+    const ur10e_real_t t60 = UR10E_C(-9.81) * t0;
+    const ur10e_real_t t61 = UR10E_C(0.6127) * (t59 + t58) - t60;
+    const ur10e_real_t t62 = t0 * dq[0];
+    const ur10e_real_t t63 = t62 * t57;
+    const ur10e_real_t t64 = ddq[1] + t63;
+    const ur10e_real_t t65 = UR10E_C(-9.81) * t2;
+    const ur10e_real_t t66 = t65 + UR10E_C(0.6127) * t64;
+    const ur10e_real_t t67 = t3 * t66 - t1 * t61;
+    const ur10e_real_t t68 = dq[0] * t6;
+    const ur10e_real_t t69 = t68 * t68;
+    const ur10e_real_t t70 = t11 * t11;
+    const ur10e_real_t t71 = t70 + t69;
+    const ur10e_real_t t72 = ddq[0] * t6;
+    const ur10e_real_t t73 = UR10E_C(0.57155) * t71 - UR10E_C(-0.17415) * t72 - t67;
+    const ur10e_real_t t74 = t3 * t61 + t1 * t66;
+    const ur10e_real_t t75 = dq[0] * t4;
+    const ur10e_real_t t76 = t75 * t68;
+    const ur10e_real_t t77 = t76 + t26;
+    const ur10e_real_t t78 = ddq[0] * t4;
+    const ur10e_real_t t79 = t74 + (UR10E_C(0.57155) * t77 + UR10E_C(0.17415) * t78);
+    const ur10e_real_t t80 = t7 * t79 - t5 * t73;
+    const ur10e_real_t t81 = t80 + UR10E_C(-0.11985) * t28;
+    const ur10e_real_t t82 = t75 * t75;
+    const ur10e_real_t t83 = t11 * t75;
+    const ur10e_real_t t84 = t72 - t83 - t83;
+    const ur10e_real_t t85 = dq[1] * t62;
+    const ur10e_real_t t86 = t2 * ddq[0];
+    const ur10e_real_t t87 = t86 - t85 - t85;
+    const ur10e_real_t t88 = UR10E_C(0.6127) * t87;
+    const ur10e_real_t t89 = t88 + (UR10E_C(-0.17415) * (t82 + t69) + UR10E_C(0.57155) * t84);
+    const ur10e_real_t t90 = t89 + UR10E_C(0.11985) * t32;
+    const ur10e_real_t t91 = t13 * t81 + t10 * t90;
+    const ur10e_real_t t92 = parameters[YZ6R] * (t55 - t56) - t54 + parameters[MY6] * t91;
+    const ur10e_real_t t93 = t42 + t43;
+    const ur10e_real_t t94 = t52 - t48;
+    const ur10e_real_t t95 = (parameters[ZZ6] - parameters[XX6R]) * t46 + parameters[XY6] * t93
+        + parameters[YZ6R] * t94;
+    const ur10e_real_t t96 = t45 * t45;
+    const ur10e_real_t t97 = parameters[XZ6R] * (t96 - t56) + t95 + parameters[MX6] * t91;
+    const ur10e_real_t t98 = t50 + t51;
+    const ur10e_real_t t99 = t16 + t21;
+    const ur10e_real_t t100 = parameters[ZZ5R] * t35 + parameters[XX5R] * t36 - parameters[XY5] * t98
+        + parameters[XZ5] * t99;
+    const ur10e_real_t t101 = t15 * t15;
+    const ur10e_real_t t102 = t34 * t34;
+    const ur10e_real_t t103 = t7 * t73 + t5 * t79;
+    const ur10e_real_t t104 = t9 * t9;
+    const ur10e_real_t t105 = t12 * t12;
+    const ur10e_real_t t106 = t105 + t104;
+    const ur10e_real_t t107 = UR10E_C(-0.11985) * t106 + t103;
+    const ur10e_real_t t108 = parameters[YZ5] * (t101 - t102) + t100 + parameters[MY5R] * t107 + (t38 * t92
+        + t23 * t97);
+    const ur10e_real_t t109 = parameters[XX6R] * t48 - parameters[ZZ6] * t52 - parameters[YZ6R] * t44
+        + parameters[XZ6R] * t39;
+    const ur10e_real_t t110 = t10 * t81 - t13 * t90;
+    const ur10e_real_t t111 = parameters[MX6] * (t23 * t110 - t38 * t107) + parameters[MY6] * (t38 * t110
+        + t23 * t107);
+    const ur10e_real_t t112 = parameters[XY6] * (t96 - t55) + t109 + t111;
+    const ur10e_real_t t113 = (parameters[XX5R] - parameters[ZZ5R]) * t50 + parameters[XY5] * t37
+        - parameters[YZ5] * t22;
+    const ur10e_real_t t114 = t14 * t14;
+    const ur10e_real_t t115 = parameters[XZ5] * (t114 - t102) - t113 + parameters[MX5] * t107 - t112;
+    const ur10e_real_t t116 = parameters[MX6] * (t55 + t56) - parameters[MY6] * t94;
+    const ur10e_real_t t117 = parameters[MY6] * (t96 + t56) + parameters[MX6] * t53;
+    const ur10e_real_t t118 = parameters[MX5] * (t101 + t102) - parameters[MY5R] * t22 + (t38 * t116
+        - t23 * t117);
+    const ur10e_real_t t119 = parameters[MX5] * t99 - parameters[MY5R] * (t114 + t102)
+        + (parameters[MX6] * t47 - parameters[MY6] * t93);
+    const ur10e_real_t t120 = t10 * t119 - t13 * t118;
+    const ur10e_real_t t121 = t17 + t20;
+    const ur10e_real_t t122 = t27 - t25;
+    const ur10e_real_t t123 = parameters[XX4R] * t31 - parameters[ZZ4R] * t29 - parameters[XY4] * t121
+        + parameters[XZ4] * t122;
+    const ur10e_real_t t124 = t24 * t24;
+    const ur10e_real_t t125 = parameters[YZ4] * (t124 - t105) + t123 + parameters[MY4R] * t89 + (t10 * t108
+        + t13 * t115 + UR10E_C(-0.11985) * t120);
+    const ur10e_real_t t126 = parameters[ZZ5R] * t21 - parameters[XX5R] * t16 + parameters[YZ5] * t49
+        + parameters[XZ5] * t33;
+    const ur10e_real_t t127 = parameters[XY5] * (t114 - t101) + t126 + (parameters[MX5] * t91
+        + parameters[MY5R] * t110);
+    const ur10e_real_t t128 = t127 + (t38 * t97 - t23 * t92);
+    const ur10e_real_t t129 = (parameters[ZZ4R] - parameters[XX4R]) * t17 + parameters[XY4] * t32
+        - parameters[YZ4] * t28;
+    const ur10e_real_t t130 = parameters[XZ4] * (t104 - t105) + t129 + parameters[MX4] * t89 + t128;
+    const ur10e_real_t t131 = t10 * t118 + t13 * t119;
+    const ur10e_real_t t132 = parameters[MX4] * (t105 + t124) + parameters[MY4R] * t28 + t131;
+    const ur10e_real_t t133 = parameters[MX5] * t98 + parameters[MY5R] * t37 + (t23 * t116 + t38 * t117);
+    const ur10e_real_t t134 = parameters[MY4R] * t106 - parameters[MX4] * t122 + t133;
+    const ur10e_real_t t135 = t5 * t132 - t7 * t134;
+    const ur10e_real_t t136 = parameters[MX4] * t121 - parameters[MY4R] * t32 + t120;
+    const ur10e_real_t t137 = t5 * t130 - t7 * t125 + (UR10E_C(0.17415) * t135 - UR10E_C(0.57155) * t136);
+    const ur10e_real_t t138 = t11 * t68;
+    const ur10e_real_t t139 = t138 + t78;
+    const ur10e_real_t t140 = t138 + t139;
+    const ur10e_real_t t141 = t26 - t76;
+    const ur10e_real_t t142 = (parameters[XX3R] - parameters[ZZ3R]) * t83 + parameters[XY3] * t140
+        + parameters[YZ3] * t141;
+    const ur10e_real_t t143 = parameters[XZ3R] * (t70 - t82) + t142 - parameters[MX3R] * t88 - t137;
+    const ur10e_real_t t144 = t7 * t132 + t5 * t134;
+    const ur10e_real_t t145 = parameters[ZZ3R] * t138 + parameters[XX3R] * t139 + parameters[XY3] * t84
+        + parameters[XZ3R] * t77;
+    const ur10e_real_t t146 = parameters[MY3] * t88 + (parameters[YZ3] * (t69 - t70) + t145) + (t5 * t125
+        + t7 * t130 + UR10E_C(0.17415) * t144);
+    const ur10e_real_t t147 = dq[1] * t57;
+    const ur10e_real_t t148 = t0 * ddq[0];
+    const ur10e_real_t t149 = t147 + t148;
+    const ur10e_real_t t150 = parameters[ZZ2R] * t147 + parameters[XX2R] * t149 + parameters[XY2] * t87
+        + parameters[XZ2R] * t64;
+    const ur10e_real_t t151 = parameters[YZ2] * (t58 - t59) + t150 + (t1 * t146 - t3 * t143);
+    const ur10e_real_t t152 = t3 * t146 + t1 * t143 + UR10E_C(0.6127) * (parameters[MY3] * t140
+        - parameters[MX3R] * t84 + t136);
+    const ur10e_real_t t153 = t85 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t147 + t149)
+        + parameters[YZ2] * (ddq[1] - t63);
+    const ur10e_real_t t154 = t62 * t62;
+    const ur10e_real_t t155 = t0 * t151 + t2 * (parameters[XZ2R] * (t59 - t154) + t153 + t152);
+    const ur10e_real_t t156 = ur10e_sign(dq[0]);
     const ur10e_real_t t157 = UR10E_C(8.333333333333334) * (parameters[FV1] * (UR10E_C(101.0) * dq[0])
-        + parameters[FC1] * t0) + UR10E_C(0.08250825082508251) * (parameters[ZZ1R] * ddq[0] + t156);
+        + parameters[FC1] * t156) + UR10E_C(0.08250825082508251) * (parameters[ZZ1R] * ddq[0] + t155);
     out[0] = t157;
-    const ur10e_real_t t158 = ur10e_sign(dq[1]);
-    const ur10e_real_t t159 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t13 + parameters[YZ2] * t11
-        + parameters[XZ2R] * t7;
-    const ur10e_real_t t160 = parameters[MY2] * t80 - parameters[MX2R] * t82 + (parameters[XY2] * (t153 - t5)
-        + t159);
-    const ur10e_real_t t161 = parameters[ZZ3R] * t33 - parameters[XX3R] * t32 + parameters[YZ3] * t30
-        + parameters[XZ3R] * t26;
-    const ur10e_real_t t162 = parameters[MY3] * t84 - parameters[MX3R] * t87 + (parameters[XY3] * (t56 - t23)
+    const ur10e_real_t t158 = parameters[XX4R] * t25 + parameters[ZZ4R] * t27 - parameters[YZ4] * t19
+        + parameters[XZ4] * t30;
+    const ur10e_real_t t159 = parameters[XY4] * (t104 - t124) + t158 + (parameters[MY4R] * t80
+        - parameters[MX4] * t103);
+    const ur10e_real_t t160 = t159 + (t13 * t108 - t10 * t115 + UR10E_C(-0.11985) * t131);
+    const ur10e_real_t t161 = parameters[ZZ3R] * t26 - parameters[XX3R] * t76 + parameters[YZ3] * t72
+        + parameters[XZ3R] * t78;
+    const ur10e_real_t t162 = parameters[MY3] * t67 - parameters[MX3R] * t74 + (parameters[XY3] * (t82 - t69)
         + t161);
-    const ur10e_real_t t163 = parameters[XX4R] * t52 + parameters[ZZ4R] * t53 - parameters[YZ4] * t49
-        + parameters[XZ4] * t45;
-    const ur10e_real_t t164 = parameters[XY4] * (t78 - t42) + t163 + (parameters[MY4R] * t110
-        - parameters[MX4] * t89);
-    const ur10e_real_t t165 = t164 + (t59 * t120 - t58 * t127 + UR10E_C(-0.11985) * t139);
-    const ur10e_real_t t166 = t162 + (t165 + UR10E_C(0.57155) * t143);
-    const ur10e_real_t t167 = t16 * (parameters[MY3] * (t19 + t56) - parameters[MX3R] * t34 + t143);
-    const ur10e_real_t t168 = t20 * (parameters[MX3R] * t85 + parameters[MY3] * t146 + t148) + t167;
+    const ur10e_real_t t163 = t162 + (t160 + UR10E_C(0.57155) * t144);
+    const ur10e_real_t t164 = t1 * (parameters[MY3] * (t70 + t82) - parameters[MX3R] * t77 + t144);
+    const ur10e_real_t t165 = t3 * (parameters[MX3R] * t71 + parameters[MY3] * t141 + t135) + t164;
+    const ur10e_real_t t166 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t63 + parameters[YZ2] * t86
+        + parameters[XZ2R] * t148;
+    const ur10e_real_t t167 = parameters[MY2] * t60 - parameters[MX2R] * t65 + (parameters[XY2] * (t154 - t58)
+        + t166);
+    const ur10e_real_t t168 = ur10e_sign(dq[1]);
     const ur10e_real_t t169 = UR10E_C(8.333333333333334) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
-        + parameters[FC2] * t158) + UR10E_C(0.08250825082508251) * (t160 + (t166 + UR10E_C(0.6127) * t168));
+        + parameters[FC2] * t168) + UR10E_C(0.08250825082508251) * (t167 + (t163 + UR10E_C(0.6127) * t165));
     out[1] = t169;
     const ur10e_real_t t170 = ur10e_sign(dq[2]);
     const ur10e_real_t t171 = parameters[FV3] * (UR10E_C(101.0) * dq[2]) + parameters[FC3] * t170
         + parameters[IA3] * (UR10E_C(101.0) * ddq[2]);
-    out[2] = UR10E_C(10.0) * t171 + UR10E_C(0.099009900990099) * t166;
+    out[2] = UR10E_C(10.0) * t171 + UR10E_C(0.099009900990099) * t163;
     const ur10e_real_t t172 = ur10e_sign(dq[3]);
     const ur10e_real_t t173 = parameters[FV4] * (UR10E_C(101.0) * dq[3]) + parameters[FC4] * t172
         + parameters[IA4] * (UR10E_C(101.0) * ddq[3]);
-    out[3] = UR10E_C(11.11111111111111) * t173 + UR10E_C(0.11001100110011001) * t165;
+    out[3] = UR10E_C(11.11111111111111) * t173 + UR10E_C(0.11001100110011001) * t160;
     const ur10e_real_t t174 = ur10e_sign(dq[4]);
     const ur10e_real_t t175 = parameters[FV5] * (UR10E_C(101.0) * dq[4]) + parameters[FC5] * t174
         + parameters[IA5] * (UR10E_C(101.0) * ddq[4]);
-    out[4] = UR10E_C(11.11111111111111) * t175 + UR10E_C(0.11001100110011001) * t137;
+    out[4] = UR10E_C(11.11111111111111) * t175 + UR10E_C(0.11001100110011001) * t128;
     const ur10e_real_t t176 = ur10e_sign(dq[5]);
     const ur10e_real_t t177 = parameters[FV6] * (UR10E_C(101.0) * dq[5]) + parameters[FC6] * t176
         + parameters[IA6] * (UR10E_C(101.0) * ddq[5]);
-    out[5] = UR10E_C(11.11111111111111) * t177 + UR10E_C(0.11001100110011001) * t126;
+    out[5] = UR10E_C(11.11111111111111) * t177 + UR10E_C(0.11001100110011001) * t112;
     return UR10E_STATUS_OK;
 }

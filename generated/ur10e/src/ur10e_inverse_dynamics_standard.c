@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,264 +133,261 @@ int ur10e_inverse_dynamics_standard(
         return status;
     }
 
-    ur10e_real_t t2, t3;
-    UR10E_SINCOS(q[1], &t2, &t3);
-    ur10e_real_t t22, t20;
-    UR10E_SINCOS(q[2], &t22, &t20);
-    ur10e_real_t t47, t46;
-    UR10E_SINCOS(q[3], &t47, &t46);
-    ur10e_real_t t76, t75;
-    UR10E_SINCOS(q[4], &t76, &t75);
-    ur10e_real_t t104, t103;
-    UR10E_SINCOS(q[5], &t104, &t103);
-    const ur10e_real_t t0 = ur10e_sign(dq[0]);
-    const ur10e_real_t t1 = UR10E_C(101.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
+    ur10e_real_t t0, t2;
+    UR10E_SINCOS(q[1], &t0, &t2);
+    ur10e_real_t t3, t1;
+    UR10E_SINCOS(q[2], &t3, &t1);
+    ur10e_real_t t5, t7;
+    UR10E_SINCOS(q[3], &t5, &t7);
+    ur10e_real_t t18, t17;
+    UR10E_SINCOS(q[4], &t18, &t17);
+    ur10e_real_t t23, t38;
+    UR10E_SINCOS(q[5], &t23, &t38);
+    const ur10e_real_t t4 = t0 * t1 + t2 * t3;
+    const ur10e_real_t t6 = t2 * t1 - t0 * t3;
+    const ur10e_real_t t8 = t5 * t4 - t7 * t6;
+    const ur10e_real_t t9 = ddq[0] * t8;
+    const ur10e_real_t t10 = t7 * t4 + t5 * t6;
+    const ur10e_real_t t11 = dq[0] * t10;
+    const ur10e_real_t t12 = dq[1] + dq[2];
+    const ur10e_real_t t13 = dq[3] + t12;
+    const ur10e_real_t t14 = t11 * t13;
+    const ur10e_real_t t15 = t9 + t14;
+    const ur10e_real_t t16 = ddq[4] + t15;
+    const ur10e_real_t t19 = t17 * t11 + t18 * t13;
+    const ur10e_real_t t20 = t17 * t13 - t18 * t11;
+    const ur10e_real_t t21 = t19 * t20;
+    const ur10e_real_t t22 = t16 - t21;
+    const ur10e_real_t t24 = dq[0] * t8;
+    const ur10e_real_t t25 = t11 * t24;
+    const ur10e_real_t t26 = ddq[1] + ddq[2];
+    const ur10e_real_t t27 = ddq[3] + t26;
+    const ur10e_real_t t28 = t27 + t25;
+    const ur10e_real_t t29 = ddq[0] * t10;
+    const ur10e_real_t t30 = t24 * t13;
+    const ur10e_real_t t31 = t29 - t30;
+    const ur10e_real_t t32 = t30 - t31;
+    const ur10e_real_t t33 = t18 * t28 - t17 * t32;
+    const ur10e_real_t t34 = dq[4] + t24;
+    const ur10e_real_t t35 = t20 * t34;
+    const ur10e_real_t t36 = t33 + t35;
+    const ur10e_real_t t37 = t35 + t36;
+    const ur10e_real_t t39 = t38 * t37 - t23 * t22;
+    const ur10e_real_t t40 = t23 * t19 + t38 * t34;
+    const ur10e_real_t t41 = dq[5] + t20;
+    const ur10e_real_t t42 = t40 * t41;
+    const ur10e_real_t t43 = t42 - t39;
+    const ur10e_real_t t44 = t38 * t22 + t23 * t37;
+    const ur10e_real_t t45 = t38 * t19 - t23 * t34;
+    const ur10e_real_t t46 = t45 * t41;
+    const ur10e_real_t t47 = t44 + t46;
+    const ur10e_real_t t48 = t46 + t47;
+    const ur10e_real_t t49 = t42 * (parameters[YY6] - parameters[ZZ6]) - t43 * parameters[XX6]
+        - t48 * parameters[XY6];
+    const ur10e_real_t t50 = t17 * t28 + t18 * t32;
+    const ur10e_real_t t51 = t19 * t34;
+    const ur10e_real_t t52 = t50 - t51;
+    const ur10e_real_t t53 = ddq[5] + t52;
+    const ur10e_real_t t54 = t45 * t40;
+    const ur10e_real_t t55 = t53 - t54;
+    const ur10e_real_t t56 = t40 * t40;
+    const ur10e_real_t t57 = t41 * t41;
+    const ur10e_real_t t58 = t2 * dq[0];
+    const ur10e_real_t t59 = t58 * t58;
+    const ur10e_real_t t60 = dq[1] * dq[1];
+    const ur10e_real_t t61 = UR10E_C(9.81) * t0;
+    const ur10e_real_t t62 = t61 + UR10E_C(0.6127) * (t59 + t60);
+    const ur10e_real_t t63 = t0 * dq[0];
+    const ur10e_real_t t64 = t63 * t58;
+    const ur10e_real_t t65 = ddq[1] + t64;
+    const ur10e_real_t t66 = UR10E_C(-9.81) * t2;
+    const ur10e_real_t t67 = t66 + UR10E_C(0.6127) * t65;
+    const ur10e_real_t t68 = t3 * t67 - t1 * t62;
+    const ur10e_real_t t69 = dq[0] * t6;
+    const ur10e_real_t t70 = t69 * t69;
+    const ur10e_real_t t71 = t12 * t12;
+    const ur10e_real_t t72 = t70 + t71;
+    const ur10e_real_t t73 = ddq[0] * t6;
+    const ur10e_real_t t74 = UR10E_C(0.57155) * t72 - UR10E_C(-0.17415) * t73 - t68;
+    const ur10e_real_t t75 = t3 * t62 + t1 * t67;
+    const ur10e_real_t t76 = dq[0] * t4;
+    const ur10e_real_t t77 = t76 * t69;
+    const ur10e_real_t t78 = t26 + t77;
+    const ur10e_real_t t79 = ddq[0] * t4;
+    const ur10e_real_t t80 = t75 + (UR10E_C(0.57155) * t78 + UR10E_C(0.17415) * t79);
+    const ur10e_real_t t81 = t5 * t80 - t7 * t74;
+    const ur10e_real_t t82 = t81 + UR10E_C(-0.11985) * t28;
+    const ur10e_real_t t83 = t76 * t76;
+    const ur10e_real_t t84 = t83 + t70;
+    const ur10e_real_t t85 = t76 * t12;
+    const ur10e_real_t t86 = t73 - t85;
+    const ur10e_real_t t87 = t86 - t85;
+    const ur10e_real_t t88 = t2 * ddq[0];
+    const ur10e_real_t t89 = dq[1] * t63;
+    const ur10e_real_t t90 = t88 - t89;
+    const ur10e_real_t t91 = t90 - t89;
+    const ur10e_real_t t92 = UR10E_C(0.6127) * t91;
+    const ur10e_real_t t93 = t92 + (UR10E_C(0.57155) * t87 + UR10E_C(-0.17415) * t84);
+    const ur10e_real_t t94 = t93 + UR10E_C(0.11985) * t32;
+    const ur10e_real_t t95 = t17 * t82 - t18 * t94;
+    const ur10e_real_t t96 = t95 + UR10E_C(0.11655) * t22;
+    const ur10e_real_t t97 = t5 * t74 + t7 * t80;
+    const ur10e_real_t t98 = t11 * t11;
+    const ur10e_real_t t99 = t13 * t13;
+    const ur10e_real_t t100 = t98 + t99;
+    const ur10e_real_t t101 = t97 + UR10E_C(-0.11985) * t100;
+    const ur10e_real_t t102 = t101 - UR10E_C(-0.11655) * t37;
+    const ur10e_real_t t103 = t23 * t96 - t38 * t102;
+    const ur10e_real_t t104 = t18 * t82 + t17 * t94;
+    const ur10e_real_t t105 = t19 * t19;
+    const ur10e_real_t t106 = t34 * t34;
+    const ur10e_real_t t107 = t105 + t106;
+    const ur10e_real_t t108 = t104 + UR10E_C(-0.11655) * t107;
+    const ur10e_real_t t109 = (t56 - t57) * parameters[YZ6] + (t49 + t55 * parameters[XZ6])
+        - (t103 * parameters[MZ6] - t108 * parameters[MY6]);
+    const ur10e_real_t t110 = t42 + t43;
+    const ur10e_real_t t111 = t46 * (parameters[ZZ6] - parameters[XX6]) + t47 * parameters[YY6]
+        + t110 * parameters[XY6];
+    const ur10e_real_t t112 = t53 + t54;
+    const ur10e_real_t t113 = t45 * t45;
+    const ur10e_real_t t114 = t38 * t96 + t23 * t102;
+    const ur10e_real_t t115 = (t113 - t57) * parameters[XZ6] + (t111 - t112 * parameters[YZ6])
+        + (t114 * parameters[MZ6] + t108 * parameters[MX6]);
+    const ur10e_real_t t116 = (t56 + t57) * parameters[MX6] + t112 * parameters[MY6] + t44 * parameters[MZ6];
+    const ur10e_real_t t117 = t114 * parameters[M6] + t116;
+    const ur10e_real_t t118 = (t113 + t57) * parameters[MY6] - t55 * parameters[MX6] + t39 * parameters[MZ6];
+    const ur10e_real_t t119 = t118 - t103 * parameters[M6];
+    const ur10e_real_t t120 = t23 * t117 + t38 * t119;
+    const ur10e_real_t t121 = t52 - t51;
+    const ur10e_real_t t122 = t36 * parameters[XX5] - t35 * (parameters[YY5] - parameters[ZZ5])
+        + t121 * parameters[XY5];
+    const ur10e_real_t t123 = t16 + t21;
+    const ur10e_real_t t124 = t20 * t20;
+    const ur10e_real_t t125 = (t124 - t106) * parameters[YZ5] + (t122 + t123 * parameters[XZ5])
+        + (t101 * parameters[MY5] - t104 * parameters[MZ5]);
+    const ur10e_real_t t126 = t125 + (t38 * t109 + t23 * t115 + UR10E_C(0.11655) * t120);
+    const ur10e_real_t t127 = t54 * (parameters[XX6] - parameters[YY6]) + t53 * parameters[ZZ6]
+        - t44 * parameters[YZ6];
+    const ur10e_real_t t128 = (t113 - t56) * parameters[XY6] + (t127 + t39 * parameters[XZ6])
+        + (t103 * parameters[MX6] + t114 * parameters[MY6]);
+    const ur10e_real_t t129 = t51 * (parameters[XX5] - parameters[ZZ5]) + t52 * parameters[YY5]
+        + t37 * parameters[XY5];
+    const ur10e_real_t t130 = (t105 - t106) * parameters[XZ5] - (t129 + t22 * parameters[YZ5])
+        + (t95 * parameters[MZ5] + t101 * parameters[MX5]);
+    const ur10e_real_t t131 = t130 - t128;
+    const ur10e_real_t t132 = t38 * t117 - t23 * t119;
+    const ur10e_real_t t133 = (t124 + t106) * parameters[MX5] + t22 * parameters[MY5] - t50 * parameters[MZ5];
+    const ur10e_real_t t134 = t95 * parameters[M5] + t133 + t132;
+    const ur10e_real_t t135 = t104 * parameters[M5] + (t123 * parameters[MX5] - t107 * parameters[MY5]
+        - t33 * parameters[MZ5]);
+    const ur10e_real_t t136 = t48 * parameters[MX6] - t110 * parameters[MY6] - (t113 + t56) * parameters[MZ6];
+    const ur10e_real_t t137 = t135 + (t108 * parameters[M6] + t136);
+    const ur10e_real_t t138 = t17 * t137 - t18 * t134;
+    const ur10e_real_t t139 = t14 + t15;
+    const ur10e_real_t t140 = t30 * (parameters[YY4] - parameters[ZZ4]) + t31 * parameters[XX4]
+        - t139 * parameters[XY4];
+    const ur10e_real_t t141 = t27 - t25;
+    const ur10e_real_t t142 = t24 * t24;
+    const ur10e_real_t t143 = (t142 - t99) * parameters[YZ4] + (t140 + t141 * parameters[XZ4])
+        + (t93 * parameters[MY4] + t97 * parameters[MZ4]);
+    const ur10e_real_t t144 = t143 + (t17 * t126 + t18 * t131 + UR10E_C(-0.11985) * t138);
+    const ur10e_real_t t145 = t16 * parameters[ZZ5] - t21 * (parameters[XX5] - parameters[YY5])
+        + t50 * parameters[YZ5];
+    const ur10e_real_t t146 = (t105 - t124) * parameters[XY5] + (t145 + t33 * parameters[XZ5])
+        + (t104 * parameters[MX5] + t95 * parameters[MY5]);
+    const ur10e_real_t t147 = t146 + (t38 * t115 - t23 * t109 + UR10E_C(0.11655) * t132);
+    const ur10e_real_t t148 = t14 * (parameters[ZZ4] - parameters[XX4]) + t15 * parameters[YY4]
+        + t32 * parameters[XY4];
+    const ur10e_real_t t149 = (t98 - t99) * parameters[XZ4] + (t148 - t28 * parameters[YZ4])
+        + (t81 * parameters[MZ4] + t93 * parameters[MX4]);
+    const ur10e_real_t t150 = t149 + t147;
+    const ur10e_real_t t151 = t17 * t134 + t18 * t137;
+    const ur10e_real_t t152 = (t142 + t99) * parameters[MX4] + t28 * parameters[MY4] + t9 * parameters[MZ4];
+    const ur10e_real_t t153 = t81 * parameters[M4] + t152 + t151;
+    const ur10e_real_t t154 = (t105 + t124) * parameters[MZ5] - (t37 * parameters[MY5]
+        - t121 * parameters[MX5]);
+    const ur10e_real_t t155 = t97 * parameters[M4] + (t100 * parameters[MY4] - t141 * parameters[MX4]
+        + t29 * parameters[MZ4]);
+    const ur10e_real_t t156 = t155 + (t101 * parameters[M5] - t154 + t120);
+    const ur10e_real_t t157 = t5 * t153 + t7 * t156;
+    const ur10e_real_t t158 = t69 * t12;
+    const ur10e_real_t t159 = t79 + t158;
+    const ur10e_real_t t160 = t159 * parameters[XX3] - t158 * (parameters[YY3] - parameters[ZZ3])
+        + t87 * parameters[XY3];
+    const ur10e_real_t t161 = t92 * parameters[MY3] + t75 * parameters[MZ3] + ((t70 - t71) * parameters[YZ3]
+        + (t160 + t78 * parameters[XZ3]));
+    const ur10e_real_t t162 = t161 + (t7 * t144 + t5 * t150 + UR10E_C(0.17415) * t157);
+    const ur10e_real_t t163 = t7 * t153 - t5 * t156;
+    const ur10e_real_t t164 = t139 * parameters[MX4] - t32 * parameters[MY4] - (t98 + t142) * parameters[MZ4];
+    const ur10e_real_t t165 = t93 * parameters[M4] + t164 + t138;
+    const ur10e_real_t t166 = t5 * t144 - t7 * t150 + (UR10E_C(-0.17415) * t163 - UR10E_C(-0.57155) * t165);
+    const ur10e_real_t t167 = t158 + t159;
+    const ur10e_real_t t168 = t85 * (parameters[XX3] - parameters[ZZ3]) + t86 * parameters[YY3]
+        + t167 * parameters[XY3];
+    const ur10e_real_t t169 = t26 - t77;
+    const ur10e_real_t t170 = t68 * parameters[MZ3] + t92 * parameters[MX3] + ((t83 - t71) * parameters[XZ3]
+        - (t168 + t169 * parameters[YZ3]));
+    const ur10e_real_t t171 = t166 - t170;
+    const ur10e_real_t t172 = dq[1] * t58;
+    const ur10e_real_t t173 = t0 * ddq[0];
+    const ur10e_real_t t174 = t173 + t172;
+    const ur10e_real_t t175 = t172 * (parameters[ZZ2] - parameters[YY2]) + t174 * parameters[XX2]
+        + t91 * parameters[XY2];
+    const ur10e_real_t t176 = t66 * parameters[MZ2] + ((t59 - t60) * parameters[YZ2] + (t175
+        + t65 * parameters[XZ2]));
+    const ur10e_real_t t177 = t92 * parameters[M3] + (t167 * parameters[MY3] - t87 * parameters[MX3]
+        - t84 * parameters[MZ3]);
+    const ur10e_real_t t178 = t3 * t162 + t1 * t171 + UR10E_C(0.6127) * (t177 + t165);
+    const ur10e_real_t t179 = t89 * (parameters[XX2] - parameters[ZZ2]) + t90 * parameters[YY2] + (t172
+        + t174) * parameters[XY2];
+    const ur10e_real_t t180 = t63 * t63;
+    const ur10e_real_t t181 = (t60 - t180) * parameters[XZ2] + (t179 + (ddq[1] - t64) * parameters[YZ2]);
+    const ur10e_real_t t182 = t0 * (t176 + (t1 * t162 - t3 * t171)) + t2 * (t61 * parameters[MZ2] + t181
+        + t178);
+    const ur10e_real_t t183 = ur10e_sign(dq[0]);
+    const ur10e_real_t t184 = UR10E_C(101.0) * dq[0] * parameters[FV1] + t183 * parameters[FC1]
         + UR10E_C(101.0) * ddq[0] * parameters[IA1];
-    const ur10e_real_t t4 = UR10E_C(-9.81) * t3;
-    const ur10e_real_t t5 = t3 * dq[0];
-    const ur10e_real_t t6 = t5 * t5;
-    const ur10e_real_t t7 = dq[1] * dq[1];
-    const ur10e_real_t t8 = dq[1] * t5;
-    const ur10e_real_t t9 = t2 * ddq[0];
-    const ur10e_real_t t10 = t9 + t8;
-    const ur10e_real_t t11 = t2 * dq[0];
-    const ur10e_real_t t12 = dq[1] * t11;
-    const ur10e_real_t t13 = t3 * ddq[0];
-    const ur10e_real_t t14 = t13 - t12;
-    const ur10e_real_t t15 = t14 - t12;
-    const ur10e_real_t t16 = t8 * (parameters[ZZ2] - parameters[YY2]) + t10 * parameters[XX2]
-        + t15 * parameters[XY2];
-    const ur10e_real_t t17 = t11 * t5;
-    const ur10e_real_t t18 = ddq[1] + t17;
-    const ur10e_real_t t19 = t4 * parameters[MZ2] + ((t6 - t7) * parameters[YZ2] + (t16
-        + t18 * parameters[XZ2]));
-    const ur10e_real_t t21 = UR10E_C(0.6127) * t15;
-    const ur10e_real_t t23 = UR10E_C(9.81) * t2;
-    const ur10e_real_t t24 = t23 + UR10E_C(0.6127) * (t6 + t7);
-    const ur10e_real_t t25 = t4 + UR10E_C(0.6127) * t18;
-    const ur10e_real_t t26 = t22 * t24 + t20 * t25;
-    const ur10e_real_t t27 = t3 * t20 - t2 * t22;
-    const ur10e_real_t t28 = dq[0] * t27;
-    const ur10e_real_t t29 = t28 * t28;
-    const ur10e_real_t t30 = dq[1] + dq[2];
-    const ur10e_real_t t31 = t30 * t30;
-    const ur10e_real_t t32 = t28 * t30;
-    const ur10e_real_t t33 = t2 * t20 + t3 * t22;
-    const ur10e_real_t t34 = ddq[0] * t33;
-    const ur10e_real_t t35 = t34 + t32;
-    const ur10e_real_t t36 = dq[0] * t33;
-    const ur10e_real_t t37 = t36 * t30;
-    const ur10e_real_t t38 = ddq[0] * t27;
-    const ur10e_real_t t39 = t38 - t37;
-    const ur10e_real_t t40 = t39 - t37;
-    const ur10e_real_t t41 = t35 * parameters[XX3] - t32 * (parameters[YY3] - parameters[ZZ3])
-        + t40 * parameters[XY3];
-    const ur10e_real_t t42 = ddq[1] + ddq[2];
-    const ur10e_real_t t43 = t36 * t28;
-    const ur10e_real_t t44 = t42 + t43;
-    const ur10e_real_t t45 = t21 * parameters[MY3] + t26 * parameters[MZ3] + ((t29 - t31) * parameters[YZ3]
-        + (t41 + t44 * parameters[XZ3]));
-    const ur10e_real_t t48 = t47 * t33 - t46 * t27;
-    const ur10e_real_t t49 = dq[0] * t48;
-    const ur10e_real_t t50 = t49 * t49;
-    const ur10e_real_t t51 = dq[3] + t30;
-    const ur10e_real_t t52 = t51 * t51;
-    const ur10e_real_t t53 = t49 * t51;
-    const ur10e_real_t t54 = t46 * t33 + t47 * t27;
-    const ur10e_real_t t55 = ddq[0] * t54;
-    const ur10e_real_t t56 = t55 - t53;
-    const ur10e_real_t t57 = dq[0] * t54;
-    const ur10e_real_t t58 = t57 * t51;
-    const ur10e_real_t t59 = ddq[0] * t48;
-    const ur10e_real_t t60 = t59 + t58;
-    const ur10e_real_t t61 = t58 + t60;
-    const ur10e_real_t t62 = t53 * (parameters[YY4] - parameters[ZZ4]) + t56 * parameters[XX4]
-        - t61 * parameters[XY4];
-    const ur10e_real_t t63 = ddq[3] + t42;
-    const ur10e_real_t t64 = t57 * t49;
-    const ur10e_real_t t65 = t63 - t64;
-    const ur10e_real_t t66 = t36 * t36;
-    const ur10e_real_t t67 = t66 + t29;
-    const ur10e_real_t t68 = t21 + (UR10E_C(0.57155) * t40 + UR10E_C(-0.17415) * t67);
-    const ur10e_real_t t69 = t22 * t25 - t20 * t24;
-    const ur10e_real_t t70 = t29 + t31;
-    const ur10e_real_t t71 = UR10E_C(0.57155) * t70 - UR10E_C(-0.17415) * t38 - t69;
-    const ur10e_real_t t72 = t26 + (UR10E_C(0.57155) * t44 + UR10E_C(0.17415) * t34);
-    const ur10e_real_t t73 = t47 * t71 + t46 * t72;
-    const ur10e_real_t t74 = (t50 - t52) * parameters[YZ4] + (t62 + t65 * parameters[XZ4])
-        + (t68 * parameters[MY4] + t73 * parameters[MZ4]);
-    const ur10e_real_t t77 = t75 * t51 - t76 * t57;
-    const ur10e_real_t t78 = t77 * t77;
-    const ur10e_real_t t79 = dq[4] + t49;
-    const ur10e_real_t t80 = t79 * t79;
-    const ur10e_real_t t81 = t77 * t79;
-    const ur10e_real_t t82 = t63 + t64;
-    const ur10e_real_t t83 = t53 - t56;
-    const ur10e_real_t t84 = t76 * t82 - t75 * t83;
-    const ur10e_real_t t85 = t84 + t81;
-    const ur10e_real_t t86 = t75 * t57 + t76 * t51;
-    const ur10e_real_t t87 = t86 * t79;
-    const ur10e_real_t t88 = t75 * t82 + t76 * t83;
-    const ur10e_real_t t89 = t88 - t87;
-    const ur10e_real_t t90 = t89 - t87;
-    const ur10e_real_t t91 = t85 * parameters[XX5] - t81 * (parameters[YY5] - parameters[ZZ5])
-        + t90 * parameters[XY5];
-    const ur10e_real_t t92 = ddq[4] + t60;
-    const ur10e_real_t t93 = t86 * t77;
-    const ur10e_real_t t94 = t92 + t93;
-    const ur10e_real_t t95 = t57 * t57;
-    const ur10e_real_t t96 = t95 + t52;
-    const ur10e_real_t t97 = t73 + UR10E_C(-0.11985) * t96;
-    const ur10e_real_t t98 = t47 * t72 - t46 * t71;
-    const ur10e_real_t t99 = t98 + UR10E_C(-0.11985) * t82;
-    const ur10e_real_t t100 = t68 + UR10E_C(0.11985) * t83;
-    const ur10e_real_t t101 = t76 * t99 + t75 * t100;
-    const ur10e_real_t t102 = (t78 - t80) * parameters[YZ5] + (t91 + t94 * parameters[XZ5])
-        + (t97 * parameters[MY5] - t101 * parameters[MZ5]);
-    const ur10e_real_t t105 = t104 * t86 + t103 * t79;
-    const ur10e_real_t t106 = t105 * t105;
-    const ur10e_real_t t107 = dq[5] + t77;
-    const ur10e_real_t t108 = t107 * t107;
-    const ur10e_real_t t109 = t105 * t107;
-    const ur10e_real_t t110 = t92 - t93;
-    const ur10e_real_t t111 = t81 + t85;
-    const ur10e_real_t t112 = t103 * t111 - t104 * t110;
-    const ur10e_real_t t113 = t109 - t112;
-    const ur10e_real_t t114 = t103 * t86 - t104 * t79;
-    const ur10e_real_t t115 = t114 * t107;
-    const ur10e_real_t t116 = t103 * t110 + t104 * t111;
-    const ur10e_real_t t117 = t116 + t115;
-    const ur10e_real_t t118 = t115 + t117;
-    const ur10e_real_t t119 = t109 * (parameters[YY6] - parameters[ZZ6]) - t113 * parameters[XX6]
-        - t118 * parameters[XY6];
-    const ur10e_real_t t120 = ddq[5] + t89;
-    const ur10e_real_t t121 = t114 * t105;
-    const ur10e_real_t t122 = t120 - t121;
-    const ur10e_real_t t123 = t86 * t86;
-    const ur10e_real_t t124 = t123 + t80;
-    const ur10e_real_t t125 = t101 + UR10E_C(-0.11655) * t124;
-    const ur10e_real_t t126 = t75 * t99 - t76 * t100;
-    const ur10e_real_t t127 = t126 + UR10E_C(0.11655) * t110;
-    const ur10e_real_t t128 = t97 - UR10E_C(-0.11655) * t111;
-    const ur10e_real_t t129 = t104 * t127 - t103 * t128;
-    const ur10e_real_t t130 = (t106 - t108) * parameters[YZ6] + (t119 + t122 * parameters[XZ6])
-        - (t129 * parameters[MZ6] - t125 * parameters[MY6]);
-    const ur10e_real_t t131 = t114 * t114;
-    const ur10e_real_t t132 = t109 + t113;
-    const ur10e_real_t t133 = t115 * (parameters[ZZ6] - parameters[XX6]) + t117 * parameters[YY6]
-        + t132 * parameters[XY6];
-    const ur10e_real_t t134 = t120 + t121;
-    const ur10e_real_t t135 = t103 * t127 + t104 * t128;
-    const ur10e_real_t t136 = (t131 - t108) * parameters[XZ6] + (t133 - t134 * parameters[YZ6])
-        + (t135 * parameters[MZ6] + t125 * parameters[MX6]);
-    const ur10e_real_t t137 = (t106 + t108) * parameters[MX6] + t134 * parameters[MY6]
-        + t116 * parameters[MZ6];
-    const ur10e_real_t t138 = t135 * parameters[M6] + t137;
-    const ur10e_real_t t139 = (t131 + t108) * parameters[MY6] - t122 * parameters[MX6]
-        + t112 * parameters[MZ6];
-    const ur10e_real_t t140 = t139 - t129 * parameters[M6];
-    const ur10e_real_t t141 = t104 * t138 + t103 * t140;
-    const ur10e_real_t t142 = t102 + (t103 * t130 + t104 * t136 + UR10E_C(0.11655) * t141);
-    const ur10e_real_t t143 = t87 * (parameters[XX5] - parameters[ZZ5]) + t89 * parameters[YY5]
-        + t111 * parameters[XY5];
-    const ur10e_real_t t144 = (t123 - t80) * parameters[XZ5] - (t143 + t110 * parameters[YZ5])
-        + (t126 * parameters[MZ5] + t97 * parameters[MX5]);
-    const ur10e_real_t t145 = t121 * (parameters[XX6] - parameters[YY6]) + t120 * parameters[ZZ6]
-        - t116 * parameters[YZ6];
-    const ur10e_real_t t146 = (t131 - t106) * parameters[XY6] + (t145 + t112 * parameters[XZ6])
-        + (t129 * parameters[MX6] + t135 * parameters[MY6]);
-    const ur10e_real_t t147 = t144 - t146;
-    const ur10e_real_t t148 = (t78 + t80) * parameters[MX5] + t110 * parameters[MY5] - t88 * parameters[MZ5];
-    const ur10e_real_t t149 = t103 * t138 - t104 * t140;
-    const ur10e_real_t t150 = t126 * parameters[M5] + t148 + t149;
-    const ur10e_real_t t151 = t101 * parameters[M5] + (t94 * parameters[MX5] - t124 * parameters[MY5]
-        - t84 * parameters[MZ5]);
-    const ur10e_real_t t152 = t118 * parameters[MX6] - t132 * parameters[MY6] - (t131
-        + t106) * parameters[MZ6];
-    const ur10e_real_t t153 = t151 + (t125 * parameters[M6] + t152);
-    const ur10e_real_t t154 = t75 * t153 - t76 * t150;
-    const ur10e_real_t t155 = t74 + (t75 * t142 + t76 * t147 + UR10E_C(-0.11985) * t154);
-    const ur10e_real_t t156 = t58 * (parameters[ZZ4] - parameters[XX4]) + t60 * parameters[YY4]
-        + t83 * parameters[XY4];
-    const ur10e_real_t t157 = (t95 - t52) * parameters[XZ4] + (t156 - t82 * parameters[YZ4])
-        + (t98 * parameters[MZ4] + t68 * parameters[MX4]);
-    const ur10e_real_t t158 = t92 * parameters[ZZ5] - t93 * (parameters[XX5] - parameters[YY5])
-        + t88 * parameters[YZ5];
-    const ur10e_real_t t159 = (t123 - t78) * parameters[XY5] + (t158 + t84 * parameters[XZ5])
-        + (t101 * parameters[MX5] + t126 * parameters[MY5]);
-    const ur10e_real_t t160 = t159 + (t103 * t136 - t104 * t130 + UR10E_C(0.11655) * t149);
-    const ur10e_real_t t161 = t157 + t160;
-    const ur10e_real_t t162 = (t50 + t52) * parameters[MX4] + t82 * parameters[MY4] + t59 * parameters[MZ4];
-    const ur10e_real_t t163 = t75 * t150 + t76 * t153;
-    const ur10e_real_t t164 = t98 * parameters[M4] + t162 + t163;
-    const ur10e_real_t t165 = t73 * parameters[M4] + (t96 * parameters[MY4] - t65 * parameters[MX4]
-        + t55 * parameters[MZ4]);
-    const ur10e_real_t t166 = (t123 + t78) * parameters[MZ5] - (t111 * parameters[MY5]
-        - t90 * parameters[MX5]);
-    const ur10e_real_t t167 = t165 + (t97 * parameters[M5] - t166 + t141);
-    const ur10e_real_t t168 = t47 * t164 + t46 * t167;
-    const ur10e_real_t t169 = t45 + (t46 * t155 + t47 * t161 + UR10E_C(0.17415) * t168);
-    const ur10e_real_t t170 = t32 + t35;
-    const ur10e_real_t t171 = t37 * (parameters[XX3] - parameters[ZZ3]) + t39 * parameters[YY3]
-        + t170 * parameters[XY3];
-    const ur10e_real_t t172 = t42 - t43;
-    const ur10e_real_t t173 = t69 * parameters[MZ3] + t21 * parameters[MX3] + ((t66 - t31) * parameters[XZ3]
-        - (t171 + t172 * parameters[YZ3]));
-    const ur10e_real_t t174 = t46 * t164 - t47 * t167;
-    const ur10e_real_t t175 = t61 * parameters[MX4] - t83 * parameters[MY4] - (t95 + t50) * parameters[MZ4];
-    const ur10e_real_t t176 = t68 * parameters[M4] + t175 + t154;
-    const ur10e_real_t t177 = t47 * t155 - t46 * t161 + (UR10E_C(-0.17415) * t174 - UR10E_C(-0.57155) * t176);
-    const ur10e_real_t t178 = t177 - t173;
-    const ur10e_real_t t179 = t11 * t11;
-    const ur10e_real_t t180 = t12 * (parameters[XX2] - parameters[ZZ2]) + t14 * parameters[YY2] + (t8
-        + t10) * parameters[XY2];
-    const ur10e_real_t t181 = (t7 - t179) * parameters[XZ2] + (t180 + (ddq[1] - t17) * parameters[YZ2]);
-    const ur10e_real_t t182 = t21 * parameters[M3] + (t170 * parameters[MY3] - t40 * parameters[MX3]
-        - t67 * parameters[MZ3]);
-    const ur10e_real_t t183 = t22 * t169 + t20 * t178 + UR10E_C(0.6127) * (t182 + t176);
-    const ur10e_real_t t184 = t2 * (t19 + (t20 * t169 - t22 * t178)) + t3 * (t23 * parameters[MZ2] + t181
-        + t183);
-    out[0] = UR10E_C(8.333333333333334) * t1 + UR10E_C(0.08250825082508251) * (ddq[0] * parameters[ZZ1]
-        + t184);
-    const ur10e_real_t t185 = ur10e_sign(dq[1]);
-    const ur10e_real_t t186 = UR10E_C(101.0) * dq[1] * parameters[FV2] + t185 * parameters[FC2]
+    out[0] = UR10E_C(8.333333333333334) * t184 + UR10E_C(0.08250825082508251) * (ddq[0] * parameters[ZZ1]
+        + t182);
+    const ur10e_real_t t185 = t25 * (parameters[XX4] - parameters[YY4]) + t27 * parameters[ZZ4]
+        - t9 * parameters[YZ4];
+    const ur10e_real_t t186 = (t98 - t142) * parameters[XY4] + (t185 + t29 * parameters[XZ4])
+        + (t81 * parameters[MY4] - t97 * parameters[MX4]);
+    const ur10e_real_t t187 = t186 + (t18 * t126 - t17 * t131 + UR10E_C(-0.11985) * t151);
+    const ur10e_real_t t188 = t26 * parameters[ZZ3] - t77 * (parameters[XX3] - parameters[YY3])
+        + t73 * parameters[YZ3];
+    const ur10e_real_t t189 = t68 * parameters[MY3] - t75 * parameters[MX3] + ((t83 - t70) * parameters[XY3]
+        + (t188 + t79 * parameters[XZ3]));
+    const ur10e_real_t t190 = t189 + (t187 + UR10E_C(0.57155) * t157);
+    const ur10e_real_t t191 = t68 * parameters[M3] + (t72 * parameters[MX3] + t169 * parameters[MY3]
+        - t73 * parameters[MZ3]);
+    const ur10e_real_t t192 = (t83 + t71) * parameters[MY3] - t78 * parameters[MX3] + t79 * parameters[MZ3];
+    const ur10e_real_t t193 = t3 * (t191 + t163) + t1 * (t75 * parameters[M3] + t192 + t157);
+    const ur10e_real_t t194 = t64 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t88 * parameters[YZ2];
+    const ur10e_real_t t195 = (t180 - t59) * parameters[XY2] + (t194 + t173 * parameters[XZ2])
+        - (t66 * parameters[MX2] + t61 * parameters[MY2]);
+    const ur10e_real_t t196 = ur10e_sign(dq[1]);
+    const ur10e_real_t t197 = UR10E_C(101.0) * dq[1] * parameters[FV2] + t196 * parameters[FC2]
         + UR10E_C(101.0) * ddq[1] * parameters[IA2];
-    const ur10e_real_t t187 = t17 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t13 * parameters[YZ2];
-    const ur10e_real_t t188 = (t179 - t6) * parameters[XY2] + (t187 + t9 * parameters[XZ2])
-        - (t4 * parameters[MX2] + t23 * parameters[MY2]);
-    const ur10e_real_t t189 = t42 * parameters[ZZ3] - t43 * (parameters[XX3] - parameters[YY3])
-        + t38 * parameters[YZ3];
-    const ur10e_real_t t190 = t69 * parameters[MY3] - t26 * parameters[MX3] + ((t66 - t29) * parameters[XY3]
-        + (t189 + t34 * parameters[XZ3]));
-    const ur10e_real_t t191 = t64 * (parameters[XX4] - parameters[YY4]) + t63 * parameters[ZZ4]
-        - t59 * parameters[YZ4];
-    const ur10e_real_t t192 = (t95 - t50) * parameters[XY4] + (t191 + t55 * parameters[XZ4])
-        + (t98 * parameters[MY4] - t73 * parameters[MX4]);
-    const ur10e_real_t t193 = t192 + (t76 * t142 - t75 * t147 + UR10E_C(-0.11985) * t163);
-    const ur10e_real_t t194 = t190 + (t193 + UR10E_C(0.57155) * t168);
-    const ur10e_real_t t195 = t69 * parameters[M3] + (t70 * parameters[MX3] + t172 * parameters[MY3]
-        - t38 * parameters[MZ3]);
-    const ur10e_real_t t196 = (t66 + t31) * parameters[MY3] - t44 * parameters[MX3] + t34 * parameters[MZ3];
-    const ur10e_real_t t197 = t22 * (t195 + t174) + t20 * (t26 * parameters[M3] + t196 + t168);
-    const ur10e_real_t t198 = UR10E_C(8.333333333333334) * t186 + UR10E_C(0.08250825082508251) * (t188 + (t194
-        + UR10E_C(0.6127) * t197));
+    const ur10e_real_t t198 = UR10E_C(8.333333333333334) * t197 + UR10E_C(0.08250825082508251) * (t195 + (t190
+        + UR10E_C(0.6127) * t193));
     out[1] = t198;
     const ur10e_real_t t199 = ur10e_sign(dq[2]);
     const ur10e_real_t t200 = UR10E_C(101.0) * dq[2] * parameters[FV3] + t199 * parameters[FC3]
         + UR10E_C(101.0) * ddq[2] * parameters[IA3];
-    out[2] = UR10E_C(10.0) * t200 + UR10E_C(0.099009900990099) * t194;
+    out[2] = UR10E_C(10.0) * t200 + UR10E_C(0.099009900990099) * t190;
     const ur10e_real_t t201 = ur10e_sign(dq[3]);
     const ur10e_real_t t202 = UR10E_C(101.0) * dq[3] * parameters[FV4] + t201 * parameters[FC4]
         + UR10E_C(101.0) * ddq[3] * parameters[IA4];
-    out[3] = UR10E_C(11.11111111111111) * t202 + UR10E_C(0.11001100110011001) * t193;
+    out[3] = UR10E_C(11.11111111111111) * t202 + UR10E_C(0.11001100110011001) * t187;
     const ur10e_real_t t203 = ur10e_sign(dq[4]);
     const ur10e_real_t t204 = UR10E_C(101.0) * dq[4] * parameters[FV5] + t203 * parameters[FC5]
         + UR10E_C(101.0) * ddq[4] * parameters[IA5];
-    out[4] = UR10E_C(11.11111111111111) * t204 + UR10E_C(0.11001100110011001) * t160;
+    out[4] = UR10E_C(11.11111111111111) * t204 + UR10E_C(0.11001100110011001) * t147;
     const ur10e_real_t t205 = ur10e_sign(dq[5]);
     const ur10e_real_t t206 = UR10E_C(101.0) * dq[5] * parameters[FV6] + t205 * parameters[FC6]
         + UR10E_C(101.0) * ddq[5] * parameters[IA6];
-    out[5] = UR10E_C(11.11111111111111) * t206 + UR10E_C(0.11001100110011001) * t146;
+    out[5] = UR10E_C(11.11111111111111) * t206 + UR10E_C(0.11001100110011001) * t128;
     return UR10E_STATUS_OK;
 }

@@ -12,7 +12,7 @@
 
 #include "ur10e.h"
 
-#if UR10E_GENERATION != 0x15D6C590UL
+#if UR10E_GENERATION != 0x07143C7AUL
 #error "ur10e.h and ur10e_private.h are of different generations: generate the arm again"
 #endif
 

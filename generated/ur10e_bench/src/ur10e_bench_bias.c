@@ -62,7 +62,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -87,177 +87,176 @@ int ur10e_bench_bias(
         return status;
     }
 
-    ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t11, t10;
-    UR10E_BENCH_SINCOS(q[2], &t11, &t10);
-    ur10e_bench_real_t t24, t23;
-    UR10E_BENCH_SINCOS(q[3], &t24, &t23);
-    ur10e_bench_real_t t38, t37;
-    UR10E_BENCH_SINCOS(q[4], &t38, &t37);
-    ur10e_bench_real_t t69, t68;
-    UR10E_BENCH_SINCOS(q[5], &t69, &t68);
-    const ur10e_bench_real_t t2 = t1 * dq[0];
-    const ur10e_bench_real_t t3 = dq[1] * t2;
-    const ur10e_bench_real_t t4 = t0 * dq[0];
-    const ur10e_bench_real_t t5 = dq[1] * t4;
-    const ur10e_bench_real_t t6 = parameters[XX2R] * t3 + parameters[ZZ2R] * t3
-        + parameters[XY2] * (UR10E_BENCH_C(-2.0) * t5);
-    const ur10e_bench_real_t t7 = t4 * t2;
-    const ur10e_bench_real_t t8 = t2 * t2;
-    const ur10e_bench_real_t t9 = dq[1] * dq[1];
-    const ur10e_bench_real_t t12 = t10 * t2 - t11 * t4;
-    const ur10e_bench_real_t t13 = dq[1] + dq[2];
-    const ur10e_bench_real_t t14 = t12 * t13;
-    const ur10e_bench_real_t t15 = t10 * t4 + t11 * t2;
-    const ur10e_bench_real_t t16 = t15 * t13;
+    ur10e_bench_real_t t0, t3;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t3);
+    ur10e_bench_real_t t5, t2;
+    UR10E_BENCH_SINCOS(q[2], &t5, &t2);
+    ur10e_bench_real_t t9, t7;
+    UR10E_BENCH_SINCOS(q[3], &t9, &t7);
+    ur10e_bench_real_t t18, t13;
+    UR10E_BENCH_SINCOS(q[4], &t18, &t13);
+    ur10e_bench_real_t t25, t24;
+    UR10E_BENCH_SINCOS(q[5], &t25, &t24);
+    const ur10e_bench_real_t t1 = t0 * dq[0];
+    const ur10e_bench_real_t t4 = t3 * dq[0];
+    const ur10e_bench_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_bench_real_t t8 = t2 * t4 - t5 * t1;
+    const ur10e_bench_real_t t10 = t7 * t6 + t9 * t8;
+    const ur10e_bench_real_t t11 = t9 * t6 - t7 * t8;
+    const ur10e_bench_real_t t12 = t10 * t11;
+    const ur10e_bench_real_t t14 = dq[1] + dq[2];
+    const ur10e_bench_real_t t15 = dq[3] + t14;
+    const ur10e_bench_real_t t16 = t11 * t15;
     const ur10e_bench_real_t t17 = UR10E_BENCH_C(2.0) * t16;
-    const ur10e_bench_real_t t18 = t15 * t12;
-    const ur10e_bench_real_t t19 = parameters[XX3R] * t14 + parameters[ZZ3R] * t14 - parameters[XY3] * t17
-        + parameters[XZ3R] * t18;
-    const ur10e_bench_real_t t20 = t12 * t12;
-    const ur10e_bench_real_t t21 = t13 * t13;
-    const ur10e_bench_real_t t22 = UR10E_BENCH_C(-1.2254) * t5;
-    const ur10e_bench_real_t t25 = t24 * t15 - t23 * t12;
-    const ur10e_bench_real_t t26 = dq[3] + t13;
-    const ur10e_bench_real_t t27 = t25 * t26;
-    const ur10e_bench_real_t t28 = t23 * t15 + t24 * t12;
-    const ur10e_bench_real_t t29 = t28 * t26;
-    const ur10e_bench_real_t t30 = UR10E_BENCH_C(2.0) * t29;
-    const ur10e_bench_real_t t31 = t28 * t25;
-    const ur10e_bench_real_t t32 = parameters[XX4R] * t27 + parameters[ZZ4R] * t27 + parameters[XY4] * t30
-        + parameters[XZ4] * t31;
-    const ur10e_bench_real_t t33 = t25 * t25;
-    const ur10e_bench_real_t t34 = t26 * t26;
-    const ur10e_bench_real_t t35 = t15 * t15;
-    const ur10e_bench_real_t t36 = t22 + (UR10E_BENCH_C(-1.1431) * t16 + UR10E_BENCH_C(-0.17415) * (t35
-        + t20));
-    const ur10e_bench_real_t t39 = UR10E_BENCH_C(2.0) * t27;
-    const ur10e_bench_real_t t40 = t38 * t31 - t37 * t39;
-    const ur10e_bench_real_t t41 = t38 * t28 - t37 * t26;
-    const ur10e_bench_real_t t42 = dq[4] + t25;
-    const ur10e_bench_real_t t43 = t41 * t42;
-    const ur10e_bench_real_t t44 = t40 - t43;
-    const ur10e_bench_real_t t45 = t37 * t28 + t38 * t26;
-    const ur10e_bench_real_t t46 = t45 * t42;
-    const ur10e_bench_real_t t47 = t37 * t31 + t38 * t39;
-    const ur10e_bench_real_t t48 = t47 - t46;
-    const ur10e_bench_real_t t49 = t48 - t46;
-    const ur10e_bench_real_t t50 = t45 * t41;
-    const ur10e_bench_real_t t51 = t29 - t50;
-    const ur10e_bench_real_t t52 = parameters[XX5R] * t44 - parameters[ZZ5R] * t43 + parameters[XY5] * t49
-        + parameters[XZ5] * t51;
-    const ur10e_bench_real_t t53 = t41 * t41;
-    const ur10e_bench_real_t t54 = t42 * t42;
-    const ur10e_bench_real_t t55 = UR10E_BENCH_C(-9.81) * t0;
-    const ur10e_bench_real_t t56 = UR10E_BENCH_C(0.6127) * (t8 + t9) - t55;
-    const ur10e_bench_real_t t57 = UR10E_BENCH_C(-9.81) * t1;
-    const ur10e_bench_real_t t58 = t57 + UR10E_BENCH_C(0.6127) * t7;
-    const ur10e_bench_real_t t59 = t11 * t58 - t10 * t56;
-    const ur10e_bench_real_t t60 = t20 + t21;
-    const ur10e_bench_real_t t61 = UR10E_BENCH_C(0.57155) * t60 - t59;
-    const ur10e_bench_real_t t62 = t11 * t56 + t10 * t58;
-    const ur10e_bench_real_t t63 = t62 + UR10E_BENCH_C(0.57155) * t18;
-    const ur10e_bench_real_t t64 = t24 * t61 + t23 * t63;
-    const ur10e_bench_real_t t65 = t28 * t28;
-    const ur10e_bench_real_t t66 = t65 + t34;
-    const ur10e_bench_real_t t67 = t64 + UR10E_BENCH_C(-0.11985) * t66;
-    const ur10e_bench_real_t t70 = t29 + t50;
-    const ur10e_bench_real_t t71 = t44 - t43;
-    const ur10e_bench_real_t t72 = t68 * t71 - t69 * t70;
-    const ur10e_bench_real_t t73 = t69 * t45 + t68 * t42;
-    const ur10e_bench_real_t t74 = t41 - dq[5];
-    const ur10e_bench_real_t t75 = t73 * t74;
-    const ur10e_bench_real_t t76 = t72 + t75;
-    const ur10e_bench_real_t t77 = t68 * t45 - t69 * t42;
-    const ur10e_bench_real_t t78 = t77 * t74;
-    const ur10e_bench_real_t t79 = t68 * t70 + t69 * t71;
-    const ur10e_bench_real_t t80 = t79 - t78 - t78;
-    const ur10e_bench_real_t t81 = t77 * t73;
-    const ur10e_bench_real_t t82 = t48 - t81;
-    const ur10e_bench_real_t t83 = parameters[XY6] * t80 - (parameters[XX6R] * t76 + parameters[ZZ6] * t75)
+    const ur10e_bench_real_t t19 = t13 * t12 + t18 * t17;
+    const ur10e_bench_real_t t20 = t13 * t10 + t18 * t15;
+    const ur10e_bench_real_t t21 = dq[4] + t11;
+    const ur10e_bench_real_t t22 = t20 * t21;
+    const ur10e_bench_real_t t23 = t19 - t22;
+    const ur10e_bench_real_t t26 = t24 * t20 - t25 * t21;
+    const ur10e_bench_real_t t27 = t25 * t20 + t24 * t21;
+    const ur10e_bench_real_t t28 = t26 * t27;
+    const ur10e_bench_real_t t29 = t18 * t12 - t13 * t17;
+    const ur10e_bench_real_t t30 = t18 * t10 - t13 * t15;
+    const ur10e_bench_real_t t31 = t30 * t21;
+    const ur10e_bench_real_t t32 = t29 - t31;
+    const ur10e_bench_real_t t33 = t32 - t31;
+    const ur10e_bench_real_t t34 = t20 * t30;
+    const ur10e_bench_real_t t35 = t10 * t15;
+    const ur10e_bench_real_t t36 = t35 + t34;
+    const ur10e_bench_real_t t37 = t24 * t36 + t25 * t33;
+    const ur10e_bench_real_t t38 = t24 * t33 - t25 * t36;
+    const ur10e_bench_real_t t39 = parameters[ZZ6] * t23 + parameters[XX6R] * t28 - parameters[YZ6R] * t37
+        + parameters[XZ6R] * t38;
+    const ur10e_bench_real_t t40 = t26 * t26;
+    const ur10e_bench_real_t t41 = t27 * t27;
+    const ur10e_bench_real_t t42 = t4 * t4;
+    const ur10e_bench_real_t t43 = dq[1] * dq[1];
+    const ur10e_bench_real_t t44 = UR10E_BENCH_C(-9.81) * t0;
+    const ur10e_bench_real_t t45 = UR10E_BENCH_C(0.6127) * (t42 + t43) - t44;
+    const ur10e_bench_real_t t46 = t1 * t4;
+    const ur10e_bench_real_t t47 = UR10E_BENCH_C(-9.81) * t3;
+    const ur10e_bench_real_t t48 = t47 + UR10E_BENCH_C(0.6127) * t46;
+    const ur10e_bench_real_t t49 = t5 * t48 - t2 * t45;
+    const ur10e_bench_real_t t50 = t8 * t8;
+    const ur10e_bench_real_t t51 = t14 * t14;
+    const ur10e_bench_real_t t52 = t50 + t51;
+    const ur10e_bench_real_t t53 = UR10E_BENCH_C(0.57155) * t52 - t49;
+    const ur10e_bench_real_t t54 = t5 * t45 + t2 * t48;
+    const ur10e_bench_real_t t55 = t6 * t8;
+    const ur10e_bench_real_t t56 = t54 + UR10E_BENCH_C(0.57155) * t55;
+    const ur10e_bench_real_t t57 = t9 * t56 - t7 * t53;
+    const ur10e_bench_real_t t58 = t57 + UR10E_BENCH_C(-0.11985) * t12;
+    const ur10e_bench_real_t t59 = t6 * t6;
+    const ur10e_bench_real_t t60 = t6 * t14;
+    const ur10e_bench_real_t t61 = dq[1] * t1;
+    const ur10e_bench_real_t t62 = UR10E_BENCH_C(-1.2254) * t61;
+    const ur10e_bench_real_t t63 = t62 + (UR10E_BENCH_C(-1.1431) * t60 + UR10E_BENCH_C(-0.17415) * (t59
+        + t50));
+    const ur10e_bench_real_t t64 = t63 + UR10E_BENCH_C(0.2397) * t16;
+    const ur10e_bench_real_t t65 = t13 * t58 - t18 * t64;
+    const ur10e_bench_real_t t66 = t9 * t53 + t7 * t56;
+    const ur10e_bench_real_t t67 = t10 * t10;
+    const ur10e_bench_real_t t68 = t15 * t15;
+    const ur10e_bench_real_t t69 = t67 + t68;
+    const ur10e_bench_real_t t70 = t66 + UR10E_BENCH_C(-0.11985) * t69;
+    const ur10e_bench_real_t t71 = parameters[MX6] * (t25 * t65 - t24 * t70) + parameters[MY6] * (t24 * t65
+        + t25 * t70);
+    const ur10e_bench_real_t t72 = t39 + parameters[XY6] * (t40 - t41) + t71;
+    const ur10e_bench_real_t t73 = t22 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t33
+        + parameters[YZ5] * t36;
+    const ur10e_bench_real_t t74 = t20 * t20;
+    const ur10e_bench_real_t t75 = t21 * t21;
+    const ur10e_bench_real_t t76 = t73 - parameters[XZ5] * (t74 - t75) - parameters[MX5] * t70 + t72;
+    const ur10e_bench_real_t t77 = t30 - dq[5];
+    const ur10e_bench_real_t t78 = t27 * t77;
+    const ur10e_bench_real_t t79 = t38 + t78;
+    const ur10e_bench_real_t t80 = t26 * t77;
+    const ur10e_bench_real_t t81 = t37 - t80 - t80;
+    const ur10e_bench_real_t t82 = t23 - t28;
+    const ur10e_bench_real_t t83 = parameters[XY6] * t81 - (parameters[XX6R] * t79 + parameters[ZZ6] * t78)
         - parameters[XZ6R] * t82;
-    const ur10e_bench_real_t t84 = t73 * t73;
-    const ur10e_bench_real_t t85 = t74 * t74;
-    const ur10e_bench_real_t t86 = t24 * t63 - t23 * t61;
-    const ur10e_bench_real_t t87 = t86 + UR10E_BENCH_C(-0.11985) * t31;
-    const ur10e_bench_real_t t88 = t36 + UR10E_BENCH_C(0.2397) * t27;
-    const ur10e_bench_real_t t89 = t38 * t87 + t37 * t88;
-    const ur10e_bench_real_t t90 = t83 - parameters[YZ6R] * (t84 - t85) - parameters[MY6] * t89;
-    const ur10e_bench_real_t t91 = t75 + t76;
-    const ur10e_bench_real_t t92 = t48 + t81;
-    const ur10e_bench_real_t t93 = t78 * (parameters[ZZ6] - parameters[XX6R]) + parameters[XY6] * t91
-        + parameters[YZ6R] * t92;
-    const ur10e_bench_real_t t94 = t77 * t77;
-    const ur10e_bench_real_t t95 = parameters[XZ6R] * (t94 - t85) - t93 + parameters[MX6] * t89;
-    const ur10e_bench_real_t t96 = t52 + parameters[YZ5] * (t53 - t54) + parameters[MY5R] * t67 + (t69 * t95
-        - t68 * t90);
-    const ur10e_bench_real_t t97 = t46 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t71
-        + parameters[YZ5] * t70;
-    const ur10e_bench_real_t t98 = t45 * t45;
-    const ur10e_bench_real_t t99 = parameters[ZZ6] * t48 + parameters[XX6R] * t81 - parameters[YZ6R] * t79
-        + parameters[XZ6R] * t72;
-    const ur10e_bench_real_t t100 = t37 * t87 - t38 * t88;
-    const ur10e_bench_real_t t101 = parameters[MX6] * (t69 * t100 - t68 * t67) + parameters[MY6] * (t68 * t100
-        + t69 * t67);
-    const ur10e_bench_real_t t102 = t99 + parameters[XY6] * (t94 - t84) + t101;
-    const ur10e_bench_real_t t103 = t97 - parameters[XZ5] * (t98 - t54) - parameters[MX5] * t67 + t102;
-    const ur10e_bench_real_t t104 = parameters[MX6] * (t84 + t85) + parameters[MY6] * t92;
-    const ur10e_bench_real_t t105 = parameters[MX6] * t82 - parameters[MY6] * (t94 + t85);
-    const ur10e_bench_real_t t106 = parameters[MX5] * (t53 + t54) + parameters[MY5R] * t70 + (t68 * t104
-        + t69 * t105);
-    const ur10e_bench_real_t t107 = parameters[MX5] * t51 - parameters[MY5R] * (t98 + t54)
-        + (parameters[MX6] * t80 + parameters[MY6] * t91);
-    const ur10e_bench_real_t t108 = t37 * t107 - t38 * t106;
-    const ur10e_bench_real_t t109 = parameters[YZ4] * (t33 - t34) - t32 + parameters[MY4R] * t36 + (t37 * t96
-        - t38 * t103 + UR10E_BENCH_C(-0.11985) * t108);
-    const ur10e_bench_real_t t110 = t29 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t39
-        - parameters[YZ4] * t31;
-    const ur10e_bench_real_t t111 = parameters[ZZ5R] * t29 + parameters[XX5R] * t50 + parameters[YZ5] * t47
-        + parameters[XZ5] * t40;
-    const ur10e_bench_real_t t112 = t111 + parameters[XY5] * (t98 - t53) + (parameters[MX5] * t89
-        + parameters[MY5R] * t100);
-    const ur10e_bench_real_t t113 = t112 + (t69 * t90 + t68 * t95);
-    const ur10e_bench_real_t t114 = t110 + parameters[XZ4] * (t65 - t34) + parameters[MX4] * t36 + t113;
-    const ur10e_bench_real_t t115 = t37 * t106 + t38 * t107;
-    const ur10e_bench_real_t t116 = parameters[MX4] * (t33 + t34) + parameters[MY4R] * t31 + t115;
-    const ur10e_bench_real_t t117 = parameters[MY5R] * t71 - parameters[MX5] * t49 + (t69 * t104
-        - t68 * t105);
-    const ur10e_bench_real_t t118 = parameters[MX4] * t31 + parameters[MY4R] * t66 + t117;
-    const ur10e_bench_real_t t119 = t24 * t116 + t23 * t118;
-    const ur10e_bench_real_t t120 = t19 + parameters[YZ3] * (t20 - t21) + parameters[MY3] * t22 + (t23 * t109
-        + t24 * t114 + UR10E_BENCH_C(0.17415) * t119);
-    const ur10e_bench_real_t t121 = UR10E_BENCH_C(2.0) * t14;
-    const ur10e_bench_real_t t122 = t16 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t121
-        - parameters[YZ3] * t18;
-    const ur10e_bench_real_t t123 = t23 * t116 - t24 * t118;
-    const ur10e_bench_real_t t124 = parameters[MX4] * t30 - parameters[MY4R] * t39 + t108;
-    const ur10e_bench_real_t t125 = t23 * t114 - t24 * t109 + (UR10E_BENCH_C(0.17415) * t123
-        - UR10E_BENCH_C(0.57155) * t124);
-    const ur10e_bench_real_t t126 = t122 - parameters[XZ3R] * (t35 - t21) - parameters[MX3R] * t22 - t125;
-    const ur10e_bench_real_t t127 = t6 + parameters[XZ2R] * t7 + parameters[YZ2] * (t8 - t9) + (t10 * t120
-        - t11 * t126);
-    const ur10e_bench_real_t t128 = t5 * (parameters[XX2R] - parameters[ZZ2R])
-        + parameters[XY2] * (UR10E_BENCH_C(2.0) * t3) - parameters[YZ2] * t7;
-    const ur10e_bench_real_t t129 = t4 * t4;
-    const ur10e_bench_real_t t130 = t11 * t120 + t10 * t126 + UR10E_BENCH_C(0.6127) * (parameters[MX3R] * t17
-        + parameters[MY3] * t121 + t124);
-    const ur10e_bench_real_t t131 = t0 * t127 + t1 * (t128 + parameters[XZ2R] * (t9 - t129) + t130);
+    const ur10e_bench_real_t t84 = t77 * t77;
+    const ur10e_bench_real_t t85 = t18 * t58 + t13 * t64;
+    const ur10e_bench_real_t t86 = t83 - parameters[YZ6R] * (t41 - t84) - parameters[MY6] * t85;
+    const ur10e_bench_real_t t87 = t23 + t28;
+    const ur10e_bench_real_t t88 = t78 + t79;
+    const ur10e_bench_real_t t89 = t80 * (parameters[ZZ6] - parameters[XX6R]) + parameters[XY6] * t88
+        + parameters[YZ6R] * t87;
+    const ur10e_bench_real_t t90 = parameters[XZ6R] * (t40 - t84) - t89 + parameters[MX6] * t85;
+    const ur10e_bench_real_t t91 = t23 - t22;
+    const ur10e_bench_real_t t92 = t35 - t34;
+    const ur10e_bench_real_t t93 = parameters[XX5R] * t32 - parameters[ZZ5R] * t31 + parameters[XY5] * t91
+        + parameters[XZ5] * t92;
+    const ur10e_bench_real_t t94 = t30 * t30;
+    const ur10e_bench_real_t t95 = t93 + parameters[YZ5] * (t94 - t75) + parameters[MY5R] * t70 + (t25 * t90
+        - t24 * t86);
+    const ur10e_bench_real_t t96 = parameters[MX6] * (t41 + t84) + parameters[MY6] * t87;
+    const ur10e_bench_real_t t97 = parameters[MX6] * t82 - parameters[MY6] * (t40 + t84);
+    const ur10e_bench_real_t t98 = parameters[MX5] * (t94 + t75) + parameters[MY5R] * t36 + (t24 * t96
+        + t25 * t97);
+    const ur10e_bench_real_t t99 = parameters[MX5] * t92 - parameters[MY5R] * (t74 + t75)
+        + (parameters[MX6] * t81 + parameters[MY6] * t88);
+    const ur10e_bench_real_t t100 = t13 * t99 - t18 * t98;
+    const ur10e_bench_real_t t101 = UR10E_BENCH_C(2.0) * t35;
+    const ur10e_bench_real_t t102 = parameters[XX4R] * t16 + parameters[ZZ4R] * t16 + parameters[XY4] * t101
+        + parameters[XZ4] * t12;
+    const ur10e_bench_real_t t103 = t11 * t11;
+    const ur10e_bench_real_t t104 = parameters[YZ4] * (t103 - t68) - t102 + parameters[MY4R] * t63
+        + (t13 * t95 - t18 * t76 + UR10E_BENCH_C(-0.11985) * t100);
+    const ur10e_bench_real_t t105 = parameters[ZZ5R] * t35 + parameters[XX5R] * t34 + parameters[YZ5] * t19
+        + parameters[XZ5] * t29;
+    const ur10e_bench_real_t t106 = t105 + parameters[XY5] * (t74 - t94) + (parameters[MX5] * t85
+        + parameters[MY5R] * t65);
+    const ur10e_bench_real_t t107 = t106 + (t25 * t86 + t24 * t90);
+    const ur10e_bench_real_t t108 = t35 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t17
+        - parameters[YZ4] * t12;
+    const ur10e_bench_real_t t109 = t108 + parameters[XZ4] * (t67 - t68) + parameters[MX4] * t63 + t107;
+    const ur10e_bench_real_t t110 = t13 * t98 + t18 * t99;
+    const ur10e_bench_real_t t111 = parameters[MX4] * (t103 + t68) + parameters[MY4R] * t12 + t110;
+    const ur10e_bench_real_t t112 = parameters[MY5R] * t33 - parameters[MX5] * t91 + (t25 * t96 - t24 * t97);
+    const ur10e_bench_real_t t113 = parameters[MX4] * t12 + parameters[MY4R] * t69 + t112;
+    const ur10e_bench_real_t t114 = t9 * t111 + t7 * t113;
+    const ur10e_bench_real_t t115 = t8 * t14;
+    const ur10e_bench_real_t t116 = UR10E_BENCH_C(2.0) * t60;
+    const ur10e_bench_real_t t117 = parameters[XX3R] * t115 + parameters[ZZ3R] * t115 - parameters[XY3] * t116
+        + parameters[XZ3R] * t55;
+    const ur10e_bench_real_t t118 = t117 + parameters[YZ3] * (t50 - t51) + parameters[MY3] * t62 + (t7 * t104
+        + t9 * t109 + UR10E_BENCH_C(0.17415) * t114);
+    const ur10e_bench_real_t t119 = t7 * t111 - t9 * t113;
+    const ur10e_bench_real_t t120 = parameters[MX4] * t101 - parameters[MY4R] * t17 + t100;
+    const ur10e_bench_real_t t121 = t7 * t109 - t9 * t104 + (UR10E_BENCH_C(0.17415) * t119
+        - UR10E_BENCH_C(0.57155) * t120);
+    const ur10e_bench_real_t t122 = UR10E_BENCH_C(2.0) * t115;
+    const ur10e_bench_real_t t123 = t60 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t122
+        - parameters[YZ3] * t55;
+    const ur10e_bench_real_t t124 = t123 - parameters[XZ3R] * (t59 - t51) - parameters[MX3R] * t62 - t121;
+    const ur10e_bench_real_t t125 = dq[1] * t4;
+    const ur10e_bench_real_t t126 = parameters[XX2R] * t125 + parameters[ZZ2R] * t125
+        + parameters[XY2] * (UR10E_BENCH_C(-2.0) * t61);
+    const ur10e_bench_real_t t127 = t126 + parameters[XZ2R] * t46 + parameters[YZ2] * (t42 - t43) + (t2 * t118
+        - t5 * t124);
+    const ur10e_bench_real_t t128 = t5 * t118 + t2 * t124 + UR10E_BENCH_C(0.6127) * (parameters[MX3R] * t116
+        + parameters[MY3] * t122 + t120);
+    const ur10e_bench_real_t t129 = t61 * (parameters[XX2R] - parameters[ZZ2R])
+        + parameters[XY2] * (UR10E_BENCH_C(2.0) * t125) - parameters[YZ2] * t46;
+    const ur10e_bench_real_t t130 = t1 * t1;
+    const ur10e_bench_real_t t131 = t0 * t127 + t3 * (t129 + parameters[XZ2R] * (t43 - t130) + t128);
     out[0] = t131;
-    const ur10e_bench_real_t t132 = parameters[XY2] * (t129 - t8) - parameters[XX2R] * t7
-        + (parameters[MY2] * t55 - parameters[MX2R] * t57);
-    const ur10e_bench_real_t t133 = parameters[XY3] * (t35 - t20) - parameters[XX3R] * t18
-        + (parameters[MY3] * t59 - parameters[MX3R] * t62);
-    const ur10e_bench_real_t t134 = parameters[XX4R] * t31 + parameters[XY4] * (t65 - t33)
-        + (parameters[MY4R] * t86 - parameters[MX4] * t64);
-    const ur10e_bench_real_t t135 = t134 + (t38 * t96 + t37 * t103 + UR10E_BENCH_C(-0.11985) * t115);
-    const ur10e_bench_real_t t136 = t133 + (t135 + UR10E_BENCH_C(0.57155) * t119);
-    const ur10e_bench_real_t t137 = t10 * (parameters[MY3] * (t35 + t21) - parameters[MX3R] * t18 + t119);
-    const ur10e_bench_real_t t138 = t11 * (parameters[MX3R] * t60 - parameters[MY3] * t18 + t123) + t137;
-    out[1] = t132 + (t136 + UR10E_BENCH_C(0.6127) * t138);
-    out[2] = t136;
-    out[3] = t135;
-    out[4] = t113;
-    out[5] = t102;
+    const ur10e_bench_real_t t132 = parameters[XX4R] * t12 + parameters[XY4] * (t67 - t103)
+        + (parameters[MY4R] * t57 - parameters[MX4] * t66);
+    const ur10e_bench_real_t t133 = t132 + (t18 * t95 + t13 * t76 + UR10E_BENCH_C(-0.11985) * t110);
+    const ur10e_bench_real_t t134 = parameters[XY3] * (t59 - t50) - parameters[XX3R] * t55
+        + (parameters[MY3] * t49 - parameters[MX3R] * t54);
+    const ur10e_bench_real_t t135 = t134 + (t133 + UR10E_BENCH_C(0.57155) * t114);
+    const ur10e_bench_real_t t136 = t2 * (parameters[MY3] * (t59 + t51) - parameters[MX3R] * t55 + t114);
+    const ur10e_bench_real_t t137 = t5 * (parameters[MX3R] * t52 - parameters[MY3] * t55 + t119) + t136;
+    const ur10e_bench_real_t t138 = parameters[XY2] * (t130 - t42) - parameters[XX2R] * t46
+        + (parameters[MY2] * t44 - parameters[MX2R] * t47);
+    out[1] = t138 + (t135 + UR10E_BENCH_C(0.6127) * t137);
+    out[2] = t135;
+    out[3] = t133;
+    out[4] = t107;
+    out[5] = t72;
     return UR10E_BENCH_STATUS_OK;
 }

@@ -86,7 +86,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,215 +111,215 @@ int ur10e_bench_bias_standard(
         return status;
     }
 
-    ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t14, t12;
-    UR10E_BENCH_SINCOS(q[2], &t14, &t12);
-    ur10e_bench_real_t t32, t30;
-    UR10E_BENCH_SINCOS(q[3], &t32, &t30);
-    ur10e_bench_real_t t52, t51;
-    UR10E_BENCH_SINCOS(q[4], &t52, &t51);
-    ur10e_bench_real_t t78, t77;
-    UR10E_BENCH_SINCOS(q[5], &t78, &t77);
-    const ur10e_bench_real_t t2 = t1 * dq[0];
-    const ur10e_bench_real_t t3 = dq[1] * t2;
-    const ur10e_bench_real_t t4 = t0 * dq[0];
-    const ur10e_bench_real_t t5 = dq[1] * t4;
-    const ur10e_bench_real_t t6 = t3 * parameters[XX2] + t3 * (parameters[ZZ2] - parameters[YY2])
-        + UR10E_BENCH_C(-2.0) * t5 * parameters[XY2];
-    const ur10e_bench_real_t t7 = t4 * t2;
-    const ur10e_bench_real_t t8 = t2 * t2;
-    const ur10e_bench_real_t t9 = dq[1] * dq[1];
-    const ur10e_bench_real_t t10 = UR10E_BENCH_C(-9.81) * t1;
-    const ur10e_bench_real_t t11 = t6 + t7 * parameters[XZ2] + (t8 - t9) * parameters[YZ2]
-        + t10 * parameters[MZ2];
-    const ur10e_bench_real_t t13 = dq[1] + dq[2];
-    const ur10e_bench_real_t t15 = t12 * t2 - t14 * t4;
-    const ur10e_bench_real_t t16 = t13 * t15;
-    const ur10e_bench_real_t t17 = t12 * t4 + t14 * t2;
-    const ur10e_bench_real_t t18 = t13 * t17;
-    const ur10e_bench_real_t t19 = UR10E_BENCH_C(2.0) * t18;
-    const ur10e_bench_real_t t20 = parameters[XX3] * t16 - t16 * (parameters[YY3] - parameters[ZZ3])
-        - parameters[XY3] * t19;
-    const ur10e_bench_real_t t21 = t17 * t15;
-    const ur10e_bench_real_t t22 = t13 * t13;
-    const ur10e_bench_real_t t23 = t15 * t15;
-    const ur10e_bench_real_t t24 = UR10E_BENCH_C(-1.2254) * t5;
-    const ur10e_bench_real_t t25 = UR10E_BENCH_C(9.81) * t0;
-    const ur10e_bench_real_t t26 = t25 + UR10E_BENCH_C(0.6127) * (t8 + t9);
-    const ur10e_bench_real_t t27 = t10 + UR10E_BENCH_C(0.6127) * t7;
-    const ur10e_bench_real_t t28 = t14 * t26 + t12 * t27;
-    const ur10e_bench_real_t t29 = t20 + parameters[XZ3] * t21 + parameters[YZ3] * (t23 - t22)
-        + (parameters[MY3] * t24 + parameters[MZ3] * t28);
-    const ur10e_bench_real_t t31 = dq[3] + t13;
-    const ur10e_bench_real_t t33 = t30 * t15 - t32 * t17;
-    const ur10e_bench_real_t t34 = t31 * t33;
-    const ur10e_bench_real_t t35 = t30 * t17 + t32 * t15;
-    const ur10e_bench_real_t t36 = t31 * t35;
-    const ur10e_bench_real_t t37 = UR10E_BENCH_C(2.0) * t36;
-    const ur10e_bench_real_t t38 = parameters[XX4] * t34 - t34 * (parameters[YY4] - parameters[ZZ4])
-        - parameters[XY4] * t37;
-    const ur10e_bench_real_t t39 = t35 * t33;
-    const ur10e_bench_real_t t40 = t31 * t31;
-    const ur10e_bench_real_t t41 = t33 * t33;
-    const ur10e_bench_real_t t42 = t17 * t17;
-    const ur10e_bench_real_t t43 = t42 + t23;
-    const ur10e_bench_real_t t44 = t24 + (UR10E_BENCH_C(-1.1431) * t18 + UR10E_BENCH_C(-0.17415) * t43);
-    const ur10e_bench_real_t t45 = t14 * t27 - t12 * t26;
-    const ur10e_bench_real_t t46 = t22 + t23;
-    const ur10e_bench_real_t t47 = UR10E_BENCH_C(0.57155) * t46 - t45;
-    const ur10e_bench_real_t t48 = t28 + UR10E_BENCH_C(0.57155) * t21;
-    const ur10e_bench_real_t t49 = t32 * t47 + t30 * t48;
-    const ur10e_bench_real_t t50 = t38 + parameters[XZ4] * t39 + parameters[YZ4] * (t41 - t40)
-        + (parameters[MY4] * t44 + parameters[MZ4] * t49);
-    const ur10e_bench_real_t t53 = UR10E_BENCH_C(-2.0) * t34;
-    const ur10e_bench_real_t t54 = t52 * t39 + t51 * t53;
-    const ur10e_bench_real_t t55 = t51 * t31 - t52 * t35;
-    const ur10e_bench_real_t t56 = t33 - dq[4];
-    const ur10e_bench_real_t t57 = t55 * t56;
-    const ur10e_bench_real_t t58 = t54 + t57;
-    const ur10e_bench_real_t t59 = t52 * t31 + t51 * t35;
-    const ur10e_bench_real_t t60 = t59 * t56;
-    const ur10e_bench_real_t t61 = t52 * t53 - t51 * t39;
-    const ur10e_bench_real_t t62 = t61 + t60;
-    const ur10e_bench_real_t t63 = t60 + t62;
-    const ur10e_bench_real_t t64 = parameters[XY5] * t63 - (parameters[XX5] * t58 + t57 * (parameters[ZZ5]
+    ur10e_bench_real_t t0, t3;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t3);
+    ur10e_bench_real_t t5, t2;
+    UR10E_BENCH_SINCOS(q[2], &t5, &t2);
+    ur10e_bench_real_t t9, t7;
+    UR10E_BENCH_SINCOS(q[3], &t9, &t7);
+    ur10e_bench_real_t t13, t18;
+    UR10E_BENCH_SINCOS(q[4], &t13, &t18);
+    ur10e_bench_real_t t30, t25;
+    UR10E_BENCH_SINCOS(q[5], &t30, &t25);
+    const ur10e_bench_real_t t1 = t0 * dq[0];
+    const ur10e_bench_real_t t4 = t3 * dq[0];
+    const ur10e_bench_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_bench_real_t t8 = t2 * t4 - t5 * t1;
+    const ur10e_bench_real_t t10 = t7 * t6 + t9 * t8;
+    const ur10e_bench_real_t t11 = t7 * t8 - t9 * t6;
+    const ur10e_bench_real_t t12 = t10 * t11;
+    const ur10e_bench_real_t t14 = dq[1] + dq[2];
+    const ur10e_bench_real_t t15 = dq[3] + t14;
+    const ur10e_bench_real_t t16 = t15 * t11;
+    const ur10e_bench_real_t t17 = UR10E_BENCH_C(-2.0) * t16;
+    const ur10e_bench_real_t t19 = t13 * t12 + t18 * t17;
+    const ur10e_bench_real_t t20 = t18 * t15 - t13 * t10;
+    const ur10e_bench_real_t t21 = t11 - dq[4];
+    const ur10e_bench_real_t t22 = t20 * t21;
+    const ur10e_bench_real_t t23 = t19 + t22;
+    const ur10e_bench_real_t t24 = t22 + t23;
+    const ur10e_bench_real_t t26 = t13 * t15 + t18 * t10;
+    const ur10e_bench_real_t t27 = t26 * t20;
+    const ur10e_bench_real_t t28 = t15 * t10;
+    const ur10e_bench_real_t t29 = t28 - t27;
+    const ur10e_bench_real_t t31 = t30 * t29 + t25 * t24;
+    const ur10e_bench_real_t t32 = t25 * t21 - t30 * t26;
+    const ur10e_bench_real_t t33 = dq[5] + t20;
+    const ur10e_bench_real_t t34 = t32 * t33;
+    const ur10e_bench_real_t t35 = t31 - t34;
+    const ur10e_bench_real_t t36 = t25 * t29 - t30 * t24;
+    const ur10e_bench_real_t t37 = t25 * t26 + t30 * t21;
+    const ur10e_bench_real_t t38 = t37 * t33;
+    const ur10e_bench_real_t t39 = t36 + t38;
+    const ur10e_bench_real_t t40 = t38 + t39;
+    const ur10e_bench_real_t t41 = parameters[XX6] * t35 + t34 * (parameters[YY6] - parameters[ZZ6])
+        + parameters[XY6] * t40;
+    const ur10e_bench_real_t t42 = t13 * t17 - t18 * t12;
+    const ur10e_bench_real_t t43 = t26 * t21;
+    const ur10e_bench_real_t t44 = t42 + t43;
+    const ur10e_bench_real_t t45 = t37 * t32;
+    const ur10e_bench_real_t t46 = t44 + t45;
+    const ur10e_bench_real_t t47 = t32 * t32;
+    const ur10e_bench_real_t t48 = t33 * t33;
+    const ur10e_bench_real_t t49 = t4 * t4;
+    const ur10e_bench_real_t t50 = dq[1] * dq[1];
+    const ur10e_bench_real_t t51 = UR10E_BENCH_C(9.81) * t0;
+    const ur10e_bench_real_t t52 = t51 + UR10E_BENCH_C(0.6127) * (t49 + t50);
+    const ur10e_bench_real_t t53 = t1 * t4;
+    const ur10e_bench_real_t t54 = UR10E_BENCH_C(-9.81) * t3;
+    const ur10e_bench_real_t t55 = t54 + UR10E_BENCH_C(0.6127) * t53;
+    const ur10e_bench_real_t t56 = t5 * t55 - t2 * t52;
+    const ur10e_bench_real_t t57 = t8 * t8;
+    const ur10e_bench_real_t t58 = t14 * t14;
+    const ur10e_bench_real_t t59 = t58 + t57;
+    const ur10e_bench_real_t t60 = UR10E_BENCH_C(0.57155) * t59 - t56;
+    const ur10e_bench_real_t t61 = t5 * t52 + t2 * t55;
+    const ur10e_bench_real_t t62 = t6 * t8;
+    const ur10e_bench_real_t t63 = t61 + UR10E_BENCH_C(0.57155) * t62;
+    const ur10e_bench_real_t t64 = t9 * t63 - t7 * t60;
+    const ur10e_bench_real_t t65 = t64 + UR10E_BENCH_C(0.11985) * t12;
+    const ur10e_bench_real_t t66 = t6 * t6;
+    const ur10e_bench_real_t t67 = t66 + t57;
+    const ur10e_bench_real_t t68 = t14 * t6;
+    const ur10e_bench_real_t t69 = dq[1] * t1;
+    const ur10e_bench_real_t t70 = UR10E_BENCH_C(-1.2254) * t69;
+    const ur10e_bench_real_t t71 = t70 + (UR10E_BENCH_C(-1.1431) * t68 + UR10E_BENCH_C(-0.17415) * t67);
+    const ur10e_bench_real_t t72 = t71 + UR10E_BENCH_C(-0.2397) * t16;
+    const ur10e_bench_real_t t73 = t13 * t65 + t18 * t72;
+    const ur10e_bench_real_t t74 = t26 * t26;
+    const ur10e_bench_real_t t75 = t21 * t21;
+    const ur10e_bench_real_t t76 = t74 + t75;
+    const ur10e_bench_real_t t77 = t73 + UR10E_BENCH_C(-0.11655) * t76;
+    const ur10e_bench_real_t t78 = t9 * t60 + t7 * t63;
+    const ur10e_bench_real_t t79 = t10 * t10;
+    const ur10e_bench_real_t t80 = t15 * t15;
+    const ur10e_bench_real_t t81 = t80 + t79;
+    const ur10e_bench_real_t t82 = t78 + UR10E_BENCH_C(-0.11985) * t81;
+    const ur10e_bench_real_t t83 = t82 + UR10E_BENCH_C(-0.11655) * t24;
+    const ur10e_bench_real_t t84 = t18 * t65 - t13 * t72;
+    const ur10e_bench_real_t t85 = t84 + UR10E_BENCH_C(0.11655) * t29;
+    const ur10e_bench_real_t t86 = t30 * t85 - t25 * t83;
+    const ur10e_bench_real_t t87 = t41 - parameters[XZ6] * t46 - parameters[YZ6] * (t47 - t48)
+        + (parameters[MZ6] * t86 - parameters[MY6] * t77);
+    const ur10e_bench_real_t t88 = t35 - t34;
+    const ur10e_bench_real_t t89 = parameters[YY6] * t39 + t38 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t88;
+    const ur10e_bench_real_t t90 = t44 - t45;
+    const ur10e_bench_real_t t91 = t37 * t37;
+    const ur10e_bench_real_t t92 = t25 * t85 + t30 * t83;
+    const ur10e_bench_real_t t93 = t89 - parameters[YZ6] * t90 + parameters[XZ6] * (t91 - t48)
+        + (parameters[MZ6] * t92 + parameters[MX6] * t77);
+    const ur10e_bench_real_t t94 = parameters[MX6] * (t47 + t48) + parameters[MY6] * t90
+        + parameters[MZ6] * t36;
+    const ur10e_bench_real_t t95 = parameters[M6] * t92 + t94;
+    const ur10e_bench_real_t t96 = parameters[MX6] * t46 - parameters[MY6] * (t91 + t48)
+        + parameters[MZ6] * t31;
+    const ur10e_bench_real_t t97 = parameters[M6] * t86 + t96;
+    const ur10e_bench_real_t t98 = t30 * t95 - t25 * t97;
+    const ur10e_bench_real_t t99 = t43 + t44;
+    const ur10e_bench_real_t t100 = parameters[XY5] * t99 - (parameters[XX5] * t23 + t22 * (parameters[ZZ5]
         - parameters[YY5]));
-    const ur10e_bench_real_t t65 = t59 * t55;
-    const ur10e_bench_real_t t66 = t36 + t65;
-    const ur10e_bench_real_t t67 = t55 * t55;
-    const ur10e_bench_real_t t68 = t56 * t56;
-    const ur10e_bench_real_t t69 = t35 * t35;
-    const ur10e_bench_real_t t70 = t40 + t69;
-    const ur10e_bench_real_t t71 = t49 + UR10E_BENCH_C(-0.11985) * t70;
-    const ur10e_bench_real_t t72 = t32 * t48 - t30 * t47;
-    const ur10e_bench_real_t t73 = t72 + UR10E_BENCH_C(0.11985) * t39;
-    const ur10e_bench_real_t t74 = t44 + UR10E_BENCH_C(-0.2397) * t34;
-    const ur10e_bench_real_t t75 = t52 * t73 + t51 * t74;
-    const ur10e_bench_real_t t76 = t64 + parameters[XZ5] * t66 + parameters[YZ5] * (t67 - t68)
-        + (parameters[MY5] * t71 - parameters[MZ5] * t75);
-    const ur10e_bench_real_t t79 = t36 - t65;
-    const ur10e_bench_real_t t80 = t57 + t58;
-    const ur10e_bench_real_t t81 = t78 * t79 + t77 * t80;
-    const ur10e_bench_real_t t82 = t77 * t56 - t78 * t59;
-    const ur10e_bench_real_t t83 = dq[5] + t55;
-    const ur10e_bench_real_t t84 = t82 * t83;
-    const ur10e_bench_real_t t85 = t81 - t84;
-    const ur10e_bench_real_t t86 = t77 * t59 + t78 * t56;
-    const ur10e_bench_real_t t87 = t86 * t83;
-    const ur10e_bench_real_t t88 = t77 * t79 - t78 * t80;
-    const ur10e_bench_real_t t89 = t88 + t87;
-    const ur10e_bench_real_t t90 = t87 + t89;
-    const ur10e_bench_real_t t91 = parameters[XX6] * t85 + t84 * (parameters[YY6] - parameters[ZZ6])
-        + parameters[XY6] * t90;
-    const ur10e_bench_real_t t92 = t86 * t82;
-    const ur10e_bench_real_t t93 = t62 + t92;
-    const ur10e_bench_real_t t94 = t82 * t82;
-    const ur10e_bench_real_t t95 = t83 * t83;
-    const ur10e_bench_real_t t96 = t59 * t59;
-    const ur10e_bench_real_t t97 = t96 + t68;
-    const ur10e_bench_real_t t98 = t75 + UR10E_BENCH_C(-0.11655) * t97;
-    const ur10e_bench_real_t t99 = t51 * t73 - t52 * t74;
-    const ur10e_bench_real_t t100 = t99 + UR10E_BENCH_C(0.11655) * t79;
-    const ur10e_bench_real_t t101 = t71 + UR10E_BENCH_C(-0.11655) * t80;
-    const ur10e_bench_real_t t102 = t78 * t100 - t77 * t101;
-    const ur10e_bench_real_t t103 = t91 - parameters[XZ6] * t93 - parameters[YZ6] * (t94 - t95)
-        + (parameters[MZ6] * t102 - parameters[MY6] * t98);
-    const ur10e_bench_real_t t104 = t85 - t84;
-    const ur10e_bench_real_t t105 = parameters[YY6] * t89 + t87 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t104;
-    const ur10e_bench_real_t t106 = t62 - t92;
-    const ur10e_bench_real_t t107 = t86 * t86;
-    const ur10e_bench_real_t t108 = t77 * t100 + t78 * t101;
-    const ur10e_bench_real_t t109 = t105 - parameters[YZ6] * t106 + parameters[XZ6] * (t107 - t95)
-        + (parameters[MZ6] * t108 + parameters[MX6] * t98);
-    const ur10e_bench_real_t t110 = parameters[MX6] * (t94 + t95) + parameters[MY6] * t106
-        + parameters[MZ6] * t88;
-    const ur10e_bench_real_t t111 = parameters[M6] * t108 + t110;
-    const ur10e_bench_real_t t112 = parameters[MX6] * t93 - parameters[MY6] * (t107 + t95)
-        + parameters[MZ6] * t81;
-    const ur10e_bench_real_t t113 = parameters[M6] * t102 + t112;
-    const ur10e_bench_real_t t114 = t78 * t111 - t77 * t113;
-    const ur10e_bench_real_t t115 = t76 + (t78 * t109 - t77 * t103 + UR10E_BENCH_C(0.11655) * t114);
-    const ur10e_bench_real_t t116 = parameters[YY5] * t62 - t60 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t80;
-    const ur10e_bench_real_t t117 = t116 + parameters[YZ5] * t79 - parameters[XZ5] * (t96 - t68)
-        - (parameters[MZ5] * t99 + parameters[MX5] * t71);
-    const ur10e_bench_real_t t118 = parameters[ZZ6] * t62 - (parameters[XX6] - parameters[YY6]) * t92
-        - parameters[YZ6] * t88;
-    const ur10e_bench_real_t t119 = t118 - parameters[XZ6] * t81 + parameters[XY6] * (t107 - t94)
-        + (parameters[MX6] * t102 + parameters[MY6] * t108);
-    const ur10e_bench_real_t t120 = t117 + t119;
-    const ur10e_bench_real_t t121 = parameters[MX5] * (t67 + t68) + parameters[MY5] * t79
-        - parameters[MZ5] * t61;
-    const ur10e_bench_real_t t122 = t77 * t111 + t78 * t113;
-    const ur10e_bench_real_t t123 = parameters[M5] * t99 + t121 + t122;
-    const ur10e_bench_real_t t124 = parameters[M5] * t75 + (parameters[MX5] * t66 - parameters[MY5] * t97
-        + parameters[MZ5] * t54);
-    const ur10e_bench_real_t t125 = parameters[MX6] * t90 - parameters[MY6] * t104 - parameters[MZ6] * (t107
-        + t94);
-    const ur10e_bench_real_t t126 = t124 + (parameters[M6] * t98 + t125);
-    const ur10e_bench_real_t t127 = t51 * t126 - t52 * t123;
-    const ur10e_bench_real_t t128 = t50 + (t51 * t115 - t52 * t120 + UR10E_BENCH_C(-0.11985) * t127);
-    const ur10e_bench_real_t t129 = parameters[YY4] * t36 + t36 * (parameters[ZZ4] - parameters[XX4])
-        + parameters[XY4] * t53;
-    const ur10e_bench_real_t t130 = t129 + parameters[YZ4] * t39 + parameters[XZ4] * (t69 - t40)
-        + (parameters[MZ4] * t72 + parameters[MX4] * t44);
-    const ur10e_bench_real_t t131 = parameters[ZZ5] * t36 + t65 * (parameters[YY5] - parameters[XX5])
-        + parameters[YZ5] * t61;
-    const ur10e_bench_real_t t132 = t131 - parameters[XZ5] * t54 + parameters[XY5] * (t96 - t67)
-        + (parameters[MX5] * t75 + parameters[MY5] * t99);
-    const ur10e_bench_real_t t133 = t132 + (t78 * t103 + t77 * t109 + UR10E_BENCH_C(0.11655) * t122);
-    const ur10e_bench_real_t t134 = t130 + t133;
-    const ur10e_bench_real_t t135 = parameters[M4] * t72 + (parameters[MX4] * (t40 + t41)
-        - parameters[MY4] * t39);
-    const ur10e_bench_real_t t136 = t51 * t123 + t52 * t126;
-    const ur10e_bench_real_t t137 = t135 + t136;
-    const ur10e_bench_real_t t138 = parameters[MX5] * t63 + parameters[MY5] * t80 + parameters[MZ5] * (t96
-        + t67);
-    const ur10e_bench_real_t t139 = parameters[M4] * t49 + (parameters[MY4] * t70 - parameters[MX4] * t39)
-        + (parameters[M5] * t71 - t138 + t114);
-    const ur10e_bench_real_t t140 = t32 * t137 + t30 * t139;
-    const ur10e_bench_real_t t141 = t29 + (t30 * t128 + t32 * t134 + UR10E_BENCH_C(0.17415) * t140);
-    const ur10e_bench_real_t t142 = UR10E_BENCH_C(2.0) * t16;
-    const ur10e_bench_real_t t143 = parameters[YY3] * t18 - t18 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t142;
-    const ur10e_bench_real_t t144 = t143 + parameters[YZ3] * t21 - parameters[XZ3] * (t22 - t42)
-        + (parameters[MZ3] * t45 + parameters[MX3] * t24);
-    const ur10e_bench_real_t t145 = t30 * t137 - t32 * t139;
-    const ur10e_bench_real_t t146 = parameters[MX4] * t37 - parameters[MY4] * t53 - parameters[MZ4] * (t69
-        + t41);
-    const ur10e_bench_real_t t147 = parameters[M4] * t44 + t146 + t127;
-    const ur10e_bench_real_t t148 = t30 * t134 - t32 * t128 - (UR10E_BENCH_C(-0.17415) * t145
-        - UR10E_BENCH_C(-0.57155) * t147);
-    const ur10e_bench_real_t t149 = t144 + t148;
-    const ur10e_bench_real_t t150 = t5 * (parameters[XX2] - parameters[ZZ2]) - t5 * parameters[YY2]
-        + UR10E_BENCH_C(2.0) * t3 * parameters[XY2];
-    const ur10e_bench_real_t t151 = t4 * t4;
-    const ur10e_bench_real_t t152 = t150 - t7 * parameters[YZ2] + (t9 - t151) * parameters[XZ2]
-        + t25 * parameters[MZ2];
-    const ur10e_bench_real_t t153 = parameters[M3] * t24 + (parameters[MX3] * t19 + parameters[MY3] * t142
-        - parameters[MZ3] * t43);
-    const ur10e_bench_real_t t154 = t14 * t141 - t12 * t149 + UR10E_BENCH_C(0.6127) * (t153 + t147);
-    const ur10e_bench_real_t t155 = t0 * (t11 + (t12 * t141 + t14 * t149)) + t1 * (t152 + t154);
+    const ur10e_bench_real_t t101 = t28 + t27;
+    const ur10e_bench_real_t t102 = t20 * t20;
+    const ur10e_bench_real_t t103 = t100 + parameters[XZ5] * t101 + parameters[YZ5] * (t102 - t75)
+        + (parameters[MY5] * t82 - parameters[MZ5] * t73);
+    const ur10e_bench_real_t t104 = t103 + (t30 * t93 - t25 * t87 + UR10E_BENCH_C(0.11655) * t98);
+    const ur10e_bench_real_t t105 = parameters[ZZ6] * t44 - (parameters[XX6] - parameters[YY6]) * t45
+        - parameters[YZ6] * t36;
+    const ur10e_bench_real_t t106 = t105 - parameters[XZ6] * t31 + parameters[XY6] * (t91 - t47)
+        + (parameters[MX6] * t86 + parameters[MY6] * t92);
+    const ur10e_bench_real_t t107 = parameters[YY5] * t44 - t43 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t24;
+    const ur10e_bench_real_t t108 = t107 + parameters[YZ5] * t29 - parameters[XZ5] * (t74 - t75)
+        - (parameters[MZ5] * t84 + parameters[MX5] * t82);
+    const ur10e_bench_real_t t109 = t108 + t106;
+    const ur10e_bench_real_t t110 = t25 * t95 + t30 * t97;
+    const ur10e_bench_real_t t111 = parameters[MX5] * (t102 + t75) + parameters[MY5] * t29
+        - parameters[MZ5] * t42;
+    const ur10e_bench_real_t t112 = parameters[M5] * t84 + t111 + t110;
+    const ur10e_bench_real_t t113 = parameters[MX6] * t40 - parameters[MY6] * t88 - parameters[MZ6] * (t91
+        + t47);
+    const ur10e_bench_real_t t114 = parameters[M5] * t73 + (parameters[MX5] * t101 - parameters[MY5] * t76
+        + parameters[MZ5] * t19);
+    const ur10e_bench_real_t t115 = t114 + (parameters[M6] * t77 + t113);
+    const ur10e_bench_real_t t116 = t18 * t115 - t13 * t112;
+    const ur10e_bench_real_t t117 = UR10E_BENCH_C(2.0) * t28;
+    const ur10e_bench_real_t t118 = parameters[XX4] * t16 - t16 * (parameters[YY4] - parameters[ZZ4])
+        - parameters[XY4] * t117;
+    const ur10e_bench_real_t t119 = t11 * t11;
+    const ur10e_bench_real_t t120 = t118 + parameters[XZ4] * t12 + parameters[YZ4] * (t119 - t80)
+        + (parameters[MY4] * t71 + parameters[MZ4] * t78);
+    const ur10e_bench_real_t t121 = t120 + (t18 * t104 - t13 * t109 + UR10E_BENCH_C(-0.11985) * t116);
+    const ur10e_bench_real_t t122 = parameters[ZZ5] * t28 + t27 * (parameters[YY5] - parameters[XX5])
+        + parameters[YZ5] * t42;
+    const ur10e_bench_real_t t123 = t122 - parameters[XZ5] * t19 + parameters[XY5] * (t74 - t102)
+        + (parameters[MX5] * t73 + parameters[MY5] * t84);
+    const ur10e_bench_real_t t124 = t123 + (t30 * t87 + t25 * t93 + UR10E_BENCH_C(0.11655) * t110);
+    const ur10e_bench_real_t t125 = parameters[YY4] * t28 + t28 * (parameters[ZZ4] - parameters[XX4])
+        + parameters[XY4] * t17;
+    const ur10e_bench_real_t t126 = t125 + parameters[YZ4] * t12 + parameters[XZ4] * (t79 - t80)
+        + (parameters[MZ4] * t64 + parameters[MX4] * t71);
+    const ur10e_bench_real_t t127 = t126 + t124;
+    const ur10e_bench_real_t t128 = t18 * t112 + t13 * t115;
+    const ur10e_bench_real_t t129 = parameters[M4] * t64 + (parameters[MX4] * (t80 + t119)
+        - parameters[MY4] * t12);
+    const ur10e_bench_real_t t130 = t129 + t128;
+    const ur10e_bench_real_t t131 = parameters[MX5] * t99 + parameters[MY5] * t24 + parameters[MZ5] * (t74
+        + t102);
+    const ur10e_bench_real_t t132 = parameters[M4] * t78 + (parameters[MY4] * t81 - parameters[MX4] * t12)
+        + (parameters[M5] * t82 - t131 + t98);
+    const ur10e_bench_real_t t133 = t9 * t130 + t7 * t132;
+    const ur10e_bench_real_t t134 = t14 * t8;
+    const ur10e_bench_real_t t135 = UR10E_BENCH_C(2.0) * t68;
+    const ur10e_bench_real_t t136 = parameters[XX3] * t134 - t134 * (parameters[YY3] - parameters[ZZ3])
+        - parameters[XY3] * t135;
+    const ur10e_bench_real_t t137 = t136 + parameters[XZ3] * t62 + parameters[YZ3] * (t57 - t58)
+        + (parameters[MY3] * t70 + parameters[MZ3] * t61);
+    const ur10e_bench_real_t t138 = t137 + (t7 * t121 + t9 * t127 + UR10E_BENCH_C(0.17415) * t133);
+    const ur10e_bench_real_t t139 = t7 * t130 - t9 * t132;
+    const ur10e_bench_real_t t140 = parameters[MX4] * t117 - parameters[MY4] * t17 - parameters[MZ4] * (t79
+        + t119);
+    const ur10e_bench_real_t t141 = parameters[M4] * t71 + t140 + t116;
+    const ur10e_bench_real_t t142 = t7 * t127 - t9 * t121 - (UR10E_BENCH_C(-0.17415) * t139
+        - UR10E_BENCH_C(-0.57155) * t141);
+    const ur10e_bench_real_t t143 = UR10E_BENCH_C(2.0) * t134;
+    const ur10e_bench_real_t t144 = parameters[YY3] * t68 - t68 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t143;
+    const ur10e_bench_real_t t145 = t144 + parameters[YZ3] * t62 - parameters[XZ3] * (t58 - t66)
+        + (parameters[MZ3] * t56 + parameters[MX3] * t70);
+    const ur10e_bench_real_t t146 = t145 + t142;
+    const ur10e_bench_real_t t147 = dq[1] * t4;
+    const ur10e_bench_real_t t148 = t147 * parameters[XX2] + t147 * (parameters[ZZ2] - parameters[YY2])
+        + UR10E_BENCH_C(-2.0) * t69 * parameters[XY2];
+    const ur10e_bench_real_t t149 = t148 + t53 * parameters[XZ2] + (t49 - t50) * parameters[YZ2]
+        + t54 * parameters[MZ2];
+    const ur10e_bench_real_t t150 = parameters[M3] * t70 + (parameters[MX3] * t135 + parameters[MY3] * t143
+        - parameters[MZ3] * t67);
+    const ur10e_bench_real_t t151 = t5 * t138 - t2 * t146 + UR10E_BENCH_C(0.6127) * (t150 + t141);
+    const ur10e_bench_real_t t152 = t69 * (parameters[XX2] - parameters[ZZ2]) - t69 * parameters[YY2]
+        + UR10E_BENCH_C(2.0) * t147 * parameters[XY2];
+    const ur10e_bench_real_t t153 = t1 * t1;
+    const ur10e_bench_real_t t154 = t152 - t53 * parameters[YZ2] + (t50 - t153) * parameters[XZ2]
+        + t51 * parameters[MZ2];
+    const ur10e_bench_real_t t155 = t0 * (t149 + (t2 * t138 + t5 * t146)) + t3 * (t154 + t151);
     out[0] = t155;
-    const ur10e_bench_real_t t156 = t7 * (parameters[YY2] - parameters[XX2]) + (t151 - t8) * parameters[XY2]
-        - (t10 * parameters[MX2] + t25 * parameters[MY2]);
-    const ur10e_bench_real_t t157 = parameters[XY3] * (t42 - t23) - t21 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MY3] * t45 - parameters[MX3] * t28);
-    const ur10e_bench_real_t t158 = parameters[XY4] * (t69 - t41) - t39 * (parameters[XX4] - parameters[YY4])
-        + (parameters[MY4] * t72 - parameters[MX4] * t49);
-    const ur10e_bench_real_t t159 = t158 + (t52 * t115 + t51 * t120 + UR10E_BENCH_C(-0.11985) * t136);
-    const ur10e_bench_real_t t160 = t157 + (t159 + UR10E_BENCH_C(0.57155) * t140);
-    const ur10e_bench_real_t t161 = parameters[M3] * t45 + (parameters[MX3] * t46 - parameters[MY3] * t21)
-        + t145;
-    const ur10e_bench_real_t t162 = parameters[M3] * t28 + (parameters[MY3] * (t22 + t42)
-        - parameters[MX3] * t21);
-    const ur10e_bench_real_t t163 = t160 + UR10E_BENCH_C(0.6127) * (t14 * t161 + t12 * (t162 + t140));
-    out[1] = t156 + t163;
-    out[2] = t160;
-    out[3] = t159;
-    out[4] = t133;
-    out[5] = t119;
+    const ur10e_bench_real_t t156 = parameters[XY4] * (t79 - t119) - t12 * (parameters[XX4] - parameters[YY4])
+        + (parameters[MY4] * t64 - parameters[MX4] * t78);
+    const ur10e_bench_real_t t157 = t156 + (t13 * t104 + t18 * t109 + UR10E_BENCH_C(-0.11985) * t128);
+    const ur10e_bench_real_t t158 = parameters[XY3] * (t66 - t57) - t62 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MY3] * t56 - parameters[MX3] * t61);
+    const ur10e_bench_real_t t159 = t158 + (t157 + UR10E_BENCH_C(0.57155) * t133);
+    const ur10e_bench_real_t t160 = parameters[M3] * t56 + (parameters[MX3] * t59 - parameters[MY3] * t62)
+        + t139;
+    const ur10e_bench_real_t t161 = parameters[M3] * t61 + (parameters[MY3] * (t58 + t66)
+        - parameters[MX3] * t62);
+    const ur10e_bench_real_t t162 = t159 + UR10E_BENCH_C(0.6127) * (t5 * t160 + t2 * (t161 + t133));
+    const ur10e_bench_real_t t163 = t53 * (parameters[YY2] - parameters[XX2]) + (t153 - t49) * parameters[XY2]
+        - (t54 * parameters[MX2] + t51 * parameters[MY2]);
+    out[1] = t163 + t162;
+    out[2] = t159;
+    out[3] = t157;
+    out[4] = t124;
+    out[5] = t106;
     return UR10E_BENCH_STATUS_OK;
 }

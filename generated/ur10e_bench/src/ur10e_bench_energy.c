@@ -63,7 +63,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -90,10 +90,10 @@ int ur10e_bench_energy(
         return status;
     }
 
-    ur10e_bench_real_t t0, t2;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t2);
-    ur10e_bench_real_t t8, t7;
-    UR10E_BENCH_SINCOS(q[2], &t8, &t7);
+    ur10e_bench_real_t t0, t3;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t3);
+    ur10e_bench_real_t t5, t2;
+    UR10E_BENCH_SINCOS(q[2], &t5, &t2);
     ur10e_bench_real_t t22, t21;
     UR10E_BENCH_SINCOS(q[3], &t22, &t21);
     ur10e_bench_real_t t36, t35;
@@ -101,40 +101,39 @@ int ur10e_bench_energy(
     ur10e_bench_real_t t50, t49;
     UR10E_BENCH_SINCOS(q[5], &t50, &t49);
     const ur10e_bench_real_t t1 = t0 * dq[0];
-    const ur10e_bench_real_t t3 = t2 * dq[0];
-    const ur10e_bench_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
+    const ur10e_bench_real_t t4 = t3 * dq[0];
+    const ur10e_bench_real_t t6 = t2 * t1 + t5 * t4;
+    const ur10e_bench_real_t t7 = t2 * t4 - t5 * t1;
+    const ur10e_bench_real_t t8 = dq[1] + dq[2];
+    const ur10e_bench_real_t t9 = t6 * (parameters[XX3R] * t6 + parameters[XY3] * t7 + parameters[XZ3R] * t8);
+    const ur10e_bench_real_t t10 = t8 * (parameters[XZ3R] * t6 + parameters[YZ3] * t7
+        + parameters[ZZ3R] * t8);
+    const ur10e_bench_real_t t11 = t9 + t7 * (parameters[XY3] * t6 + parameters[YZ3] * t8) + t10;
+    const ur10e_bench_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t4
         + parameters[XZ2R] * dq[1]);
-    const ur10e_bench_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
+    const ur10e_bench_real_t t13 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t4
         + parameters[ZZ2R] * dq[1]);
-    const ur10e_bench_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const ur10e_bench_real_t t9 = t7 * t1 + t8 * t3;
-    const ur10e_bench_real_t t10 = t7 * t3 - t8 * t1;
-    const ur10e_bench_real_t t11 = dq[1] + dq[2];
-    const ur10e_bench_real_t t12 = t9 * (parameters[XX3R] * t9 + parameters[XY3] * t10
-        + parameters[XZ3R] * t11);
-    const ur10e_bench_real_t t13 = t11 * (parameters[XZ3R] * t9 + parameters[YZ3] * t10
-        + parameters[ZZ3R] * t11);
-    const ur10e_bench_real_t t14 = t12 + t10 * (parameters[XY3] * t9 + parameters[YZ3] * t11) + t13;
+    const ur10e_bench_real_t t14 = t12 + t4 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t13;
     const ur10e_bench_real_t t15 = UR10E_BENCH_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
-        + UR10E_BENCH_C(0.5) * t6 + UR10E_BENCH_C(0.5) * t14;
+        + UR10E_BENCH_C(0.5) * t14 + UR10E_BENCH_C(0.5) * t11;
     const ur10e_bench_real_t t16 = UR10E_BENCH_C(0.6127) * dq[1];
-    const ur10e_bench_real_t t17 = t7 * t16;
-    const ur10e_bench_real_t t18 = UR10E_BENCH_C(0.6127) * t3;
-    const ur10e_bench_real_t t19 = t8 * t16;
-    const ur10e_bench_real_t t20 = parameters[MY3] * (t9 * t18 + t11 * t19) - parameters[MX3R] * (t11 * t17
-        + t10 * t18);
-    const ur10e_bench_real_t t23 = t21 * t9 + t22 * t10;
-    const ur10e_bench_real_t t24 = t22 * t9 - t21 * t10;
-    const ur10e_bench_real_t t25 = dq[3] + t11;
+    const ur10e_bench_real_t t17 = t2 * t16;
+    const ur10e_bench_real_t t18 = UR10E_BENCH_C(0.6127) * t4;
+    const ur10e_bench_real_t t19 = t5 * t16;
+    const ur10e_bench_real_t t20 = parameters[MY3] * (t6 * t18 + t8 * t19) - parameters[MX3R] * (t8 * t17
+        + t7 * t18);
+    const ur10e_bench_real_t t23 = t21 * t6 + t22 * t7;
+    const ur10e_bench_real_t t24 = t22 * t6 - t21 * t7;
+    const ur10e_bench_real_t t25 = dq[3] + t8;
     const ur10e_bench_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4] * t24
         + parameters[XZ4] * t25);
     const ur10e_bench_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24
         + parameters[ZZ4R] * t25);
     const ur10e_bench_real_t t28 = t26 - t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25) + t27;
-    const ur10e_bench_real_t t29 = t19 + UR10E_BENCH_C(-0.17415) * t10;
-    const ur10e_bench_real_t t30 = t17 + (UR10E_BENCH_C(0.57155) * t11 + UR10E_BENCH_C(0.17415) * t9);
+    const ur10e_bench_real_t t29 = t19 + UR10E_BENCH_C(-0.17415) * t7;
+    const ur10e_bench_real_t t30 = t17 + (UR10E_BENCH_C(0.57155) * t8 + UR10E_BENCH_C(0.17415) * t6);
     const ur10e_bench_real_t t31 = t21 * t30 - t22 * t29;
-    const ur10e_bench_real_t t32 = t18 + UR10E_BENCH_C(0.57155) * t10;
+    const ur10e_bench_real_t t32 = t18 + UR10E_BENCH_C(0.57155) * t7;
     const ur10e_bench_real_t t33 = t21 * t29 + t22 * t30;
     const ur10e_bench_real_t t34 = parameters[MX4] * (t24 * t32 - t25 * t31) + parameters[MY4R] * (t23 * t32
         + t25 * t33);
@@ -167,17 +166,17 @@ int ur10e_bench_energy(
         + parameters[MY6] * t58);
     kinetic[0] = t59;
     const ur10e_bench_real_t t60 = UR10E_BENCH_C(9.81) * t0;
-    const ur10e_bench_real_t t61 = UR10E_BENCH_C(9.81) * t2;
-    const ur10e_bench_real_t t62 = t7 * t60 + t8 * t61;
-    const ur10e_bench_real_t t63 = t7 * t61 - t8 * t60;
-    const ur10e_bench_real_t t64 = parameters[MX2R] * t60 + parameters[MY2] * t61 + (parameters[MX3R] * t62
+    const ur10e_bench_real_t t61 = UR10E_BENCH_C(9.81) * t3;
+    const ur10e_bench_real_t t62 = t2 * t60 + t5 * t61;
+    const ur10e_bench_real_t t63 = t2 * t61 - t5 * t60;
+    const ur10e_bench_real_t t64 = t21 * t62 + t22 * t63;
+    const ur10e_bench_real_t t65 = t21 * t63 - t22 * t62;
+    const ur10e_bench_real_t t66 = parameters[MX2R] * t60 + parameters[MY2] * t61 + (parameters[MX3R] * t62
         + parameters[MY3] * t63);
-    const ur10e_bench_real_t t65 = t21 * t62 + t22 * t63;
-    const ur10e_bench_real_t t66 = t21 * t63 - t22 * t62;
-    const ur10e_bench_real_t t67 = t35 * t65;
-    const ur10e_bench_real_t t68 = t64 + (parameters[MX4] * t65 + parameters[MY4R] * t66)
-        + (parameters[MX5] * t67 - parameters[MY5R] * (t36 * t65));
-    const ur10e_bench_real_t t69 = parameters[MX6] * (t49 * t67 + t50 * t66) + parameters[MY6] * (t49 * t66
+    const ur10e_bench_real_t t67 = t35 * t64;
+    const ur10e_bench_real_t t68 = t66 + (parameters[MX4] * t64 + parameters[MY4R] * t65)
+        + (parameters[MX5] * t67 - parameters[MY5R] * (t36 * t64));
+    const ur10e_bench_real_t t69 = parameters[MX6] * (t49 * t67 + t50 * t65) + parameters[MY6] * (t49 * t65
         - t50 * t67);
     potential[0] = t68 + t69;
     return UR10E_BENCH_STATUS_OK;

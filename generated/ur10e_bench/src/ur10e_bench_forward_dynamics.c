@@ -64,7 +64,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -91,355 +91,356 @@ int ur10e_bench_forward_dynamics(
         return status;
     }
 
+    ur10e_bench_real_t t78, t79;
+    UR10E_BENCH_SINCOS(q[1], &t78, &t79);
+    ur10e_bench_real_t t53, t54;
+    UR10E_BENCH_SINCOS(q[2], &t53, &t54);
+    ur10e_bench_real_t t33, t36;
+    UR10E_BENCH_SINCOS(q[3], &t33, &t36);
+    ur10e_bench_real_t t10, t12;
+    UR10E_BENCH_SINCOS(q[4], &t10, &t12);
     ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t11, t10;
-    UR10E_BENCH_SINCOS(q[2], &t11, &t10);
-    ur10e_bench_real_t t24, t23;
-    UR10E_BENCH_SINCOS(q[3], &t24, &t23);
-    ur10e_bench_real_t t38, t37;
-    UR10E_BENCH_SINCOS(q[4], &t38, &t37);
-    ur10e_bench_real_t t69, t68;
-    UR10E_BENCH_SINCOS(q[5], &t69, &t68);
-    const ur10e_bench_real_t t2 = t1 * dq[0];
-    const ur10e_bench_real_t t3 = dq[1] * t2;
-    const ur10e_bench_real_t t4 = t0 * dq[0];
-    const ur10e_bench_real_t t5 = dq[1] * t4;
-    const ur10e_bench_real_t t6 = parameters[XY2] * (UR10E_BENCH_C(2.0) * t5) - (parameters[XX2R] * t3
-        + parameters[ZZ2R] * t3);
-    const ur10e_bench_real_t t7 = t4 * t2;
-    const ur10e_bench_real_t t8 = t2 * t2;
-    const ur10e_bench_real_t t9 = dq[1] * dq[1];
-    const ur10e_bench_real_t t12 = t11 * t4 - t10 * t2;
-    const ur10e_bench_real_t t13 = dq[1] + dq[2];
-    const ur10e_bench_real_t t14 = t12 * t13;
-    const ur10e_bench_real_t t15 = t10 * t4 + t11 * t2;
-    const ur10e_bench_real_t t16 = t15 * t13;
-    const ur10e_bench_real_t t17 = UR10E_BENCH_C(2.0) * t16;
-    const ur10e_bench_real_t t18 = t15 * t12;
-    const ur10e_bench_real_t t19 = parameters[XX3R] * t14 + parameters[ZZ3R] * t14 + parameters[XY3] * t17
-        + parameters[XZ3R] * t18;
-    const ur10e_bench_real_t t20 = t12 * t12;
-    const ur10e_bench_real_t t21 = t13 * t13;
-    const ur10e_bench_real_t t22 = UR10E_BENCH_C(1.2254) * t5;
-    const ur10e_bench_real_t t25 = t24 * t15 + t23 * t12;
-    const ur10e_bench_real_t t26 = dq[3] + t13;
-    const ur10e_bench_real_t t27 = t25 * t26;
-    const ur10e_bench_real_t t28 = t24 * t12 - t23 * t15;
-    const ur10e_bench_real_t t29 = t28 * t26;
-    const ur10e_bench_real_t t30 = UR10E_BENCH_C(-2.0) * t29;
-    const ur10e_bench_real_t t31 = t28 * t25;
-    const ur10e_bench_real_t t32 = parameters[XX4R] * t27 + parameters[ZZ4R] * t27 + parameters[XY4] * t30
-        - parameters[XZ4] * t31;
-    const ur10e_bench_real_t t33 = t25 * t25;
-    const ur10e_bench_real_t t34 = t26 * t26;
-    const ur10e_bench_real_t t35 = t15 * t15;
-    const ur10e_bench_real_t t36 = t22 + (UR10E_BENCH_C(1.1431) * t16 + UR10E_BENCH_C(0.17415) * (t35 + t20));
-    const ur10e_bench_real_t t39 = UR10E_BENCH_C(2.0) * t27;
-    const ur10e_bench_real_t t40 = t38 * t31 + t37 * t39;
-    const ur10e_bench_real_t t41 = t38 * t28 + t37 * t26;
-    const ur10e_bench_real_t t42 = dq[4] + t25;
-    const ur10e_bench_real_t t43 = t41 * t42;
-    const ur10e_bench_real_t t44 = t40 - t43;
-    const ur10e_bench_real_t t45 = t37 * t28 - t38 * t26;
-    const ur10e_bench_real_t t46 = t45 * t42;
-    const ur10e_bench_real_t t47 = t38 * t39 - t37 * t31;
-    const ur10e_bench_real_t t48 = t47 + t46;
-    const ur10e_bench_real_t t49 = t46 + t48;
-    const ur10e_bench_real_t t50 = t45 * t41;
-    const ur10e_bench_real_t t51 = t29 + t50;
-    const ur10e_bench_real_t t52 = parameters[XX5R] * t44 - parameters[ZZ5R] * t43 - parameters[XY5] * t49
-        + parameters[XZ5] * t51;
-    const ur10e_bench_real_t t53 = t41 * t41;
-    const ur10e_bench_real_t t54 = t42 * t42;
-    const ur10e_bench_real_t t55 = UR10E_BENCH_C(-9.81) * t0;
-    const ur10e_bench_real_t t56 = t55 + UR10E_BENCH_C(-0.6127) * (t8 + t9);
-    const ur10e_bench_real_t t57 = UR10E_BENCH_C(9.81) * t1;
-    const ur10e_bench_real_t t58 = t57 - UR10E_BENCH_C(0.6127) * t7;
-    const ur10e_bench_real_t t59 = t10 * t56 - t11 * t58;
-    const ur10e_bench_real_t t60 = t20 + t21;
-    const ur10e_bench_real_t t61 = t59 + UR10E_BENCH_C(-0.57155) * t60;
-    const ur10e_bench_real_t t62 = t11 * t56 + t10 * t58;
-    const ur10e_bench_real_t t63 = t62 + UR10E_BENCH_C(0.57155) * t18;
-    const ur10e_bench_real_t t64 = t24 * t61 + t23 * t63;
-    const ur10e_bench_real_t t65 = t28 * t28;
-    const ur10e_bench_real_t t66 = t65 + t34;
-    const ur10e_bench_real_t t67 = t64 + UR10E_BENCH_C(0.11985) * t66;
-    const ur10e_bench_real_t t70 = t29 - t50;
-    const ur10e_bench_real_t t71 = t44 - t43;
-    const ur10e_bench_real_t t72 = t69 * t70 - t68 * t71;
-    const ur10e_bench_real_t t73 = t69 * t45 - t68 * t42;
-    const ur10e_bench_real_t t74 = dq[5] + t41;
-    const ur10e_bench_real_t t75 = t73 * t74;
-    const ur10e_bench_real_t t76 = t72 + t75;
+    UR10E_BENCH_SINCOS(q[5], &t0, &t1);
     if (!(parameters[ZZ6] > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t77 = t68 * t45 + t69 * t42;
-    const ur10e_bench_real_t t78 = t77 * t74;
-    const ur10e_bench_real_t t79 = t68 * t70 + t69 * t71;
-    const ur10e_bench_real_t t80 = t78 + (t79 + t78);
-    const ur10e_bench_real_t t81 = t77 * t73;
-    const ur10e_bench_real_t t82 = t48 - t81;
-    const ur10e_bench_real_t t83 = parameters[XX6R] * t76 + parameters[ZZ6] * t75 + parameters[XY6] * t80
-        + parameters[XZ6R] * t82;
-    const ur10e_bench_real_t t84 = t73 * t73;
-    const ur10e_bench_real_t t85 = t74 * t74;
-    const ur10e_bench_real_t t86 = t24 * t63 - t23 * t61;
-    const ur10e_bench_real_t t87 = t86 + UR10E_BENCH_C(-0.11985) * t31;
-    const ur10e_bench_real_t t88 = t36 + UR10E_BENCH_C(-0.2397) * t27;
-    const ur10e_bench_real_t t89 = t38 * t87 + t37 * t88;
-    const ur10e_bench_real_t t90 = parameters[MY6] * t89 - (t83 + parameters[YZ6R] * (t84 - t85));
-    const ur10e_bench_real_t t91 = t75 + t76;
-    const ur10e_bench_real_t t92 = t48 + t81;
-    const ur10e_bench_real_t t93 = parameters[XY6] * t91 - t78 * (parameters[XX6R] - parameters[ZZ6])
-        + parameters[YZ6R] * t92;
-    const ur10e_bench_real_t t94 = t77 * t77;
-    const ur10e_bench_real_t t95 = t93 + parameters[XZ6R] * (t85 - t94) + parameters[MX6] * t89;
-    const ur10e_bench_real_t t96 = t52 + parameters[YZ5] * (t54 - t53) + parameters[MY5R] * t67 + (t68 * t90
-        + t69 * t95);
-    const ur10e_bench_real_t t97 = t46 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t71
-        + parameters[YZ5] * t70;
-    const ur10e_bench_real_t t98 = t45 * t45;
-    const ur10e_bench_real_t t99 = parameters[ZZ6] * t48 + parameters[XX6R] * t81 + parameters[YZ6R] * t79
-        + parameters[XZ6R] * t72;
-    const ur10e_bench_real_t t100 = t38 * t88 - t37 * t87;
-    const ur10e_bench_real_t t101 = parameters[MX6] * (t69 * t100 + t68 * t67) + parameters[MY6] * (t68 * t100
-        - t69 * t67);
-    const ur10e_bench_real_t t102 = t99 + parameters[XY6] * (t94 - t84) + t101;
-    const ur10e_bench_real_t t103 = parameters[XZ5] * (t54 - t98) - t97 + parameters[MX5] * t67 + t102;
-    const ur10e_bench_real_t t104 = parameters[MX6] * (t84 + t85) + parameters[MY6] * t92;
-    const ur10e_bench_real_t t105 = parameters[MX6] * t82 - parameters[MY6] * (t94 + t85);
-    const ur10e_bench_real_t t106 = parameters[MX5] * (t53 + t54) - parameters[MY5R] * t70 + (t68 * t104
-        + t69 * t105);
-    const ur10e_bench_real_t t107 = parameters[MX5] * t51 + parameters[MY5R] * (t98 + t54)
-        + (parameters[MX6] * t80 - parameters[MY6] * t91);
-    const ur10e_bench_real_t t108 = t38 * t106 + t37 * t107;
-    const ur10e_bench_real_t t109 = t32 + parameters[YZ4] * (t34 - t33) + parameters[MY4R] * t36 + (t37 * t96
-        + t38 * t103 + UR10E_BENCH_C(-0.11985) * t108);
-    const ur10e_bench_real_t t110 = t29 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t39
-        + parameters[YZ4] * t31;
-    const ur10e_bench_real_t t111 = parameters[ZZ5R] * t29 - parameters[XX5R] * t50 - parameters[YZ5] * t47
-        + parameters[XZ5] * t40;
-    const ur10e_bench_real_t t112 = t111 + parameters[XY5] * (t53 - t98) + (parameters[MX5] * t89
-        - parameters[MY5R] * t100);
-    const ur10e_bench_real_t t113 = t112 + (t68 * t95 - t69 * t90);
-    const ur10e_bench_real_t t114 = parameters[XZ4] * (t34 - t65) - t110 + parameters[MX4] * t36 + t113;
-    const ur10e_bench_real_t t115 = t38 * t107 - t37 * t106;
-    const ur10e_bench_real_t t116 = parameters[MY4R] * t31 - parameters[MX4] * (t33 + t34) + t115;
-    const ur10e_bench_real_t t117 = parameters[MX5] * t49 + parameters[MY5R] * t71 + (t68 * t105
-        - t69 * t104);
-    const ur10e_bench_real_t t118 = parameters[MX4] * t31 - parameters[MY4R] * t66 + t117;
-    const ur10e_bench_real_t t119 = t24 * t116 + t23 * t118;
-    const ur10e_bench_real_t t120 = t19 + parameters[YZ3] * (t21 - t20) + parameters[MY3] * t22 + (t23 * t109
-        + t24 * t114 + UR10E_BENCH_C(0.17415) * t119);
-    const ur10e_bench_real_t t121 = UR10E_BENCH_C(2.0) * t14;
-    const ur10e_bench_real_t t122 = t16 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t121
-        + parameters[YZ3] * t18;
-    const ur10e_bench_real_t t123 = t24 * t118 - t23 * t116;
-    const ur10e_bench_real_t t124 = parameters[MY4R] * t39 - parameters[MX4] * t30 + t108;
-    const ur10e_bench_real_t t125 = t24 * t109 - t23 * t114 + (UR10E_BENCH_C(0.17415) * t123
-        - UR10E_BENCH_C(-0.57155) * t124);
-    const ur10e_bench_real_t t126 = t122 - parameters[XZ3R] * (t35 - t21) + parameters[MX3R] * t22 - t125;
-    const ur10e_bench_real_t t127 = t6 - parameters[XZ2R] * t7 + parameters[YZ2] * (t9 - t8) + (t10 * t120
-        + t11 * t126);
-    const ur10e_bench_real_t t128 = t5 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (UR10E_BENCH_C(-2.0) * t3) + parameters[YZ2] * t7;
-    const ur10e_bench_real_t t129 = t4 * t4;
-    const ur10e_bench_real_t t130 = t11 * t120 - t10 * t126 + UR10E_BENCH_C(0.6127) * (parameters[MY3] * t121
-        - parameters[MX3R] * t17 + t124);
-    const ur10e_bench_real_t t131 = t0 * t127 + t1 * (t128 + parameters[XZ2R] * (t129 - t9) + t130);
-    const ur10e_bench_real_t t132 = input[5] - t102;
-    const ur10e_bench_real_t t133 = t69 * parameters[YZ6R] - t68 * parameters[XZ6R];
-    const ur10e_bench_real_t t134 = t68 * parameters[MY6] + t69 * parameters[MX6];
-    const ur10e_bench_real_t t135 = t38 * t134;
-    const ur10e_bench_real_t t136 = UR10E_BENCH_C(0.11985) * t135 - (t37 * t133 + t38 * parameters[ZZ6]);
-    const ur10e_bench_real_t t137 = t69 * parameters[XZ6R] + t68 * parameters[YZ6R];
-    const ur10e_bench_real_t t138 = t37 * t134;
-    const ur10e_bench_real_t t139 = t68 * parameters[MX6] - t69 * parameters[MY6];
-    const ur10e_bench_real_t t140 = t24 * t138 - t23 * t139;
-    const ur10e_bench_real_t t141 = t23 * t136 - t24 * t137 + UR10E_BENCH_C(0.17415) * t140;
-    const ur10e_bench_real_t t142 = t23 * t138 + t24 * t139;
-    const ur10e_bench_real_t t143 = t24 * t136 + t23 * t137 - (UR10E_BENCH_C(0.17415) * t142
-        + UR10E_BENCH_C(0.57155) * t135);
-    const ur10e_bench_real_t t144 = t1 * (t11 * t141 + t10 * t143 - UR10E_BENCH_C(0.6127) * t135);
-    const ur10e_bench_real_t t145 = t0 * (t10 * t141 - t11 * t143) + t144;
-    const ur10e_bench_real_t t146 = UR10E_BENCH_C(-1.0) / parameters[ZZ6];
-    const ur10e_bench_real_t t147 = t145 * t146;
-    const ur10e_bench_real_t t148 = t137 * t146;
-    const ur10e_bench_real_t t149 = input[4] + t113 - t132 * t148;
-    const ur10e_bench_real_t t150 = t68 * parameters[XX6R] - parameters[XY6] * (UR10E_BENCH_C(2.0) * t69);
-    const ur10e_bench_real_t t151 = parameters[XY6] + t69 * t150 - parameters[XZ5];
-    const ur10e_bench_real_t t152 = parameters[YZ5] - t137;
-    const ur10e_bench_real_t t153 = parameters[MX5] + t139;
-    const ur10e_bench_real_t t154 = t37 * t153 - t38 * parameters[MY5R];
-    const ur10e_bench_real_t t155 = t37 * t151 + t38 * t152 + UR10E_BENCH_C(0.11985) * t154;
-    const ur10e_bench_real_t t156 = t68 * t150;
-    const ur10e_bench_real_t t157 = parameters[ZZ5R] + (parameters[XX6R] - t156);
-    const ur10e_bench_real_t t158 = t37 * parameters[MY5R] + t38 * t153;
-    const ur10e_bench_real_t t159 = t24 * t158;
-    const ur10e_bench_real_t t160 = t24 * t157 - t23 * t155 + UR10E_BENCH_C(0.17415) * t159;
-    const ur10e_bench_real_t t161 = t23 * t158;
-    const ur10e_bench_real_t t162 = t24 * t155 + t23 * t157 + (UR10E_BENCH_C(0.17415) * t161
-        + UR10E_BENCH_C(-0.57155) * t154);
-    const ur10e_bench_real_t t163 = t1 * (t11 * t160 - t10 * t162 - UR10E_BENCH_C(-0.6127) * t154);
-    const ur10e_bench_real_t t164 = t0 * (t10 * t160 + t11 * t162) + t163 - t145 * t148;
-    const ur10e_bench_real_t t165 = t157 + t137 * t148;
-    if (!(t165 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t2 = t0 * parameters[XZ6R] + t1 * parameters[YZ6R];
+    const ur10e_bench_real_t t3 = UR10E_BENCH_C(-1.0) / parameters[ZZ6];
+    const ur10e_bench_real_t t4 = t2 * t3;
+    const ur10e_bench_real_t t5 = t1 * parameters[XX6R] - parameters[XY6] * (UR10E_BENCH_C(2.0) * t0);
+    const ur10e_bench_real_t t6 = t1 * t5;
+    const ur10e_bench_real_t t7 = parameters[ZZ5R] + (parameters[XX6R] - t6);
+    const ur10e_bench_real_t t8 = t7 + t2 * t4;
+    if (!(t8 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t166 = UR10E_BENCH_C(-1.0) / t165;
-    const ur10e_bench_real_t t167 = t164 * t166;
-    const ur10e_bench_real_t t168 = parameters[XY4] * (t65 - t33) - parameters[XX4R] * t31
-        - (parameters[MY4R] * t86 - parameters[MX4] * t64);
-    const ur10e_bench_real_t t169 = t168 + (t37 * t103 - t38 * t96 - UR10E_BENCH_C(-0.11985) * t115);
-    const ur10e_bench_real_t t170 = t38 * t133 - t37 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t138;
-    const ur10e_bench_real_t t171 = t170 * t146;
-    const ur10e_bench_real_t t172 = t38 * t151 - t37 * t152 + UR10E_BENCH_C(0.11985) * t158;
-    const ur10e_bench_real_t t173 = t172 - t170 * t148;
-    const ur10e_bench_real_t t174 = t173 * t166;
-    const ur10e_bench_real_t t175 = input[3] - t169 - t132 * t171 - t149 * t174;
-    const ur10e_bench_real_t t176 = t133 - parameters[XY5];
-    const ur10e_bench_real_t t177 = parameters[XX5R] + t156;
-    const ur10e_bench_real_t t178 = t37 * (parameters[ZZ6] - t177) - t176 * (UR10E_BENCH_C(2.0) * t38);
-    const ur10e_bench_real_t t179 = t176 + t38 * t178 - parameters[XZ4];
-    const ur10e_bench_real_t t180 = parameters[YZ4] + t172;
-    const ur10e_bench_real_t t181 = t23 * t179 + t24 * t180;
-    const ur10e_bench_real_t t182 = parameters[MY4R] + t134;
-    const ur10e_bench_real_t t183 = parameters[MX4] + t154;
-    const ur10e_bench_real_t t184 = t23 * t183 - t24 * t182;
-    const ur10e_bench_real_t t185 = UR10E_BENCH_C(0.17415) * t184;
-    const ur10e_bench_real_t t186 = t181 + t185;
-    const ur10e_bench_real_t t187 = t23 * t182 + t24 * t183;
-    const ur10e_bench_real_t t188 = t23 * t180 - t24 * t179 - UR10E_BENCH_C(0.17415) * t187;
-    const ur10e_bench_real_t t189 = t1 * (t10 * t188 - t11 * t186) - t0 * (t10 * t186 + t11 * t188);
-    const ur10e_bench_real_t t190 = t189 - t145 * t171 - t164 * t174;
-    const ur10e_bench_real_t t191 = t37 * t178;
-    const ur10e_bench_real_t t192 = UR10E_BENCH_C(-0.2397) * t134;
-    const ur10e_bench_real_t t193 = parameters[ZZ4R] + (t177 + t191 + t192);
-    const ur10e_bench_real_t t194 = t193 + t170 * t171 + t173 * t174;
-    if (!(t194 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t9 = parameters[XY6] + t0 * t5 - parameters[XZ5];
+    const ur10e_bench_real_t t11 = parameters[YZ5] - t2;
+    const ur10e_bench_real_t t13 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const ur10e_bench_real_t t14 = parameters[MX5] + t13;
+    const ur10e_bench_real_t t15 = t12 * parameters[MY5R] + t10 * t14;
+    const ur10e_bench_real_t t16 = t10 * t9 - t12 * t11 + UR10E_BENCH_C(0.11985) * t15;
+    const ur10e_bench_real_t t17 = t0 * parameters[YZ6R] - t1 * parameters[XZ6R];
+    const ur10e_bench_real_t t18 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ur10e_bench_real_t t19 = t12 * t18;
+    const ur10e_bench_real_t t20 = t10 * t17 - t12 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t19;
+    const ur10e_bench_real_t t21 = t16 - t20 * t4;
+    const ur10e_bench_real_t t22 = UR10E_BENCH_C(-1.0) / t8;
+    const ur10e_bench_real_t t23 = t21 * t22;
+    const ur10e_bench_real_t t24 = t20 * t3;
+    const ur10e_bench_real_t t25 = parameters[XX5R] + t6;
+    const ur10e_bench_real_t t26 = t17 - parameters[XY5];
+    const ur10e_bench_real_t t27 = t12 * (parameters[ZZ6] - t25) - t26 * (UR10E_BENCH_C(2.0) * t10);
+    const ur10e_bench_real_t t28 = t12 * t27;
+    const ur10e_bench_real_t t29 = UR10E_BENCH_C(-0.2397) * t18;
+    const ur10e_bench_real_t t30 = parameters[ZZ4R] + (t25 + t28 + t29);
+    const ur10e_bench_real_t t31 = t30 + t20 * t24 + t21 * t23;
+    if (!(t31 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t195 = UR10E_BENCH_C(-1.0) / t194;
-    const ur10e_bench_real_t t196 = t190 * t195;
-    const ur10e_bench_real_t t197 = input[0] + t131 + t132 * t147 + t149 * t167 + t175 * t196;
-    const ur10e_bench_real_t t198 = parameters[XX3R] * t18 + parameters[XY3] * (t35 - t20)
-        + (parameters[MX3R] * t62 + parameters[MY3] * t59);
-    const ur10e_bench_real_t t199 = t198 + (t169 + UR10E_BENCH_C(-0.57155) * t119);
-    const ur10e_bench_real_t t200 = UR10E_BENCH_C(0.57155) * t140 - t170;
-    const ur10e_bench_real_t t201 = t200 * t146;
-    const ur10e_bench_real_t t202 = UR10E_BENCH_C(0.57155) * t159 - t172;
-    const ur10e_bench_real_t t203 = t202 - t200 * t148;
-    const ur10e_bench_real_t t204 = t203 * t166;
-    const ur10e_bench_real_t t205 = UR10E_BENCH_C(0.57155) * t184 - t193;
-    const ur10e_bench_real_t t206 = t205 + t200 * t171 + t203 * t174;
-    const ur10e_bench_real_t t207 = t206 * t195;
-    const ur10e_bench_real_t t208 = input[2] - t199 + t132 * t201 + t149 * t204 - t175 * t207;
-    const ur10e_bench_real_t t209 = t181 + (t185 + UR10E_BENCH_C(-0.57155) * t158) - parameters[XZ3R];
-    const ur10e_bench_real_t t210 = parameters[YZ3] + t188;
-    const ur10e_bench_real_t t211 = t10 * t209 + t11 * t210;
-    const ur10e_bench_real_t t212 = t11 * t209 - t10 * t210;
-    const ur10e_bench_real_t t213 = t0 * t211 + t1 * t212 - t145 * t201 - t164 * t204;
-    const ur10e_bench_real_t t214 = t213 + t190 * t207;
-    const ur10e_bench_real_t t215 = UR10E_BENCH_C(-1.1431) * t184;
-    const ur10e_bench_real_t t216 = parameters[ZZ3R] + (t193 + t215);
-    const ur10e_bench_real_t t217 = t216 + t200 * t201 + t203 * t204 + t206 * t207;
-    if (!(t217 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t32 = parameters[MY4R] + t18;
+    const ur10e_bench_real_t t34 = t12 * t14 - t10 * parameters[MY5R];
+    const ur10e_bench_real_t t35 = parameters[MX4] + t34;
+    const ur10e_bench_real_t t37 = t36 * t35 - t33 * t32;
+    const ur10e_bench_real_t t38 = UR10E_BENCH_C(0.57155) * t37 - t30;
+    const ur10e_bench_real_t t39 = t33 * t19 - t36 * t13;
+    const ur10e_bench_real_t t40 = UR10E_BENCH_C(0.57155) * t39 - t20;
+    const ur10e_bench_real_t t41 = t33 * t15;
+    const ur10e_bench_real_t t42 = UR10E_BENCH_C(0.57155) * t41 - t16;
+    const ur10e_bench_real_t t43 = t42 - t40 * t4;
+    const ur10e_bench_real_t t44 = t38 + t40 * t24 + t43 * t23;
+    const ur10e_bench_real_t t45 = UR10E_BENCH_C(-1.0) / t31;
+    const ur10e_bench_real_t t46 = t44 * t45;
+    const ur10e_bench_real_t t47 = t40 * t3;
+    const ur10e_bench_real_t t48 = UR10E_BENCH_C(-1.1431) * t37;
+    const ur10e_bench_real_t t49 = parameters[ZZ3R] + (t30 + t48);
+    const ur10e_bench_real_t t50 = t43 * t22;
+    const ur10e_bench_real_t t51 = t49 + t40 * t47 + t43 * t50 + t44 * t46;
+    if (!(t51 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t218 = UR10E_BENCH_C(1.0) / t217;
-    const ur10e_bench_real_t t219 = t214 * t218;
-    const ur10e_bench_real_t t220 = parameters[XX2R] * t7 - parameters[XY2] * (t129 - t8)
-        - (parameters[MX2R] * t57 + parameters[MY2] * t55);
-    const ur10e_bench_real_t t221 = t10 * (parameters[MX3R] * t18 + parameters[MY3] * (t35 + t21) - t119);
-    const ur10e_bench_real_t t222 = t11 * (parameters[MX3R] * t60 + parameters[MY3] * t18 + t123) + t221;
-    const ur10e_bench_real_t t223 = t200 + UR10E_BENCH_C(0.6127) * (t11 * t142 + t10 * t140);
-    const ur10e_bench_real_t t224 = t223 * t146;
-    const ur10e_bench_real_t t225 = input[1] + (t220 - (t199 + UR10E_BENCH_C(0.6127) * t222)) + t132 * t224;
-    const ur10e_bench_real_t t226 = t202 + UR10E_BENCH_C(0.6127) * (t11 * t161 + t10 * t159) - t223 * t148;
-    const ur10e_bench_real_t t227 = t226 * t166;
-    const ur10e_bench_real_t t228 = t205 + UR10E_BENCH_C(0.6127) * (t10 * t184 - t11 * t187) + t223 * t171;
-    const ur10e_bench_real_t t229 = t228 + t226 * t174;
-    const ur10e_bench_real_t t230 = t229 * t195;
-    const ur10e_bench_real_t t231 = parameters[MY3] + t187;
-    const ur10e_bench_real_t t232 = parameters[MX3R] + t184;
-    const ur10e_bench_real_t t233 = t11 * t231 - t10 * t232;
-    const ur10e_bench_real_t t234 = UR10E_BENCH_C(-0.6127) * t233 - t216 - t223 * t201 - t226 * t204;
-    const ur10e_bench_real_t t235 = t234 - t229 * t207;
-    const ur10e_bench_real_t t236 = t235 * t218;
-    const ur10e_bench_real_t t237 = t225 + t149 * t227 - t175 * t230 + t208 * t236;
-    const ur10e_bench_real_t t238 = t0 * (t211 + UR10E_BENCH_C(-0.6127) * t158 - parameters[XZ2R])
-        + t1 * (t212 - parameters[YZ2]);
-    const ur10e_bench_real_t t239 = t238 - t145 * t224 - t164 * t227 + t190 * t230;
-    const ur10e_bench_real_t t240 = t239 + t214 * t236;
-    const ur10e_bench_real_t t241 = UR10E_BENCH_C(1.2254) * t233;
-    const ur10e_bench_real_t t242 = parameters[ZZ2R] + (t216 + t241) + t223 * t224 + t226 * t227;
-    const ur10e_bench_real_t t243 = t242 + t229 * t230 - t235 * t236;
-    if (!(t243 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t52 = t36 * t19 + t33 * t13;
+    const ur10e_bench_real_t t55 = t40 + UR10E_BENCH_C(0.6127) * (t53 * t52 + t54 * t39);
+    const ur10e_bench_real_t t56 = t55 * t3;
+    const ur10e_bench_real_t t57 = t36 * t32 + t33 * t35;
+    const ur10e_bench_real_t t58 = parameters[MY3] + t57;
+    const ur10e_bench_real_t t59 = parameters[MX3R] + t37;
+    const ur10e_bench_real_t t60 = t53 * t58 - t54 * t59;
+    const ur10e_bench_real_t t61 = UR10E_BENCH_C(1.2254) * t60;
+    const ur10e_bench_real_t t62 = t36 * t15;
+    const ur10e_bench_real_t t63 = t42 + UR10E_BENCH_C(0.6127) * (t53 * t62 + t54 * t41) - t55 * t4;
+    const ur10e_bench_real_t t64 = t63 * t22;
+    const ur10e_bench_real_t t65 = parameters[ZZ2R] + (t49 + t61) + t55 * t56 + t63 * t64;
+    const ur10e_bench_real_t t66 = t38 + UR10E_BENCH_C(0.6127) * (t54 * t37 - t53 * t57) + t55 * t24;
+    const ur10e_bench_real_t t67 = t66 + t63 * t23;
+    const ur10e_bench_real_t t68 = t67 * t45;
+    const ur10e_bench_real_t t69 = UR10E_BENCH_C(-0.6127) * t60 - t49 - t55 * t47 - t63 * t50;
+    const ur10e_bench_real_t t70 = t69 - t67 * t46;
+    const ur10e_bench_real_t t71 = UR10E_BENCH_C(1.0) / t51;
+    const ur10e_bench_real_t t72 = t70 * t71;
+    const ur10e_bench_real_t t73 = t65 + t67 * t68 - t70 * t72;
+    if (!(t73 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t244 = UR10E_BENCH_C(1.0) / t243;
-    const ur10e_bench_real_t t245 = t240 * t244;
-    const ur10e_bench_real_t t246 = parameters[XX4R] + (parameters[ZZ6] - t191 + t192);
-    const ur10e_bench_real_t t247 = parameters[XY4] + t155;
-    const ur10e_bench_real_t t248 = t23 * (t246 - t157) + t247 * (UR10E_BENCH_C(-2.0) * t24);
-    const ur10e_bench_real_t t249 = t23 * t248;
-    const ur10e_bench_real_t t250 = UR10E_BENCH_C(0.3483) * t158;
-    const ur10e_bench_real_t t251 = t246 - t249 + (t215 + t250);
-    const ur10e_bench_real_t t252 = parameters[XX3R] + (t157 + t249 + t250);
-    const ur10e_bench_real_t t253 = parameters[XY3] + (t247 + t24 * t248 + UR10E_BENCH_C(0.57155) * t187);
-    const ur10e_bench_real_t t254 = t10 * (t251 - t252) + t253 * (UR10E_BENCH_C(2.0) * t11);
-    const ur10e_bench_real_t t255 = t10 * t254;
-    const ur10e_bench_real_t t256 = parameters[XX2R] + (t251 - t255);
-    const ur10e_bench_real_t t257 = t253 - t11 * t254 + UR10E_BENCH_C(0.6127) * (t10 * t231 + t11 * t232);
-    const ur10e_bench_real_t t258 = t1 * (t252 + t255 + t241 - t256) + (parameters[XY2]
-        + t257) * (UR10E_BENCH_C(2.0) * t0);
-    const ur10e_bench_real_t t259 = parameters[ZZ1R] + (t256 + t1 * t258) + t145 * t147 + t164 * t167;
-    const ur10e_bench_real_t t260 = t259 + t190 * t196 - t214 * t219 - t240 * t245;
-    if (!(t260 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t74 = t10 * t18;
+    const ur10e_bench_real_t t75 = UR10E_BENCH_C(0.11985) * t74 - (t12 * t17 + t10 * parameters[ZZ6]);
+    const ur10e_bench_real_t t76 = t36 * t75 - t33 * t2 + UR10E_BENCH_C(0.17415) * t39;
+    const ur10e_bench_real_t t77 = t33 * t75 + t36 * t2 - (UR10E_BENCH_C(0.17415) * t52
+        + UR10E_BENCH_C(0.57155) * t74);
+    const ur10e_bench_real_t t80 = t79 * (t53 * t76 + t54 * t77 - UR10E_BENCH_C(0.6127) * t74);
+    const ur10e_bench_real_t t81 = t78 * (t54 * t76 - t53 * t77) + t80;
+    const ur10e_bench_real_t t82 = t81 * t3;
+    const ur10e_bench_real_t t83 = parameters[XX4R] + (parameters[ZZ6] - t28 + t29);
+    const ur10e_bench_real_t t84 = t12 * t9 + t10 * t11 + UR10E_BENCH_C(0.11985) * t34;
+    const ur10e_bench_real_t t85 = parameters[XY4] + t84;
+    const ur10e_bench_real_t t86 = t36 * (t83 - t7) + t85 * (UR10E_BENCH_C(-2.0) * t33);
+    const ur10e_bench_real_t t87 = t36 * t86;
+    const ur10e_bench_real_t t88 = UR10E_BENCH_C(0.3483) * t15;
+    const ur10e_bench_real_t t89 = t83 - t87 + (t48 + t88);
+    const ur10e_bench_real_t t90 = parameters[XX3R] + (t7 + t87 + t88);
+    const ur10e_bench_real_t t91 = parameters[XY3] + (t85 + t33 * t86 + UR10E_BENCH_C(0.57155) * t57);
+    const ur10e_bench_real_t t92 = t54 * (t89 - t90) + t91 * (UR10E_BENCH_C(2.0) * t53);
+    const ur10e_bench_real_t t93 = t54 * t92;
+    const ur10e_bench_real_t t94 = parameters[XX2R] + (t89 - t93);
+    const ur10e_bench_real_t t95 = t91 - t53 * t92 + UR10E_BENCH_C(0.6127) * (t54 * t58 + t53 * t59);
+    const ur10e_bench_real_t t96 = t79 * (t90 + t93 + t61 - t94) + (parameters[XY2]
+        + t95) * (UR10E_BENCH_C(2.0) * t78);
+    const ur10e_bench_real_t t97 = t33 * t84 + t36 * t7 + (UR10E_BENCH_C(0.17415) * t62
+        + UR10E_BENCH_C(-0.57155) * t34);
+    const ur10e_bench_real_t t98 = t33 * t7 - t36 * t84 + UR10E_BENCH_C(0.17415) * t41;
+    const ur10e_bench_real_t t99 = t79 * (t53 * t98 - t54 * t97 - UR10E_BENCH_C(-0.6127) * t34);
+    const ur10e_bench_real_t t100 = t78 * (t54 * t98 + t53 * t97) + t99 - t81 * t4;
+    const ur10e_bench_real_t t101 = t100 * t22;
+    const ur10e_bench_real_t t102 = parameters[ZZ1R] + (t94 + t79 * t96) + t81 * t82 + t100 * t101;
+    const ur10e_bench_real_t t103 = t26 + t10 * t27 - parameters[XZ4];
+    const ur10e_bench_real_t t104 = parameters[YZ4] + t16;
+    const ur10e_bench_real_t t105 = t36 * t103 + t33 * t104;
+    const ur10e_bench_real_t t106 = UR10E_BENCH_C(0.17415) * t37;
+    const ur10e_bench_real_t t107 = t105 + t106;
+    const ur10e_bench_real_t t108 = t36 * t104 - t33 * t103 - UR10E_BENCH_C(0.17415) * t57;
+    const ur10e_bench_real_t t109 = t79 * (t54 * t108 - t53 * t107) - t78 * (t54 * t107 + t53 * t108);
+    const ur10e_bench_real_t t110 = t109 - t81 * t24 - t100 * t23;
+    const ur10e_bench_real_t t111 = t110 * t45;
+    const ur10e_bench_real_t t112 = t105 + (t106 + UR10E_BENCH_C(-0.57155) * t15) - parameters[XZ3R];
+    const ur10e_bench_real_t t113 = parameters[YZ3] + t108;
+    const ur10e_bench_real_t t114 = t54 * t112 + t53 * t113;
+    const ur10e_bench_real_t t115 = t53 * t112 - t54 * t113;
+    const ur10e_bench_real_t t116 = t78 * t114 + t79 * t115 - t81 * t47 - t100 * t50;
+    const ur10e_bench_real_t t117 = t116 + t110 * t46;
+    const ur10e_bench_real_t t118 = t117 * t71;
+    const ur10e_bench_real_t t119 = t78 * (t114 + UR10E_BENCH_C(-0.6127) * t15 - parameters[XZ2R])
+        + t79 * (t115 - parameters[YZ2]);
+    const ur10e_bench_real_t t120 = t119 - t81 * t56 - t100 * t64 + t110 * t68;
+    const ur10e_bench_real_t t121 = t120 + t117 * t72;
+    const ur10e_bench_real_t t122 = UR10E_BENCH_C(1.0) / t73;
+    const ur10e_bench_real_t t123 = t121 * t122;
+    const ur10e_bench_real_t t124 = t102 + t110 * t111 - t117 * t118 - t121 * t123;
+    if (!(t124 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t261 = UR10E_BENCH_C(1.0) / t260;
-    const ur10e_bench_real_t t262 = (t197 + t208 * t219 + t237 * t245) * t261;
+    const ur10e_bench_real_t t125 = t78 * dq[0];
+    const ur10e_bench_real_t t126 = t79 * dq[0];
+    const ur10e_bench_real_t t127 = t54 * t125 + t53 * t126;
+    const ur10e_bench_real_t t128 = t53 * t125 - t54 * t126;
+    const ur10e_bench_real_t t129 = t33 * t128 - t36 * t127;
+    const ur10e_bench_real_t t130 = t33 * t127 + t36 * t128;
+    const ur10e_bench_real_t t131 = t129 * t130;
+    const ur10e_bench_real_t t132 = dq[1] + dq[2];
+    const ur10e_bench_real_t t133 = dq[3] + t132;
+    const ur10e_bench_real_t t134 = t130 * t133;
+    const ur10e_bench_real_t t135 = UR10E_BENCH_C(2.0) * t134;
+    const ur10e_bench_real_t t136 = t10 * t135 - t12 * t131;
+    const ur10e_bench_real_t t137 = t12 * t129 - t10 * t133;
+    const ur10e_bench_real_t t138 = dq[4] + t130;
+    const ur10e_bench_real_t t139 = t137 * t138;
+    const ur10e_bench_real_t t140 = t136 + t139;
+    const ur10e_bench_real_t t141 = t1 * t137 + t0 * t138;
+    const ur10e_bench_real_t t142 = t0 * t137 - t1 * t138;
+    const ur10e_bench_real_t t143 = t141 * t142;
+    const ur10e_bench_real_t t144 = t10 * t131 + t12 * t135;
+    const ur10e_bench_real_t t145 = t10 * t129 + t12 * t133;
+    const ur10e_bench_real_t t146 = t145 * t138;
+    const ur10e_bench_real_t t147 = t144 - t146;
+    const ur10e_bench_real_t t148 = t147 - t146;
+    const ur10e_bench_real_t t149 = t137 * t145;
+    const ur10e_bench_real_t t150 = t129 * t133;
+    const ur10e_bench_real_t t151 = t150 - t149;
+    const ur10e_bench_real_t t152 = t1 * t151 + t0 * t148;
+    const ur10e_bench_real_t t153 = t0 * t151 - t1 * t148;
+    const ur10e_bench_real_t t154 = parameters[ZZ6] * t140 + parameters[XX6R] * t143 + parameters[YZ6R] * t152
+        + parameters[XZ6R] * t153;
+    const ur10e_bench_real_t t155 = t141 * t141;
+    const ur10e_bench_real_t t156 = t142 * t142;
+    const ur10e_bench_real_t t157 = t126 * t126;
+    const ur10e_bench_real_t t158 = dq[1] * dq[1];
+    const ur10e_bench_real_t t159 = UR10E_BENCH_C(-9.81) * t78;
+    const ur10e_bench_real_t t160 = t159 + UR10E_BENCH_C(-0.6127) * (t157 + t158);
+    const ur10e_bench_real_t t161 = t125 * t126;
+    const ur10e_bench_real_t t162 = UR10E_BENCH_C(9.81) * t79;
+    const ur10e_bench_real_t t163 = t162 - UR10E_BENCH_C(0.6127) * t161;
+    const ur10e_bench_real_t t164 = t54 * t160 - t53 * t163;
+    const ur10e_bench_real_t t165 = t128 * t128;
+    const ur10e_bench_real_t t166 = t132 * t132;
+    const ur10e_bench_real_t t167 = t165 + t166;
+    const ur10e_bench_real_t t168 = t164 + UR10E_BENCH_C(-0.57155) * t167;
+    const ur10e_bench_real_t t169 = t53 * t160 + t54 * t163;
+    const ur10e_bench_real_t t170 = t127 * t128;
+    const ur10e_bench_real_t t171 = t169 + UR10E_BENCH_C(0.57155) * t170;
+    const ur10e_bench_real_t t172 = t33 * t171 - t36 * t168;
+    const ur10e_bench_real_t t173 = t172 + UR10E_BENCH_C(-0.11985) * t131;
+    const ur10e_bench_real_t t174 = t127 * t127;
+    const ur10e_bench_real_t t175 = t127 * t132;
+    const ur10e_bench_real_t t176 = dq[1] * t125;
+    const ur10e_bench_real_t t177 = UR10E_BENCH_C(1.2254) * t176;
+    const ur10e_bench_real_t t178 = t177 + (UR10E_BENCH_C(1.1431) * t175 + UR10E_BENCH_C(0.17415) * (t174
+        + t165));
+    const ur10e_bench_real_t t179 = t178 + UR10E_BENCH_C(-0.2397) * t134;
+    const ur10e_bench_real_t t180 = t10 * t179 - t12 * t173;
+    const ur10e_bench_real_t t181 = t33 * t168 + t36 * t171;
+    const ur10e_bench_real_t t182 = t129 * t129;
+    const ur10e_bench_real_t t183 = t133 * t133;
+    const ur10e_bench_real_t t184 = t182 + t183;
+    const ur10e_bench_real_t t185 = t181 + UR10E_BENCH_C(0.11985) * t184;
+    const ur10e_bench_real_t t186 = parameters[MX6] * (t0 * t180 + t1 * t185) + parameters[MY6] * (t1 * t180
+        - t0 * t185);
+    const ur10e_bench_real_t t187 = t154 + parameters[XY6] * (t155 - t156) + t186;
+    const ur10e_bench_real_t t188 = t139 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t148
+        + parameters[YZ5] * t151;
+    const ur10e_bench_real_t t189 = t137 * t137;
+    const ur10e_bench_real_t t190 = t138 * t138;
+    const ur10e_bench_real_t t191 = parameters[XZ5] * (t190 - t189) - t188 + parameters[MX5] * t185 + t187;
+    const ur10e_bench_real_t t192 = dq[5] + t145;
+    const ur10e_bench_real_t t193 = t142 * t192;
+    const ur10e_bench_real_t t194 = t153 + t193;
+    const ur10e_bench_real_t t195 = t141 * t192;
+    const ur10e_bench_real_t t196 = t195 + (t152 + t195);
+    const ur10e_bench_real_t t197 = t140 - t143;
+    const ur10e_bench_real_t t198 = parameters[XX6R] * t194 + parameters[ZZ6] * t193 + parameters[XY6] * t196
+        + parameters[XZ6R] * t197;
+    const ur10e_bench_real_t t199 = t192 * t192;
+    const ur10e_bench_real_t t200 = t10 * t173 + t12 * t179;
+    const ur10e_bench_real_t t201 = parameters[MY6] * t200 - (t198 + parameters[YZ6R] * (t156 - t199));
+    const ur10e_bench_real_t t202 = t140 + t143;
+    const ur10e_bench_real_t t203 = t193 + t194;
+    const ur10e_bench_real_t t204 = parameters[XY6] * t203 - t195 * (parameters[XX6R] - parameters[ZZ6])
+        + parameters[YZ6R] * t202;
+    const ur10e_bench_real_t t205 = t204 + parameters[XZ6R] * (t199 - t155) + parameters[MX6] * t200;
+    const ur10e_bench_real_t t206 = t139 + t140;
+    const ur10e_bench_real_t t207 = t150 + t149;
+    const ur10e_bench_real_t t208 = parameters[XX5R] * t147 - parameters[ZZ5R] * t146 - parameters[XY5] * t206
+        + parameters[XZ5] * t207;
+    const ur10e_bench_real_t t209 = t145 * t145;
+    const ur10e_bench_real_t t210 = t208 + parameters[YZ5] * (t190 - t209) + parameters[MY5R] * t185
+        + (t1 * t201 + t0 * t205);
+    const ur10e_bench_real_t t211 = parameters[MX6] * (t156 + t199) + parameters[MY6] * t202;
+    const ur10e_bench_real_t t212 = parameters[MX6] * t197 - parameters[MY6] * (t155 + t199);
+    const ur10e_bench_real_t t213 = parameters[MX5] * (t209 + t190) - parameters[MY5R] * t151 + (t1 * t211
+        + t0 * t212);
+    const ur10e_bench_real_t t214 = parameters[MX5] * t207 + parameters[MY5R] * (t189 + t190)
+        + (parameters[MX6] * t196 - parameters[MY6] * t203);
+    const ur10e_bench_real_t t215 = t10 * t213 + t12 * t214;
+    const ur10e_bench_real_t t216 = UR10E_BENCH_C(-2.0) * t150;
+    const ur10e_bench_real_t t217 = parameters[XX4R] * t134 + parameters[ZZ4R] * t134 + parameters[XY4] * t216
+        - parameters[XZ4] * t131;
+    const ur10e_bench_real_t t218 = t130 * t130;
+    const ur10e_bench_real_t t219 = t217 + parameters[YZ4] * (t183 - t218) + parameters[MY4R] * t178
+        + (t12 * t210 + t10 * t191 + UR10E_BENCH_C(-0.11985) * t215);
+    const ur10e_bench_real_t t220 = parameters[ZZ5R] * t150 - parameters[XX5R] * t149 - parameters[YZ5] * t136
+        + parameters[XZ5] * t144;
+    const ur10e_bench_real_t t221 = t220 + parameters[XY5] * (t209 - t189) + (parameters[MX5] * t200
+        - parameters[MY5R] * t180);
+    const ur10e_bench_real_t t222 = t221 + (t1 * t205 - t0 * t201);
+    const ur10e_bench_real_t t223 = t150 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t135
+        + parameters[YZ4] * t131;
+    const ur10e_bench_real_t t224 = parameters[XZ4] * (t183 - t182) - t223 + parameters[MX4] * t178 + t222;
+    const ur10e_bench_real_t t225 = t10 * t214 - t12 * t213;
+    const ur10e_bench_real_t t226 = parameters[MY4R] * t131 - parameters[MX4] * (t218 + t183) + t225;
+    const ur10e_bench_real_t t227 = parameters[MX5] * t206 + parameters[MY5R] * t148 + (t1 * t212
+        - t0 * t211);
+    const ur10e_bench_real_t t228 = parameters[MX4] * t131 - parameters[MY4R] * t184 + t227;
+    const ur10e_bench_real_t t229 = t33 * t226 + t36 * t228;
+    const ur10e_bench_real_t t230 = t128 * t132;
+    const ur10e_bench_real_t t231 = UR10E_BENCH_C(2.0) * t175;
+    const ur10e_bench_real_t t232 = parameters[XX3R] * t230 + parameters[ZZ3R] * t230 + parameters[XY3] * t231
+        + parameters[XZ3R] * t170;
+    const ur10e_bench_real_t t233 = t232 + parameters[YZ3] * (t166 - t165) + parameters[MY3] * t177
+        + (t36 * t219 + t33 * t224 + UR10E_BENCH_C(0.17415) * t229);
+    const ur10e_bench_real_t t234 = t33 * t228 - t36 * t226;
+    const ur10e_bench_real_t t235 = parameters[MY4R] * t135 - parameters[MX4] * t216 + t215;
+    const ur10e_bench_real_t t236 = t33 * t219 - t36 * t224 + (UR10E_BENCH_C(0.17415) * t234
+        - UR10E_BENCH_C(-0.57155) * t235);
+    const ur10e_bench_real_t t237 = UR10E_BENCH_C(2.0) * t230;
+    const ur10e_bench_real_t t238 = t175 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t237
+        + parameters[YZ3] * t170;
+    const ur10e_bench_real_t t239 = t238 - parameters[XZ3R] * (t174 - t166) + parameters[MX3R] * t177 - t236;
+    const ur10e_bench_real_t t240 = dq[1] * t126;
+    const ur10e_bench_real_t t241 = parameters[XY2] * (UR10E_BENCH_C(2.0) * t176) - (parameters[XX2R] * t240
+        + parameters[ZZ2R] * t240);
+    const ur10e_bench_real_t t242 = t241 - parameters[XZ2R] * t161 + parameters[YZ2] * (t158 - t157)
+        + (t54 * t233 + t53 * t239);
+    const ur10e_bench_real_t t243 = t53 * t233 - t54 * t239 + UR10E_BENCH_C(0.6127) * (parameters[MY3] * t237
+        - parameters[MX3R] * t231 + t235);
+    const ur10e_bench_real_t t244 = t176 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (UR10E_BENCH_C(-2.0) * t240) + parameters[YZ2] * t161;
+    const ur10e_bench_real_t t245 = t125 * t125;
+    const ur10e_bench_real_t t246 = t78 * t242 + t79 * (t244 + parameters[XZ2R] * (t245 - t158) + t243);
+    const ur10e_bench_real_t t247 = input[5] - t187;
+    const ur10e_bench_real_t t248 = input[4] + t222 - t247 * t4;
+    const ur10e_bench_real_t t249 = parameters[XY4] * (t182 - t218) - parameters[XX4R] * t131
+        - (parameters[MY4R] * t172 - parameters[MX4] * t181);
+    const ur10e_bench_real_t t250 = t249 + (t12 * t191 - t10 * t210 - UR10E_BENCH_C(-0.11985) * t225);
+    const ur10e_bench_real_t t251 = input[3] - t250 - t247 * t24 - t248 * t23;
+    const ur10e_bench_real_t t252 = input[0] + t246 + t247 * t82 + t248 * t101 + t251 * t111;
+    const ur10e_bench_real_t t253 = parameters[XX3R] * t170 + parameters[XY3] * (t174 - t165)
+        + (parameters[MX3R] * t169 + parameters[MY3] * t164);
+    const ur10e_bench_real_t t254 = t253 + (t250 + UR10E_BENCH_C(-0.57155) * t229);
+    const ur10e_bench_real_t t255 = input[2] - t254 + t247 * t47 + t248 * t50 - t251 * t46;
+    const ur10e_bench_real_t t256 = t54 * (parameters[MX3R] * t170 + parameters[MY3] * (t174 + t166) - t229);
+    const ur10e_bench_real_t t257 = t53 * (parameters[MX3R] * t167 + parameters[MY3] * t170 + t234) + t256;
+    const ur10e_bench_real_t t258 = parameters[XX2R] * t161 - parameters[XY2] * (t245 - t157)
+        - (parameters[MX2R] * t162 + parameters[MY2] * t159);
+    const ur10e_bench_real_t t259 = input[1] + (t258 - (t254 + UR10E_BENCH_C(0.6127) * t257)) + t247 * t56;
+    const ur10e_bench_real_t t260 = t259 + t248 * t64 - t251 * t68 + t255 * t72;
+    const ur10e_bench_real_t t261 = UR10E_BENCH_C(1.0) / t124;
+    const ur10e_bench_real_t t262 = (t252 + t255 * t118 + t260 * t123) * t261;
     out[0] = t262;
     if (!(t262 >= UR10E_BENCH_C(-1.0e15) && t262 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t263 = t237 * t244 + t245 * t262;
+    const ur10e_bench_real_t t263 = t260 * t122 + t123 * t262;
     out[1] = t263;
     if (!(t263 >= UR10E_BENCH_C(-1.0e15) && t263 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t264 = t208 * t218 + t219 * t262 + t236 * t263;
+    const ur10e_bench_real_t t264 = t255 * t71 + t118 * t262 + t72 * t263;
     out[2] = t264;
     if (!(t264 >= UR10E_BENCH_C(-1.0e15) && t264 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t265 = t196 * t262 - t175 * t195 - t230 * t263 - t207 * t264;
+    const ur10e_bench_real_t t265 = t111 * t262 - t251 * t45 - t68 * t263 - t46 * t264;
     out[3] = t265;
     if (!(t265 >= UR10E_BENCH_C(-1.0e15) && t265 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t266 = t167 * t262 - t149 * t166 + t227 * t263 + t204 * t264;
-    const ur10e_bench_real_t t267 = t266 - t174 * t265;
+    const ur10e_bench_real_t t266 = t101 * t262 - t248 * t22 + t64 * t263 + t50 * t264;
+    const ur10e_bench_real_t t267 = t266 - t23 * t265;
     out[4] = t267;
     if (!(t267 >= UR10E_BENCH_C(-1.0e15) && t267 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t268 = t147 * t262 - t132 * t146 + t224 * t263 + t201 * t264;
-    out[5] = t268 - t171 * t265 - t148 * t267;
+    const ur10e_bench_real_t t268 = t82 * t262 - t247 * t3 + t56 * t263 + t47 * t264;
+    out[5] = t268 - t24 * t265 - t4 * t267;
     if (!(out[5] >= UR10E_BENCH_C(-1.0e15) && out[5] <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;

@@ -88,7 +88,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -115,411 +115,409 @@ int ur10e_bench_forward_dynamics_standard(
         return status;
     }
 
+    ur10e_bench_real_t t102, t100;
+    UR10E_BENCH_SINCOS(q[1], &t102, &t100);
+    ur10e_bench_real_t t63, t64;
+    UR10E_BENCH_SINCOS(q[2], &t63, &t64);
+    ur10e_bench_real_t t41, t44;
+    UR10E_BENCH_SINCOS(q[3], &t41, &t44);
+    ur10e_bench_real_t t19, t15;
+    UR10E_BENCH_SINCOS(q[4], &t19, &t15);
     ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t14, t12;
-    UR10E_BENCH_SINCOS(q[2], &t14, &t12);
-    ur10e_bench_real_t t32, t30;
-    UR10E_BENCH_SINCOS(q[3], &t32, &t30);
-    ur10e_bench_real_t t52, t51;
-    UR10E_BENCH_SINCOS(q[4], &t52, &t51);
-    ur10e_bench_real_t t78, t77;
-    UR10E_BENCH_SINCOS(q[5], &t78, &t77);
-    const ur10e_bench_real_t t2 = t1 * dq[0];
-    const ur10e_bench_real_t t3 = dq[1] * t2;
-    const ur10e_bench_real_t t4 = t0 * dq[0];
-    const ur10e_bench_real_t t5 = dq[1] * t4;
-    const ur10e_bench_real_t t6 = t3 * (parameters[YY2] - parameters[ZZ2]) - t3 * parameters[XX2]
-        + UR10E_BENCH_C(2.0) * t5 * parameters[XY2];
-    const ur10e_bench_real_t t7 = t4 * t2;
-    const ur10e_bench_real_t t8 = t2 * t2;
-    const ur10e_bench_real_t t9 = dq[1] * dq[1];
-    const ur10e_bench_real_t t10 = UR10E_BENCH_C(9.81) * t1;
-    const ur10e_bench_real_t t11 = t6 - t7 * parameters[XZ2] + (t9 - t8) * parameters[YZ2]
-        + t10 * parameters[MZ2];
-    const ur10e_bench_real_t t13 = dq[1] + dq[2];
-    const ur10e_bench_real_t t15 = t14 * t4 - t12 * t2;
-    const ur10e_bench_real_t t16 = t13 * t15;
-    const ur10e_bench_real_t t17 = t12 * t4 + t14 * t2;
-    const ur10e_bench_real_t t18 = t13 * t17;
-    const ur10e_bench_real_t t19 = UR10E_BENCH_C(2.0) * t18;
-    const ur10e_bench_real_t t20 = parameters[XX3] * t16 + t16 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t19;
-    const ur10e_bench_real_t t21 = t17 * t15;
-    const ur10e_bench_real_t t22 = t13 * t13;
-    const ur10e_bench_real_t t23 = t15 * t15;
-    const ur10e_bench_real_t t24 = UR10E_BENCH_C(1.2254) * t5;
-    const ur10e_bench_real_t t25 = UR10E_BENCH_C(-9.81) * t0;
-    const ur10e_bench_real_t t26 = t25 + UR10E_BENCH_C(-0.6127) * (t8 + t9);
-    const ur10e_bench_real_t t27 = t10 + UR10E_BENCH_C(-0.6127) * t7;
-    const ur10e_bench_real_t t28 = t14 * t26 + t12 * t27;
-    const ur10e_bench_real_t t29 = t20 + parameters[XZ3] * t21 + parameters[YZ3] * (t22 - t23)
-        + (parameters[MY3] * t24 + parameters[MZ3] * t28);
-    const ur10e_bench_real_t t31 = dq[3] + t13;
-    const ur10e_bench_real_t t33 = t32 * t17 + t30 * t15;
-    const ur10e_bench_real_t t34 = t31 * t33;
-    const ur10e_bench_real_t t35 = t30 * t17 - t32 * t15;
-    const ur10e_bench_real_t t36 = t31 * t35;
-    const ur10e_bench_real_t t37 = UR10E_BENCH_C(2.0) * t36;
-    const ur10e_bench_real_t t38 = parameters[XX4] * t34 + t34 * (parameters[ZZ4] - parameters[YY4])
-        + parameters[XY4] * t37;
-    const ur10e_bench_real_t t39 = t35 * t33;
-    const ur10e_bench_real_t t40 = t31 * t31;
-    const ur10e_bench_real_t t41 = t33 * t33;
-    const ur10e_bench_real_t t42 = t17 * t17;
-    const ur10e_bench_real_t t43 = t42 + t23;
-    const ur10e_bench_real_t t44 = t24 + (UR10E_BENCH_C(1.1431) * t18 + UR10E_BENCH_C(0.17415) * t43);
-    const ur10e_bench_real_t t45 = t14 * t27 - t12 * t26;
-    const ur10e_bench_real_t t46 = t22 + t23;
-    const ur10e_bench_real_t t47 = t45 + UR10E_BENCH_C(0.57155) * t46;
-    const ur10e_bench_real_t t48 = t28 + UR10E_BENCH_C(0.57155) * t21;
-    const ur10e_bench_real_t t49 = t30 * t48 - t32 * t47;
-    const ur10e_bench_real_t t50 = t38 + parameters[XZ4] * t39 + parameters[YZ4] * (t40 - t41)
-        + (parameters[MY4] * t44 + parameters[MZ4] * t49);
-    const ur10e_bench_real_t t53 = UR10E_BENCH_C(2.0) * t34;
-    const ur10e_bench_real_t t54 = t51 * t53 - t52 * t39;
-    const ur10e_bench_real_t t55 = t51 * t31 - t52 * t35;
-    const ur10e_bench_real_t t56 = dq[4] + t33;
-    const ur10e_bench_real_t t57 = t55 * t56;
-    const ur10e_bench_real_t t58 = t54 - t57;
-    const ur10e_bench_real_t t59 = t52 * t31 + t51 * t35;
-    const ur10e_bench_real_t t60 = t59 * t56;
-    const ur10e_bench_real_t t61 = t51 * t39 + t52 * t53;
-    const ur10e_bench_real_t t62 = t61 - t60;
-    const ur10e_bench_real_t t63 = t60 - t62;
-    const ur10e_bench_real_t t64 = parameters[XX5] * t58 + t57 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t63;
-    const ur10e_bench_real_t t65 = t59 * t55;
-    const ur10e_bench_real_t t66 = t36 + t65;
-    const ur10e_bench_real_t t67 = t55 * t55;
-    const ur10e_bench_real_t t68 = t56 * t56;
-    const ur10e_bench_real_t t69 = t35 * t35;
-    const ur10e_bench_real_t t70 = t40 + t69;
-    const ur10e_bench_real_t t71 = t49 + UR10E_BENCH_C(0.11985) * t70;
-    const ur10e_bench_real_t t72 = t30 * t47 + t32 * t48;
-    const ur10e_bench_real_t t73 = t72 + UR10E_BENCH_C(0.11985) * t39;
-    const ur10e_bench_real_t t74 = t44 - UR10E_BENCH_C(0.2397) * t34;
-    const ur10e_bench_real_t t75 = t52 * t73 + t51 * t74;
-    const ur10e_bench_real_t t76 = t64 - parameters[XZ5] * t66 + parameters[YZ5] * (t68 - t67)
-        + (parameters[MY5] * t71 - parameters[MZ5] * t75);
-    const ur10e_bench_real_t t79 = t65 - t36;
-    const ur10e_bench_real_t t80 = t58 - t57;
-    const ur10e_bench_real_t t81 = t78 * t79 - t77 * t80;
-    const ur10e_bench_real_t t82 = t78 * t59 + t77 * t56;
-    const ur10e_bench_real_t t83 = dq[5] + t55;
-    const ur10e_bench_real_t t84 = t82 * t83;
-    const ur10e_bench_real_t t85 = t84 - t81;
+    UR10E_BENCH_SINCOS(q[5], &t0, &t1);
     if (!(parameters[ZZ6] > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t86 = t77 * t59 - t78 * t56;
-    const ur10e_bench_real_t t87 = t86 * t83;
-    const ur10e_bench_real_t t88 = t77 * t79 + t78 * t80;
-    const ur10e_bench_real_t t89 = t88 - t87;
-    const ur10e_bench_real_t t90 = t89 - t87;
-    const ur10e_bench_real_t t91 = parameters[XX6] * t85 - t84 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t90;
-    const ur10e_bench_real_t t92 = t86 * t82;
-    const ur10e_bench_real_t t93 = t62 - t92;
-    const ur10e_bench_real_t t94 = t82 * t82;
-    const ur10e_bench_real_t t95 = t83 * t83;
-    const ur10e_bench_real_t t96 = t59 * t59;
-    const ur10e_bench_real_t t97 = t96 + t68;
-    const ur10e_bench_real_t t98 = t75 + UR10E_BENCH_C(0.11655) * t97;
-    const ur10e_bench_real_t t99 = t51 * t73 - t52 * t74;
-    const ur10e_bench_real_t t100 = t99 - UR10E_BENCH_C(-0.11655) * t79;
-    const ur10e_bench_real_t t101 = t71 + UR10E_BENCH_C(0.11655) * t80;
-    const ur10e_bench_real_t t102 = t77 * t101 - t78 * t100;
-    const ur10e_bench_real_t t103 = t91 - parameters[XZ6] * t93 - parameters[YZ6] * (t94 - t95)
-        + (parameters[MY6] * t98 + parameters[MZ6] * t102);
-    const ur10e_bench_real_t t104 = t84 + t85;
-    const ur10e_bench_real_t t105 = parameters[YY6] * t89 + t87 * (parameters[XX6] - parameters[ZZ6])
-        - parameters[XY6] * t104;
-    const ur10e_bench_real_t t106 = t62 + t92;
-    const ur10e_bench_real_t t107 = t86 * t86;
-    const ur10e_bench_real_t t108 = t77 * t100 + t78 * t101;
-    const ur10e_bench_real_t t109 = t105 + parameters[YZ6] * t106 + parameters[XZ6] * (t95 - t107)
-        + (parameters[MZ6] * t108 + parameters[MX6] * t98);
-    const ur10e_bench_real_t t110 = parameters[MZ6] * t88 - (parameters[MX6] * (t94 + t95)
-        + parameters[MY6] * t106);
-    const ur10e_bench_real_t t111 = parameters[M6] * t108 + t110;
-    const ur10e_bench_real_t t112 = parameters[MX6] * t93 - parameters[MY6] * (t107 + t95)
-        - parameters[MZ6] * t81;
-    const ur10e_bench_real_t t113 = parameters[M6] * t102 + t112;
-    const ur10e_bench_real_t t114 = t78 * t111 + t77 * t113;
-    const ur10e_bench_real_t t115 = t76 + (t77 * t103 + t78 * t109 + UR10E_BENCH_C(0.11655) * t114);
-    const ur10e_bench_real_t t116 = parameters[YY5] * t62 + t60 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t80;
-    const ur10e_bench_real_t t117 = t116 - parameters[YZ5] * t79 + parameters[XZ5] * (t68 - t96)
-        + (parameters[MZ5] * t99 + parameters[MX5] * t71);
-    const ur10e_bench_real_t t118 = parameters[XX6] - parameters[YY6];
-    const ur10e_bench_real_t t119 = parameters[ZZ6] * t62 + t118 * t92 + parameters[YZ6] * t88
-        + parameters[XZ6] * t81;
-    const ur10e_bench_real_t t120 = t119 + parameters[XY6] * (t107 - t94) + (parameters[MX6] * t102
-        - parameters[MY6] * t108);
-    const ur10e_bench_real_t t121 = t117 + t120;
-    const ur10e_bench_real_t t122 = parameters[MX5] * (t67 + t68) - parameters[MY5] * t79
-        - parameters[MZ5] * t61;
-    const ur10e_bench_real_t t123 = t77 * t111 - t78 * t113;
-    const ur10e_bench_real_t t124 = parameters[M5] * t99 - t122 + t123;
-    const ur10e_bench_real_t t125 = parameters[M5] * t75 + (parameters[MY5] * t97 - parameters[MX5] * t66
-        - parameters[MZ5] * t54);
-    const ur10e_bench_real_t t126 = parameters[MX6] * t90 + parameters[MY6] * t104 + parameters[MZ6] * (t107
-        + t94);
-    const ur10e_bench_real_t t127 = t125 + (parameters[M6] * t98 + t126);
-    const ur10e_bench_real_t t128 = t51 * t127 - t52 * t124;
-    const ur10e_bench_real_t t129 = t50 + (t51 * t115 + t52 * t121 + UR10E_BENCH_C(-0.11985) * t128);
-    const ur10e_bench_real_t t130 = t36 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t36
-        - parameters[XY4] * t53;
-    const ur10e_bench_real_t t131 = t130 + parameters[YZ4] * t39 + parameters[XZ4] * (t40 - t69)
-        + (parameters[MZ4] * t72 + parameters[MX4] * t44);
-    const ur10e_bench_real_t t132 = t65 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t36
-        - parameters[YZ5] * t61;
-    const ur10e_bench_real_t t133 = t132 + parameters[XZ5] * t54 + parameters[XY5] * (t67 - t96)
-        + (parameters[MX5] * t75 + parameters[MY5] * t99);
-    const ur10e_bench_real_t t134 = t133 + (t77 * t109 - t78 * t103 + UR10E_BENCH_C(0.11655) * t123);
-    const ur10e_bench_real_t t135 = t131 + t134;
-    const ur10e_bench_real_t t136 = parameters[M4] * t72 - (parameters[MX4] * (t40 + t41)
-        + parameters[MY4] * t39);
-    const ur10e_bench_real_t t137 = t51 * t124 + t52 * t127;
-    const ur10e_bench_real_t t138 = t136 + t137;
-    const ur10e_bench_real_t t139 = parameters[MY5] * t80 - parameters[MX5] * t63 + parameters[MZ5] * (t96
-        + t67);
-    const ur10e_bench_real_t t140 = parameters[M4] * t49 - (parameters[MX4] * t39 + parameters[MY4] * t70)
-        + (parameters[M5] * t71 + t139 + t114);
-    const ur10e_bench_real_t t141 = t32 * t138 + t30 * t140;
-    const ur10e_bench_real_t t142 = t29 + (t30 * t129 + t32 * t135 + UR10E_BENCH_C(0.17415) * t141);
-    const ur10e_bench_real_t t143 = UR10E_BENCH_C(2.0) * t16;
-    const ur10e_bench_real_t t144 = parameters[YY3] * t18 - t18 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t143;
-    const ur10e_bench_real_t t145 = t144 - parameters[YZ3] * t21 - parameters[XZ3] * (t22 - t42)
-        - (parameters[MZ3] * t45 + parameters[MX3] * t24);
-    const ur10e_bench_real_t t146 = t30 * t138 - t32 * t140;
-    const ur10e_bench_real_t t147 = parameters[MY4] * t53 - parameters[MX4] * t37 + parameters[MZ4] * (t69
-        + t41);
-    const ur10e_bench_real_t t148 = parameters[M4] * t44 + t147 + t128;
-    const ur10e_bench_real_t t149 = t32 * t129 - t30 * t135 - (UR10E_BENCH_C(0.17415) * t146
-        - UR10E_BENCH_C(0.57155) * t148);
-    const ur10e_bench_real_t t150 = t145 + t149;
-    const ur10e_bench_real_t t151 = t5 * parameters[YY2] + t5 * (parameters[ZZ2] - parameters[XX2])
-        + UR10E_BENCH_C(-2.0) * t3 * parameters[XY2];
-    const ur10e_bench_real_t t152 = t4 * t4;
-    const ur10e_bench_real_t t153 = t151 + t7 * parameters[YZ2] + (t152 - t9) * parameters[XZ2]
-        + t25 * parameters[MZ2];
-    const ur10e_bench_real_t t154 = parameters[M3] * t24 + (parameters[MY3] * t143 - parameters[MX3] * t19
-        + parameters[MZ3] * t43);
-    const ur10e_bench_real_t t155 = t14 * t142 + t12 * t150 + UR10E_BENCH_C(0.6127) * (t154 + t148);
-    const ur10e_bench_real_t t156 = t0 * (t11 + (t12 * t142 - t14 * t150)) + t1 * (t153 + t155);
-    const ur10e_bench_real_t t157 = input[5] - t120;
-    const ur10e_bench_real_t t158 = t77 * parameters[MX6] - t78 * parameters[MY6];
-    const ur10e_bench_real_t t159 = t78 * parameters[YZ6] - t77 * parameters[XZ6]
-        + UR10E_BENCH_C(0.11655) * t158;
-    const ur10e_bench_real_t t160 = t77 * parameters[MY6] + t78 * parameters[MX6];
-    const ur10e_bench_real_t t161 = t52 * t160;
-    const ur10e_bench_real_t t162 = UR10E_BENCH_C(0.11985) * t161 - (t51 * t159 + t52 * parameters[ZZ6]);
-    const ur10e_bench_real_t t163 = UR10E_BENCH_C(0.11655) * t160 - (t78 * parameters[XZ6]
-        + t77 * parameters[YZ6]);
-    const ur10e_bench_real_t t164 = t51 * t160;
-    const ur10e_bench_real_t t165 = t32 * t164 - t30 * t158;
-    const ur10e_bench_real_t t166 = t30 * t162 + t32 * t163 + UR10E_BENCH_C(0.17415) * t165;
-    const ur10e_bench_real_t t167 = t30 * t164 + t32 * t158;
-    const ur10e_bench_real_t t168 = t32 * t162 - t30 * t163 - (UR10E_BENCH_C(0.17415) * t167
-        + UR10E_BENCH_C(0.57155) * t161);
-    const ur10e_bench_real_t t169 = t1 * (t14 * t166 + t12 * t168 - UR10E_BENCH_C(0.6127) * t161);
-    const ur10e_bench_real_t t170 = t0 * (t12 * t166 - t14 * t168) + t169;
-    const ur10e_bench_real_t t171 = UR10E_BENCH_C(-1.0) / parameters[ZZ6];
-    const ur10e_bench_real_t t172 = t170 * t171;
-    const ur10e_bench_real_t t173 = t163 * t171;
-    const ur10e_bench_real_t t174 = input[4] + t134 + t157 * t173;
-    const ur10e_bench_real_t t175 = t77 * t118 - parameters[XY6] * (UR10E_BENCH_C(2.0) * t78);
-    const ur10e_bench_real_t t176 = parameters[XY6] + t78 * t175 - parameters[XZ5];
-    const ur10e_bench_real_t t177 = parameters[YZ5] + t163;
-    const ur10e_bench_real_t t178 = UR10E_BENCH_C(0.11655) * parameters[M6];
-    const ur10e_bench_real_t t179 = parameters[MY5] + (parameters[MZ6] + t178);
-    const ur10e_bench_real_t t180 = parameters[MX5] + t158;
-    const ur10e_bench_real_t t181 = t51 * t180 - t52 * t179;
-    const ur10e_bench_real_t t182 = t51 * t176 + t52 * t177 + UR10E_BENCH_C(0.11985) * t181;
-    const ur10e_bench_real_t t183 = t77 * t175;
-    const ur10e_bench_real_t t184 = UR10E_BENCH_C(0.11655) * (t178 + UR10E_BENCH_C(2.0) * parameters[MZ6]);
-    const ur10e_bench_real_t t185 = parameters[ZZ5] + (parameters[XX6] - t183 + t184);
-    const ur10e_bench_real_t t186 = t51 * t179 + t52 * t180;
-    const ur10e_bench_real_t t187 = t32 * t186;
-    const ur10e_bench_real_t t188 = t32 * t185 - t30 * t182 + UR10E_BENCH_C(0.17415) * t187;
-    const ur10e_bench_real_t t189 = t30 * t186;
-    const ur10e_bench_real_t t190 = t32 * t182 + t30 * t185 + (UR10E_BENCH_C(0.17415) * t189
-        + UR10E_BENCH_C(-0.57155) * t181);
-    const ur10e_bench_real_t t191 = t1 * (t14 * t188 - t12 * t190 - UR10E_BENCH_C(-0.6127) * t181);
-    const ur10e_bench_real_t t192 = t0 * (t12 * t188 + t14 * t190) + t191 + t170 * t173;
-    const ur10e_bench_real_t t193 = t185 + t163 * t173;
-    if (!(t193 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t2 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ur10e_bench_real_t t3 = UR10E_BENCH_C(0.11655) * t2 - (t0 * parameters[XZ6] + t1 * parameters[YZ6]);
+    const ur10e_bench_real_t t4 = UR10E_BENCH_C(-1.0) / parameters[ZZ6];
+    const ur10e_bench_real_t t5 = t3 * t4;
+    const ur10e_bench_real_t t6 = parameters[XX6] - parameters[YY6];
+    const ur10e_bench_real_t t7 = t1 * t6 - parameters[XY6] * (UR10E_BENCH_C(2.0) * t0);
+    const ur10e_bench_real_t t8 = t1 * t7;
+    const ur10e_bench_real_t t9 = UR10E_BENCH_C(0.11655) * parameters[M6];
+    const ur10e_bench_real_t t10 = UR10E_BENCH_C(0.11655) * (t9 + UR10E_BENCH_C(2.0) * parameters[MZ6]);
+    const ur10e_bench_real_t t11 = parameters[ZZ5] + (parameters[XX6] - t8 + t10);
+    const ur10e_bench_real_t t12 = t11 + t3 * t5;
+    if (!(t12 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t194 = UR10E_BENCH_C(-1.0) / t193;
-    const ur10e_bench_real_t t195 = t192 * t194;
-    const ur10e_bench_real_t t196 = t39 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t69 - t41)
-        - (parameters[MY4] * t72 - parameters[MX4] * t49);
-    const ur10e_bench_real_t t197 = t196 + (t51 * t121 - t52 * t115 + UR10E_BENCH_C(0.11985) * t137);
-    const ur10e_bench_real_t t198 = t52 * t159 - t51 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t164;
-    const ur10e_bench_real_t t199 = t198 * t171;
-    const ur10e_bench_real_t t200 = t52 * t176 - t51 * t177 + UR10E_BENCH_C(0.11985) * t186;
-    const ur10e_bench_real_t t201 = t200 + t198 * t173;
-    const ur10e_bench_real_t t202 = t201 * t194;
-    const ur10e_bench_real_t t203 = input[3] - t197 - t157 * t199 - t174 * t202;
-    const ur10e_bench_real_t t204 = t159 - parameters[XY5];
-    const ur10e_bench_real_t t205 = parameters[XX5] + (parameters[YY6] + t183 + t184);
-    const ur10e_bench_real_t t206 = parameters[YY5] + parameters[ZZ6];
-    const ur10e_bench_real_t t207 = t51 * (t206 - t205) - t204 * (UR10E_BENCH_C(2.0) * t52);
-    const ur10e_bench_real_t t208 = t204 + t52 * t207 - parameters[XZ4];
-    const ur10e_bench_real_t t209 = parameters[YZ4] + t200;
-    const ur10e_bench_real_t t210 = t30 * t208 + t32 * t209;
-    const ur10e_bench_real_t t211 = parameters[MZ5] - t160;
-    const ur10e_bench_real_t t212 = parameters[M5] + parameters[M6];
-    const ur10e_bench_real_t t213 = UR10E_BENCH_C(0.11985) * t212;
-    const ur10e_bench_real_t t214 = parameters[MY4] - (t211 + t213);
-    const ur10e_bench_real_t t215 = parameters[MX4] + t181;
-    const ur10e_bench_real_t t216 = t30 * t215 - t32 * t214;
-    const ur10e_bench_real_t t217 = UR10E_BENCH_C(-0.17415) * t216 - t210;
-    const ur10e_bench_real_t t218 = t30 * t214 + t32 * t215;
-    const ur10e_bench_real_t t219 = t30 * t209 - t32 * t208 - UR10E_BENCH_C(0.17415) * t218;
-    const ur10e_bench_real_t t220 = t0 * (t12 * t217 - t14 * t219) + t1 * (t14 * t217 + t12 * t219);
-    const ur10e_bench_real_t t221 = t220 - t170 * t199 - t192 * t202;
-    const ur10e_bench_real_t t222 = t51 * t207;
-    const ur10e_bench_real_t t223 = UR10E_BENCH_C(0.11985) * (t213 + UR10E_BENCH_C(2.0) * t211);
-    const ur10e_bench_real_t t224 = parameters[ZZ4] + (t205 + t222 + t223);
-    const ur10e_bench_real_t t225 = t224 + t198 * t199 + t201 * t202;
-    if (!(t225 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t13 = parameters[XX5] + (parameters[YY6] + t8 + t10);
+    const ur10e_bench_real_t t14 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_bench_real_t t16 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const ur10e_bench_real_t t17 = t0 * parameters[YZ6] - t1 * parameters[XZ6] + UR10E_BENCH_C(0.11655) * t16;
+    const ur10e_bench_real_t t18 = t17 - parameters[XY5];
+    const ur10e_bench_real_t t20 = t15 * (t14 - t13) - t18 * (UR10E_BENCH_C(2.0) * t19);
+    const ur10e_bench_real_t t21 = t15 * t20;
+    const ur10e_bench_real_t t22 = parameters[MZ5] - t2;
+    const ur10e_bench_real_t t23 = parameters[M5] + parameters[M6];
+    const ur10e_bench_real_t t24 = UR10E_BENCH_C(0.11985) * t23;
+    const ur10e_bench_real_t t25 = UR10E_BENCH_C(0.11985) * (t24 + UR10E_BENCH_C(2.0) * t22);
+    const ur10e_bench_real_t t26 = parameters[ZZ4] + (t13 + t21 + t25);
+    const ur10e_bench_real_t t27 = t15 * t2;
+    const ur10e_bench_real_t t28 = t19 * t17 - t15 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t27;
+    const ur10e_bench_real_t t29 = t28 * t4;
+    const ur10e_bench_real_t t30 = parameters[YZ5] + t3;
+    const ur10e_bench_real_t t31 = parameters[XY6] + t0 * t7 - parameters[XZ5];
+    const ur10e_bench_real_t t32 = parameters[MX5] + t16;
+    const ur10e_bench_real_t t33 = parameters[MY5] + (parameters[MZ6] + t9);
+    const ur10e_bench_real_t t34 = t15 * t33 + t19 * t32;
+    const ur10e_bench_real_t t35 = t19 * t31 - t15 * t30 + UR10E_BENCH_C(0.11985) * t34;
+    const ur10e_bench_real_t t36 = t35 + t28 * t5;
+    const ur10e_bench_real_t t37 = UR10E_BENCH_C(-1.0) / t12;
+    const ur10e_bench_real_t t38 = t36 * t37;
+    const ur10e_bench_real_t t39 = t26 + t28 * t29 + t36 * t38;
+    if (!(t39 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t226 = UR10E_BENCH_C(-1.0) / t225;
-    const ur10e_bench_real_t t227 = t221 * t226;
-    const ur10e_bench_real_t t228 = input[0] + t156 + t157 * t172 + t174 * t195 + t203 * t227;
-    const ur10e_bench_real_t t229 = t21 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t42 - t23)
-        - (parameters[MY3] * t45 - parameters[MX3] * t28);
-    const ur10e_bench_real_t t230 = t229 + (t197 - UR10E_BENCH_C(0.57155) * t141);
-    const ur10e_bench_real_t t231 = UR10E_BENCH_C(0.57155) * t165 - t198;
-    const ur10e_bench_real_t t232 = t231 * t171;
-    const ur10e_bench_real_t t233 = UR10E_BENCH_C(0.57155) * t187 - t200;
-    const ur10e_bench_real_t t234 = t233 + t231 * t173;
-    const ur10e_bench_real_t t235 = t234 * t194;
-    const ur10e_bench_real_t t236 = UR10E_BENCH_C(0.57155) * t216 - t224;
-    const ur10e_bench_real_t t237 = t236 + t231 * t199 + t234 * t202;
-    const ur10e_bench_real_t t238 = t237 * t226;
-    const ur10e_bench_real_t t239 = input[2] - t230 + t157 * t232 + t174 * t235 - t203 * t238;
-    const ur10e_bench_real_t t240 = parameters[MZ4] + t186;
-    const ur10e_bench_real_t t241 = parameters[M4] + t212;
-    const ur10e_bench_real_t t242 = UR10E_BENCH_C(0.57155) * t241;
-    const ur10e_bench_real_t t243 = t216 - t242;
-    const ur10e_bench_real_t t244 = t210 + (UR10E_BENCH_C(-0.57155) * t240 + UR10E_BENCH_C(0.17415) * t243)
+    const ur10e_bench_real_t t40 = parameters[MY4] - (t22 + t24);
+    const ur10e_bench_real_t t42 = t15 * t32 - t19 * t33;
+    const ur10e_bench_real_t t43 = parameters[MX4] + t42;
+    const ur10e_bench_real_t t45 = t44 * t43 - t41 * t40;
+    const ur10e_bench_real_t t46 = UR10E_BENCH_C(0.57155) * t45 - t26;
+    const ur10e_bench_real_t t47 = t41 * t27 - t44 * t16;
+    const ur10e_bench_real_t t48 = UR10E_BENCH_C(0.57155) * t47 - t28;
+    const ur10e_bench_real_t t49 = t41 * t34;
+    const ur10e_bench_real_t t50 = UR10E_BENCH_C(0.57155) * t49 - t35;
+    const ur10e_bench_real_t t51 = t50 + t48 * t5;
+    const ur10e_bench_real_t t52 = t46 + t48 * t29 + t51 * t38;
+    const ur10e_bench_real_t t53 = UR10E_BENCH_C(-1.0) / t39;
+    const ur10e_bench_real_t t54 = t52 * t53;
+    const ur10e_bench_real_t t55 = t48 * t4;
+    const ur10e_bench_real_t t56 = parameters[M4] + t23;
+    const ur10e_bench_real_t t57 = UR10E_BENCH_C(0.57155) * t56;
+    const ur10e_bench_real_t t58 = UR10E_BENCH_C(0.57155) * (t57 + UR10E_BENCH_C(-2.0) * t45);
+    const ur10e_bench_real_t t59 = parameters[ZZ3] + (t26 + t58);
+    const ur10e_bench_real_t t60 = t51 * t37;
+    const ur10e_bench_real_t t61 = t59 + t48 * t55 + t51 * t60 + t52 * t54;
+    if (!(t61 > UR10E_BENCH_C(1.0e-9))) {
+        ur10e_bench_zero(out, 6);
+        return UR10E_BENCH_STATUS_PIVOT;
+    }
+    const ur10e_bench_real_t t62 = t44 * t40 + t41 * t43;
+    const ur10e_bench_real_t t65 = t44 * t27 + t41 * t16;
+    const ur10e_bench_real_t t66 = t48 + UR10E_BENCH_C(0.6127) * (t63 * t65 + t64 * t47);
+    const ur10e_bench_real_t t67 = t46 + UR10E_BENCH_C(0.6127) * (t64 * t45 - t63 * t62) + t66 * t29;
+    const ur10e_bench_real_t t68 = t44 * t34;
+    const ur10e_bench_real_t t69 = t50 + UR10E_BENCH_C(0.6127) * (t63 * t68 + t64 * t49) + t66 * t5;
+    const ur10e_bench_real_t t70 = t67 + t69 * t38;
+    const ur10e_bench_real_t t71 = parameters[MY3] + t62;
+    const ur10e_bench_real_t t72 = t45 - t57;
+    const ur10e_bench_real_t t73 = parameters[MX3] + t72;
+    const ur10e_bench_real_t t74 = t63 * t71 - t64 * t73;
+    const ur10e_bench_real_t t75 = UR10E_BENCH_C(-0.6127) * t74 - t59 - t66 * t55 - t69 * t60;
+    const ur10e_bench_real_t t76 = t75 - t70 * t54;
+    const ur10e_bench_real_t t77 = UR10E_BENCH_C(1.0) / t61;
+    const ur10e_bench_real_t t78 = t76 * t77;
+    const ur10e_bench_real_t t79 = t70 * t53;
+    const ur10e_bench_real_t t80 = t66 * t4;
+    const ur10e_bench_real_t t81 = UR10E_BENCH_C(0.6127) * (UR10E_BENCH_C(0.6127) * (parameters[M3] + t56)
+        + UR10E_BENCH_C(2.0) * t74);
+    const ur10e_bench_real_t t82 = t69 * t37;
+    const ur10e_bench_real_t t83 = parameters[ZZ2] + (t59 + t81) + t66 * t80 + t69 * t82;
+    const ur10e_bench_real_t t84 = t83 + t70 * t79 - t76 * t78;
+    if (!(t84 > UR10E_BENCH_C(1.0e-9))) {
+        ur10e_bench_zero(out, 6);
+        return UR10E_BENCH_STATUS_PIVOT;
+    }
+    const ur10e_bench_real_t t85 = parameters[XX4] + (t14 - t21 + t25);
+    const ur10e_bench_real_t t86 = parameters[YY4] + t11;
+    const ur10e_bench_real_t t87 = t15 * t31 + t19 * t30 + UR10E_BENCH_C(0.11985) * t42;
+    const ur10e_bench_real_t t88 = parameters[XY4] + t87;
+    const ur10e_bench_real_t t89 = t44 * (t85 - t86) + t88 * (UR10E_BENCH_C(-2.0) * t41);
+    const ur10e_bench_real_t t90 = t44 * t89;
+    const ur10e_bench_real_t t91 = parameters[MZ4] + t34;
+    const ur10e_bench_real_t t92 = UR10E_BENCH_C(0.17415) * t56;
+    const ur10e_bench_real_t t93 = UR10E_BENCH_C(0.17415) * (t92 + UR10E_BENCH_C(2.0) * t91);
+    const ur10e_bench_real_t t94 = parameters[YY3] + (t85 - t90 + (t58 + t93));
+    const ur10e_bench_real_t t95 = parameters[XX3] + (t86 + t90 + t93);
+    const ur10e_bench_real_t t96 = parameters[XY3] + (t88 + t41 * t89 + UR10E_BENCH_C(0.57155) * t62);
+    const ur10e_bench_real_t t97 = t64 * (t95 - t94) - t96 * (UR10E_BENCH_C(2.0) * t63);
+    const ur10e_bench_real_t t98 = t64 * t97;
+    const ur10e_bench_real_t t99 = parameters[XX2] + (t94 + t98);
+    const ur10e_bench_real_t t101 = t96 + t63 * t97 + UR10E_BENCH_C(0.6127) * (t64 * t71 + t63 * t73);
+    const ur10e_bench_real_t t103 = t100 * (parameters[YY2] + (t95 - t98 + t81) - t99) + (parameters[XY2]
+        + t101) * (UR10E_BENCH_C(2.0) * t102);
+    const ur10e_bench_real_t t104 = t19 * t2;
+    const ur10e_bench_real_t t105 = UR10E_BENCH_C(0.11985) * t104 - (t15 * t17 + t19 * parameters[ZZ6]);
+    const ur10e_bench_real_t t106 = t44 * t105 + t41 * t3 + UR10E_BENCH_C(0.17415) * t47;
+    const ur10e_bench_real_t t107 = t41 * t105 - t44 * t3 - (UR10E_BENCH_C(0.17415) * t65
+        + UR10E_BENCH_C(0.57155) * t104);
+    const ur10e_bench_real_t t108 = t100 * (t63 * t106 + t64 * t107 - UR10E_BENCH_C(0.6127) * t104);
+    const ur10e_bench_real_t t109 = t102 * (t64 * t106 - t63 * t107) + t108;
+    const ur10e_bench_real_t t110 = t109 * t4;
+    const ur10e_bench_real_t t111 = t41 * t11 - t44 * t87 + UR10E_BENCH_C(0.17415) * t49;
+    const ur10e_bench_real_t t112 = t41 * t87 + t44 * t11 + (UR10E_BENCH_C(0.17415) * t68
+        + UR10E_BENCH_C(-0.57155) * t42);
+    const ur10e_bench_real_t t113 = t100 * (t63 * t111 - t64 * t112 - UR10E_BENCH_C(-0.6127) * t42);
+    const ur10e_bench_real_t t114 = t102 * (t64 * t111 + t63 * t112) + t113 + t109 * t5;
+    const ur10e_bench_real_t t115 = t114 * t37;
+    const ur10e_bench_real_t t116 = parameters[ZZ1] + (t99 + t100 * t103) + t109 * t110 + t114 * t115;
+    const ur10e_bench_real_t t117 = t18 + t19 * t20 - parameters[XZ4];
+    const ur10e_bench_real_t t118 = parameters[YZ4] + t35;
+    const ur10e_bench_real_t t119 = t44 * t117 + t41 * t118;
+    const ur10e_bench_real_t t120 = UR10E_BENCH_C(-0.17415) * t45 - t119;
+    const ur10e_bench_real_t t121 = t44 * t118 - t41 * t117 - UR10E_BENCH_C(0.17415) * t62;
+    const ur10e_bench_real_t t122 = t102 * (t64 * t120 - t63 * t121) + t100 * (t63 * t120 + t64 * t121);
+    const ur10e_bench_real_t t123 = t122 - t109 * t29 - t114 * t38;
+    const ur10e_bench_real_t t124 = t123 * t53;
+    const ur10e_bench_real_t t125 = t119 + (UR10E_BENCH_C(-0.57155) * t91 + UR10E_BENCH_C(0.17415) * t72)
         - parameters[XZ3];
-    const ur10e_bench_real_t t245 = parameters[YZ3] + t219;
-    const ur10e_bench_real_t t246 = t12 * t244 + t14 * t245;
-    const ur10e_bench_real_t t247 = t14 * t244 - t12 * t245;
-    const ur10e_bench_real_t t248 = t0 * t246 + t1 * t247 - t170 * t232 - t192 * t235;
-    const ur10e_bench_real_t t249 = t248 + t221 * t238;
-    const ur10e_bench_real_t t250 = UR10E_BENCH_C(0.57155) * (t242 + UR10E_BENCH_C(-2.0) * t216);
-    const ur10e_bench_real_t t251 = parameters[ZZ3] + (t224 + t250);
-    const ur10e_bench_real_t t252 = t251 + t231 * t232 + t234 * t235 + t237 * t238;
-    if (!(t252 > UR10E_BENCH_C(1.0e-9))) {
-        ur10e_bench_zero(out, 6);
-        return UR10E_BENCH_STATUS_PIVOT;
-    }
-    const ur10e_bench_real_t t253 = UR10E_BENCH_C(1.0) / t252;
-    const ur10e_bench_real_t t254 = t249 * t253;
-    const ur10e_bench_real_t t255 = t7 * (parameters[XX2] - parameters[YY2]) - (t152 - t8) * parameters[XY2]
-        - (t10 * parameters[MX2] + t25 * parameters[MY2]);
-    const ur10e_bench_real_t t256 = parameters[M3] * t45 - (parameters[MX3] * t46 + parameters[MY3] * t21)
-        + t146;
-    const ur10e_bench_real_t t257 = parameters[MX3] * t21 + parameters[MY3] * (t22 + t42)
-        - parameters[M3] * t28;
-    const ur10e_bench_real_t t258 = t230 - UR10E_BENCH_C(0.6127) * (t14 * t256 - t12 * (t257 - t141));
-    const ur10e_bench_real_t t259 = t231 + UR10E_BENCH_C(0.6127) * (t14 * t167 + t12 * t165);
-    const ur10e_bench_real_t t260 = t259 * t171;
-    const ur10e_bench_real_t t261 = t233 + UR10E_BENCH_C(0.6127) * (t14 * t189 + t12 * t187) + t259 * t173;
-    const ur10e_bench_real_t t262 = t261 * t194;
-    const ur10e_bench_real_t t263 = input[1] + (t255 - t258) + t157 * t260 + t174 * t262;
-    const ur10e_bench_real_t t264 = t236 + UR10E_BENCH_C(0.6127) * (t12 * t216 - t14 * t218) + t259 * t199;
-    const ur10e_bench_real_t t265 = t264 + t261 * t202;
-    const ur10e_bench_real_t t266 = t265 * t226;
-    const ur10e_bench_real_t t267 = parameters[MY3] + t218;
-    const ur10e_bench_real_t t268 = parameters[MX3] + t243;
-    const ur10e_bench_real_t t269 = t14 * t267 - t12 * t268;
-    const ur10e_bench_real_t t270 = UR10E_BENCH_C(-0.6127) * t269 - t251 - t259 * t232 - t261 * t235;
-    const ur10e_bench_real_t t271 = t270 - t265 * t238;
-    const ur10e_bench_real_t t272 = t271 * t253;
-    const ur10e_bench_real_t t273 = t263 - t203 * t266 + t239 * t272;
-    const ur10e_bench_real_t t274 = UR10E_BENCH_C(0.17415) * t241;
-    const ur10e_bench_real_t t275 = t0 * (t246 + UR10E_BENCH_C(-0.6127) * (parameters[MZ3] + (t240 + t274))
+    const ur10e_bench_real_t t126 = parameters[YZ3] + t121;
+    const ur10e_bench_real_t t127 = t64 * t125 + t63 * t126;
+    const ur10e_bench_real_t t128 = t63 * t125 - t64 * t126;
+    const ur10e_bench_real_t t129 = t102 * t127 + t100 * t128 - t109 * t55 - t114 * t60;
+    const ur10e_bench_real_t t130 = t129 + t123 * t54;
+    const ur10e_bench_real_t t131 = t130 * t77;
+    const ur10e_bench_real_t t132 = t102 * (t127 + UR10E_BENCH_C(-0.6127) * (parameters[MZ3] + (t91 + t92))
         - parameters[XZ2]);
-    const ur10e_bench_real_t t276 = t275 + t1 * (t247 - parameters[YZ2]) - t170 * t260 - t192 * t262;
-    const ur10e_bench_real_t t277 = t276 + t221 * t266 + t249 * t272;
-    const ur10e_bench_real_t t278 = UR10E_BENCH_C(0.6127) * (UR10E_BENCH_C(0.6127) * (parameters[M3] + t241)
-        + UR10E_BENCH_C(2.0) * t269);
-    const ur10e_bench_real_t t279 = parameters[ZZ2] + (t251 + t278) + t259 * t260 + t261 * t262;
-    const ur10e_bench_real_t t280 = t279 + t265 * t266 - t271 * t272;
-    if (!(t280 > UR10E_BENCH_C(1.0e-9))) {
+    const ur10e_bench_real_t t133 = t132 + t100 * (t128 - parameters[YZ2]) - t109 * t80 - t114 * t82;
+    const ur10e_bench_real_t t134 = t133 + t123 * t79 + t130 * t78;
+    const ur10e_bench_real_t t135 = UR10E_BENCH_C(1.0) / t84;
+    const ur10e_bench_real_t t136 = t134 * t135;
+    const ur10e_bench_real_t t137 = t116 + t123 * t124 - t130 * t131 - t134 * t136;
+    if (!(t137 > UR10E_BENCH_C(1.0e-9))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t281 = UR10E_BENCH_C(1.0) / t280;
-    const ur10e_bench_real_t t282 = t277 * t281;
-    const ur10e_bench_real_t t283 = parameters[XX4] + (t206 - t222 + t223);
-    const ur10e_bench_real_t t284 = parameters[YY4] + t185;
-    const ur10e_bench_real_t t285 = parameters[XY4] + t182;
-    const ur10e_bench_real_t t286 = t30 * (t283 - t284) + t285 * (UR10E_BENCH_C(-2.0) * t32);
-    const ur10e_bench_real_t t287 = t30 * t286;
-    const ur10e_bench_real_t t288 = UR10E_BENCH_C(0.17415) * (t274 + UR10E_BENCH_C(2.0) * t240);
-    const ur10e_bench_real_t t289 = parameters[YY3] + (t283 - t287 + (t250 + t288));
-    const ur10e_bench_real_t t290 = parameters[XX3] + (t284 + t287 + t288);
-    const ur10e_bench_real_t t291 = parameters[XY3] + (t285 + t32 * t286 + UR10E_BENCH_C(0.57155) * t218);
-    const ur10e_bench_real_t t292 = t12 * (t290 - t289) - t291 * (UR10E_BENCH_C(2.0) * t14);
-    const ur10e_bench_real_t t293 = t12 * t292;
-    const ur10e_bench_real_t t294 = parameters[XX2] + (t289 + t293);
-    const ur10e_bench_real_t t295 = t291 + t14 * t292 + UR10E_BENCH_C(0.6127) * (t12 * t267 + t14 * t268);
-    const ur10e_bench_real_t t296 = t1 * (parameters[YY2] + (t290 - t293 + t278) - t294) + (parameters[XY2]
-        + t295) * (UR10E_BENCH_C(2.0) * t0);
-    const ur10e_bench_real_t t297 = parameters[ZZ1] + (t294 + t1 * t296) + t170 * t172 + t192 * t195;
-    const ur10e_bench_real_t t298 = t297 + t221 * t227 - t249 * t254 - t277 * t282;
-    if (!(t298 > UR10E_BENCH_C(1.0e-9))) {
-        ur10e_bench_zero(out, 6);
-        return UR10E_BENCH_STATUS_PIVOT;
-    }
-    const ur10e_bench_real_t t299 = UR10E_BENCH_C(1.0) / t298;
-    const ur10e_bench_real_t t300 = (t228 + t239 * t254 + t273 * t282) * t299;
+    const ur10e_bench_real_t t138 = t102 * dq[0];
+    const ur10e_bench_real_t t139 = t100 * dq[0];
+    const ur10e_bench_real_t t140 = t64 * t138 + t63 * t139;
+    const ur10e_bench_real_t t141 = t63 * t138 - t64 * t139;
+    const ur10e_bench_real_t t142 = t44 * t140 - t41 * t141;
+    const ur10e_bench_real_t t143 = t41 * t140 + t44 * t141;
+    const ur10e_bench_real_t t144 = t142 * t143;
+    const ur10e_bench_real_t t145 = dq[1] + dq[2];
+    const ur10e_bench_real_t t146 = dq[3] + t145;
+    const ur10e_bench_real_t t147 = t146 * t143;
+    const ur10e_bench_real_t t148 = UR10E_BENCH_C(2.0) * t147;
+    const ur10e_bench_real_t t149 = t15 * t148 - t19 * t144;
+    const ur10e_bench_real_t t150 = t15 * t146 - t19 * t142;
+    const ur10e_bench_real_t t151 = dq[4] + t143;
+    const ur10e_bench_real_t t152 = t150 * t151;
+    const ur10e_bench_real_t t153 = t149 - t152;
+    const ur10e_bench_real_t t154 = t153 - t152;
+    const ur10e_bench_real_t t155 = t19 * t146 + t15 * t142;
+    const ur10e_bench_real_t t156 = t155 * t150;
+    const ur10e_bench_real_t t157 = t146 * t142;
+    const ur10e_bench_real_t t158 = t156 - t157;
+    const ur10e_bench_real_t t159 = t0 * t158 - t1 * t154;
+    const ur10e_bench_real_t t160 = t0 * t155 + t1 * t151;
+    const ur10e_bench_real_t t161 = dq[5] + t150;
+    const ur10e_bench_real_t t162 = t160 * t161;
+    const ur10e_bench_real_t t163 = t162 - t159;
+    const ur10e_bench_real_t t164 = t1 * t158 + t0 * t154;
+    const ur10e_bench_real_t t165 = t1 * t155 - t0 * t151;
+    const ur10e_bench_real_t t166 = t165 * t161;
+    const ur10e_bench_real_t t167 = t164 - t166;
+    const ur10e_bench_real_t t168 = t167 - t166;
+    const ur10e_bench_real_t t169 = parameters[XX6] * t163 - t162 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t168;
+    const ur10e_bench_real_t t170 = t15 * t144 + t19 * t148;
+    const ur10e_bench_real_t t171 = t155 * t151;
+    const ur10e_bench_real_t t172 = t170 - t171;
+    const ur10e_bench_real_t t173 = t165 * t160;
+    const ur10e_bench_real_t t174 = t172 - t173;
+    const ur10e_bench_real_t t175 = t160 * t160;
+    const ur10e_bench_real_t t176 = t161 * t161;
+    const ur10e_bench_real_t t177 = t139 * t139;
+    const ur10e_bench_real_t t178 = dq[1] * dq[1];
+    const ur10e_bench_real_t t179 = UR10E_BENCH_C(-9.81) * t102;
+    const ur10e_bench_real_t t180 = t179 + UR10E_BENCH_C(-0.6127) * (t177 + t178);
+    const ur10e_bench_real_t t181 = t138 * t139;
+    const ur10e_bench_real_t t182 = UR10E_BENCH_C(9.81) * t100;
+    const ur10e_bench_real_t t183 = t182 + UR10E_BENCH_C(-0.6127) * t181;
+    const ur10e_bench_real_t t184 = t63 * t183 - t64 * t180;
+    const ur10e_bench_real_t t185 = t141 * t141;
+    const ur10e_bench_real_t t186 = t145 * t145;
+    const ur10e_bench_real_t t187 = t186 + t185;
+    const ur10e_bench_real_t t188 = t184 + UR10E_BENCH_C(0.57155) * t187;
+    const ur10e_bench_real_t t189 = t63 * t180 + t64 * t183;
+    const ur10e_bench_real_t t190 = t140 * t141;
+    const ur10e_bench_real_t t191 = t189 + UR10E_BENCH_C(0.57155) * t190;
+    const ur10e_bench_real_t t192 = t44 * t188 + t41 * t191;
+    const ur10e_bench_real_t t193 = t192 + UR10E_BENCH_C(0.11985) * t144;
+    const ur10e_bench_real_t t194 = t140 * t140;
+    const ur10e_bench_real_t t195 = t194 + t185;
+    const ur10e_bench_real_t t196 = t145 * t140;
+    const ur10e_bench_real_t t197 = dq[1] * t138;
+    const ur10e_bench_real_t t198 = UR10E_BENCH_C(1.2254) * t197;
+    const ur10e_bench_real_t t199 = t198 + (UR10E_BENCH_C(1.1431) * t196 + UR10E_BENCH_C(0.17415) * t195);
+    const ur10e_bench_real_t t200 = t199 - UR10E_BENCH_C(0.2397) * t147;
+    const ur10e_bench_real_t t201 = t19 * t193 + t15 * t200;
+    const ur10e_bench_real_t t202 = t155 * t155;
+    const ur10e_bench_real_t t203 = t151 * t151;
+    const ur10e_bench_real_t t204 = t202 + t203;
+    const ur10e_bench_real_t t205 = t201 + UR10E_BENCH_C(0.11655) * t204;
+    const ur10e_bench_real_t t206 = t44 * t191 - t41 * t188;
+    const ur10e_bench_real_t t207 = t142 * t142;
+    const ur10e_bench_real_t t208 = t146 * t146;
+    const ur10e_bench_real_t t209 = t208 + t207;
+    const ur10e_bench_real_t t210 = t206 + UR10E_BENCH_C(0.11985) * t209;
+    const ur10e_bench_real_t t211 = t210 + UR10E_BENCH_C(0.11655) * t154;
+    const ur10e_bench_real_t t212 = t15 * t193 - t19 * t200;
+    const ur10e_bench_real_t t213 = t212 - UR10E_BENCH_C(-0.11655) * t158;
+    const ur10e_bench_real_t t214 = t1 * t211 - t0 * t213;
+    const ur10e_bench_real_t t215 = t169 - parameters[XZ6] * t174 - parameters[YZ6] * (t175 - t176)
+        + (parameters[MY6] * t205 + parameters[MZ6] * t214);
+    const ur10e_bench_real_t t216 = t162 + t163;
+    const ur10e_bench_real_t t217 = parameters[YY6] * t167 + t166 * (parameters[XX6] - parameters[ZZ6])
+        - parameters[XY6] * t216;
+    const ur10e_bench_real_t t218 = t172 + t173;
+    const ur10e_bench_real_t t219 = t165 * t165;
+    const ur10e_bench_real_t t220 = t1 * t213 + t0 * t211;
+    const ur10e_bench_real_t t221 = t217 + parameters[YZ6] * t218 + parameters[XZ6] * (t176 - t219)
+        + (parameters[MZ6] * t220 + parameters[MX6] * t205);
+    const ur10e_bench_real_t t222 = parameters[MZ6] * t164 - (parameters[MX6] * (t175 + t176)
+        + parameters[MY6] * t218);
+    const ur10e_bench_real_t t223 = parameters[M6] * t220 + t222;
+    const ur10e_bench_real_t t224 = parameters[MX6] * t174 - parameters[MY6] * (t219 + t176)
+        - parameters[MZ6] * t159;
+    const ur10e_bench_real_t t225 = parameters[M6] * t214 + t224;
+    const ur10e_bench_real_t t226 = t0 * t223 + t1 * t225;
+    const ur10e_bench_real_t t227 = t171 - t172;
+    const ur10e_bench_real_t t228 = parameters[XX5] * t153 + t152 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t227;
+    const ur10e_bench_real_t t229 = t157 + t156;
+    const ur10e_bench_real_t t230 = t150 * t150;
+    const ur10e_bench_real_t t231 = t228 - parameters[XZ5] * t229 + parameters[YZ5] * (t203 - t230)
+        + (parameters[MY5] * t210 - parameters[MZ5] * t201);
+    const ur10e_bench_real_t t232 = t231 + (t1 * t215 + t0 * t221 + UR10E_BENCH_C(0.11655) * t226);
+    const ur10e_bench_real_t t233 = parameters[ZZ6] * t172 + t6 * t173 + parameters[YZ6] * t164
+        + parameters[XZ6] * t159;
+    const ur10e_bench_real_t t234 = t233 + parameters[XY6] * (t219 - t175) + (parameters[MX6] * t214
+        - parameters[MY6] * t220);
+    const ur10e_bench_real_t t235 = parameters[YY5] * t172 + t171 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t154;
+    const ur10e_bench_real_t t236 = t235 - parameters[YZ5] * t158 + parameters[XZ5] * (t203 - t202)
+        + (parameters[MZ5] * t212 + parameters[MX5] * t210);
+    const ur10e_bench_real_t t237 = t236 + t234;
+    const ur10e_bench_real_t t238 = t1 * t223 - t0 * t225;
+    const ur10e_bench_real_t t239 = parameters[MX5] * (t230 + t203) - parameters[MY5] * t158
+        - parameters[MZ5] * t170;
+    const ur10e_bench_real_t t240 = parameters[M5] * t212 - t239 + t238;
+    const ur10e_bench_real_t t241 = parameters[MX6] * t168 + parameters[MY6] * t216 + parameters[MZ6] * (t219
+        + t175);
+    const ur10e_bench_real_t t242 = parameters[M5] * t201 + (parameters[MY5] * t204 - parameters[MX5] * t229
+        - parameters[MZ5] * t149);
+    const ur10e_bench_real_t t243 = t242 + (parameters[M6] * t205 + t241);
+    const ur10e_bench_real_t t244 = t15 * t243 - t19 * t240;
+    const ur10e_bench_real_t t245 = UR10E_BENCH_C(2.0) * t157;
+    const ur10e_bench_real_t t246 = parameters[XX4] * t147 + t147 * (parameters[ZZ4] - parameters[YY4])
+        + parameters[XY4] * t245;
+    const ur10e_bench_real_t t247 = t143 * t143;
+    const ur10e_bench_real_t t248 = t246 + parameters[XZ4] * t144 + parameters[YZ4] * (t208 - t247)
+        + (parameters[MY4] * t199 + parameters[MZ4] * t206);
+    const ur10e_bench_real_t t249 = t248 + (t15 * t232 + t19 * t237 + UR10E_BENCH_C(-0.11985) * t244);
+    const ur10e_bench_real_t t250 = t156 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t157
+        - parameters[YZ5] * t170;
+    const ur10e_bench_real_t t251 = t250 + parameters[XZ5] * t149 + parameters[XY5] * (t230 - t202)
+        + (parameters[MX5] * t201 + parameters[MY5] * t212);
+    const ur10e_bench_real_t t252 = t251 + (t1 * t221 - t0 * t215 + UR10E_BENCH_C(0.11655) * t238);
+    const ur10e_bench_real_t t253 = t157 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t157
+        - parameters[XY4] * t148;
+    const ur10e_bench_real_t t254 = t253 + parameters[YZ4] * t144 + parameters[XZ4] * (t208 - t207)
+        + (parameters[MZ4] * t192 + parameters[MX4] * t199);
+    const ur10e_bench_real_t t255 = t254 + t252;
+    const ur10e_bench_real_t t256 = t15 * t240 + t19 * t243;
+    const ur10e_bench_real_t t257 = parameters[M4] * t192 - (parameters[MX4] * (t208 + t247)
+        + parameters[MY4] * t144);
+    const ur10e_bench_real_t t258 = t257 + t256;
+    const ur10e_bench_real_t t259 = parameters[MY5] * t154 - parameters[MX5] * t227 + parameters[MZ5] * (t202
+        + t230);
+    const ur10e_bench_real_t t260 = parameters[M4] * t206 - (parameters[MX4] * t144 + parameters[MY4] * t209)
+        + (parameters[M5] * t210 + t259 + t226);
+    const ur10e_bench_real_t t261 = t41 * t258 + t44 * t260;
+    const ur10e_bench_real_t t262 = t145 * t141;
+    const ur10e_bench_real_t t263 = UR10E_BENCH_C(2.0) * t196;
+    const ur10e_bench_real_t t264 = parameters[XX3] * t262 + t262 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t263;
+    const ur10e_bench_real_t t265 = t264 + parameters[XZ3] * t190 + parameters[YZ3] * (t186 - t185)
+        + (parameters[MY3] * t198 + parameters[MZ3] * t189);
+    const ur10e_bench_real_t t266 = t265 + (t44 * t249 + t41 * t255 + UR10E_BENCH_C(0.17415) * t261);
+    const ur10e_bench_real_t t267 = t44 * t258 - t41 * t260;
+    const ur10e_bench_real_t t268 = parameters[MY4] * t148 - parameters[MX4] * t245 + parameters[MZ4] * (t207
+        + t247);
+    const ur10e_bench_real_t t269 = parameters[M4] * t199 + t268 + t244;
+    const ur10e_bench_real_t t270 = t41 * t249 - t44 * t255 - (UR10E_BENCH_C(0.17415) * t267
+        - UR10E_BENCH_C(0.57155) * t269);
+    const ur10e_bench_real_t t271 = UR10E_BENCH_C(2.0) * t262;
+    const ur10e_bench_real_t t272 = parameters[YY3] * t196 - t196 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t271;
+    const ur10e_bench_real_t t273 = t272 - parameters[YZ3] * t190 - parameters[XZ3] * (t186 - t194)
+        - (parameters[MZ3] * t184 + parameters[MX3] * t198);
+    const ur10e_bench_real_t t274 = t273 + t270;
+    const ur10e_bench_real_t t275 = dq[1] * t139;
+    const ur10e_bench_real_t t276 = t275 * (parameters[YY2] - parameters[ZZ2]) - t275 * parameters[XX2]
+        + UR10E_BENCH_C(2.0) * t197 * parameters[XY2];
+    const ur10e_bench_real_t t277 = t276 - t181 * parameters[XZ2] + (t178 - t177) * parameters[YZ2]
+        + t182 * parameters[MZ2];
+    const ur10e_bench_real_t t278 = parameters[M3] * t198 + (parameters[MY3] * t271 - parameters[MX3] * t263
+        + parameters[MZ3] * t195);
+    const ur10e_bench_real_t t279 = t63 * t266 + t64 * t274 + UR10E_BENCH_C(0.6127) * (t278 + t269);
+    const ur10e_bench_real_t t280 = t197 * parameters[YY2] + t197 * (parameters[ZZ2] - parameters[XX2])
+        + UR10E_BENCH_C(-2.0) * t275 * parameters[XY2];
+    const ur10e_bench_real_t t281 = t138 * t138;
+    const ur10e_bench_real_t t282 = t280 + t181 * parameters[YZ2] + (t281 - t178) * parameters[XZ2]
+        + t179 * parameters[MZ2];
+    const ur10e_bench_real_t t283 = t102 * (t277 + (t64 * t266 - t63 * t274)) + t100 * (t282 + t279);
+    const ur10e_bench_real_t t284 = input[5] - t234;
+    const ur10e_bench_real_t t285 = input[4] + t252 + t284 * t5;
+    const ur10e_bench_real_t t286 = t144 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t207
+        - t247) - (parameters[MY4] * t192 - parameters[MX4] * t206);
+    const ur10e_bench_real_t t287 = t286 + (t15 * t237 - t19 * t232 + UR10E_BENCH_C(0.11985) * t256);
+    const ur10e_bench_real_t t288 = input[3] - t287 - t284 * t29 - t285 * t38;
+    const ur10e_bench_real_t t289 = input[0] + t283 + t284 * t110 + t285 * t115 + t288 * t124;
+    const ur10e_bench_real_t t290 = t190 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t194
+        - t185) - (parameters[MY3] * t184 - parameters[MX3] * t189);
+    const ur10e_bench_real_t t291 = t290 + (t287 - UR10E_BENCH_C(0.57155) * t261);
+    const ur10e_bench_real_t t292 = input[2] - t291 + t284 * t55 + t285 * t60 - t288 * t54;
+    const ur10e_bench_real_t t293 = parameters[M3] * t184 - (parameters[MX3] * t187 + parameters[MY3] * t190)
+        + t267;
+    const ur10e_bench_real_t t294 = parameters[MX3] * t190 + parameters[MY3] * (t186 + t194)
+        - parameters[M3] * t189;
+    const ur10e_bench_real_t t295 = t291 - UR10E_BENCH_C(0.6127) * (t63 * t293 - t64 * (t294 - t261));
+    const ur10e_bench_real_t t296 = t181 * (parameters[XX2] - parameters[YY2]) - (t281
+        - t177) * parameters[XY2] - (t182 * parameters[MX2] + t179 * parameters[MY2]);
+    const ur10e_bench_real_t t297 = input[1] + (t296 - t295) + t284 * t80 + t285 * t82;
+    const ur10e_bench_real_t t298 = t297 - t288 * t79 + t292 * t78;
+    const ur10e_bench_real_t t299 = UR10E_BENCH_C(1.0) / t137;
+    const ur10e_bench_real_t t300 = (t289 + t292 * t131 + t298 * t136) * t299;
     out[0] = t300;
     if (!(t300 >= UR10E_BENCH_C(-1.0e15) && t300 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t301 = t273 * t281 + t282 * t300;
+    const ur10e_bench_real_t t301 = t298 * t135 + t136 * t300;
     out[1] = t301;
     if (!(t301 >= UR10E_BENCH_C(-1.0e15) && t301 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t302 = t239 * t253 + t254 * t300 + t272 * t301;
+    const ur10e_bench_real_t t302 = t292 * t77 + t131 * t300 + t78 * t301;
     out[2] = t302;
     if (!(t302 >= UR10E_BENCH_C(-1.0e15) && t302 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t303 = t227 * t300 - t203 * t226 - t266 * t301 - t238 * t302;
+    const ur10e_bench_real_t t303 = t124 * t300 - t288 * t53 - t79 * t301 - t54 * t302;
     out[3] = t303;
     if (!(t303 >= UR10E_BENCH_C(-1.0e15) && t303 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t304 = t195 * t300 - t174 * t194 + t262 * t301 + t235 * t302;
-    const ur10e_bench_real_t t305 = t304 - t202 * t303;
+    const ur10e_bench_real_t t304 = t115 * t300 - t285 * t37 + t82 * t301 + t60 * t302;
+    const ur10e_bench_real_t t305 = t304 - t38 * t303;
     out[4] = t305;
     if (!(t305 >= UR10E_BENCH_C(-1.0e15) && t305 <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;
     }
-    const ur10e_bench_real_t t306 = t172 * t300 - t157 * t171 + t260 * t301 + t232 * t302;
-    out[5] = t306 - t199 * t303 + t173 * t305;
+    const ur10e_bench_real_t t306 = t110 * t300 - t284 * t4 + t80 * t301 + t55 * t302;
+    out[5] = t306 - t29 * t303 + t5 * t305;
     if (!(out[5] >= UR10E_BENCH_C(-1.0e15) && out[5] <= UR10E_BENCH_C(1.0e15))) {
         ur10e_bench_zero(out, 6);
         return UR10E_BENCH_STATUS_PIVOT;

@@ -63,7 +63,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -90,206 +90,206 @@ int ur10e_bench_inverse_dynamics(
         return status;
     }
 
-    ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t19, t15;
-    UR10E_BENCH_SINCOS(q[2], &t19, &t15);
-    ur10e_bench_real_t t38, t35;
-    UR10E_BENCH_SINCOS(q[3], &t38, &t35);
-    ur10e_bench_real_t t58, t57;
-    UR10E_BENCH_SINCOS(q[4], &t58, &t57);
-    ur10e_bench_real_t t91, t90;
-    UR10E_BENCH_SINCOS(q[5], &t91, &t90);
-    const ur10e_bench_real_t t2 = t1 * dq[0];
-    const ur10e_bench_real_t t3 = t2 * t2;
-    const ur10e_bench_real_t t4 = dq[1] * dq[1];
-    const ur10e_bench_real_t t5 = dq[1] * t2;
-    const ur10e_bench_real_t t6 = t0 * ddq[0];
-    const ur10e_bench_real_t t7 = t5 + t6;
-    const ur10e_bench_real_t t8 = t0 * dq[0];
-    const ur10e_bench_real_t t9 = dq[1] * t8;
-    const ur10e_bench_real_t t10 = t1 * ddq[0];
-    const ur10e_bench_real_t t11 = t10 - t9 - t9;
-    const ur10e_bench_real_t t12 = t8 * t2;
-    const ur10e_bench_real_t t13 = ddq[1] + t12;
-    const ur10e_bench_real_t t14 = parameters[ZZ2R] * t5 + parameters[XX2R] * t7 + parameters[XY2] * t11
-        + parameters[XZ2R] * t13;
-    const ur10e_bench_real_t t16 = UR10E_BENCH_C(0.6127) * t11;
-    const ur10e_bench_real_t t17 = dq[1] + dq[2];
-    const ur10e_bench_real_t t18 = t17 * t17;
-    const ur10e_bench_real_t t20 = t1 * t15 - t0 * t19;
-    const ur10e_bench_real_t t21 = dq[0] * t20;
-    const ur10e_bench_real_t t22 = t21 * t21;
-    const ur10e_bench_real_t t23 = t17 * t21;
-    const ur10e_bench_real_t t24 = t0 * t15 + t1 * t19;
-    const ur10e_bench_real_t t25 = ddq[0] * t24;
-    const ur10e_bench_real_t t26 = t23 + t25;
-    const ur10e_bench_real_t t27 = dq[0] * t24;
-    const ur10e_bench_real_t t28 = t17 * t27;
-    const ur10e_bench_real_t t29 = ddq[0] * t20;
-    const ur10e_bench_real_t t30 = t29 - t28 - t28;
-    const ur10e_bench_real_t t31 = t27 * t21;
-    const ur10e_bench_real_t t32 = ddq[1] + ddq[2];
-    const ur10e_bench_real_t t33 = t31 + t32;
-    const ur10e_bench_real_t t34 = parameters[ZZ3R] * t23 + parameters[XX3R] * t26 + parameters[XY3] * t30
-        + parameters[XZ3R] * t33;
-    const ur10e_bench_real_t t36 = dq[3] + t17;
-    const ur10e_bench_real_t t37 = t36 * t36;
-    const ur10e_bench_real_t t39 = t38 * t24 - t35 * t20;
-    const ur10e_bench_real_t t40 = dq[0] * t39;
-    const ur10e_bench_real_t t41 = t40 * t40;
-    const ur10e_bench_real_t t42 = t36 * t40;
-    const ur10e_bench_real_t t43 = t35 * t24 + t38 * t20;
-    const ur10e_bench_real_t t44 = ddq[0] * t43;
-    const ur10e_bench_real_t t45 = t44 - t42;
-    const ur10e_bench_real_t t46 = dq[0] * t43;
-    const ur10e_bench_real_t t47 = t36 * t46;
-    const ur10e_bench_real_t t48 = ddq[0] * t39;
-    const ur10e_bench_real_t t49 = t47 + t48;
-    const ur10e_bench_real_t t50 = t47 + t49;
-    const ur10e_bench_real_t t51 = t46 * t40;
-    const ur10e_bench_real_t t52 = ddq[3] + t32;
-    const ur10e_bench_real_t t53 = t52 - t51;
-    const ur10e_bench_real_t t54 = parameters[XX4R] * t45 - parameters[ZZ4R] * t42 - parameters[XY4] * t50
-        + parameters[XZ4] * t53;
-    const ur10e_bench_real_t t55 = t27 * t27;
-    const ur10e_bench_real_t t56 = t16 + (UR10E_BENCH_C(-0.17415) * (t55 + t22)
-        + UR10E_BENCH_C(0.57155) * t30);
-    const ur10e_bench_real_t t59 = t57 * t36 - t58 * t46;
-    const ur10e_bench_real_t t60 = t59 * t59;
-    const ur10e_bench_real_t t61 = dq[4] + t40;
-    const ur10e_bench_real_t t62 = t61 * t61;
-    const ur10e_bench_real_t t63 = t59 * t61;
-    const ur10e_bench_real_t t64 = t51 + t52;
-    const ur10e_bench_real_t t65 = t42 - t45;
-    const ur10e_bench_real_t t66 = t58 * t64 - t57 * t65;
-    const ur10e_bench_real_t t67 = t63 + t66;
-    const ur10e_bench_real_t t68 = t58 * t36 + t57 * t46;
-    const ur10e_bench_real_t t69 = t68 * t61;
-    const ur10e_bench_real_t t70 = t57 * t64 + t58 * t65;
-    const ur10e_bench_real_t t71 = t69 - t70;
-    const ur10e_bench_real_t t72 = t69 + t71;
-    const ur10e_bench_real_t t73 = t68 * t59;
-    const ur10e_bench_real_t t74 = ddq[4] + t49;
-    const ur10e_bench_real_t t75 = t73 + t74;
-    const ur10e_bench_real_t t76 = parameters[ZZ5R] * t63 + parameters[XX5R] * t67 - parameters[XY5] * t72
-        + parameters[XZ5] * t75;
-    const ur10e_bench_real_t t77 = t46 * t46;
-    const ur10e_bench_real_t t78 = t37 + t77;
-    const ur10e_bench_real_t t79 = UR10E_BENCH_C(-9.81) * t0;
-    const ur10e_bench_real_t t80 = UR10E_BENCH_C(0.6127) * (t3 + t4) - t79;
-    const ur10e_bench_real_t t81 = UR10E_BENCH_C(-9.81) * t1;
-    const ur10e_bench_real_t t82 = t81 + UR10E_BENCH_C(0.6127) * t13;
-    const ur10e_bench_real_t t83 = t19 * t82 - t15 * t80;
-    const ur10e_bench_real_t t84 = t18 + t22;
-    const ur10e_bench_real_t t85 = UR10E_BENCH_C(0.57155) * t84 - UR10E_BENCH_C(-0.17415) * t29 - t83;
-    const ur10e_bench_real_t t86 = t19 * t80 + t15 * t82;
-    const ur10e_bench_real_t t87 = t86 + (UR10E_BENCH_C(0.57155) * t33 + UR10E_BENCH_C(0.17415) * t25);
-    const ur10e_bench_real_t t88 = t38 * t85 + t35 * t87;
-    const ur10e_bench_real_t t89 = UR10E_BENCH_C(-0.11985) * t78 + t88;
-    const ur10e_bench_real_t t92 = t91 * t68 + t90 * t61;
-    const ur10e_bench_real_t t93 = t92 * t92;
-    const ur10e_bench_real_t t94 = dq[5] + t59;
-    const ur10e_bench_real_t t95 = t94 * t94;
-    const ur10e_bench_real_t t96 = t92 * t94;
-    const ur10e_bench_real_t t97 = t73 - t74;
-    const ur10e_bench_real_t t98 = t63 + t67;
-    const ur10e_bench_real_t t99 = t91 * t97 + t90 * t98;
-    const ur10e_bench_real_t t100 = t96 - t99;
-    const ur10e_bench_real_t t101 = t90 * t68 - t91 * t61;
-    const ur10e_bench_real_t t102 = t101 * t94;
-    const ur10e_bench_real_t t103 = t91 * t98 - t90 * t97;
-    const ur10e_bench_real_t t104 = t102 + (t102 + t103);
-    const ur10e_bench_real_t t105 = t101 * t92;
-    const ur10e_bench_real_t t106 = t71 - ddq[5];
-    const ur10e_bench_real_t t107 = t105 + t106;
-    const ur10e_bench_real_t t108 = parameters[ZZ6] * t96 + parameters[XX6R] * t100 + parameters[XY6] * t104
-        + parameters[XZ6R] * t107;
-    const ur10e_bench_real_t t109 = t38 * t87 - t35 * t85;
-    const ur10e_bench_real_t t110 = t109 + UR10E_BENCH_C(-0.11985) * t64;
-    const ur10e_bench_real_t t111 = t56 + UR10E_BENCH_C(0.11985) * t65;
-    const ur10e_bench_real_t t112 = t58 * t110 + t57 * t111;
-    const ur10e_bench_real_t t113 = parameters[YZ6R] * (t93 - t95) - t108 + parameters[MY6] * t112;
-    const ur10e_bench_real_t t114 = t101 * t101;
-    const ur10e_bench_real_t t115 = t96 + t100;
-    const ur10e_bench_real_t t116 = t106 - t105;
-    const ur10e_bench_real_t t117 = (parameters[ZZ6] - parameters[XX6R]) * t102 + parameters[XY6] * t115
-        + parameters[YZ6R] * t116;
-    const ur10e_bench_real_t t118 = parameters[XZ6R] * (t114 - t95) + t117 + parameters[MX6] * t112;
-    const ur10e_bench_real_t t119 = parameters[YZ5] * (t60 - t62) + t76 + parameters[MY5R] * t89 + (t90 * t113
-        + t91 * t118);
-    const ur10e_bench_real_t t120 = t68 * t68;
-    const ur10e_bench_real_t t121 = (parameters[XX5R] - parameters[ZZ5R]) * t69 + parameters[XY5] * t98
-        - parameters[YZ5] * t97;
-    const ur10e_bench_real_t t122 = parameters[XX6R] * t105 - parameters[ZZ6] * t106 - parameters[YZ6R] * t103
-        + parameters[XZ6R] * t99;
-    const ur10e_bench_real_t t123 = t57 * t110 - t58 * t111;
-    const ur10e_bench_real_t t124 = parameters[MX6] * (t91 * t123 - t90 * t89) + parameters[MY6] * (t90 * t123
-        + t91 * t89);
-    const ur10e_bench_real_t t125 = parameters[XY6] * (t114 - t93) + t122 + t124;
-    const ur10e_bench_real_t t126 = parameters[XZ5] * (t120 - t62) - t121 + parameters[MX5] * t89 - t125;
-    const ur10e_bench_real_t t127 = parameters[MX6] * (t93 + t95) - parameters[MY6] * t116;
-    const ur10e_bench_real_t t128 = parameters[MY6] * (t114 + t95) + parameters[MX6] * t107;
-    const ur10e_bench_real_t t129 = parameters[MX5] * (t60 + t62) - parameters[MY5R] * t97 + (t90 * t127
-        - t91 * t128);
-    const ur10e_bench_real_t t130 = parameters[MX5] * t75 - parameters[MY5R] * (t120 + t62)
-        + (parameters[MX6] * t104 - parameters[MY6] * t115);
-    const ur10e_bench_real_t t131 = t57 * t130 - t58 * t129;
-    const ur10e_bench_real_t t132 = parameters[YZ4] * (t41 - t37) + t54 + parameters[MY4R] * t56 + (t57 * t119
-        + t58 * t126 + UR10E_BENCH_C(-0.11985) * t131);
-    const ur10e_bench_real_t t133 = (parameters[ZZ4R] - parameters[XX4R]) * t47 + parameters[XY4] * t65
-        - parameters[YZ4] * t64;
-    const ur10e_bench_real_t t134 = parameters[ZZ5R] * t74 - parameters[XX5R] * t73 + parameters[YZ5] * t70
-        + parameters[XZ5] * t66;
-    const ur10e_bench_real_t t135 = parameters[XY5] * (t120 - t60) + t134 + (parameters[MX5] * t112
-        + parameters[MY5R] * t123);
-    const ur10e_bench_real_t t136 = t135 + (t90 * t118 - t91 * t113);
-    const ur10e_bench_real_t t137 = parameters[XZ4] * (t77 - t37) + t133 + parameters[MX4] * t56 + t136;
-    const ur10e_bench_real_t t138 = t57 * t129 + t58 * t130;
-    const ur10e_bench_real_t t139 = parameters[MX4] * (t37 + t41) + parameters[MY4R] * t64 + t138;
-    const ur10e_bench_real_t t140 = parameters[MX5] * t72 + parameters[MY5R] * t98 + (t91 * t127
-        + t90 * t128);
-    const ur10e_bench_real_t t141 = parameters[MY4R] * t78 - parameters[MX4] * t53 + t140;
-    const ur10e_bench_real_t t142 = t38 * t139 + t35 * t141;
-    const ur10e_bench_real_t t143 = parameters[MY3] * t16 + (parameters[YZ3] * (t22 - t18) + t34)
-        + (t35 * t132 + t38 * t137 + UR10E_BENCH_C(0.17415) * t142);
-    const ur10e_bench_real_t t144 = t23 + t26;
-    const ur10e_bench_real_t t145 = t32 - t31;
-    const ur10e_bench_real_t t146 = (parameters[XX3R] - parameters[ZZ3R]) * t28 + parameters[XY3] * t144
-        + parameters[YZ3] * t145;
-    const ur10e_bench_real_t t147 = t35 * t139 - t38 * t141;
-    const ur10e_bench_real_t t148 = parameters[MX4] * t50 - parameters[MY4R] * t65 + t131;
-    const ur10e_bench_real_t t149 = t35 * t137 - t38 * t132 + (UR10E_BENCH_C(0.17415) * t147
-        - UR10E_BENCH_C(0.57155) * t148);
-    const ur10e_bench_real_t t150 = parameters[XZ3R] * (t18 - t55) + t146 - parameters[MX3R] * t16 - t149;
-    const ur10e_bench_real_t t151 = parameters[YZ2] * (t3 - t4) + t14 + (t15 * t143 - t19 * t150);
-    const ur10e_bench_real_t t152 = t8 * t8;
-    const ur10e_bench_real_t t153 = t9 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t5 + t7)
-        + parameters[YZ2] * (ddq[1] - t12);
-    const ur10e_bench_real_t t154 = t19 * t143 + t15 * t150 + UR10E_BENCH_C(0.6127) * (parameters[MY3] * t144
-        - parameters[MX3R] * t30 + t148);
-    const ur10e_bench_real_t t155 = t0 * t151 + t1 * (parameters[XZ2R] * (t4 - t152) + t153 + t154);
+    ur10e_bench_real_t t0, t2;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t2);
+    ur10e_bench_real_t t3, t1;
+    UR10E_BENCH_SINCOS(q[2], &t3, &t1);
+    ur10e_bench_real_t t7, t5;
+    UR10E_BENCH_SINCOS(q[3], &t7, &t5);
+    ur10e_bench_real_t t13, t10;
+    UR10E_BENCH_SINCOS(q[4], &t13, &t10);
+    ur10e_bench_real_t t23, t38;
+    UR10E_BENCH_SINCOS(q[5], &t23, &t38);
+    const ur10e_bench_real_t t4 = t0 * t1 + t2 * t3;
+    const ur10e_bench_real_t t6 = t2 * t1 - t0 * t3;
+    const ur10e_bench_real_t t8 = t5 * t4 + t7 * t6;
+    const ur10e_bench_real_t t9 = dq[0] * t8;
+    const ur10e_bench_real_t t11 = dq[1] + dq[2];
+    const ur10e_bench_real_t t12 = dq[3] + t11;
+    const ur10e_bench_real_t t14 = t13 * t12 + t10 * t9;
+    const ur10e_bench_real_t t15 = t10 * t12 - t13 * t9;
+    const ur10e_bench_real_t t16 = t14 * t15;
+    const ur10e_bench_real_t t17 = t12 * t9;
+    const ur10e_bench_real_t t18 = t7 * t4 - t5 * t6;
+    const ur10e_bench_real_t t19 = ddq[0] * t18;
+    const ur10e_bench_real_t t20 = t17 + t19;
+    const ur10e_bench_real_t t21 = ddq[4] + t20;
+    const ur10e_bench_real_t t22 = t16 - t21;
+    const ur10e_bench_real_t t24 = dq[0] * t18;
+    const ur10e_bench_real_t t25 = t9 * t24;
+    const ur10e_bench_real_t t26 = ddq[1] + ddq[2];
+    const ur10e_bench_real_t t27 = ddq[3] + t26;
+    const ur10e_bench_real_t t28 = t25 + t27;
+    const ur10e_bench_real_t t29 = t12 * t24;
+    const ur10e_bench_real_t t30 = ddq[0] * t8;
+    const ur10e_bench_real_t t31 = t30 - t29;
+    const ur10e_bench_real_t t32 = t29 - t31;
+    const ur10e_bench_real_t t33 = t13 * t28 - t10 * t32;
+    const ur10e_bench_real_t t34 = dq[4] + t24;
+    const ur10e_bench_real_t t35 = t15 * t34;
+    const ur10e_bench_real_t t36 = t35 + t33;
+    const ur10e_bench_real_t t37 = t35 + t36;
+    const ur10e_bench_real_t t39 = t23 * t22 + t38 * t37;
+    const ur10e_bench_real_t t40 = t23 * t14 + t38 * t34;
+    const ur10e_bench_real_t t41 = dq[5] + t15;
+    const ur10e_bench_real_t t42 = t40 * t41;
+    const ur10e_bench_real_t t43 = t42 - t39;
+    const ur10e_bench_real_t t44 = t23 * t37 - t38 * t22;
+    const ur10e_bench_real_t t45 = t38 * t14 - t23 * t34;
+    const ur10e_bench_real_t t46 = t45 * t41;
+    const ur10e_bench_real_t t47 = t46 + (t46 + t44);
+    const ur10e_bench_real_t t48 = t45 * t40;
+    const ur10e_bench_real_t t49 = t10 * t28 + t13 * t32;
+    const ur10e_bench_real_t t50 = t14 * t34;
+    const ur10e_bench_real_t t51 = t50 - t49;
+    const ur10e_bench_real_t t52 = t51 - ddq[5];
+    const ur10e_bench_real_t t53 = t48 + t52;
+    const ur10e_bench_real_t t54 = parameters[ZZ6] * t42 + parameters[XX6R] * t43 + parameters[XY6] * t47
+        + parameters[XZ6R] * t53;
+    const ur10e_bench_real_t t55 = t40 * t40;
+    const ur10e_bench_real_t t56 = t41 * t41;
+    const ur10e_bench_real_t t57 = t2 * dq[0];
+    const ur10e_bench_real_t t58 = t57 * t57;
+    const ur10e_bench_real_t t59 = dq[1] * dq[1];
+    const ur10e_bench_real_t t60 = UR10E_BENCH_C(-9.81) * t0;
+    const ur10e_bench_real_t t61 = UR10E_BENCH_C(0.6127) * (t58 + t59) - t60;
+    const ur10e_bench_real_t t62 = t0 * dq[0];
+    const ur10e_bench_real_t t63 = t62 * t57;
+    const ur10e_bench_real_t t64 = ddq[1] + t63;
+    const ur10e_bench_real_t t65 = UR10E_BENCH_C(-9.81) * t2;
+    const ur10e_bench_real_t t66 = t65 + UR10E_BENCH_C(0.6127) * t64;
+    const ur10e_bench_real_t t67 = t3 * t66 - t1 * t61;
+    const ur10e_bench_real_t t68 = dq[0] * t6;
+    const ur10e_bench_real_t t69 = t68 * t68;
+    const ur10e_bench_real_t t70 = t11 * t11;
+    const ur10e_bench_real_t t71 = t70 + t69;
+    const ur10e_bench_real_t t72 = ddq[0] * t6;
+    const ur10e_bench_real_t t73 = UR10E_BENCH_C(0.57155) * t71 - UR10E_BENCH_C(-0.17415) * t72 - t67;
+    const ur10e_bench_real_t t74 = t3 * t61 + t1 * t66;
+    const ur10e_bench_real_t t75 = dq[0] * t4;
+    const ur10e_bench_real_t t76 = t75 * t68;
+    const ur10e_bench_real_t t77 = t76 + t26;
+    const ur10e_bench_real_t t78 = ddq[0] * t4;
+    const ur10e_bench_real_t t79 = t74 + (UR10E_BENCH_C(0.57155) * t77 + UR10E_BENCH_C(0.17415) * t78);
+    const ur10e_bench_real_t t80 = t7 * t79 - t5 * t73;
+    const ur10e_bench_real_t t81 = t80 + UR10E_BENCH_C(-0.11985) * t28;
+    const ur10e_bench_real_t t82 = t75 * t75;
+    const ur10e_bench_real_t t83 = t11 * t75;
+    const ur10e_bench_real_t t84 = t72 - t83 - t83;
+    const ur10e_bench_real_t t85 = dq[1] * t62;
+    const ur10e_bench_real_t t86 = t2 * ddq[0];
+    const ur10e_bench_real_t t87 = t86 - t85 - t85;
+    const ur10e_bench_real_t t88 = UR10E_BENCH_C(0.6127) * t87;
+    const ur10e_bench_real_t t89 = t88 + (UR10E_BENCH_C(-0.17415) * (t82 + t69)
+        + UR10E_BENCH_C(0.57155) * t84);
+    const ur10e_bench_real_t t90 = t89 + UR10E_BENCH_C(0.11985) * t32;
+    const ur10e_bench_real_t t91 = t13 * t81 + t10 * t90;
+    const ur10e_bench_real_t t92 = parameters[YZ6R] * (t55 - t56) - t54 + parameters[MY6] * t91;
+    const ur10e_bench_real_t t93 = t42 + t43;
+    const ur10e_bench_real_t t94 = t52 - t48;
+    const ur10e_bench_real_t t95 = (parameters[ZZ6] - parameters[XX6R]) * t46 + parameters[XY6] * t93
+        + parameters[YZ6R] * t94;
+    const ur10e_bench_real_t t96 = t45 * t45;
+    const ur10e_bench_real_t t97 = parameters[XZ6R] * (t96 - t56) + t95 + parameters[MX6] * t91;
+    const ur10e_bench_real_t t98 = t50 + t51;
+    const ur10e_bench_real_t t99 = t16 + t21;
+    const ur10e_bench_real_t t100 = parameters[ZZ5R] * t35 + parameters[XX5R] * t36 - parameters[XY5] * t98
+        + parameters[XZ5] * t99;
+    const ur10e_bench_real_t t101 = t15 * t15;
+    const ur10e_bench_real_t t102 = t34 * t34;
+    const ur10e_bench_real_t t103 = t7 * t73 + t5 * t79;
+    const ur10e_bench_real_t t104 = t9 * t9;
+    const ur10e_bench_real_t t105 = t12 * t12;
+    const ur10e_bench_real_t t106 = t105 + t104;
+    const ur10e_bench_real_t t107 = UR10E_BENCH_C(-0.11985) * t106 + t103;
+    const ur10e_bench_real_t t108 = parameters[YZ5] * (t101 - t102) + t100 + parameters[MY5R] * t107
+        + (t38 * t92 + t23 * t97);
+    const ur10e_bench_real_t t109 = parameters[XX6R] * t48 - parameters[ZZ6] * t52 - parameters[YZ6R] * t44
+        + parameters[XZ6R] * t39;
+    const ur10e_bench_real_t t110 = t10 * t81 - t13 * t90;
+    const ur10e_bench_real_t t111 = parameters[MX6] * (t23 * t110 - t38 * t107)
+        + parameters[MY6] * (t38 * t110 + t23 * t107);
+    const ur10e_bench_real_t t112 = parameters[XY6] * (t96 - t55) + t109 + t111;
+    const ur10e_bench_real_t t113 = (parameters[XX5R] - parameters[ZZ5R]) * t50 + parameters[XY5] * t37
+        - parameters[YZ5] * t22;
+    const ur10e_bench_real_t t114 = t14 * t14;
+    const ur10e_bench_real_t t115 = parameters[XZ5] * (t114 - t102) - t113 + parameters[MX5] * t107 - t112;
+    const ur10e_bench_real_t t116 = parameters[MX6] * (t55 + t56) - parameters[MY6] * t94;
+    const ur10e_bench_real_t t117 = parameters[MY6] * (t96 + t56) + parameters[MX6] * t53;
+    const ur10e_bench_real_t t118 = parameters[MX5] * (t101 + t102) - parameters[MY5R] * t22 + (t38 * t116
+        - t23 * t117);
+    const ur10e_bench_real_t t119 = parameters[MX5] * t99 - parameters[MY5R] * (t114 + t102)
+        + (parameters[MX6] * t47 - parameters[MY6] * t93);
+    const ur10e_bench_real_t t120 = t10 * t119 - t13 * t118;
+    const ur10e_bench_real_t t121 = t17 + t20;
+    const ur10e_bench_real_t t122 = t27 - t25;
+    const ur10e_bench_real_t t123 = parameters[XX4R] * t31 - parameters[ZZ4R] * t29 - parameters[XY4] * t121
+        + parameters[XZ4] * t122;
+    const ur10e_bench_real_t t124 = t24 * t24;
+    const ur10e_bench_real_t t125 = parameters[YZ4] * (t124 - t105) + t123 + parameters[MY4R] * t89
+        + (t10 * t108 + t13 * t115 + UR10E_BENCH_C(-0.11985) * t120);
+    const ur10e_bench_real_t t126 = parameters[ZZ5R] * t21 - parameters[XX5R] * t16 + parameters[YZ5] * t49
+        + parameters[XZ5] * t33;
+    const ur10e_bench_real_t t127 = parameters[XY5] * (t114 - t101) + t126 + (parameters[MX5] * t91
+        + parameters[MY5R] * t110);
+    const ur10e_bench_real_t t128 = t127 + (t38 * t97 - t23 * t92);
+    const ur10e_bench_real_t t129 = (parameters[ZZ4R] - parameters[XX4R]) * t17 + parameters[XY4] * t32
+        - parameters[YZ4] * t28;
+    const ur10e_bench_real_t t130 = parameters[XZ4] * (t104 - t105) + t129 + parameters[MX4] * t89 + t128;
+    const ur10e_bench_real_t t131 = t10 * t118 + t13 * t119;
+    const ur10e_bench_real_t t132 = parameters[MX4] * (t105 + t124) + parameters[MY4R] * t28 + t131;
+    const ur10e_bench_real_t t133 = parameters[MX5] * t98 + parameters[MY5R] * t37 + (t23 * t116
+        + t38 * t117);
+    const ur10e_bench_real_t t134 = parameters[MY4R] * t106 - parameters[MX4] * t122 + t133;
+    const ur10e_bench_real_t t135 = t5 * t132 - t7 * t134;
+    const ur10e_bench_real_t t136 = parameters[MX4] * t121 - parameters[MY4R] * t32 + t120;
+    const ur10e_bench_real_t t137 = t5 * t130 - t7 * t125 + (UR10E_BENCH_C(0.17415) * t135
+        - UR10E_BENCH_C(0.57155) * t136);
+    const ur10e_bench_real_t t138 = t11 * t68;
+    const ur10e_bench_real_t t139 = t138 + t78;
+    const ur10e_bench_real_t t140 = t138 + t139;
+    const ur10e_bench_real_t t141 = t26 - t76;
+    const ur10e_bench_real_t t142 = (parameters[XX3R] - parameters[ZZ3R]) * t83 + parameters[XY3] * t140
+        + parameters[YZ3] * t141;
+    const ur10e_bench_real_t t143 = parameters[XZ3R] * (t70 - t82) + t142 - parameters[MX3R] * t88 - t137;
+    const ur10e_bench_real_t t144 = t7 * t132 + t5 * t134;
+    const ur10e_bench_real_t t145 = parameters[ZZ3R] * t138 + parameters[XX3R] * t139 + parameters[XY3] * t84
+        + parameters[XZ3R] * t77;
+    const ur10e_bench_real_t t146 = parameters[MY3] * t88 + (parameters[YZ3] * (t69 - t70) + t145)
+        + (t5 * t125 + t7 * t130 + UR10E_BENCH_C(0.17415) * t144);
+    const ur10e_bench_real_t t147 = dq[1] * t57;
+    const ur10e_bench_real_t t148 = t0 * ddq[0];
+    const ur10e_bench_real_t t149 = t147 + t148;
+    const ur10e_bench_real_t t150 = parameters[ZZ2R] * t147 + parameters[XX2R] * t149 + parameters[XY2] * t87
+        + parameters[XZ2R] * t64;
+    const ur10e_bench_real_t t151 = parameters[YZ2] * (t58 - t59) + t150 + (t1 * t146 - t3 * t143);
+    const ur10e_bench_real_t t152 = t3 * t146 + t1 * t143 + UR10E_BENCH_C(0.6127) * (parameters[MY3] * t140
+        - parameters[MX3R] * t84 + t136);
+    const ur10e_bench_real_t t153 = t85 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t147
+        + t149) + parameters[YZ2] * (ddq[1] - t63);
+    const ur10e_bench_real_t t154 = t62 * t62;
+    const ur10e_bench_real_t t155 = t0 * t151 + t2 * (parameters[XZ2R] * (t59 - t154) + t153 + t152);
     out[0] = parameters[ZZ1R] * ddq[0] + t155;
-    const ur10e_bench_real_t t156 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t12 + parameters[YZ2] * t10
-        + parameters[XZ2R] * t6;
-    const ur10e_bench_real_t t157 = parameters[MY2] * t79 - parameters[MX2R] * t81 + (parameters[XY2] * (t152
-        - t3) + t156);
-    const ur10e_bench_real_t t158 = parameters[ZZ3R] * t32 - parameters[XX3R] * t31 + parameters[YZ3] * t29
-        + parameters[XZ3R] * t25;
-    const ur10e_bench_real_t t159 = parameters[MY3] * t83 - parameters[MX3R] * t86 + (parameters[XY3] * (t55
-        - t22) + t158);
-    const ur10e_bench_real_t t160 = parameters[XX4R] * t51 + parameters[ZZ4R] * t52 - parameters[YZ4] * t48
-        + parameters[XZ4] * t44;
-    const ur10e_bench_real_t t161 = parameters[XY4] * (t77 - t41) + t160 + (parameters[MY4R] * t109
-        - parameters[MX4] * t88);
-    const ur10e_bench_real_t t162 = t161 + (t58 * t119 - t57 * t126 + UR10E_BENCH_C(-0.11985) * t138);
-    const ur10e_bench_real_t t163 = t159 + (t162 + UR10E_BENCH_C(0.57155) * t142);
-    const ur10e_bench_real_t t164 = t15 * (parameters[MY3] * (t18 + t55) - parameters[MX3R] * t33 + t142);
-    const ur10e_bench_real_t t165 = t19 * (parameters[MX3R] * t84 + parameters[MY3] * t145 + t147) + t164;
-    out[1] = t157 + (t163 + UR10E_BENCH_C(0.6127) * t165);
-    out[2] = t163;
-    out[3] = t162;
-    out[4] = t136;
-    out[5] = t125;
+    const ur10e_bench_real_t t156 = parameters[XX4R] * t25 + parameters[ZZ4R] * t27 - parameters[YZ4] * t19
+        + parameters[XZ4] * t30;
+    const ur10e_bench_real_t t157 = parameters[XY4] * (t104 - t124) + t156 + (parameters[MY4R] * t80
+        - parameters[MX4] * t103);
+    const ur10e_bench_real_t t158 = t157 + (t13 * t108 - t10 * t115 + UR10E_BENCH_C(-0.11985) * t131);
+    const ur10e_bench_real_t t159 = parameters[ZZ3R] * t26 - parameters[XX3R] * t76 + parameters[YZ3] * t72
+        + parameters[XZ3R] * t78;
+    const ur10e_bench_real_t t160 = parameters[MY3] * t67 - parameters[MX3R] * t74 + (parameters[XY3] * (t82
+        - t69) + t159);
+    const ur10e_bench_real_t t161 = t160 + (t158 + UR10E_BENCH_C(0.57155) * t144);
+    const ur10e_bench_real_t t162 = t1 * (parameters[MY3] * (t70 + t82) - parameters[MX3R] * t77 + t144);
+    const ur10e_bench_real_t t163 = t3 * (parameters[MX3R] * t71 + parameters[MY3] * t141 + t135) + t162;
+    const ur10e_bench_real_t t164 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t63 + parameters[YZ2] * t86
+        + parameters[XZ2R] * t148;
+    const ur10e_bench_real_t t165 = parameters[MY2] * t60 - parameters[MX2R] * t65 + (parameters[XY2] * (t154
+        - t58) + t164);
+    out[1] = t165 + (t161 + UR10E_BENCH_C(0.6127) * t163);
+    out[2] = t161;
+    out[3] = t158;
+    out[4] = t128;
+    out[5] = t112;
     return UR10E_BENCH_STATUS_OK;
 }

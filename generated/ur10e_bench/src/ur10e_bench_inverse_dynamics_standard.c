@@ -87,7 +87,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -114,248 +114,249 @@ int ur10e_bench_inverse_dynamics_standard(
         return status;
     }
 
-    ur10e_bench_real_t t0, t1;
-    UR10E_BENCH_SINCOS(q[1], &t0, &t1);
-    ur10e_bench_real_t t20, t18;
-    UR10E_BENCH_SINCOS(q[2], &t20, &t18);
-    ur10e_bench_real_t t45, t44;
-    UR10E_BENCH_SINCOS(q[3], &t45, &t44);
-    ur10e_bench_real_t t74, t73;
-    UR10E_BENCH_SINCOS(q[4], &t74, &t73);
-    ur10e_bench_real_t t102, t101;
-    UR10E_BENCH_SINCOS(q[5], &t102, &t101);
-    const ur10e_bench_real_t t2 = UR10E_BENCH_C(-9.81) * t1;
-    const ur10e_bench_real_t t3 = t1 * dq[0];
-    const ur10e_bench_real_t t4 = t3 * t3;
-    const ur10e_bench_real_t t5 = dq[1] * dq[1];
-    const ur10e_bench_real_t t6 = dq[1] * t3;
-    const ur10e_bench_real_t t7 = t0 * ddq[0];
-    const ur10e_bench_real_t t8 = t7 + t6;
-    const ur10e_bench_real_t t9 = t0 * dq[0];
-    const ur10e_bench_real_t t10 = dq[1] * t9;
-    const ur10e_bench_real_t t11 = t1 * ddq[0];
-    const ur10e_bench_real_t t12 = t11 - t10;
-    const ur10e_bench_real_t t13 = t12 - t10;
-    const ur10e_bench_real_t t14 = t6 * (parameters[ZZ2] - parameters[YY2]) + t8 * parameters[XX2]
-        + t13 * parameters[XY2];
-    const ur10e_bench_real_t t15 = t9 * t3;
-    const ur10e_bench_real_t t16 = ddq[1] + t15;
-    const ur10e_bench_real_t t17 = t2 * parameters[MZ2] + ((t4 - t5) * parameters[YZ2] + (t14
-        + t16 * parameters[XZ2]));
-    const ur10e_bench_real_t t19 = UR10E_BENCH_C(0.6127) * t13;
-    const ur10e_bench_real_t t21 = UR10E_BENCH_C(9.81) * t0;
-    const ur10e_bench_real_t t22 = t21 + UR10E_BENCH_C(0.6127) * (t4 + t5);
-    const ur10e_bench_real_t t23 = t2 + UR10E_BENCH_C(0.6127) * t16;
-    const ur10e_bench_real_t t24 = t20 * t22 + t18 * t23;
-    const ur10e_bench_real_t t25 = t1 * t18 - t0 * t20;
-    const ur10e_bench_real_t t26 = dq[0] * t25;
-    const ur10e_bench_real_t t27 = t26 * t26;
-    const ur10e_bench_real_t t28 = dq[1] + dq[2];
-    const ur10e_bench_real_t t29 = t28 * t28;
-    const ur10e_bench_real_t t30 = t26 * t28;
-    const ur10e_bench_real_t t31 = t0 * t18 + t1 * t20;
-    const ur10e_bench_real_t t32 = ddq[0] * t31;
-    const ur10e_bench_real_t t33 = t32 + t30;
-    const ur10e_bench_real_t t34 = dq[0] * t31;
-    const ur10e_bench_real_t t35 = t34 * t28;
-    const ur10e_bench_real_t t36 = ddq[0] * t25;
-    const ur10e_bench_real_t t37 = t36 - t35;
-    const ur10e_bench_real_t t38 = t37 - t35;
-    const ur10e_bench_real_t t39 = t33 * parameters[XX3] - t30 * (parameters[YY3] - parameters[ZZ3])
-        + t38 * parameters[XY3];
-    const ur10e_bench_real_t t40 = ddq[1] + ddq[2];
-    const ur10e_bench_real_t t41 = t34 * t26;
-    const ur10e_bench_real_t t42 = t40 + t41;
-    const ur10e_bench_real_t t43 = t19 * parameters[MY3] + t24 * parameters[MZ3] + ((t27
-        - t29) * parameters[YZ3] + (t39 + t42 * parameters[XZ3]));
-    const ur10e_bench_real_t t46 = t45 * t31 - t44 * t25;
-    const ur10e_bench_real_t t47 = dq[0] * t46;
-    const ur10e_bench_real_t t48 = t47 * t47;
-    const ur10e_bench_real_t t49 = dq[3] + t28;
-    const ur10e_bench_real_t t50 = t49 * t49;
-    const ur10e_bench_real_t t51 = t47 * t49;
-    const ur10e_bench_real_t t52 = t44 * t31 + t45 * t25;
-    const ur10e_bench_real_t t53 = ddq[0] * t52;
-    const ur10e_bench_real_t t54 = t53 - t51;
-    const ur10e_bench_real_t t55 = dq[0] * t52;
-    const ur10e_bench_real_t t56 = t55 * t49;
-    const ur10e_bench_real_t t57 = ddq[0] * t46;
-    const ur10e_bench_real_t t58 = t57 + t56;
-    const ur10e_bench_real_t t59 = t56 + t58;
-    const ur10e_bench_real_t t60 = t51 * (parameters[YY4] - parameters[ZZ4]) + t54 * parameters[XX4]
-        - t59 * parameters[XY4];
-    const ur10e_bench_real_t t61 = ddq[3] + t40;
-    const ur10e_bench_real_t t62 = t55 * t47;
-    const ur10e_bench_real_t t63 = t61 - t62;
-    const ur10e_bench_real_t t64 = t34 * t34;
-    const ur10e_bench_real_t t65 = t64 + t27;
-    const ur10e_bench_real_t t66 = t19 + (UR10E_BENCH_C(0.57155) * t38 + UR10E_BENCH_C(-0.17415) * t65);
-    const ur10e_bench_real_t t67 = t20 * t23 - t18 * t22;
-    const ur10e_bench_real_t t68 = t27 + t29;
-    const ur10e_bench_real_t t69 = UR10E_BENCH_C(0.57155) * t68 - UR10E_BENCH_C(-0.17415) * t36 - t67;
-    const ur10e_bench_real_t t70 = t24 + (UR10E_BENCH_C(0.57155) * t42 + UR10E_BENCH_C(0.17415) * t32);
-    const ur10e_bench_real_t t71 = t45 * t69 + t44 * t70;
-    const ur10e_bench_real_t t72 = (t48 - t50) * parameters[YZ4] + (t60 + t63 * parameters[XZ4])
-        + (t66 * parameters[MY4] + t71 * parameters[MZ4]);
-    const ur10e_bench_real_t t75 = t73 * t49 - t74 * t55;
-    const ur10e_bench_real_t t76 = t75 * t75;
-    const ur10e_bench_real_t t77 = dq[4] + t47;
-    const ur10e_bench_real_t t78 = t77 * t77;
-    const ur10e_bench_real_t t79 = t75 * t77;
-    const ur10e_bench_real_t t80 = t61 + t62;
-    const ur10e_bench_real_t t81 = t51 - t54;
-    const ur10e_bench_real_t t82 = t74 * t80 - t73 * t81;
-    const ur10e_bench_real_t t83 = t82 + t79;
-    const ur10e_bench_real_t t84 = t73 * t55 + t74 * t49;
-    const ur10e_bench_real_t t85 = t84 * t77;
-    const ur10e_bench_real_t t86 = t73 * t80 + t74 * t81;
+    ur10e_bench_real_t t0, t2;
+    UR10E_BENCH_SINCOS(q[1], &t0, &t2);
+    ur10e_bench_real_t t3, t1;
+    UR10E_BENCH_SINCOS(q[2], &t3, &t1);
+    ur10e_bench_real_t t5, t7;
+    UR10E_BENCH_SINCOS(q[3], &t5, &t7);
+    ur10e_bench_real_t t18, t17;
+    UR10E_BENCH_SINCOS(q[4], &t18, &t17);
+    ur10e_bench_real_t t23, t38;
+    UR10E_BENCH_SINCOS(q[5], &t23, &t38);
+    const ur10e_bench_real_t t4 = t0 * t1 + t2 * t3;
+    const ur10e_bench_real_t t6 = t2 * t1 - t0 * t3;
+    const ur10e_bench_real_t t8 = t5 * t4 - t7 * t6;
+    const ur10e_bench_real_t t9 = ddq[0] * t8;
+    const ur10e_bench_real_t t10 = t7 * t4 + t5 * t6;
+    const ur10e_bench_real_t t11 = dq[0] * t10;
+    const ur10e_bench_real_t t12 = dq[1] + dq[2];
+    const ur10e_bench_real_t t13 = dq[3] + t12;
+    const ur10e_bench_real_t t14 = t11 * t13;
+    const ur10e_bench_real_t t15 = t9 + t14;
+    const ur10e_bench_real_t t16 = ddq[4] + t15;
+    const ur10e_bench_real_t t19 = t17 * t11 + t18 * t13;
+    const ur10e_bench_real_t t20 = t17 * t13 - t18 * t11;
+    const ur10e_bench_real_t t21 = t19 * t20;
+    const ur10e_bench_real_t t22 = t16 - t21;
+    const ur10e_bench_real_t t24 = dq[0] * t8;
+    const ur10e_bench_real_t t25 = t11 * t24;
+    const ur10e_bench_real_t t26 = ddq[1] + ddq[2];
+    const ur10e_bench_real_t t27 = ddq[3] + t26;
+    const ur10e_bench_real_t t28 = t27 + t25;
+    const ur10e_bench_real_t t29 = ddq[0] * t10;
+    const ur10e_bench_real_t t30 = t24 * t13;
+    const ur10e_bench_real_t t31 = t29 - t30;
+    const ur10e_bench_real_t t32 = t30 - t31;
+    const ur10e_bench_real_t t33 = t18 * t28 - t17 * t32;
+    const ur10e_bench_real_t t34 = dq[4] + t24;
+    const ur10e_bench_real_t t35 = t20 * t34;
+    const ur10e_bench_real_t t36 = t33 + t35;
+    const ur10e_bench_real_t t37 = t35 + t36;
+    const ur10e_bench_real_t t39 = t38 * t37 - t23 * t22;
+    const ur10e_bench_real_t t40 = t23 * t19 + t38 * t34;
+    const ur10e_bench_real_t t41 = dq[5] + t20;
+    const ur10e_bench_real_t t42 = t40 * t41;
+    const ur10e_bench_real_t t43 = t42 - t39;
+    const ur10e_bench_real_t t44 = t38 * t22 + t23 * t37;
+    const ur10e_bench_real_t t45 = t38 * t19 - t23 * t34;
+    const ur10e_bench_real_t t46 = t45 * t41;
+    const ur10e_bench_real_t t47 = t44 + t46;
+    const ur10e_bench_real_t t48 = t46 + t47;
+    const ur10e_bench_real_t t49 = t42 * (parameters[YY6] - parameters[ZZ6]) - t43 * parameters[XX6]
+        - t48 * parameters[XY6];
+    const ur10e_bench_real_t t50 = t17 * t28 + t18 * t32;
+    const ur10e_bench_real_t t51 = t19 * t34;
+    const ur10e_bench_real_t t52 = t50 - t51;
+    const ur10e_bench_real_t t53 = ddq[5] + t52;
+    const ur10e_bench_real_t t54 = t45 * t40;
+    const ur10e_bench_real_t t55 = t53 - t54;
+    const ur10e_bench_real_t t56 = t40 * t40;
+    const ur10e_bench_real_t t57 = t41 * t41;
+    const ur10e_bench_real_t t58 = t2 * dq[0];
+    const ur10e_bench_real_t t59 = t58 * t58;
+    const ur10e_bench_real_t t60 = dq[1] * dq[1];
+    const ur10e_bench_real_t t61 = UR10E_BENCH_C(9.81) * t0;
+    const ur10e_bench_real_t t62 = t61 + UR10E_BENCH_C(0.6127) * (t59 + t60);
+    const ur10e_bench_real_t t63 = t0 * dq[0];
+    const ur10e_bench_real_t t64 = t63 * t58;
+    const ur10e_bench_real_t t65 = ddq[1] + t64;
+    const ur10e_bench_real_t t66 = UR10E_BENCH_C(-9.81) * t2;
+    const ur10e_bench_real_t t67 = t66 + UR10E_BENCH_C(0.6127) * t65;
+    const ur10e_bench_real_t t68 = t3 * t67 - t1 * t62;
+    const ur10e_bench_real_t t69 = dq[0] * t6;
+    const ur10e_bench_real_t t70 = t69 * t69;
+    const ur10e_bench_real_t t71 = t12 * t12;
+    const ur10e_bench_real_t t72 = t70 + t71;
+    const ur10e_bench_real_t t73 = ddq[0] * t6;
+    const ur10e_bench_real_t t74 = UR10E_BENCH_C(0.57155) * t72 - UR10E_BENCH_C(-0.17415) * t73 - t68;
+    const ur10e_bench_real_t t75 = t3 * t62 + t1 * t67;
+    const ur10e_bench_real_t t76 = dq[0] * t4;
+    const ur10e_bench_real_t t77 = t76 * t69;
+    const ur10e_bench_real_t t78 = t26 + t77;
+    const ur10e_bench_real_t t79 = ddq[0] * t4;
+    const ur10e_bench_real_t t80 = t75 + (UR10E_BENCH_C(0.57155) * t78 + UR10E_BENCH_C(0.17415) * t79);
+    const ur10e_bench_real_t t81 = t5 * t80 - t7 * t74;
+    const ur10e_bench_real_t t82 = t81 + UR10E_BENCH_C(-0.11985) * t28;
+    const ur10e_bench_real_t t83 = t76 * t76;
+    const ur10e_bench_real_t t84 = t83 + t70;
+    const ur10e_bench_real_t t85 = t76 * t12;
+    const ur10e_bench_real_t t86 = t73 - t85;
     const ur10e_bench_real_t t87 = t86 - t85;
-    const ur10e_bench_real_t t88 = t87 - t85;
-    const ur10e_bench_real_t t89 = t83 * parameters[XX5] - t79 * (parameters[YY5] - parameters[ZZ5])
-        + t88 * parameters[XY5];
-    const ur10e_bench_real_t t90 = ddq[4] + t58;
-    const ur10e_bench_real_t t91 = t84 * t75;
-    const ur10e_bench_real_t t92 = t90 + t91;
-    const ur10e_bench_real_t t93 = t55 * t55;
-    const ur10e_bench_real_t t94 = t93 + t50;
-    const ur10e_bench_real_t t95 = t71 + UR10E_BENCH_C(-0.11985) * t94;
-    const ur10e_bench_real_t t96 = t45 * t70 - t44 * t69;
-    const ur10e_bench_real_t t97 = t96 + UR10E_BENCH_C(-0.11985) * t80;
-    const ur10e_bench_real_t t98 = t66 + UR10E_BENCH_C(0.11985) * t81;
-    const ur10e_bench_real_t t99 = t74 * t97 + t73 * t98;
-    const ur10e_bench_real_t t100 = (t76 - t78) * parameters[YZ5] + (t89 + t92 * parameters[XZ5])
-        + (t95 * parameters[MY5] - t99 * parameters[MZ5]);
-    const ur10e_bench_real_t t103 = t102 * t84 + t101 * t77;
-    const ur10e_bench_real_t t104 = t103 * t103;
-    const ur10e_bench_real_t t105 = dq[5] + t75;
-    const ur10e_bench_real_t t106 = t105 * t105;
-    const ur10e_bench_real_t t107 = t103 * t105;
-    const ur10e_bench_real_t t108 = t90 - t91;
-    const ur10e_bench_real_t t109 = t79 + t83;
-    const ur10e_bench_real_t t110 = t101 * t109 - t102 * t108;
-    const ur10e_bench_real_t t111 = t107 - t110;
-    const ur10e_bench_real_t t112 = t101 * t84 - t102 * t77;
-    const ur10e_bench_real_t t113 = t112 * t105;
-    const ur10e_bench_real_t t114 = t101 * t108 + t102 * t109;
-    const ur10e_bench_real_t t115 = t114 + t113;
-    const ur10e_bench_real_t t116 = t113 + t115;
-    const ur10e_bench_real_t t117 = t107 * (parameters[YY6] - parameters[ZZ6]) - t111 * parameters[XX6]
-        - t116 * parameters[XY6];
-    const ur10e_bench_real_t t118 = ddq[5] + t87;
-    const ur10e_bench_real_t t119 = t112 * t103;
-    const ur10e_bench_real_t t120 = t118 - t119;
-    const ur10e_bench_real_t t121 = t84 * t84;
-    const ur10e_bench_real_t t122 = t121 + t78;
-    const ur10e_bench_real_t t123 = t99 + UR10E_BENCH_C(-0.11655) * t122;
-    const ur10e_bench_real_t t124 = t73 * t97 - t74 * t98;
-    const ur10e_bench_real_t t125 = t124 + UR10E_BENCH_C(0.11655) * t108;
-    const ur10e_bench_real_t t126 = t95 - UR10E_BENCH_C(-0.11655) * t109;
-    const ur10e_bench_real_t t127 = t102 * t125 - t101 * t126;
-    const ur10e_bench_real_t t128 = (t104 - t106) * parameters[YZ6] + (t117 + t120 * parameters[XZ6])
-        - (t127 * parameters[MZ6] - t123 * parameters[MY6]);
-    const ur10e_bench_real_t t129 = t112 * t112;
-    const ur10e_bench_real_t t130 = t107 + t111;
-    const ur10e_bench_real_t t131 = t113 * (parameters[ZZ6] - parameters[XX6]) + t115 * parameters[YY6]
-        + t130 * parameters[XY6];
-    const ur10e_bench_real_t t132 = t118 + t119;
-    const ur10e_bench_real_t t133 = t101 * t125 + t102 * t126;
-    const ur10e_bench_real_t t134 = (t129 - t106) * parameters[XZ6] + (t131 - t132 * parameters[YZ6])
-        + (t133 * parameters[MZ6] + t123 * parameters[MX6]);
-    const ur10e_bench_real_t t135 = (t104 + t106) * parameters[MX6] + t132 * parameters[MY6]
-        + t114 * parameters[MZ6];
-    const ur10e_bench_real_t t136 = t133 * parameters[M6] + t135;
-    const ur10e_bench_real_t t137 = (t129 + t106) * parameters[MY6] - t120 * parameters[MX6]
-        + t110 * parameters[MZ6];
-    const ur10e_bench_real_t t138 = t137 - t127 * parameters[M6];
-    const ur10e_bench_real_t t139 = t102 * t136 + t101 * t138;
-    const ur10e_bench_real_t t140 = t100 + (t101 * t128 + t102 * t134 + UR10E_BENCH_C(0.11655) * t139);
-    const ur10e_bench_real_t t141 = t85 * (parameters[XX5] - parameters[ZZ5]) + t87 * parameters[YY5]
-        + t109 * parameters[XY5];
-    const ur10e_bench_real_t t142 = (t121 - t78) * parameters[XZ5] - (t141 + t108 * parameters[YZ5])
-        + (t124 * parameters[MZ5] + t95 * parameters[MX5]);
-    const ur10e_bench_real_t t143 = t119 * (parameters[XX6] - parameters[YY6]) + t118 * parameters[ZZ6]
-        - t114 * parameters[YZ6];
-    const ur10e_bench_real_t t144 = (t129 - t104) * parameters[XY6] + (t143 + t110 * parameters[XZ6])
-        + (t127 * parameters[MX6] + t133 * parameters[MY6]);
-    const ur10e_bench_real_t t145 = t142 - t144;
-    const ur10e_bench_real_t t146 = (t76 + t78) * parameters[MX5] + t108 * parameters[MY5]
-        - t86 * parameters[MZ5];
-    const ur10e_bench_real_t t147 = t101 * t136 - t102 * t138;
-    const ur10e_bench_real_t t148 = t124 * parameters[M5] + t146 + t147;
-    const ur10e_bench_real_t t149 = t99 * parameters[M5] + (t92 * parameters[MX5] - t122 * parameters[MY5]
-        - t82 * parameters[MZ5]);
-    const ur10e_bench_real_t t150 = t116 * parameters[MX6] - t130 * parameters[MY6] - (t129
-        + t104) * parameters[MZ6];
-    const ur10e_bench_real_t t151 = t149 + (t123 * parameters[M6] + t150);
-    const ur10e_bench_real_t t152 = t73 * t151 - t74 * t148;
-    const ur10e_bench_real_t t153 = t72 + (t73 * t140 + t74 * t145 + UR10E_BENCH_C(-0.11985) * t152);
-    const ur10e_bench_real_t t154 = t56 * (parameters[ZZ4] - parameters[XX4]) + t58 * parameters[YY4]
-        + t81 * parameters[XY4];
-    const ur10e_bench_real_t t155 = (t93 - t50) * parameters[XZ4] + (t154 - t80 * parameters[YZ4])
-        + (t96 * parameters[MZ4] + t66 * parameters[MX4]);
-    const ur10e_bench_real_t t156 = t90 * parameters[ZZ5] - t91 * (parameters[XX5] - parameters[YY5])
-        + t86 * parameters[YZ5];
-    const ur10e_bench_real_t t157 = (t121 - t76) * parameters[XY5] + (t156 + t82 * parameters[XZ5])
-        + (t99 * parameters[MX5] + t124 * parameters[MY5]);
-    const ur10e_bench_real_t t158 = t157 + (t101 * t134 - t102 * t128 + UR10E_BENCH_C(0.11655) * t147);
-    const ur10e_bench_real_t t159 = t155 + t158;
-    const ur10e_bench_real_t t160 = (t48 + t50) * parameters[MX4] + t80 * parameters[MY4]
-        + t57 * parameters[MZ4];
-    const ur10e_bench_real_t t161 = t73 * t148 + t74 * t151;
-    const ur10e_bench_real_t t162 = t96 * parameters[M4] + t160 + t161;
-    const ur10e_bench_real_t t163 = t71 * parameters[M4] + (t94 * parameters[MY4] - t63 * parameters[MX4]
-        + t53 * parameters[MZ4]);
-    const ur10e_bench_real_t t164 = (t121 + t76) * parameters[MZ5] - (t109 * parameters[MY5]
-        - t88 * parameters[MX5]);
-    const ur10e_bench_real_t t165 = t163 + (t95 * parameters[M5] - t164 + t139);
-    const ur10e_bench_real_t t166 = t45 * t162 + t44 * t165;
-    const ur10e_bench_real_t t167 = t43 + (t44 * t153 + t45 * t159 + UR10E_BENCH_C(0.17415) * t166);
-    const ur10e_bench_real_t t168 = t30 + t33;
-    const ur10e_bench_real_t t169 = t35 * (parameters[XX3] - parameters[ZZ3]) + t37 * parameters[YY3]
-        + t168 * parameters[XY3];
-    const ur10e_bench_real_t t170 = t40 - t41;
-    const ur10e_bench_real_t t171 = t67 * parameters[MZ3] + t19 * parameters[MX3] + ((t64
-        - t29) * parameters[XZ3] - (t169 + t170 * parameters[YZ3]));
-    const ur10e_bench_real_t t172 = t44 * t162 - t45 * t165;
-    const ur10e_bench_real_t t173 = t59 * parameters[MX4] - t81 * parameters[MY4] - (t93
-        + t48) * parameters[MZ4];
-    const ur10e_bench_real_t t174 = t66 * parameters[M4] + t173 + t152;
-    const ur10e_bench_real_t t175 = t45 * t153 - t44 * t159 + (UR10E_BENCH_C(-0.17415) * t172
-        - UR10E_BENCH_C(-0.57155) * t174);
-    const ur10e_bench_real_t t176 = t175 - t171;
-    const ur10e_bench_real_t t177 = t9 * t9;
-    const ur10e_bench_real_t t178 = t10 * (parameters[XX2] - parameters[ZZ2]) + t12 * parameters[YY2] + (t6
-        + t8) * parameters[XY2];
-    const ur10e_bench_real_t t179 = (t5 - t177) * parameters[XZ2] + (t178 + (ddq[1] - t15) * parameters[YZ2]);
-    const ur10e_bench_real_t t180 = t19 * parameters[M3] + (t168 * parameters[MY3] - t38 * parameters[MX3]
-        - t65 * parameters[MZ3]);
-    const ur10e_bench_real_t t181 = t20 * t167 + t18 * t176 + UR10E_BENCH_C(0.6127) * (t180 + t174);
-    const ur10e_bench_real_t t182 = t0 * (t17 + (t18 * t167 - t20 * t176)) + t1 * (t21 * parameters[MZ2]
-        + t179 + t181);
+    const ur10e_bench_real_t t88 = t2 * ddq[0];
+    const ur10e_bench_real_t t89 = dq[1] * t63;
+    const ur10e_bench_real_t t90 = t88 - t89;
+    const ur10e_bench_real_t t91 = t90 - t89;
+    const ur10e_bench_real_t t92 = UR10E_BENCH_C(0.6127) * t91;
+    const ur10e_bench_real_t t93 = t92 + (UR10E_BENCH_C(0.57155) * t87 + UR10E_BENCH_C(-0.17415) * t84);
+    const ur10e_bench_real_t t94 = t93 + UR10E_BENCH_C(0.11985) * t32;
+    const ur10e_bench_real_t t95 = t17 * t82 - t18 * t94;
+    const ur10e_bench_real_t t96 = t95 + UR10E_BENCH_C(0.11655) * t22;
+    const ur10e_bench_real_t t97 = t5 * t74 + t7 * t80;
+    const ur10e_bench_real_t t98 = t11 * t11;
+    const ur10e_bench_real_t t99 = t13 * t13;
+    const ur10e_bench_real_t t100 = t98 + t99;
+    const ur10e_bench_real_t t101 = t97 + UR10E_BENCH_C(-0.11985) * t100;
+    const ur10e_bench_real_t t102 = t101 - UR10E_BENCH_C(-0.11655) * t37;
+    const ur10e_bench_real_t t103 = t23 * t96 - t38 * t102;
+    const ur10e_bench_real_t t104 = t18 * t82 + t17 * t94;
+    const ur10e_bench_real_t t105 = t19 * t19;
+    const ur10e_bench_real_t t106 = t34 * t34;
+    const ur10e_bench_real_t t107 = t105 + t106;
+    const ur10e_bench_real_t t108 = t104 + UR10E_BENCH_C(-0.11655) * t107;
+    const ur10e_bench_real_t t109 = (t56 - t57) * parameters[YZ6] + (t49 + t55 * parameters[XZ6])
+        - (t103 * parameters[MZ6] - t108 * parameters[MY6]);
+    const ur10e_bench_real_t t110 = t42 + t43;
+    const ur10e_bench_real_t t111 = t46 * (parameters[ZZ6] - parameters[XX6]) + t47 * parameters[YY6]
+        + t110 * parameters[XY6];
+    const ur10e_bench_real_t t112 = t53 + t54;
+    const ur10e_bench_real_t t113 = t45 * t45;
+    const ur10e_bench_real_t t114 = t38 * t96 + t23 * t102;
+    const ur10e_bench_real_t t115 = (t113 - t57) * parameters[XZ6] + (t111 - t112 * parameters[YZ6])
+        + (t114 * parameters[MZ6] + t108 * parameters[MX6]);
+    const ur10e_bench_real_t t116 = (t56 + t57) * parameters[MX6] + t112 * parameters[MY6]
+        + t44 * parameters[MZ6];
+    const ur10e_bench_real_t t117 = t114 * parameters[M6] + t116;
+    const ur10e_bench_real_t t118 = (t113 + t57) * parameters[MY6] - t55 * parameters[MX6]
+        + t39 * parameters[MZ6];
+    const ur10e_bench_real_t t119 = t118 - t103 * parameters[M6];
+    const ur10e_bench_real_t t120 = t23 * t117 + t38 * t119;
+    const ur10e_bench_real_t t121 = t52 - t51;
+    const ur10e_bench_real_t t122 = t36 * parameters[XX5] - t35 * (parameters[YY5] - parameters[ZZ5])
+        + t121 * parameters[XY5];
+    const ur10e_bench_real_t t123 = t16 + t21;
+    const ur10e_bench_real_t t124 = t20 * t20;
+    const ur10e_bench_real_t t125 = (t124 - t106) * parameters[YZ5] + (t122 + t123 * parameters[XZ5])
+        + (t101 * parameters[MY5] - t104 * parameters[MZ5]);
+    const ur10e_bench_real_t t126 = t125 + (t38 * t109 + t23 * t115 + UR10E_BENCH_C(0.11655) * t120);
+    const ur10e_bench_real_t t127 = t54 * (parameters[XX6] - parameters[YY6]) + t53 * parameters[ZZ6]
+        - t44 * parameters[YZ6];
+    const ur10e_bench_real_t t128 = (t113 - t56) * parameters[XY6] + (t127 + t39 * parameters[XZ6])
+        + (t103 * parameters[MX6] + t114 * parameters[MY6]);
+    const ur10e_bench_real_t t129 = t51 * (parameters[XX5] - parameters[ZZ5]) + t52 * parameters[YY5]
+        + t37 * parameters[XY5];
+    const ur10e_bench_real_t t130 = (t105 - t106) * parameters[XZ5] - (t129 + t22 * parameters[YZ5])
+        + (t95 * parameters[MZ5] + t101 * parameters[MX5]);
+    const ur10e_bench_real_t t131 = t130 - t128;
+    const ur10e_bench_real_t t132 = t38 * t117 - t23 * t119;
+    const ur10e_bench_real_t t133 = (t124 + t106) * parameters[MX5] + t22 * parameters[MY5]
+        - t50 * parameters[MZ5];
+    const ur10e_bench_real_t t134 = t95 * parameters[M5] + t133 + t132;
+    const ur10e_bench_real_t t135 = t104 * parameters[M5] + (t123 * parameters[MX5] - t107 * parameters[MY5]
+        - t33 * parameters[MZ5]);
+    const ur10e_bench_real_t t136 = t48 * parameters[MX6] - t110 * parameters[MY6] - (t113
+        + t56) * parameters[MZ6];
+    const ur10e_bench_real_t t137 = t135 + (t108 * parameters[M6] + t136);
+    const ur10e_bench_real_t t138 = t17 * t137 - t18 * t134;
+    const ur10e_bench_real_t t139 = t14 + t15;
+    const ur10e_bench_real_t t140 = t30 * (parameters[YY4] - parameters[ZZ4]) + t31 * parameters[XX4]
+        - t139 * parameters[XY4];
+    const ur10e_bench_real_t t141 = t27 - t25;
+    const ur10e_bench_real_t t142 = t24 * t24;
+    const ur10e_bench_real_t t143 = (t142 - t99) * parameters[YZ4] + (t140 + t141 * parameters[XZ4])
+        + (t93 * parameters[MY4] + t97 * parameters[MZ4]);
+    const ur10e_bench_real_t t144 = t143 + (t17 * t126 + t18 * t131 + UR10E_BENCH_C(-0.11985) * t138);
+    const ur10e_bench_real_t t145 = t16 * parameters[ZZ5] - t21 * (parameters[XX5] - parameters[YY5])
+        + t50 * parameters[YZ5];
+    const ur10e_bench_real_t t146 = (t105 - t124) * parameters[XY5] + (t145 + t33 * parameters[XZ5])
+        + (t104 * parameters[MX5] + t95 * parameters[MY5]);
+    const ur10e_bench_real_t t147 = t146 + (t38 * t115 - t23 * t109 + UR10E_BENCH_C(0.11655) * t132);
+    const ur10e_bench_real_t t148 = t14 * (parameters[ZZ4] - parameters[XX4]) + t15 * parameters[YY4]
+        + t32 * parameters[XY4];
+    const ur10e_bench_real_t t149 = (t98 - t99) * parameters[XZ4] + (t148 - t28 * parameters[YZ4])
+        + (t81 * parameters[MZ4] + t93 * parameters[MX4]);
+    const ur10e_bench_real_t t150 = t149 + t147;
+    const ur10e_bench_real_t t151 = t17 * t134 + t18 * t137;
+    const ur10e_bench_real_t t152 = (t142 + t99) * parameters[MX4] + t28 * parameters[MY4]
+        + t9 * parameters[MZ4];
+    const ur10e_bench_real_t t153 = t81 * parameters[M4] + t152 + t151;
+    const ur10e_bench_real_t t154 = (t105 + t124) * parameters[MZ5] - (t37 * parameters[MY5]
+        - t121 * parameters[MX5]);
+    const ur10e_bench_real_t t155 = t97 * parameters[M4] + (t100 * parameters[MY4] - t141 * parameters[MX4]
+        + t29 * parameters[MZ4]);
+    const ur10e_bench_real_t t156 = t155 + (t101 * parameters[M5] - t154 + t120);
+    const ur10e_bench_real_t t157 = t5 * t153 + t7 * t156;
+    const ur10e_bench_real_t t158 = t69 * t12;
+    const ur10e_bench_real_t t159 = t79 + t158;
+    const ur10e_bench_real_t t160 = t159 * parameters[XX3] - t158 * (parameters[YY3] - parameters[ZZ3])
+        + t87 * parameters[XY3];
+    const ur10e_bench_real_t t161 = t92 * parameters[MY3] + t75 * parameters[MZ3] + ((t70
+        - t71) * parameters[YZ3] + (t160 + t78 * parameters[XZ3]));
+    const ur10e_bench_real_t t162 = t161 + (t7 * t144 + t5 * t150 + UR10E_BENCH_C(0.17415) * t157);
+    const ur10e_bench_real_t t163 = t7 * t153 - t5 * t156;
+    const ur10e_bench_real_t t164 = t139 * parameters[MX4] - t32 * parameters[MY4] - (t98
+        + t142) * parameters[MZ4];
+    const ur10e_bench_real_t t165 = t93 * parameters[M4] + t164 + t138;
+    const ur10e_bench_real_t t166 = t5 * t144 - t7 * t150 + (UR10E_BENCH_C(-0.17415) * t163
+        - UR10E_BENCH_C(-0.57155) * t165);
+    const ur10e_bench_real_t t167 = t158 + t159;
+    const ur10e_bench_real_t t168 = t85 * (parameters[XX3] - parameters[ZZ3]) + t86 * parameters[YY3]
+        + t167 * parameters[XY3];
+    const ur10e_bench_real_t t169 = t26 - t77;
+    const ur10e_bench_real_t t170 = t68 * parameters[MZ3] + t92 * parameters[MX3] + ((t83
+        - t71) * parameters[XZ3] - (t168 + t169 * parameters[YZ3]));
+    const ur10e_bench_real_t t171 = t166 - t170;
+    const ur10e_bench_real_t t172 = dq[1] * t58;
+    const ur10e_bench_real_t t173 = t0 * ddq[0];
+    const ur10e_bench_real_t t174 = t173 + t172;
+    const ur10e_bench_real_t t175 = t172 * (parameters[ZZ2] - parameters[YY2]) + t174 * parameters[XX2]
+        + t91 * parameters[XY2];
+    const ur10e_bench_real_t t176 = t66 * parameters[MZ2] + ((t59 - t60) * parameters[YZ2] + (t175
+        + t65 * parameters[XZ2]));
+    const ur10e_bench_real_t t177 = t92 * parameters[M3] + (t167 * parameters[MY3] - t87 * parameters[MX3]
+        - t84 * parameters[MZ3]);
+    const ur10e_bench_real_t t178 = t3 * t162 + t1 * t171 + UR10E_BENCH_C(0.6127) * (t177 + t165);
+    const ur10e_bench_real_t t179 = t89 * (parameters[XX2] - parameters[ZZ2]) + t90 * parameters[YY2] + (t172
+        + t174) * parameters[XY2];
+    const ur10e_bench_real_t t180 = t63 * t63;
+    const ur10e_bench_real_t t181 = (t60 - t180) * parameters[XZ2] + (t179 + (ddq[1]
+        - t64) * parameters[YZ2]);
+    const ur10e_bench_real_t t182 = t0 * (t176 + (t1 * t162 - t3 * t171)) + t2 * (t61 * parameters[MZ2] + t181
+        + t178);
     out[0] = ddq[0] * parameters[ZZ1] + t182;
-    const ur10e_bench_real_t t183 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        + t11 * parameters[YZ2];
-    const ur10e_bench_real_t t184 = (t177 - t4) * parameters[XY2] + (t183 + t7 * parameters[XZ2])
-        - (t2 * parameters[MX2] + t21 * parameters[MY2]);
-    const ur10e_bench_real_t t185 = t40 * parameters[ZZ3] - t41 * (parameters[XX3] - parameters[YY3])
-        + t36 * parameters[YZ3];
-    const ur10e_bench_real_t t186 = t67 * parameters[MY3] - t24 * parameters[MX3] + ((t64
-        - t27) * parameters[XY3] + (t185 + t32 * parameters[XZ3]));
-    const ur10e_bench_real_t t187 = t62 * (parameters[XX4] - parameters[YY4]) + t61 * parameters[ZZ4]
-        - t57 * parameters[YZ4];
-    const ur10e_bench_real_t t188 = (t93 - t48) * parameters[XY4] + (t187 + t53 * parameters[XZ4])
-        + (t96 * parameters[MY4] - t71 * parameters[MX4]);
-    const ur10e_bench_real_t t189 = t188 + (t74 * t140 - t73 * t145 + UR10E_BENCH_C(-0.11985) * t161);
-    const ur10e_bench_real_t t190 = t186 + (t189 + UR10E_BENCH_C(0.57155) * t166);
-    const ur10e_bench_real_t t191 = t67 * parameters[M3] + (t68 * parameters[MX3] + t170 * parameters[MY3]
-        - t36 * parameters[MZ3]);
-    const ur10e_bench_real_t t192 = (t64 + t29) * parameters[MY3] - t42 * parameters[MX3]
-        + t32 * parameters[MZ3];
-    const ur10e_bench_real_t t193 = t20 * (t191 + t172) + t18 * (t24 * parameters[M3] + t192 + t166);
-    out[1] = t184 + (t190 + UR10E_BENCH_C(0.6127) * t193);
-    out[2] = t190;
-    out[3] = t189;
-    out[4] = t158;
-    out[5] = t144;
+    const ur10e_bench_real_t t183 = t25 * (parameters[XX4] - parameters[YY4]) + t27 * parameters[ZZ4]
+        - t9 * parameters[YZ4];
+    const ur10e_bench_real_t t184 = (t98 - t142) * parameters[XY4] + (t183 + t29 * parameters[XZ4])
+        + (t81 * parameters[MY4] - t97 * parameters[MX4]);
+    const ur10e_bench_real_t t185 = t184 + (t18 * t126 - t17 * t131 + UR10E_BENCH_C(-0.11985) * t151);
+    const ur10e_bench_real_t t186 = t26 * parameters[ZZ3] - t77 * (parameters[XX3] - parameters[YY3])
+        + t73 * parameters[YZ3];
+    const ur10e_bench_real_t t187 = t68 * parameters[MY3] - t75 * parameters[MX3] + ((t83
+        - t70) * parameters[XY3] + (t186 + t79 * parameters[XZ3]));
+    const ur10e_bench_real_t t188 = t187 + (t185 + UR10E_BENCH_C(0.57155) * t157);
+    const ur10e_bench_real_t t189 = t68 * parameters[M3] + (t72 * parameters[MX3] + t169 * parameters[MY3]
+        - t73 * parameters[MZ3]);
+    const ur10e_bench_real_t t190 = (t83 + t71) * parameters[MY3] - t78 * parameters[MX3]
+        + t79 * parameters[MZ3];
+    const ur10e_bench_real_t t191 = t3 * (t189 + t163) + t1 * (t75 * parameters[M3] + t190 + t157);
+    const ur10e_bench_real_t t192 = t64 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        + t88 * parameters[YZ2];
+    const ur10e_bench_real_t t193 = (t180 - t59) * parameters[XY2] + (t192 + t173 * parameters[XZ2])
+        - (t66 * parameters[MX2] + t61 * parameters[MY2]);
+    out[1] = t193 + (t188 + UR10E_BENCH_C(0.6127) * t191);
+    out[2] = t188;
+    out[3] = t185;
+    out[4] = t147;
+    out[5] = t128;
     return UR10E_BENCH_STATUS_OK;
 }

@@ -21,7 +21,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -39,73 +39,73 @@ int ur10e_bench_jacobian(
         return status;
     }
 
-    ur10e_bench_real_t t0, t9;
-    UR10E_BENCH_SINCOS(q[0], &t0, &t9);
-    ur10e_bench_real_t t6, t1;
-    UR10E_BENCH_SINCOS(q[1], &t6, &t1);
-    ur10e_bench_real_t t5, t4;
-    UR10E_BENCH_SINCOS(q[2], &t5, &t4);
-    ur10e_bench_real_t t11, t12;
-    UR10E_BENCH_SINCOS(q[3], &t11, &t12);
+    ur10e_bench_real_t t0, t12;
+    UR10E_BENCH_SINCOS(q[0], &t0, &t12);
+    ur10e_bench_real_t t4, t1;
+    UR10E_BENCH_SINCOS(q[1], &t4, &t1);
+    ur10e_bench_real_t t6, t3;
+    UR10E_BENCH_SINCOS(q[2], &t6, &t3);
+    ur10e_bench_real_t t8, t10;
+    UR10E_BENCH_SINCOS(q[3], &t8, &t10);
     ur10e_bench_real_t t15, t16;
     UR10E_BENCH_SINCOS(q[4], &t15, &t16);
     const ur10e_bench_real_t t2 = t0 * t1;
-    const ur10e_bench_real_t t3 = UR10E_BENCH_C(0.6127) * t2;
-    const ur10e_bench_real_t t7 = t0 * t6;
-    const ur10e_bench_real_t t8 = t4 * t2 - t5 * t7;
-    const ur10e_bench_real_t t10 = t3 + (UR10E_BENCH_C(0.57155) * t8 + UR10E_BENCH_C(0.17415) * t9);
-    const ur10e_bench_real_t t13 = t5 * t2 + t4 * t7;
-    const ur10e_bench_real_t t14 = t11 * t8 + t12 * t13;
-    const ur10e_bench_real_t t17 = t15 * (t11 * t13 - t12 * t8) - t9 * t16;
+    const ur10e_bench_real_t t5 = t0 * t4;
+    const ur10e_bench_real_t t7 = t3 * t2 - t6 * t5;
+    const ur10e_bench_real_t t9 = t6 * t2 + t3 * t5;
+    const ur10e_bench_real_t t11 = t8 * t7 + t10 * t9;
+    const ur10e_bench_real_t t13 = UR10E_BENCH_C(0.6127) * t2;
+    const ur10e_bench_real_t t14 = t13 + (UR10E_BENCH_C(0.57155) * t7 + UR10E_BENCH_C(0.17415) * t12);
+    const ur10e_bench_real_t t17 = t15 * (t8 * t9 - t10 * t7) - t12 * t16;
     const ur10e_bench_real_t t18 = UR10E_BENCH_C(-0.11655) * t17;
-    const ur10e_bench_real_t t19 = t10 + UR10E_BENCH_C(-0.11985) * t14 + t18;
+    const ur10e_bench_real_t t19 = t14 + UR10E_BENCH_C(-0.11985) * t11 + t18;
     out[0] = t19;
-    const ur10e_bench_real_t t20 = UR10E_BENCH_C(-0.6127) * t6 + UR10E_BENCH_C(0.1807);
-    const ur10e_bench_real_t t21 = t6 * t4 + t1 * t5;
-    const ur10e_bench_real_t t22 = t20 - UR10E_BENCH_C(0.57155) * t21;
-    const ur10e_bench_real_t t23 = t6 * t5 - t1 * t4;
-    const ur10e_bench_real_t t24 = t11 * t21 + t12 * t23;
-    const ur10e_bench_real_t t25 = t15 * (t11 * t23 - t12 * t21);
+    const ur10e_bench_real_t t20 = t4 * t3 + t1 * t6;
+    const ur10e_bench_real_t t21 = t4 * t6 - t1 * t3;
+    const ur10e_bench_real_t t22 = t8 * t20 + t10 * t21;
+    const ur10e_bench_real_t t23 = UR10E_BENCH_C(-0.6127) * t4 + UR10E_BENCH_C(0.1807);
+    const ur10e_bench_real_t t24 = t23 - UR10E_BENCH_C(0.57155) * t20;
+    const ur10e_bench_real_t t25 = t15 * (t8 * t21 - t10 * t20);
     const ur10e_bench_real_t t26 = UR10E_BENCH_C(-0.11655) * t25;
-    const ur10e_bench_real_t t27 = UR10E_BENCH_C(-0.11985) * t24 - t22 + t26;
+    const ur10e_bench_real_t t27 = UR10E_BENCH_C(-0.11985) * t22 - t24 + t26;
     const ur10e_bench_real_t t28 = t27 + UR10E_BENCH_C(0.1807);
-    out[1] = t9 * t28;
-    const ur10e_bench_real_t t29 = t20 + t27;
-    out[2] = t9 * t29;
-    const ur10e_bench_real_t t30 = t22 + t27;
-    out[3] = t9 * t30;
-    out[4] = t24 * t18 - t14 * t26;
-    const ur10e_bench_real_t t31 = t9 * t1;
-    const ur10e_bench_real_t t32 = UR10E_BENCH_C(0.6127) * t31;
-    const ur10e_bench_real_t t33 = t9 * t6;
-    const ur10e_bench_real_t t34 = t4 * t31 - t5 * t33;
-    const ur10e_bench_real_t t35 = t32 + (UR10E_BENCH_C(0.57155) * t34 - UR10E_BENCH_C(0.17415) * t0);
-    const ur10e_bench_real_t t36 = t5 * t31 + t4 * t33;
-    const ur10e_bench_real_t t37 = t11 * t34 + t12 * t36;
-    const ur10e_bench_real_t t38 = t15 * (t11 * t36 - t12 * t34) + t0 * t16;
+    out[1] = t12 * t28;
+    const ur10e_bench_real_t t29 = t23 + t27;
+    out[2] = t12 * t29;
+    const ur10e_bench_real_t t30 = t24 + t27;
+    out[3] = t12 * t30;
+    out[4] = t22 * t18 - t11 * t26;
+    const ur10e_bench_real_t t31 = t12 * t1;
+    const ur10e_bench_real_t t32 = t12 * t4;
+    const ur10e_bench_real_t t33 = t3 * t31 - t6 * t32;
+    const ur10e_bench_real_t t34 = t6 * t31 + t3 * t32;
+    const ur10e_bench_real_t t35 = t8 * t33 + t10 * t34;
+    const ur10e_bench_real_t t36 = UR10E_BENCH_C(0.6127) * t31;
+    const ur10e_bench_real_t t37 = t36 + (UR10E_BENCH_C(0.57155) * t33 - UR10E_BENCH_C(0.17415) * t0);
+    const ur10e_bench_real_t t38 = t15 * (t8 * t34 - t10 * t33) + t0 * t16;
     const ur10e_bench_real_t t39 = UR10E_BENCH_C(-0.11655) * t38;
-    const ur10e_bench_real_t t40 = UR10E_BENCH_C(0.11985) * t37 - t35 - t39;
+    const ur10e_bench_real_t t40 = UR10E_BENCH_C(0.11985) * t35 - t37 - t39;
     out[6] = t40;
     out[7] = t0 * t28;
     out[8] = t0 * t29;
     out[9] = t0 * t30;
-    out[10] = t37 * t26 - t24 * t39;
-    out[13] = t9 * t40 - t0 * t19;
-    out[14] = t0 * (t3 - t19) + t9 * (t32 + t40);
-    out[15] = t0 * (t10 - t19) + t9 * (t35 + t40);
-    out[16] = t14 * t39 - t37 * t18;
+    out[10] = t35 * t26 - t22 * t39;
+    out[13] = t12 * t40 - t0 * t19;
+    out[14] = t0 * (t13 - t19) + t12 * (t36 + t40);
+    out[15] = t0 * (t14 - t19) + t12 * (t37 + t40);
+    out[16] = t11 * t39 - t35 * t18;
     out[19] = t0;
     out[20] = t0;
     out[21] = t0;
-    out[22] = t37;
+    out[22] = t35;
     out[23] = t38;
-    out[25] = -t9;
-    out[26] = -t9;
-    out[27] = -t9;
-    out[28] = t14;
+    out[25] = -t12;
+    out[26] = -t12;
+    out[27] = -t12;
+    out[28] = t11;
     out[29] = t17;
     out[30] = UR10E_BENCH_C(1.0);
-    out[34] = t24;
+    out[34] = t22;
     out[35] = t25;
     /* always zero */
     out[5] = UR10E_BENCH_C(0.0);

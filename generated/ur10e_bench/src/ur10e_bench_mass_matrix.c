@@ -61,7 +61,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -84,110 +84,110 @@ int ur10e_bench_mass_matrix(
         return status;
     }
 
-    ur10e_bench_real_t t48, t42;
-    UR10E_BENCH_SINCOS(q[1], &t48, &t42);
-    ur10e_bench_real_t t38, t34;
-    UR10E_BENCH_SINCOS(q[2], &t38, &t34);
-    ur10e_bench_real_t t24, t14;
-    UR10E_BENCH_SINCOS(q[3], &t24, &t14);
-    ur10e_bench_real_t t8, t0;
-    UR10E_BENCH_SINCOS(q[4], &t8, &t0);
-    ur10e_bench_real_t t2, t1;
-    UR10E_BENCH_SINCOS(q[5], &t2, &t1);
-    const ur10e_bench_real_t t3 = t1 * parameters[XX6R] - parameters[XY6] * (UR10E_BENCH_C(2.0) * t2);
-    const ur10e_bench_real_t t4 = t1 * t3;
-    const ur10e_bench_real_t t5 = parameters[XX5R] + t4;
-    const ur10e_bench_real_t t6 = t1 * parameters[XZ6R] - t2 * parameters[YZ6R];
+    ur10e_bench_real_t t48, t46;
+    UR10E_BENCH_SINCOS(q[1], &t48, &t46);
+    ur10e_bench_real_t t38, t35;
+    UR10E_BENCH_SINCOS(q[2], &t38, &t35);
+    ur10e_bench_real_t t24, t15;
+    UR10E_BENCH_SINCOS(q[3], &t24, &t15);
+    ur10e_bench_real_t t8, t5;
+    UR10E_BENCH_SINCOS(q[4], &t8, &t5);
+    ur10e_bench_real_t t1, t0;
+    UR10E_BENCH_SINCOS(q[5], &t1, &t0);
+    const ur10e_bench_real_t t2 = t0 * parameters[XX6R] - parameters[XY6] * (UR10E_BENCH_C(2.0) * t1);
+    const ur10e_bench_real_t t3 = t0 * t2;
+    const ur10e_bench_real_t t4 = parameters[XX5R] + t3;
+    const ur10e_bench_real_t t6 = t0 * parameters[XZ6R] - t1 * parameters[YZ6R];
     const ur10e_bench_real_t t7 = parameters[XY5] + t6;
-    const ur10e_bench_real_t t9 = t0 * (t5 - parameters[ZZ6]) + t7 * (UR10E_BENCH_C(-2.0) * t8);
-    const ur10e_bench_real_t t10 = t0 * t9;
-    const ur10e_bench_real_t t11 = t1 * parameters[MY6] + t2 * parameters[MX6];
+    const ur10e_bench_real_t t9 = t5 * (t4 - parameters[ZZ6]) + t7 * (UR10E_BENCH_C(-2.0) * t8);
+    const ur10e_bench_real_t t10 = t5 * t9;
+    const ur10e_bench_real_t t11 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const ur10e_bench_real_t t12 = UR10E_BENCH_C(-0.2397) * t11;
     const ur10e_bench_real_t t13 = parameters[XX4R] + (parameters[ZZ6] + t10 + t12);
-    const ur10e_bench_real_t t15 = parameters[ZZ5R] + (parameters[XX6R] - t4);
-    const ur10e_bench_real_t t16 = parameters[XZ5] - (parameters[XY6] + t2 * t3);
-    const ur10e_bench_real_t t17 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
+    const ur10e_bench_real_t t14 = parameters[ZZ5R] + (parameters[XX6R] - t3);
+    const ur10e_bench_real_t t16 = parameters[XZ5] - (parameters[XY6] + t1 * t2);
+    const ur10e_bench_real_t t17 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
     const ur10e_bench_real_t t18 = parameters[YZ5] - t17;
-    const ur10e_bench_real_t t19 = t1 * parameters[MX6] - t2 * parameters[MY6];
+    const ur10e_bench_real_t t19 = t0 * parameters[MX6] - t1 * parameters[MY6];
     const ur10e_bench_real_t t20 = parameters[MX5] + t19;
-    const ur10e_bench_real_t t21 = t0 * t20 - t8 * parameters[MY5R];
-    const ur10e_bench_real_t t22 = t8 * t18 - t0 * t16 + UR10E_BENCH_C(0.11985) * t21;
+    const ur10e_bench_real_t t21 = t5 * t20 - t8 * parameters[MY5R];
+    const ur10e_bench_real_t t22 = t8 * t18 - t5 * t16 + UR10E_BENCH_C(0.11985) * t21;
     const ur10e_bench_real_t t23 = parameters[XY4] + t22;
-    const ur10e_bench_real_t t25 = t14 * (t13 - t15) + t23 * (UR10E_BENCH_C(-2.0) * t24);
-    const ur10e_bench_real_t t26 = t14 * t25;
+    const ur10e_bench_real_t t25 = t15 * (t13 - t14) + t23 * (UR10E_BENCH_C(-2.0) * t24);
+    const ur10e_bench_real_t t26 = t15 * t25;
     const ur10e_bench_real_t t27 = parameters[MY4R] + t11;
     const ur10e_bench_real_t t28 = parameters[MX4] + t21;
-    const ur10e_bench_real_t t29 = t24 * t27 - t14 * t28;
+    const ur10e_bench_real_t t29 = t24 * t27 - t15 * t28;
     const ur10e_bench_real_t t30 = UR10E_BENCH_C(1.1431) * t29;
-    const ur10e_bench_real_t t31 = t0 * parameters[MY5R] + t8 * t20;
+    const ur10e_bench_real_t t31 = t5 * parameters[MY5R] + t8 * t20;
     const ur10e_bench_real_t t32 = UR10E_BENCH_C(0.3483) * t31;
     const ur10e_bench_real_t t33 = t13 - t26 + (t30 + t32);
-    const ur10e_bench_real_t t35 = parameters[XX3R] + (t15 + t26 + t32);
-    const ur10e_bench_real_t t36 = t14 * t27 + t24 * t28;
+    const ur10e_bench_real_t t34 = parameters[XX3R] + (t14 + t26 + t32);
+    const ur10e_bench_real_t t36 = t15 * t27 + t24 * t28;
     const ur10e_bench_real_t t37 = parameters[XY3] + (t23 + t24 * t25 + UR10E_BENCH_C(0.57155) * t36);
-    const ur10e_bench_real_t t39 = t34 * (t33 - t35) + t37 * (UR10E_BENCH_C(2.0) * t38);
-    const ur10e_bench_real_t t40 = t34 * t39;
-    const ur10e_bench_real_t t41 = parameters[XX2R] + (t33 - t40);
-    const ur10e_bench_real_t t43 = parameters[MY3] + t36;
-    const ur10e_bench_real_t t44 = parameters[MX3R] - t29;
-    const ur10e_bench_real_t t45 = t38 * t43 - t34 * t44;
-    const ur10e_bench_real_t t46 = UR10E_BENCH_C(1.2254) * t45;
-    const ur10e_bench_real_t t47 = t37 - t38 * t39 + UR10E_BENCH_C(0.6127) * (t34 * t43 + t38 * t44);
-    const ur10e_bench_real_t t49 = t42 * (t35 + t40 + t46 - t41) + (parameters[XY2]
+    const ur10e_bench_real_t t39 = t35 * (t33 - t34) + t37 * (UR10E_BENCH_C(2.0) * t38);
+    const ur10e_bench_real_t t40 = t35 * t39;
+    const ur10e_bench_real_t t41 = parameters[MY3] + t36;
+    const ur10e_bench_real_t t42 = parameters[MX3R] - t29;
+    const ur10e_bench_real_t t43 = t38 * t41 - t35 * t42;
+    const ur10e_bench_real_t t44 = UR10E_BENCH_C(1.2254) * t43;
+    const ur10e_bench_real_t t45 = parameters[XX2R] + (t33 - t40);
+    const ur10e_bench_real_t t47 = t37 - t38 * t39 + UR10E_BENCH_C(0.6127) * (t35 * t41 + t38 * t42);
+    const ur10e_bench_real_t t49 = t46 * (t34 + t40 + t44 - t45) + (parameters[XY2]
         + t47) * (UR10E_BENCH_C(2.0) * t48);
-    out[0] = parameters[ZZ1R] + (t41 + t42 * t49);
+    out[0] = parameters[ZZ1R] + (t45 + t46 * t49);
     const ur10e_bench_real_t t50 = parameters[XZ4] + (t7 + t8 * t9);
-    const ur10e_bench_real_t t51 = t8 * t16 + t0 * t18 + UR10E_BENCH_C(-0.11985) * t31;
+    const ur10e_bench_real_t t51 = t8 * t16 + t5 * t18 + UR10E_BENCH_C(-0.11985) * t31;
     const ur10e_bench_real_t t52 = t51 - parameters[YZ4];
-    const ur10e_bench_real_t t53 = t14 * t50 + t24 * t52;
+    const ur10e_bench_real_t t53 = t15 * t50 + t24 * t52;
     const ur10e_bench_real_t t54 = UR10E_BENCH_C(0.17415) * t29;
     const ur10e_bench_real_t t55 = parameters[XZ3R] + (t53 + (t54 + UR10E_BENCH_C(0.57155) * t31));
-    const ur10e_bench_real_t t56 = t24 * t50 - t14 * t52 - UR10E_BENCH_C(0.17415) * t36;
+    const ur10e_bench_real_t t56 = t24 * t50 - t15 * t52 - UR10E_BENCH_C(0.17415) * t36;
     const ur10e_bench_real_t t57 = parameters[YZ3] + t56;
-    const ur10e_bench_real_t t58 = t34 * t55 - t38 * t57;
-    const ur10e_bench_real_t t59 = t38 * t55 + t34 * t57;
+    const ur10e_bench_real_t t58 = t35 * t55 - t38 * t57;
+    const ur10e_bench_real_t t59 = t38 * t55 + t35 * t57;
     const ur10e_bench_real_t t60 = t48 * (parameters[XZ2R] + (t58 + UR10E_BENCH_C(0.6127) * t31))
-        + t42 * (parameters[YZ2] + t59);
+        + t46 * (parameters[YZ2] + t59);
     out[1] = t60;
-    const ur10e_bench_real_t t61 = t48 * t58 + t42 * t59;
+    const ur10e_bench_real_t t61 = t48 * t58 + t46 * t59;
     out[2] = t61;
     const ur10e_bench_real_t t62 = t53 + t54;
-    const ur10e_bench_real_t t63 = t48 * (t34 * t62 - t38 * t56) + t42 * (t38 * t62 + t34 * t56);
+    const ur10e_bench_real_t t63 = t48 * (t35 * t62 - t38 * t56) + t46 * (t38 * t62 + t35 * t56);
     out[3] = t63;
-    const ur10e_bench_real_t t64 = t24 * t31;
-    const ur10e_bench_real_t t65 = t24 * t15 - t14 * t22 + UR10E_BENCH_C(0.17415) * t64;
-    const ur10e_bench_real_t t66 = t14 * t31;
-    const ur10e_bench_real_t t67 = t24 * t22 + t14 * t15 + (UR10E_BENCH_C(0.17415) * t66
+    const ur10e_bench_real_t t64 = t15 * t31;
+    const ur10e_bench_real_t t65 = t24 * t22 + t15 * t14 + (UR10E_BENCH_C(0.17415) * t64
         + UR10E_BENCH_C(-0.57155) * t21);
-    const ur10e_bench_real_t t68 = t42 * (t38 * t65 - t34 * t67 + UR10E_BENCH_C(0.6127) * t21);
-    const ur10e_bench_real_t t69 = t48 * (t34 * t65 + t38 * t67) + t68;
+    const ur10e_bench_real_t t66 = t24 * t31;
+    const ur10e_bench_real_t t67 = t24 * t14 - t15 * t22 + UR10E_BENCH_C(0.17415) * t66;
+    const ur10e_bench_real_t t68 = t46 * (t38 * t67 - t35 * t65 + UR10E_BENCH_C(0.6127) * t21);
+    const ur10e_bench_real_t t69 = t48 * (t35 * t67 + t38 * t65) + t68;
     out[4] = t69;
     const ur10e_bench_real_t t70 = t8 * t11;
-    const ur10e_bench_real_t t71 = t0 * t6 - t8 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t70;
-    const ur10e_bench_real_t t72 = t0 * t11;
-    const ur10e_bench_real_t t73 = t24 * t72 - t14 * t19;
-    const ur10e_bench_real_t t74 = t14 * t71 - t24 * t17 + UR10E_BENCH_C(0.17415) * t73;
-    const ur10e_bench_real_t t75 = t14 * t72 + t24 * t19;
-    const ur10e_bench_real_t t76 = t24 * t71 + t14 * t17 - (UR10E_BENCH_C(0.17415) * t75
+    const ur10e_bench_real_t t71 = t5 * t6 - t8 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t70;
+    const ur10e_bench_real_t t72 = t5 * t11;
+    const ur10e_bench_real_t t73 = t24 * t72 - t15 * t19;
+    const ur10e_bench_real_t t74 = t15 * t71 - t24 * t17 + UR10E_BENCH_C(0.17415) * t73;
+    const ur10e_bench_real_t t75 = t15 * t72 + t24 * t19;
+    const ur10e_bench_real_t t76 = t24 * t71 + t15 * t17 - (UR10E_BENCH_C(0.17415) * t75
         + UR10E_BENCH_C(0.57155) * t70);
-    const ur10e_bench_real_t t77 = t42 * (t38 * t74 + t34 * t76 + UR10E_BENCH_C(-0.6127) * t70);
-    const ur10e_bench_real_t t78 = t48 * (t34 * t74 - t38 * t76) + t77;
+    const ur10e_bench_real_t t77 = t46 * (t38 * t74 + t35 * t76 + UR10E_BENCH_C(-0.6127) * t70);
+    const ur10e_bench_real_t t78 = t48 * (t35 * t74 - t38 * t76) + t77;
     out[5] = t78;
     out[6] = t60;
-    const ur10e_bench_real_t t79 = parameters[ZZ4R] + (t5 - t10 + t12);
+    const ur10e_bench_real_t t79 = parameters[ZZ4R] + (t4 - t10 + t12);
     const ur10e_bench_real_t t80 = parameters[ZZ3R] + (t79 + t30);
-    out[7] = parameters[ZZ2R] + (t80 + t46);
-    const ur10e_bench_real_t t81 = t80 + UR10E_BENCH_C(0.6127) * t45;
+    out[7] = parameters[ZZ2R] + (t80 + t44);
+    const ur10e_bench_real_t t81 = t80 + UR10E_BENCH_C(0.6127) * t43;
     out[8] = t81;
     const ur10e_bench_real_t t82 = t79 + UR10E_BENCH_C(0.57155) * t29;
-    const ur10e_bench_real_t t83 = t82 + UR10E_BENCH_C(0.6127) * (t38 * t36 + t34 * t29);
+    const ur10e_bench_real_t t83 = t82 + UR10E_BENCH_C(0.6127) * (t38 * t36 + t35 * t29);
     out[9] = t83;
-    const ur10e_bench_real_t t84 = t51 + UR10E_BENCH_C(0.57155) * t64;
-    const ur10e_bench_real_t t85 = t84 + UR10E_BENCH_C(0.6127) * (t38 * t66 + t34 * t64);
+    const ur10e_bench_real_t t84 = t51 + UR10E_BENCH_C(0.57155) * t66;
+    const ur10e_bench_real_t t85 = t84 + UR10E_BENCH_C(0.6127) * (t38 * t64 + t35 * t66);
     out[10] = t85;
-    const ur10e_bench_real_t t86 = t8 * t6 + t0 * parameters[ZZ6] + UR10E_BENCH_C(-0.11985) * t72;
+    const ur10e_bench_real_t t86 = t8 * t6 + t5 * parameters[ZZ6] + UR10E_BENCH_C(-0.11985) * t72;
     const ur10e_bench_real_t t87 = t86 + UR10E_BENCH_C(0.57155) * t73;
-    const ur10e_bench_real_t t88 = t87 + UR10E_BENCH_C(0.6127) * (t38 * t75 + t34 * t73);
+    const ur10e_bench_real_t t88 = t87 + UR10E_BENCH_C(0.6127) * (t38 * t75 + t35 * t73);
     out[11] = t88;
     out[12] = t61;
     out[13] = t81;
@@ -205,7 +205,7 @@ int ur10e_bench_mass_matrix(
     out[25] = t85;
     out[26] = t84;
     out[27] = t51;
-    out[28] = t15;
+    out[28] = t14;
     out[29] = -t17;
     out[30] = t78;
     out[31] = t88;

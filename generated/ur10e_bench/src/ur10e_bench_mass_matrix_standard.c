@@ -85,7 +85,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -108,127 +108,127 @@ int ur10e_bench_mass_matrix_standard(
         return status;
     }
 
-    ur10e_bench_real_t t61, t54;
-    UR10E_BENCH_SINCOS(q[1], &t61, &t54);
-    ur10e_bench_real_t t50, t46;
-    UR10E_BENCH_SINCOS(q[2], &t50, &t46);
-    ur10e_bench_real_t t32, t21;
-    UR10E_BENCH_SINCOS(q[3], &t32, &t21);
-    ur10e_bench_real_t t12, t1;
-    UR10E_BENCH_SINCOS(q[4], &t12, &t1);
-    ur10e_bench_real_t t3, t2;
-    UR10E_BENCH_SINCOS(q[5], &t3, &t2);
-    const ur10e_bench_real_t t0 = parameters[YY5] + parameters[ZZ6];
-    const ur10e_bench_real_t t4 = t2 * (parameters[XX6] - parameters[YY6])
-        - parameters[XY6] * (UR10E_BENCH_C(2.0) * t3);
-    const ur10e_bench_real_t t5 = t2 * t4;
-    const ur10e_bench_real_t t6 = UR10E_BENCH_C(0.11655) * parameters[M6];
-    const ur10e_bench_real_t t7 = UR10E_BENCH_C(0.11655) * (t6 + UR10E_BENCH_C(2.0) * parameters[MZ6]);
-    const ur10e_bench_real_t t8 = parameters[XX5] + (parameters[YY6] + t5 + t7);
-    const ur10e_bench_real_t t9 = t2 * parameters[MX6] - t3 * parameters[MY6];
-    const ur10e_bench_real_t t10 = t2 * parameters[XZ6] - t3 * parameters[YZ6] + UR10E_BENCH_C(-0.11655) * t9;
+    ur10e_bench_real_t t61, t59;
+    UR10E_BENCH_SINCOS(q[1], &t61, &t59);
+    ur10e_bench_real_t t50, t47;
+    UR10E_BENCH_SINCOS(q[2], &t50, &t47);
+    ur10e_bench_real_t t32, t23;
+    UR10E_BENCH_SINCOS(q[3], &t32, &t23);
+    ur10e_bench_real_t t12, t8;
+    UR10E_BENCH_SINCOS(q[4], &t12, &t8);
+    ur10e_bench_real_t t1, t0;
+    UR10E_BENCH_SINCOS(q[5], &t1, &t0);
+    const ur10e_bench_real_t t2 = t0 * (parameters[XX6] - parameters[YY6])
+        - parameters[XY6] * (UR10E_BENCH_C(2.0) * t1);
+    const ur10e_bench_real_t t3 = t0 * t2;
+    const ur10e_bench_real_t t4 = UR10E_BENCH_C(0.11655) * parameters[M6];
+    const ur10e_bench_real_t t5 = UR10E_BENCH_C(0.11655) * (t4 + UR10E_BENCH_C(2.0) * parameters[MZ6]);
+    const ur10e_bench_real_t t6 = parameters[XX5] + (parameters[YY6] + t3 + t5);
+    const ur10e_bench_real_t t7 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_bench_real_t t9 = t0 * parameters[MX6] - t1 * parameters[MY6];
+    const ur10e_bench_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + UR10E_BENCH_C(-0.11655) * t9;
     const ur10e_bench_real_t t11 = parameters[XY5] + t10;
-    const ur10e_bench_real_t t13 = t1 * (t8 - t0) + t11 * (UR10E_BENCH_C(-2.0) * t12);
-    const ur10e_bench_real_t t14 = t1 * t13;
-    const ur10e_bench_real_t t15 = parameters[M5] + parameters[M6];
-    const ur10e_bench_real_t t16 = UR10E_BENCH_C(0.11985) * t15;
-    const ur10e_bench_real_t t17 = t2 * parameters[MY6] + t3 * parameters[MX6];
-    const ur10e_bench_real_t t18 = t17 - parameters[MZ5];
-    const ur10e_bench_real_t t19 = UR10E_BENCH_C(0.11985) * (t16 + UR10E_BENCH_C(-2.0) * t18);
-    const ur10e_bench_real_t t20 = parameters[XX4] + (t0 + t14 + t19);
-    const ur10e_bench_real_t t22 = parameters[ZZ5] + (parameters[XX6] - t5 + t7);
-    const ur10e_bench_real_t t23 = parameters[YY4] + t22;
-    const ur10e_bench_real_t t24 = parameters[XZ5] - (parameters[XY6] + t3 * t4);
-    const ur10e_bench_real_t t25 = UR10E_BENCH_C(0.11655) * t17 - (t3 * parameters[XZ6]
-        + t2 * parameters[YZ6]);
-    const ur10e_bench_real_t t26 = parameters[YZ5] + t25;
-    const ur10e_bench_real_t t27 = parameters[MY5] + (parameters[MZ6] + t6);
-    const ur10e_bench_real_t t28 = parameters[MX5] + t9;
-    const ur10e_bench_real_t t29 = t1 * t28 - t12 * t27;
-    const ur10e_bench_real_t t30 = t12 * t26 - t1 * t24 + UR10E_BENCH_C(0.11985) * t29;
+    const ur10e_bench_real_t t13 = t8 * (t6 - t7) + t11 * (UR10E_BENCH_C(-2.0) * t12);
+    const ur10e_bench_real_t t14 = t8 * t13;
+    const ur10e_bench_real_t t15 = t0 * parameters[MY6] + t1 * parameters[MX6];
+    const ur10e_bench_real_t t16 = t15 - parameters[MZ5];
+    const ur10e_bench_real_t t17 = parameters[M5] + parameters[M6];
+    const ur10e_bench_real_t t18 = UR10E_BENCH_C(0.11985) * t17;
+    const ur10e_bench_real_t t19 = UR10E_BENCH_C(0.11985) * (t18 + UR10E_BENCH_C(-2.0) * t16);
+    const ur10e_bench_real_t t20 = parameters[XX4] + (t7 + t14 + t19);
+    const ur10e_bench_real_t t21 = parameters[ZZ5] + (parameters[XX6] - t3 + t5);
+    const ur10e_bench_real_t t22 = parameters[YY4] + t21;
+    const ur10e_bench_real_t t24 = UR10E_BENCH_C(0.11655) * t15 - (t1 * parameters[XZ6]
+        + t0 * parameters[YZ6]);
+    const ur10e_bench_real_t t25 = parameters[YZ5] + t24;
+    const ur10e_bench_real_t t26 = parameters[XZ5] - (parameters[XY6] + t1 * t2);
+    const ur10e_bench_real_t t27 = parameters[MX5] + t9;
+    const ur10e_bench_real_t t28 = parameters[MY5] + (parameters[MZ6] + t4);
+    const ur10e_bench_real_t t29 = t8 * t27 - t12 * t28;
+    const ur10e_bench_real_t t30 = t12 * t25 - t8 * t26 + UR10E_BENCH_C(0.11985) * t29;
     const ur10e_bench_real_t t31 = parameters[XY4] + t30;
-    const ur10e_bench_real_t t33 = t21 * (t20 - t23) + t31 * (UR10E_BENCH_C(-2.0) * t32);
-    const ur10e_bench_real_t t34 = t21 * t33;
-    const ur10e_bench_real_t t35 = parameters[M4] + t15;
-    const ur10e_bench_real_t t36 = UR10E_BENCH_C(0.57155) * t35;
-    const ur10e_bench_real_t t37 = parameters[MY4] + (t18 - t16);
-    const ur10e_bench_real_t t38 = parameters[MX4] + t29;
-    const ur10e_bench_real_t t39 = t32 * t37 - t21 * t38;
-    const ur10e_bench_real_t t40 = UR10E_BENCH_C(0.57155) * (t36 + UR10E_BENCH_C(2.0) * t39);
-    const ur10e_bench_real_t t41 = UR10E_BENCH_C(0.17415) * t35;
-    const ur10e_bench_real_t t42 = t1 * t27 + t12 * t28;
-    const ur10e_bench_real_t t43 = parameters[MZ4] + t42;
-    const ur10e_bench_real_t t44 = UR10E_BENCH_C(0.17415) * (t41 + UR10E_BENCH_C(2.0) * t43);
+    const ur10e_bench_real_t t33 = t23 * (t20 - t22) + t31 * (UR10E_BENCH_C(-2.0) * t32);
+    const ur10e_bench_real_t t34 = t23 * t33;
+    const ur10e_bench_real_t t35 = parameters[MY4] + (t16 - t18);
+    const ur10e_bench_real_t t36 = parameters[MX4] + t29;
+    const ur10e_bench_real_t t37 = t32 * t35 - t23 * t36;
+    const ur10e_bench_real_t t38 = parameters[M4] + t17;
+    const ur10e_bench_real_t t39 = UR10E_BENCH_C(0.57155) * t38;
+    const ur10e_bench_real_t t40 = UR10E_BENCH_C(0.57155) * (t39 + UR10E_BENCH_C(2.0) * t37);
+    const ur10e_bench_real_t t41 = t8 * t28 + t12 * t27;
+    const ur10e_bench_real_t t42 = parameters[MZ4] + t41;
+    const ur10e_bench_real_t t43 = UR10E_BENCH_C(0.17415) * t38;
+    const ur10e_bench_real_t t44 = UR10E_BENCH_C(0.17415) * (t43 + UR10E_BENCH_C(2.0) * t42);
     const ur10e_bench_real_t t45 = parameters[YY3] + (t20 - t34 + (t40 + t44));
-    const ur10e_bench_real_t t47 = parameters[XX3] + (t23 + t34 + t44);
-    const ur10e_bench_real_t t48 = t21 * t37 + t32 * t38;
+    const ur10e_bench_real_t t46 = parameters[XX3] + (t22 + t34 + t44);
+    const ur10e_bench_real_t t48 = t23 * t35 + t32 * t36;
     const ur10e_bench_real_t t49 = parameters[XY3] + (t31 + t32 * t33 + UR10E_BENCH_C(0.57155) * t48);
-    const ur10e_bench_real_t t51 = t46 * (t47 - t45) - t49 * (UR10E_BENCH_C(2.0) * t50);
-    const ur10e_bench_real_t t52 = t46 * t51;
+    const ur10e_bench_real_t t51 = t47 * (t46 - t45) - t49 * (UR10E_BENCH_C(2.0) * t50);
+    const ur10e_bench_real_t t52 = t47 * t51;
     const ur10e_bench_real_t t53 = parameters[XX2] + (t45 + t52);
-    const ur10e_bench_real_t t55 = parameters[MY3] + t48;
-    const ur10e_bench_real_t t56 = t39 + t36;
-    const ur10e_bench_real_t t57 = parameters[MX3] - t56;
-    const ur10e_bench_real_t t58 = t50 * t55 - t46 * t57;
-    const ur10e_bench_real_t t59 = UR10E_BENCH_C(0.6127) * (UR10E_BENCH_C(0.6127) * (parameters[M3] + t35)
-        + UR10E_BENCH_C(2.0) * t58);
-    const ur10e_bench_real_t t60 = t49 + t50 * t51 + UR10E_BENCH_C(0.6127) * (t46 * t55 + t50 * t57);
-    const ur10e_bench_real_t t62 = t54 * (parameters[YY2] + (t47 - t52 + t59) - t53) + (parameters[XY2]
+    const ur10e_bench_real_t t54 = parameters[MY3] + t48;
+    const ur10e_bench_real_t t55 = t37 + t39;
+    const ur10e_bench_real_t t56 = parameters[MX3] - t55;
+    const ur10e_bench_real_t t57 = t50 * t54 - t47 * t56;
+    const ur10e_bench_real_t t58 = UR10E_BENCH_C(0.6127) * (UR10E_BENCH_C(0.6127) * (parameters[M3] + t38)
+        + UR10E_BENCH_C(2.0) * t57);
+    const ur10e_bench_real_t t60 = t49 + t50 * t51 + UR10E_BENCH_C(0.6127) * (t47 * t54 + t50 * t56);
+    const ur10e_bench_real_t t62 = t59 * (parameters[YY2] + (t46 - t52 + t58) - t53) + (parameters[XY2]
         + t60) * (UR10E_BENCH_C(2.0) * t61);
-    out[0] = parameters[ZZ1] + (t53 + t54 * t62);
+    out[0] = parameters[ZZ1] + (t53 + t59 * t62);
     const ur10e_bench_real_t t63 = parameters[XZ4] + (t11 + t12 * t13);
-    const ur10e_bench_real_t t64 = t12 * t24 + t1 * t26 + UR10E_BENCH_C(-0.11985) * t42;
+    const ur10e_bench_real_t t64 = t12 * t26 + t8 * t25 + UR10E_BENCH_C(-0.11985) * t41;
     const ur10e_bench_real_t t65 = t64 - parameters[YZ4];
-    const ur10e_bench_real_t t66 = t21 * t63 + t32 * t65;
-    const ur10e_bench_real_t t67 = parameters[XZ3] + (t66 + (UR10E_BENCH_C(0.57155) * t43
-        + UR10E_BENCH_C(0.17415) * t56));
-    const ur10e_bench_real_t t68 = t32 * t63 - t21 * t65 - UR10E_BENCH_C(0.17415) * t48;
+    const ur10e_bench_real_t t66 = t23 * t63 + t32 * t65;
+    const ur10e_bench_real_t t67 = parameters[XZ3] + (t66 + (UR10E_BENCH_C(0.57155) * t42
+        + UR10E_BENCH_C(0.17415) * t55));
+    const ur10e_bench_real_t t68 = t32 * t63 - t23 * t65 - UR10E_BENCH_C(0.17415) * t48;
     const ur10e_bench_real_t t69 = parameters[YZ3] + t68;
-    const ur10e_bench_real_t t70 = t46 * t67 - t50 * t69;
+    const ur10e_bench_real_t t70 = t47 * t67 - t50 * t69;
     const ur10e_bench_real_t t71 = t61 * (parameters[XZ2] + (t70 + UR10E_BENCH_C(0.6127) * (parameters[MZ3]
-        + (t43 + t41))));
-    const ur10e_bench_real_t t72 = t50 * t67 + t46 * t69;
-    const ur10e_bench_real_t t73 = t71 + t54 * (parameters[YZ2] + t72);
+        + (t42 + t43))));
+    const ur10e_bench_real_t t72 = t50 * t67 + t47 * t69;
+    const ur10e_bench_real_t t73 = t71 + t59 * (parameters[YZ2] + t72);
     out[1] = t73;
-    const ur10e_bench_real_t t74 = t61 * t70 + t54 * t72;
+    const ur10e_bench_real_t t74 = t61 * t70 + t59 * t72;
     out[2] = t74;
-    const ur10e_bench_real_t t75 = t66 + UR10E_BENCH_C(0.17415) * t39;
-    const ur10e_bench_real_t t76 = t61 * (t46 * t75 - t50 * t68) + t54 * (t50 * t75 + t46 * t68);
+    const ur10e_bench_real_t t75 = t66 + UR10E_BENCH_C(0.17415) * t37;
+    const ur10e_bench_real_t t76 = t61 * (t47 * t75 - t50 * t68) + t59 * (t50 * t75 + t47 * t68);
     out[3] = t76;
-    const ur10e_bench_real_t t77 = t32 * t42;
-    const ur10e_bench_real_t t78 = t32 * t22 - t21 * t30 + UR10E_BENCH_C(0.17415) * t77;
-    const ur10e_bench_real_t t79 = t21 * t42;
-    const ur10e_bench_real_t t80 = t32 * t30 + t21 * t22 + (UR10E_BENCH_C(0.17415) * t79
+    const ur10e_bench_real_t t77 = t32 * t41;
+    const ur10e_bench_real_t t78 = t32 * t21 - t23 * t30 + UR10E_BENCH_C(0.17415) * t77;
+    const ur10e_bench_real_t t79 = t23 * t41;
+    const ur10e_bench_real_t t80 = t32 * t30 + t23 * t21 + (UR10E_BENCH_C(0.17415) * t79
         + UR10E_BENCH_C(-0.57155) * t29);
-    const ur10e_bench_real_t t81 = t54 * (t50 * t78 - t46 * t80 + UR10E_BENCH_C(0.6127) * t29);
-    const ur10e_bench_real_t t82 = t61 * (t46 * t78 + t50 * t80) + t81;
+    const ur10e_bench_real_t t81 = t59 * (t50 * t78 - t47 * t80 + UR10E_BENCH_C(0.6127) * t29);
+    const ur10e_bench_real_t t82 = t61 * (t47 * t78 + t50 * t80) + t81;
     out[4] = t82;
-    const ur10e_bench_real_t t83 = t12 * t17;
-    const ur10e_bench_real_t t84 = t1 * t10 - t12 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t83;
-    const ur10e_bench_real_t t85 = t1 * t17;
-    const ur10e_bench_real_t t86 = t32 * t85 - t21 * t9;
-    const ur10e_bench_real_t t87 = t21 * t84 + t32 * t25 + UR10E_BENCH_C(0.17415) * t86;
-    const ur10e_bench_real_t t88 = t21 * t85 + t32 * t9;
-    const ur10e_bench_real_t t89 = t32 * t84 - t21 * t25 - (UR10E_BENCH_C(0.17415) * t88
+    const ur10e_bench_real_t t83 = t12 * t15;
+    const ur10e_bench_real_t t84 = t8 * t10 - t12 * parameters[ZZ6] + UR10E_BENCH_C(0.11985) * t83;
+    const ur10e_bench_real_t t85 = t8 * t15;
+    const ur10e_bench_real_t t86 = t32 * t85 - t23 * t9;
+    const ur10e_bench_real_t t87 = t23 * t84 + t32 * t24 + UR10E_BENCH_C(0.17415) * t86;
+    const ur10e_bench_real_t t88 = t23 * t85 + t32 * t9;
+    const ur10e_bench_real_t t89 = t32 * t84 - t23 * t24 - (UR10E_BENCH_C(0.17415) * t88
         + UR10E_BENCH_C(0.57155) * t83);
-    const ur10e_bench_real_t t90 = t54 * (t50 * t87 + t46 * t89 + UR10E_BENCH_C(-0.6127) * t83);
-    const ur10e_bench_real_t t91 = t61 * (t46 * t87 - t50 * t89) + t90;
+    const ur10e_bench_real_t t90 = t59 * (t50 * t87 + t47 * t89 + UR10E_BENCH_C(-0.6127) * t83);
+    const ur10e_bench_real_t t91 = t61 * (t47 * t87 - t50 * t89) + t90;
     out[5] = t91;
     out[6] = t73;
-    const ur10e_bench_real_t t92 = parameters[ZZ4] + (t8 - t14 + t19);
+    const ur10e_bench_real_t t92 = parameters[ZZ4] + (t6 - t14 + t19);
     const ur10e_bench_real_t t93 = parameters[ZZ3] + (t92 + t40);
-    out[7] = parameters[ZZ2] + (t93 + t59);
-    const ur10e_bench_real_t t94 = t93 + UR10E_BENCH_C(0.6127) * t58;
+    out[7] = parameters[ZZ2] + (t93 + t58);
+    const ur10e_bench_real_t t94 = t93 + UR10E_BENCH_C(0.6127) * t57;
     out[8] = t94;
-    const ur10e_bench_real_t t95 = t92 + UR10E_BENCH_C(0.57155) * t39;
-    const ur10e_bench_real_t t96 = t95 + UR10E_BENCH_C(0.6127) * (t50 * t48 + t46 * t39);
+    const ur10e_bench_real_t t95 = t92 + UR10E_BENCH_C(0.57155) * t37;
+    const ur10e_bench_real_t t96 = t95 + UR10E_BENCH_C(0.6127) * (t50 * t48 + t47 * t37);
     out[9] = t96;
     const ur10e_bench_real_t t97 = t64 + UR10E_BENCH_C(0.57155) * t77;
-    const ur10e_bench_real_t t98 = t97 + UR10E_BENCH_C(0.6127) * (t50 * t79 + t46 * t77);
+    const ur10e_bench_real_t t98 = t97 + UR10E_BENCH_C(0.6127) * (t50 * t79 + t47 * t77);
     out[10] = t98;
-    const ur10e_bench_real_t t99 = t12 * t10 + t1 * parameters[ZZ6] + UR10E_BENCH_C(-0.11985) * t85;
+    const ur10e_bench_real_t t99 = t12 * t10 + t8 * parameters[ZZ6] + UR10E_BENCH_C(-0.11985) * t85;
     const ur10e_bench_real_t t100 = t99 + UR10E_BENCH_C(0.57155) * t86;
-    const ur10e_bench_real_t t101 = t100 + UR10E_BENCH_C(0.6127) * (t50 * t88 + t46 * t86);
+    const ur10e_bench_real_t t101 = t100 + UR10E_BENCH_C(0.6127) * (t50 * t88 + t47 * t86);
     out[11] = t101;
     out[12] = t74;
     out[13] = t94;
@@ -246,13 +246,13 @@ int ur10e_bench_mass_matrix_standard(
     out[25] = t98;
     out[26] = t97;
     out[27] = t64;
-    out[28] = t22;
-    out[29] = t25;
+    out[28] = t21;
+    out[29] = t24;
     out[30] = t91;
     out[31] = t101;
     out[32] = t100;
     out[33] = t99;
-    out[34] = t25;
+    out[34] = t24;
     out[35] = parameters[ZZ6];
     return UR10E_BENCH_STATUS_OK;
 }

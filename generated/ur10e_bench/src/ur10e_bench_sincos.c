@@ -11,7 +11,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x686D0BCFUL
+#if UR10E_BENCH_GENERATION != 0x4F969208UL
 #error "ur10e_bench.h and ur10e_bench_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 ur10e_bench_pair_t ur10e_bench_sincos(ur10e_bench_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * UR10E_BENCH_C(0.636619772) + UR10E_BENCH_C(16384.5));
+    const ur10e_bench_real_t turns = x * UR10E_BENCH_C(0.636619772) + UR10E_BENCH_C(16384.5);
+    const long quarter = (long)turns;
     const ur10e_bench_real_t k = (ur10e_bench_real_t)quarter - UR10E_BENCH_C(16384.0);
     const ur10e_bench_real_t r = x - k * UR10E_BENCH_C(1.5703125) - k * UR10E_BENCH_C(4.83826792e-4);
     const ur10e_bench_real_t z = r * r;

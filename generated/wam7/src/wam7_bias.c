@@ -89,7 +89,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -115,250 +115,250 @@ int wam7_bias(
         return status;
     }
 
-    wam7_real_t t1, t2;
-    WAM7_SINCOS(q[1], &t1, &t2);
-    wam7_real_t t12, t11;
-    WAM7_SINCOS(q[2], &t12, &t11);
-    wam7_real_t t33, t32;
-    WAM7_SINCOS(q[3], &t33, &t32);
-    wam7_real_t t57, t56;
-    WAM7_SINCOS(q[4], &t57, &t56);
-    wam7_real_t t84, t83;
-    WAM7_SINCOS(q[5], &t84, &t83);
-    wam7_real_t t108, t107;
-    WAM7_SINCOS(q[6], &t108, &t107);
-    const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t3 = t2 * dq[0];
-    const wam7_real_t t4 = dq[1] * t3;
-    const wam7_real_t t5 = t1 * dq[0];
-    const wam7_real_t t6 = dq[1] * t5;
-    const wam7_real_t t7 = parameters[XX2R] * t4 + parameters[ZZ2R] * t4
-        + parameters[XY2] * (WAM7_C(-2.0) * t6);
-    const wam7_real_t t8 = t5 * t3;
-    const wam7_real_t t9 = dq[1] * dq[1];
-    const wam7_real_t t10 = t3 * t3;
-    const wam7_real_t t13 = WAM7_C(-2.0) * t4;
-    const wam7_real_t t14 = t11 * t13 - t12 * t8;
-    const wam7_real_t t15 = t12 * t5 + t11 * dq[1];
-    const wam7_real_t t16 = dq[2] + t3;
-    const wam7_real_t t17 = t15 * t16;
-    const wam7_real_t t18 = t14 + t17;
-    const wam7_real_t t19 = t11 * t5 - t12 * dq[1];
-    const wam7_real_t t20 = t19 * t16;
-    const wam7_real_t t21 = t11 * t8 + t12 * t13;
-    const wam7_real_t t22 = t21 - t20;
-    const wam7_real_t t23 = t20 - t22;
-    const wam7_real_t t24 = t19 * t15;
-    const wam7_real_t t25 = t6 + t24;
-    const wam7_real_t t26 = parameters[XZ3] * t25 - (parameters[XX3R] * t18 + parameters[ZZ3R] * t17
-        + parameters[XY3R] * t23);
-    const wam7_real_t t27 = t15 * t15;
-    const wam7_real_t t28 = t16 * t16;
-    const wam7_real_t t29 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t30 = t5 * t5;
-    const wam7_real_t t31 = t29 + WAM7_C(0.55) * (t9 + t30);
-    const wam7_real_t t34 = t6 - t24;
-    const wam7_real_t t35 = t17 + t18;
-    const wam7_real_t t36 = t33 * t34 + t32 * t35;
-    const wam7_real_t t37 = t32 * t16 - t33 * t19;
-    const wam7_real_t t38 = dq[3] + t15;
-    const wam7_real_t t39 = t37 * t38;
-    const wam7_real_t t40 = t36 - t39;
-    const wam7_real_t t41 = t32 * t19 + t33 * t16;
-    const wam7_real_t t42 = t41 * t38;
-    const wam7_real_t t43 = t33 * t35 - t32 * t34;
-    const wam7_real_t t44 = t43 - t42;
-    const wam7_real_t t45 = t44 - t42;
-    const wam7_real_t t46 = t41 * t37;
-    const wam7_real_t t47 = t22 - t46;
-    const wam7_real_t t48 = parameters[ZZ4R] * t39 - parameters[XX4R] * t40 + parameters[XY4R] * t45
-        + parameters[XZ4] * t47;
-    const wam7_real_t t49 = t37 * t37;
-    const wam7_real_t t50 = t38 * t38;
-    const wam7_real_t t51 = WAM7_C(9.81) * t1;
-    const wam7_real_t t52 = t51 + WAM7_C(0.55) * t8;
-    const wam7_real_t t53 = WAM7_C(1.1) * t4;
-    const wam7_real_t t54 = t12 * t52 + t11 * t53;
-    const wam7_real_t t55 = t54 - WAM7_C(0.045) * t25;
-    const wam7_real_t t58 = t22 + t46;
-    const wam7_real_t t59 = t40 - t39;
-    const wam7_real_t t60 = t56 * t59 - t57 * t58;
-    const wam7_real_t t61 = t57 * t41 + t56 * t38;
-    const wam7_real_t t62 = dq[4] + t37;
-    const wam7_real_t t63 = t61 * t62;
-    const wam7_real_t t64 = t60 + t63;
-    const wam7_real_t t65 = t56 * t41 - t57 * t38;
-    const wam7_real_t t66 = t65 * t62;
-    const wam7_real_t t67 = t56 * t58 + t57 * t59;
-    const wam7_real_t t68 = t67 - t66;
-    const wam7_real_t t69 = t68 - t66;
-    const wam7_real_t t70 = t65 * t61;
-    const wam7_real_t t71 = t70 - t44;
-    const wam7_real_t t72 = parameters[XY5] * t69 - (parameters[XX5R] * t64 + parameters[ZZ5R] * t63)
-        + parameters[XZ5] * t71;
-    const wam7_real_t t73 = t61 * t61;
-    const wam7_real_t t74 = t62 * t62;
-    const wam7_real_t t75 = t11 * t52 - t12 * t53;
-    const wam7_real_t t76 = t27 + t28;
-    const wam7_real_t t77 = t75 + WAM7_C(0.045) * t76;
-    const wam7_real_t t78 = t31 + WAM7_C(0.045) * t23;
-    const wam7_real_t t79 = t33 * t77 + t32 * t78;
-    const wam7_real_t t80 = t41 * t41;
-    const wam7_real_t t81 = t80 + t50;
-    const wam7_real_t t82 = t79 + (WAM7_C(0.045) * t47 + WAM7_C(0.3) * t81);
-    const wam7_real_t t85 = t44 + t70;
-    const wam7_real_t t86 = t63 + t64;
-    const wam7_real_t t87 = t83 * t86 - t84 * t85;
-    const wam7_real_t t88 = t83 * t62 - t84 * t65;
-    const wam7_real_t t89 = dq[5] + t61;
-    const wam7_real_t t90 = t88 * t89;
-    const wam7_real_t t91 = t87 - t90;
-    const wam7_real_t t92 = t83 * t65 + t84 * t62;
-    const wam7_real_t t93 = t92 * t89;
-    const wam7_real_t t94 = t83 * t85 + t84 * t86;
-    const wam7_real_t t95 = t94 - t93;
-    const wam7_real_t t96 = t95 - t93;
-    const wam7_real_t t97 = t92 * t88;
-    const wam7_real_t t98 = t68 - t97;
-    const wam7_real_t t99 = parameters[ZZ6R] * t90 - parameters[XX6R] * t91 + parameters[XY6] * t96
-        + parameters[XZ6] * t98;
-    const wam7_real_t t100 = t88 * t88;
-    const wam7_real_t t101 = t89 * t89;
-    const wam7_real_t t102 = t32 * t77 - t33 * t78;
-    const wam7_real_t t103 = t49 + t50;
-    const wam7_real_t t104 = t102 + (WAM7_C(-0.045) * t103 + WAM7_C(0.3) * t58);
-    const wam7_real_t t105 = t55 + (WAM7_C(-0.045) * t45 - WAM7_C(0.3) * t59);
-    const wam7_real_t t106 = t57 * t104 + t56 * t105;
-    const wam7_real_t t109 = t68 + t97;
-    const wam7_real_t t110 = t91 - t90;
-    const wam7_real_t t111 = t107 * t110 - t108 * t109;
-    const wam7_real_t t112 = t108 * t92 + t107 * t89;
-    const wam7_real_t t113 = dq[6] + t88;
-    const wam7_real_t t114 = t112 * t113;
-    const wam7_real_t t115 = t111 + t114;
-    const wam7_real_t t116 = t107 * t92 - t108 * t89;
-    const wam7_real_t t117 = t116 * t113;
-    const wam7_real_t t118 = t107 * t109 + t108 * t110;
-    const wam7_real_t t119 = t118 - t117 - t117;
-    const wam7_real_t t120 = t116 * t112;
-    const wam7_real_t t121 = t120 - t95;
-    const wam7_real_t t122 = parameters[XY7] * t119 - (parameters[XX7R] * t115 + parameters[ZZ7] * t114)
-        + parameters[XZ7R] * t121;
-    const wam7_real_t t123 = t112 * t112;
-    const wam7_real_t t124 = t113 * t113;
-    const wam7_real_t t125 = t56 * t104 - t57 * t105;
-    const wam7_real_t t126 = t84 * t125 + t83 * t82;
-    const wam7_real_t t127 = t122 - parameters[YZ7R] * (t123 - t124) + parameters[MY7] * t126;
-    const wam7_real_t t128 = t114 + t115;
-    const wam7_real_t t129 = t95 + t120;
-    const wam7_real_t t130 = t117 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t128
-        + parameters[YZ7R] * t129;
-    const wam7_real_t t131 = t116 * t116;
-    const wam7_real_t t132 = t130 + parameters[XZ7R] * (t124 - t131) + parameters[MX7] * t126;
-    const wam7_real_t t133 = t99 + parameters[YZ6] * (t101 - t100) - parameters[MY6R] * t106 + (t107 * t127
-        + t108 * t132);
-    const wam7_real_t t134 = t93 * (parameters[XX6R] - parameters[ZZ6R]) - parameters[XY6] * t110
-        + parameters[YZ6] * t109;
-    const wam7_real_t t135 = t92 * t92;
-    const wam7_real_t t136 = parameters[ZZ7] * t95 + parameters[XX7R] * t120 - parameters[YZ7R] * t118
-        + parameters[XZ7R] * t111;
-    const wam7_real_t t137 = t83 * t125 - t84 * t82;
-    const wam7_real_t t138 = parameters[MX7] * (t108 * t137 + t107 * t106) + parameters[MY7] * (t107 * t137
-        - t108 * t106);
-    const wam7_real_t t139 = t136 + parameters[XY7] * (t131 - t123) + t138;
-    const wam7_real_t t140 = t134 + parameters[XZ6] * (t135 - t101) + parameters[MX6] * t106 + t139;
-    const wam7_real_t t141 = t72 - parameters[YZ5] * (t73 - t74) + parameters[MY5R] * t82 - (t84 * t140
-        - t83 * t133);
-    const wam7_real_t t142 = t66 * (parameters[ZZ5R] - parameters[XX5R]) + parameters[XY5] * t86
-        + parameters[YZ5] * t85;
-    const wam7_real_t t143 = t65 * t65;
-    const wam7_real_t t144 = parameters[XZ6] * t87 - (parameters[ZZ6R] * t68 + parameters[XX6R] * t97
-        + parameters[YZ6] * t94);
-    const wam7_real_t t145 = t144 + parameters[XY6] * (t135 - t100) + (parameters[MX6] * t126
-        + parameters[MY6R] * t137);
-    const wam7_real_t t146 = t145 + (t107 * t132 - t108 * t127);
-    const wam7_real_t t147 = t142 + parameters[XZ5] * (t74 - t143) + parameters[MX5] * t82 + t146;
-    const wam7_real_t t148 = parameters[MX7] * (t123 + t124) + parameters[MY7] * t129;
-    const wam7_real_t t149 = parameters[MX7] * t121 + parameters[MY7] * (t131 + t124);
-    const wam7_real_t t150 = parameters[MX6] * (t100 + t101) - parameters[MY6R] * t109 + (t107 * t148
-        - t108 * t149);
-    const wam7_real_t t151 = parameters[MX6] * t98 + parameters[MY6R] * (t135 + t101)
-        + (parameters[MX7] * t119 + parameters[MY7] * t128);
-    const wam7_real_t t152 = t84 * t151 - t83 * t150 - (parameters[MX5] * (t73 + t74)
-        + parameters[MY5R] * t85);
-    const wam7_real_t t153 = t108 * t148 + t107 * t149 - (parameters[MX6] * t96 + parameters[MY6R] * t110);
-    const wam7_real_t t154 = parameters[MX5] * t71 + parameters[MY5R] * (t143 + t74) + t153;
-    const wam7_real_t t155 = t57 * t152 - t56 * t154;
-    const wam7_real_t t156 = t48 + parameters[YZ4] * (t50 - t49) - parameters[MY4R] * t55 + (t56 * t141
-        + t57 * t147 + WAM7_C(0.3) * t155);
-    const wam7_real_t t157 = t42 * (parameters[XX4R] - parameters[ZZ4R]) - parameters[XY4R] * t59
-        + parameters[YZ4] * t58;
-    const wam7_real_t t158 = parameters[ZZ5R] * t44 + parameters[XX5R] * t70 - parameters[YZ5] * t67
-        + parameters[XZ5] * t60;
-    const wam7_real_t t159 = t158 + parameters[XY5] * (t143 - t73) + (parameters[MX5] * t106
-        + parameters[MY5R] * t125);
-    const wam7_real_t t160 = t159 + (t84 * t133 + t83 * t140);
-    const wam7_real_t t161 = t157 + parameters[XZ4] * (t80 - t50) + parameters[MX4R] * t55 + (t160
-        + WAM7_C(-0.045) * t155);
-    const wam7_real_t t162 = t26 - parameters[YZ3] * (t27 - t28) + parameters[MY3R] * t31 - (t33 * t161
-        - t32 * t156);
-    const wam7_real_t t163 = t20 * (parameters[ZZ3R] - parameters[XX3R]) + parameters[XY3R] * t35
-        - parameters[YZ3] * t34;
-    const wam7_real_t t164 = t19 * t19;
-    const wam7_real_t t165 = parameters[XZ4] * t36 - (parameters[ZZ4R] * t22 + parameters[XX4R] * t46
-        + parameters[YZ4] * t43);
-    const wam7_real_t t166 = t165 + parameters[XY4R] * (t80 - t49) + (parameters[MX4R] * t79
-        + parameters[MY4R] * t102);
-    const wam7_real_t t167 = parameters[MX5] * t69 + parameters[MY5R] * t86 + (t84 * t150 + t83 * t151);
-    const wam7_real_t t168 = t56 * t152 + t57 * t154;
-    const wam7_real_t t169 = t56 * t147 - t57 * t141 + (WAM7_C(0.045) * t167 + WAM7_C(0.3) * t168);
-    const wam7_real_t t170 = t166 + t169;
-    const wam7_real_t t171 = parameters[MY4R] * t58 - parameters[MX4R] * t103 + t168;
-    const wam7_real_t t172 = parameters[MX4R] * t47 + parameters[MY4R] * t81 + t167;
-    const wam7_real_t t173 = t163 + parameters[XZ3] * (t28 - t164) + parameters[MX3R] * t31 + (t170
-        + WAM7_C(0.045) * (t33 * t171 - t32 * t172));
-    const wam7_real_t t174 = parameters[MY3R] * t34 - parameters[MX3R] * t76 + (t32 * t171 + t33 * t172);
-    const wam7_real_t t175 = parameters[MX4R] * t45 + parameters[MY4R] * t59 + t155;
-    const wam7_real_t t176 = parameters[MX3R] * t25 + parameters[MY3R] * (t164 + t28) - t175;
-    const wam7_real_t t177 = t11 * t162 + t12 * t173 + WAM7_C(0.55) * (t12 * t174 - t11 * t176);
-    const wam7_real_t t178 = t7 - parameters[XZ2] * t8 + parameters[YZ2] * (t9 - t10) + t177;
-    const wam7_real_t t179 = t6 * (parameters[XX2R] - parameters[ZZ2R]) - parameters[XY2] * t13
-        + parameters[YZ2] * t8;
-    const wam7_real_t t180 = parameters[XX3R] * t24 - parameters[ZZ3R] * t6 - parameters[YZ3] * t21
-        + parameters[XZ3] * t14;
-    const wam7_real_t t181 = t180 + parameters[XY3R] * (t164 - t27) + (parameters[MX3R] * t54
-        + parameters[MY3R] * t75);
-    const wam7_real_t t182 = t181 + (t33 * t156 + t32 * t161 + WAM7_C(0.045) * t175);
-    const wam7_real_t t183 = t1 * t178 + t2 * (t179 + parameters[XZ2] * (t30 - t9) + t182);
+    wam7_real_t t0, t10;
+    WAM7_SINCOS(q[1], &t0, &t10);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[2], &t3, &t2);
+    wam7_real_t t20, t9;
+    WAM7_SINCOS(q[3], &t20, &t9);
+    wam7_real_t t27, t26;
+    WAM7_SINCOS(q[4], &t27, &t26);
+    wam7_real_t t32, t48;
+    WAM7_SINCOS(q[5], &t32, &t48);
+    wam7_real_t t62, t55;
+    WAM7_SINCOS(q[6], &t62, &t55);
+    const wam7_real_t t1 = t0 * dq[0];
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
+    const wam7_real_t t6 = t4 * t5;
+    const wam7_real_t t7 = dq[1] * t1;
+    const wam7_real_t t8 = t7 - t6;
+    const wam7_real_t t11 = t10 * dq[0];
+    const wam7_real_t t12 = t1 * t11;
+    const wam7_real_t t13 = dq[1] * t11;
+    const wam7_real_t t14 = WAM7_C(-2.0) * t13;
+    const wam7_real_t t15 = t2 * t14 - t3 * t12;
+    const wam7_real_t t16 = dq[2] + t11;
+    const wam7_real_t t17 = t5 * t16;
+    const wam7_real_t t18 = t15 + t17;
+    const wam7_real_t t19 = t17 + t18;
+    const wam7_real_t t21 = t20 * t19 - t9 * t8;
+    const wam7_real_t t22 = t9 * t4 + t20 * t16;
+    const wam7_real_t t23 = dq[3] + t5;
+    const wam7_real_t t24 = t22 * t23;
+    const wam7_real_t t25 = t21 - t24;
+    const wam7_real_t t28 = t26 * t22 - t27 * t23;
+    const wam7_real_t t29 = t27 * t22 + t26 * t23;
+    const wam7_real_t t30 = t28 * t29;
+    const wam7_real_t t31 = t25 + t30;
+    const wam7_real_t t33 = t2 * t12 + t3 * t14;
+    const wam7_real_t t34 = t4 * t16;
+    const wam7_real_t t35 = t33 - t34;
+    const wam7_real_t t36 = t9 * t16 - t20 * t4;
+    const wam7_real_t t37 = t22 * t36;
+    const wam7_real_t t38 = t35 + t37;
+    const wam7_real_t t39 = t20 * t8 + t9 * t19;
+    const wam7_real_t t40 = t36 * t23;
+    const wam7_real_t t41 = t39 - t40;
+    const wam7_real_t t42 = t41 - t40;
+    const wam7_real_t t43 = t26 * t42 - t27 * t38;
+    const wam7_real_t t44 = dq[4] + t36;
+    const wam7_real_t t45 = t29 * t44;
+    const wam7_real_t t46 = t43 + t45;
+    const wam7_real_t t47 = t45 + t46;
+    const wam7_real_t t49 = t48 * t47 - t32 * t31;
+    const wam7_real_t t50 = t48 * t44 - t32 * t28;
+    const wam7_real_t t51 = dq[5] + t29;
+    const wam7_real_t t52 = t50 * t51;
+    const wam7_real_t t53 = t49 - t52;
+    const wam7_real_t t54 = t53 - t52;
+    const wam7_real_t t56 = t26 * t38 + t27 * t42;
+    const wam7_real_t t57 = t28 * t44;
+    const wam7_real_t t58 = t56 - t57;
+    const wam7_real_t t59 = t48 * t28 + t32 * t44;
+    const wam7_real_t t60 = t59 * t50;
+    const wam7_real_t t61 = t58 + t60;
+    const wam7_real_t t63 = t55 * t54 - t62 * t61;
+    const wam7_real_t t64 = t62 * t59 + t55 * t51;
+    const wam7_real_t t65 = dq[6] + t50;
+    const wam7_real_t t66 = t64 * t65;
+    const wam7_real_t t67 = t63 + t66;
+    const wam7_real_t t68 = t55 * t61 + t62 * t54;
+    const wam7_real_t t69 = t55 * t59 - t62 * t51;
+    const wam7_real_t t70 = t69 * t65;
+    const wam7_real_t t71 = t68 - t70 - t70;
+    const wam7_real_t t72 = t48 * t31 + t32 * t47;
+    const wam7_real_t t73 = t59 * t51;
+    const wam7_real_t t74 = t72 - t73;
+    const wam7_real_t t75 = t69 * t64;
+    const wam7_real_t t76 = t75 - t74;
+    const wam7_real_t t77 = parameters[XY7] * t71 - (parameters[XX7R] * t67 + parameters[ZZ7] * t66)
+        + parameters[XZ7R] * t76;
+    const wam7_real_t t78 = t64 * t64;
+    const wam7_real_t t79 = t65 * t65;
+    const wam7_real_t t80 = t36 * t36;
+    const wam7_real_t t81 = t23 * t23;
+    const wam7_real_t t82 = t80 + t81;
+    const wam7_real_t t83 = t5 * t5;
+    const wam7_real_t t84 = t16 * t16;
+    const wam7_real_t t85 = t83 + t84;
+    const wam7_real_t t86 = WAM7_C(9.81) * t0;
+    const wam7_real_t t87 = t86 + WAM7_C(0.55) * t12;
+    const wam7_real_t t88 = WAM7_C(1.1) * t13;
+    const wam7_real_t t89 = t2 * t87 - t3 * t88;
+    const wam7_real_t t90 = t89 + WAM7_C(0.045) * t85;
+    const wam7_real_t t91 = t34 - t35;
+    const wam7_real_t t92 = t1 * t1;
+    const wam7_real_t t93 = dq[1] * dq[1];
+    const wam7_real_t t94 = WAM7_C(-9.81) * t10;
+    const wam7_real_t t95 = t94 + WAM7_C(0.55) * (t93 + t92);
+    const wam7_real_t t96 = t95 + WAM7_C(0.045) * t91;
+    const wam7_real_t t97 = t9 * t90 - t20 * t96;
+    const wam7_real_t t98 = t97 + (WAM7_C(-0.045) * t82 + WAM7_C(0.3) * t38);
+    const wam7_real_t t99 = t25 - t24;
+    const wam7_real_t t100 = t7 + t6;
+    const wam7_real_t t101 = t3 * t87 + t2 * t88;
+    const wam7_real_t t102 = t101 - WAM7_C(0.045) * t100;
+    const wam7_real_t t103 = t102 + (WAM7_C(-0.045) * t99 - WAM7_C(0.3) * t42);
+    const wam7_real_t t104 = t26 * t98 - t27 * t103;
+    const wam7_real_t t105 = t35 - t37;
+    const wam7_real_t t106 = t22 * t22;
+    const wam7_real_t t107 = t106 + t81;
+    const wam7_real_t t108 = t20 * t90 + t9 * t96;
+    const wam7_real_t t109 = t108 + (WAM7_C(0.045) * t105 + WAM7_C(0.3) * t107);
+    const wam7_real_t t110 = t32 * t104 + t48 * t109;
+    const wam7_real_t t111 = t77 - parameters[YZ7R] * (t78 - t79) + parameters[MY7] * t110;
+    const wam7_real_t t112 = t66 + t67;
+    const wam7_real_t t113 = t74 + t75;
+    const wam7_real_t t114 = t70 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t112
+        + parameters[YZ7R] * t113;
+    const wam7_real_t t115 = t69 * t69;
+    const wam7_real_t t116 = t114 + parameters[XZ7R] * (t79 - t115) + parameters[MX7] * t110;
+    const wam7_real_t t117 = t74 - t73;
+    const wam7_real_t t118 = t58 - t60;
+    const wam7_real_t t119 = parameters[ZZ6R] * t52 - parameters[XX6R] * t53 + parameters[XY6] * t117
+        + parameters[XZ6] * t118;
+    const wam7_real_t t120 = t50 * t50;
+    const wam7_real_t t121 = t51 * t51;
+    const wam7_real_t t122 = t27 * t98 + t26 * t103;
+    const wam7_real_t t123 = t119 + parameters[YZ6] * (t121 - t120) - parameters[MY6R] * t122 + (t55 * t111
+        + t62 * t116);
+    const wam7_real_t t124 = t48 * t104 - t32 * t109;
+    const wam7_real_t t125 = parameters[MX7] * (t62 * t124 + t55 * t122) + parameters[MY7] * (t55 * t124
+        - t62 * t122);
+    const wam7_real_t t126 = parameters[ZZ7] * t74 + parameters[XX7R] * t75 - parameters[YZ7R] * t68
+        + parameters[XZ7R] * t63;
+    const wam7_real_t t127 = t126 + parameters[XY7] * (t115 - t78) + t125;
+    const wam7_real_t t128 = t73 * (parameters[XX6R] - parameters[ZZ6R]) - parameters[XY6] * t54
+        + parameters[YZ6] * t61;
+    const wam7_real_t t129 = t59 * t59;
+    const wam7_real_t t130 = t128 + parameters[XZ6] * (t129 - t121) + parameters[MX6] * t122 + t127;
+    const wam7_real_t t131 = t58 - t57;
+    const wam7_real_t t132 = t30 - t25;
+    const wam7_real_t t133 = parameters[XY5] * t131 - (parameters[XX5R] * t46 + parameters[ZZ5R] * t45)
+        + parameters[XZ5] * t132;
+    const wam7_real_t t134 = t29 * t29;
+    const wam7_real_t t135 = t44 * t44;
+    const wam7_real_t t136 = t133 - parameters[YZ5] * (t134 - t135) + parameters[MY5R] * t109 - (t32 * t130
+        - t48 * t123);
+    const wam7_real_t t137 = parameters[XZ6] * t49 - (parameters[ZZ6R] * t58 + parameters[XX6R] * t60
+        + parameters[YZ6] * t72);
+    const wam7_real_t t138 = t137 + parameters[XY6] * (t129 - t120) + (parameters[MX6] * t110
+        + parameters[MY6R] * t124);
+    const wam7_real_t t139 = t138 + (t55 * t116 - t62 * t111);
+    const wam7_real_t t140 = t57 * (parameters[ZZ5R] - parameters[XX5R]) + parameters[XY5] * t47
+        + parameters[YZ5] * t31;
+    const wam7_real_t t141 = t28 * t28;
+    const wam7_real_t t142 = t140 + parameters[XZ5] * (t135 - t141) + parameters[MX5] * t109 + t139;
+    const wam7_real_t t143 = parameters[MX7] * (t78 + t79) + parameters[MY7] * t113;
+    const wam7_real_t t144 = parameters[MX7] * t76 + parameters[MY7] * (t115 + t79);
+    const wam7_real_t t145 = parameters[MX6] * (t120 + t121) - parameters[MY6R] * t61 + (t55 * t143
+        - t62 * t144);
+    const wam7_real_t t146 = parameters[MX6] * t118 + parameters[MY6R] * (t129 + t121)
+        + (parameters[MX7] * t71 + parameters[MY7] * t112);
+    const wam7_real_t t147 = t32 * t146 - t48 * t145 - (parameters[MX5] * (t134 + t135)
+        + parameters[MY5R] * t31);
+    const wam7_real_t t148 = t62 * t143 + t55 * t144 - (parameters[MX6] * t117 + parameters[MY6R] * t54);
+    const wam7_real_t t149 = parameters[MX5] * t132 + parameters[MY5R] * (t141 + t135) + t148;
+    const wam7_real_t t150 = t27 * t147 - t26 * t149;
+    const wam7_real_t t151 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4R] * t99
+        + parameters[XZ4] * t105;
+    const wam7_real_t t152 = t151 + parameters[YZ4] * (t81 - t80) - parameters[MY4R] * t102 + (t26 * t136
+        + t27 * t142 + WAM7_C(0.3) * t150);
+    const wam7_real_t t153 = parameters[ZZ5R] * t25 + parameters[XX5R] * t30 - parameters[YZ5] * t56
+        + parameters[XZ5] * t43;
+    const wam7_real_t t154 = t153 + parameters[XY5] * (t141 - t134) + (parameters[MX5] * t122
+        + parameters[MY5R] * t104);
+    const wam7_real_t t155 = t154 + (t32 * t123 + t48 * t130);
+    const wam7_real_t t156 = t24 * (parameters[XX4R] - parameters[ZZ4R]) - parameters[XY4R] * t42
+        + parameters[YZ4] * t38;
+    const wam7_real_t t157 = t156 + parameters[XZ4] * (t106 - t81) + parameters[MX4R] * t102 + (t155
+        + WAM7_C(-0.045) * t150);
+    const wam7_real_t t158 = parameters[XZ3] * t100 - (parameters[XX3R] * t18 + parameters[ZZ3R] * t17
+        + parameters[XY3R] * t91);
+    const wam7_real_t t159 = t158 - parameters[YZ3] * (t83 - t84) + parameters[MY3R] * t95 - (t20 * t157
+        - t9 * t152);
+    const wam7_real_t t160 = t26 * t147 + t27 * t149;
+    const wam7_real_t t161 = parameters[MX5] * t131 + parameters[MY5R] * t47 + (t32 * t145 + t48 * t146);
+    const wam7_real_t t162 = t26 * t142 - t27 * t136 + (WAM7_C(0.045) * t161 + WAM7_C(0.3) * t160);
+    const wam7_real_t t163 = parameters[XZ4] * t39 - (parameters[ZZ4R] * t35 + parameters[XX4R] * t37
+        + parameters[YZ4] * t21);
+    const wam7_real_t t164 = t163 + parameters[XY4R] * (t106 - t80) + (parameters[MX4R] * t108
+        + parameters[MY4R] * t97);
+    const wam7_real_t t165 = t164 + t162;
+    const wam7_real_t t166 = parameters[MY4R] * t38 - parameters[MX4R] * t82 + t160;
+    const wam7_real_t t167 = parameters[MX4R] * t105 + parameters[MY4R] * t107 + t161;
+    const wam7_real_t t168 = t34 * (parameters[ZZ3R] - parameters[XX3R]) + parameters[XY3R] * t19
+        - parameters[YZ3] * t8;
+    const wam7_real_t t169 = t4 * t4;
+    const wam7_real_t t170 = t168 + parameters[XZ3] * (t84 - t169) + parameters[MX3R] * t95 + (t165
+        + WAM7_C(0.045) * (t20 * t166 - t9 * t167));
+    const wam7_real_t t171 = parameters[MY3R] * t8 - parameters[MX3R] * t85 + (t9 * t166 + t20 * t167);
+    const wam7_real_t t172 = parameters[MX4R] * t99 + parameters[MY4R] * t42 + t150;
+    const wam7_real_t t173 = parameters[MX3R] * t100 + parameters[MY3R] * (t169 + t84) - t172;
+    const wam7_real_t t174 = t2 * t159 + t3 * t170 + WAM7_C(0.55) * (t3 * t171 - t2 * t173);
+    const wam7_real_t t175 = parameters[XX2R] * t13 + parameters[ZZ2R] * t13
+        + parameters[XY2] * (WAM7_C(-2.0) * t7);
+    const wam7_real_t t176 = t11 * t11;
+    const wam7_real_t t177 = t175 - parameters[XZ2] * t12 + parameters[YZ2] * (t93 - t176) + t174;
+    const wam7_real_t t178 = parameters[XX3R] * t6 - parameters[ZZ3R] * t7 - parameters[YZ3] * t33
+        + parameters[XZ3] * t15;
+    const wam7_real_t t179 = t178 + parameters[XY3R] * (t169 - t83) + (parameters[MX3R] * t101
+        + parameters[MY3R] * t89);
+    const wam7_real_t t180 = t179 + (t20 * t152 + t9 * t157 + WAM7_C(0.045) * t172);
+    const wam7_real_t t181 = t7 * (parameters[XX2R] - parameters[ZZ2R]) - parameters[XY2] * t14
+        + parameters[YZ2] * t12;
+    const wam7_real_t t182 = t0 * t177 + t10 * (t181 + parameters[XZ2] * (t92 - t93) + t180);
+    const wam7_real_t t183 = wam7_sign(dq[0]);
     const wam7_real_t t184 = WAM7_C(2.1881838074398248) * (parameters[FV1] * (WAM7_C(42.0) * dq[0])
-        + parameters[FC1] * t0) + WAM7_C(0.05209961446285298) * t183;
+        + parameters[FC1] * t183) + WAM7_C(0.05209961446285298) * t182;
     out[0] = t184;
-    const wam7_real_t t185 = wam7_sign(dq[1]);
-    const wam7_real_t t186 = parameters[XY2] * (t30 - t10) - parameters[XX2R] * t8 + (parameters[MX2] * t29
-        + parameters[MY2R] * t51);
-    const wam7_real_t t187 = t11 * t173 - t12 * t162 + WAM7_C(0.55) * (t11 * t174 + t12 * t176);
+    const wam7_real_t t185 = t2 * t170 - t3 * t159 + WAM7_C(0.55) * (t2 * t171 + t3 * t173);
+    const wam7_real_t t186 = parameters[XY2] * (t92 - t176) - parameters[XX2R] * t12 + (parameters[MX2] * t94
+        + parameters[MY2R] * t86);
+    const wam7_real_t t187 = wam7_sign(dq[1]);
     const wam7_real_t t188 = WAM7_C(2.1881838074398248) * (parameters[FV2] * (WAM7_C(28.25) * dq[1])
-        + parameters[FC2] * t185) + WAM7_C(0.07745783389167521) * (t186 + t187);
+        + parameters[FC2] * t187) + WAM7_C(0.07745783389167521) * (t186 + t185);
     out[1] = t188;
     const wam7_real_t t189 = wam7_sign(dq[2]);
     const wam7_real_t t190 = WAM7_C(2.1881838074398248) * (parameters[FV3] * (WAM7_C(28.25) * dq[2])
-        + parameters[FC3] * t189) + WAM7_C(0.07745783389167521) * t182;
+        + parameters[FC3] * t189) + WAM7_C(0.07745783389167521) * t180;
     out[2] = t190;
     const wam7_real_t t191 = wam7_sign(dq[3]);
     const wam7_real_t t192 = WAM7_C(2.1881838074398248) * (parameters[FV4] * (WAM7_C(18.0) * dq[3])
-        + parameters[FC4] * t191) + WAM7_C(0.12156576707999026) * t170;
+        + parameters[FC4] * t191) + WAM7_C(0.12156576707999026) * t165;
     out[3] = t192;
     const wam7_real_t t193 = wam7_sign(dq[4]);
     const wam7_real_t t194 = WAM7_C(4.237288135593221) * (parameters[FV5] * (WAM7_C(9.48) * dq[4])
-        + parameters[FC5] * t193) + WAM7_C(0.4469713223199599) * t160;
+        + parameters[FC5] * t193) + WAM7_C(0.4469713223199599) * t155;
     out[4] = t194;
     const wam7_real_t t195 = wam7_sign(dq[5]);
     const wam7_real_t t196 = WAM7_C(4.237288135593221) * (parameters[FV6] * (WAM7_C(9.48) * dq[5])
-        + parameters[FC6] * t195) + WAM7_C(0.4469713223199599) * t146;
+        + parameters[FC6] * t195) + WAM7_C(0.4469713223199599) * t139;
     out[5] = t196;
     const wam7_real_t t197 = wam7_sign(dq[6]);
     const wam7_real_t t198 = WAM7_C(14.925373134328357) * (parameters[FV7] * (WAM7_C(14.93) * dq[6])
-        + parameters[FC7] * t197) + WAM7_C(0.9996900960702182) * t139;
+        + parameters[FC7] * t197) + WAM7_C(0.9996900960702182) * t127;
     out[6] = t198;
     return WAM7_STATUS_OK;
 }

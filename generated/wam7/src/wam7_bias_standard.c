@@ -118,7 +118,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,291 +145,287 @@ int wam7_bias_standard(
         return status;
     }
 
-    wam7_real_t t1, t2;
-    WAM7_SINCOS(q[1], &t1, &t2);
-    wam7_real_t t14, t13;
-    WAM7_SINCOS(q[2], &t14, &t13);
-    wam7_real_t t39, t38;
-    WAM7_SINCOS(q[3], &t39, &t38);
-    wam7_real_t t65, t64;
-    WAM7_SINCOS(q[4], &t65, &t64);
-    wam7_real_t t93, t92;
-    WAM7_SINCOS(q[5], &t93, &t92);
-    wam7_real_t t115, t114;
-    WAM7_SINCOS(q[6], &t115, &t114);
-    const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t3 = t2 * dq[0];
-    const wam7_real_t t4 = dq[1] * t3;
-    const wam7_real_t t5 = t1 * dq[0];
-    const wam7_real_t t6 = dq[1] * t5;
-    const wam7_real_t t7 = t4 * parameters[XX2] + t4 * (parameters[ZZ2] - parameters[YY2])
-        + WAM7_C(-2.0) * t6 * parameters[XY2];
-    const wam7_real_t t8 = t5 * t3;
-    const wam7_real_t t9 = t3 * t3;
-    const wam7_real_t t10 = dq[1] * dq[1];
-    const wam7_real_t t11 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t12 = t7 - t8 * parameters[XZ2] + (t10 - t9) * parameters[YZ2] + t11 * parameters[MZ2];
-    const wam7_real_t t15 = t14 * t5 + t13 * dq[1];
-    const wam7_real_t t16 = dq[2] + t3;
+    wam7_real_t t0, t6;
+    WAM7_SINCOS(q[1], &t0, &t6);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[2], &t3, &t2);
+    wam7_real_t t9, t5;
+    WAM7_SINCOS(q[3], &t9, &t5);
+    wam7_real_t t14, t11;
+    WAM7_SINCOS(q[4], &t14, &t11);
+    wam7_real_t t32, t48;
+    WAM7_SINCOS(q[5], &t32, &t48);
+    wam7_real_t t62, t55;
+    WAM7_SINCOS(q[6], &t62, &t55);
+    const wam7_real_t t1 = t0 * dq[0];
+    const wam7_real_t t4 = t3 * dq[1] - t2 * t1;
+    const wam7_real_t t7 = t6 * dq[0];
+    const wam7_real_t t8 = dq[2] + t7;
+    const wam7_real_t t10 = t9 * t8 - t5 * t4;
+    const wam7_real_t t12 = t3 * t1 + t2 * dq[1];
+    const wam7_real_t t13 = dq[3] + t12;
+    const wam7_real_t t15 = t14 * t13 - t11 * t10;
+    const wam7_real_t t16 = t14 * t10 + t11 * t13;
     const wam7_real_t t17 = t15 * t16;
-    const wam7_real_t t18 = WAM7_C(2.0) * t4;
-    const wam7_real_t t19 = t14 * t8 + t13 * t18;
-    const wam7_real_t t20 = t17 - t19;
-    const wam7_real_t t21 = t14 * dq[1] - t13 * t5;
-    const wam7_real_t t22 = t21 * t16;
-    const wam7_real_t t23 = t13 * t8 - t14 * t18;
-    const wam7_real_t t24 = t22 + t23;
-    const wam7_real_t t25 = t22 + t24;
-    const wam7_real_t t26 = parameters[XX3] * t20 - t17 * (parameters[YY3] - parameters[ZZ3])
-        - parameters[XY3] * t25;
-    const wam7_real_t t27 = t21 * t15;
-    const wam7_real_t t28 = t27 - t6;
-    const wam7_real_t t29 = t15 * t15;
-    const wam7_real_t t30 = t16 * t16;
-    const wam7_real_t t31 = t5 * t5;
-    const wam7_real_t t32 = t11 + WAM7_C(0.55) * (t31 + t10);
-    const wam7_real_t t33 = WAM7_C(9.81) * t1;
-    const wam7_real_t t34 = t33 + WAM7_C(0.55) * t8;
-    const wam7_real_t t35 = WAM7_C(1.1) * t4;
-    const wam7_real_t t36 = t14 * t34 + t13 * t35;
-    const wam7_real_t t37 = t26 + parameters[XZ3] * t28 + (t29 - t30) * parameters[YZ3]
-        - (t32 * parameters[MY3] + parameters[MZ3] * t36);
-    const wam7_real_t t40 = t39 * t21 + t38 * t16;
-    const wam7_real_t t41 = dq[3] + t15;
-    const wam7_real_t t42 = t40 * t41;
-    const wam7_real_t t43 = t6 + t27;
-    const wam7_real_t t44 = t17 + t20;
-    const wam7_real_t t45 = t39 * t43 + t38 * t44;
-    const wam7_real_t t46 = t45 - t42;
-    const wam7_real_t t47 = t39 * t16 - t38 * t21;
-    const wam7_real_t t48 = t47 * t41;
-    const wam7_real_t t49 = t38 * t43 - t39 * t44;
-    const wam7_real_t t50 = t48 + t49;
-    const wam7_real_t t51 = t48 + t50;
-    const wam7_real_t t52 = parameters[XX4] * t46 + t42 * (parameters[YY4] - parameters[ZZ4])
-        + parameters[XY4] * t51;
-    const wam7_real_t t53 = t47 * t40;
-    const wam7_real_t t54 = t24 - t53;
-    const wam7_real_t t55 = t40 * t40;
-    const wam7_real_t t56 = t41 * t41;
-    const wam7_real_t t57 = t36 + WAM7_C(0.045) * t28;
-    const wam7_real_t t58 = t29 + t30;
-    const wam7_real_t t59 = t13 * t34 - t14 * t35;
-    const wam7_real_t t60 = WAM7_C(0.045) * t58 + t59;
-    const wam7_real_t t61 = t32 + WAM7_C(-0.045) * t25;
-    const wam7_real_t t62 = t39 * t60 + t38 * t61;
-    const wam7_real_t t63 = parameters[XZ4] * t54 - t52 + (t56 - t55) * parameters[YZ4]
-        + (parameters[MZ4] * t62 - parameters[MY4] * t57);
-    const wam7_real_t t66 = t65 * t47 + t64 * t41;
-    const wam7_real_t t67 = dq[4] + t40;
-    const wam7_real_t t68 = t66 * t67;
-    const wam7_real_t t69 = t53 + t24;
-    const wam7_real_t t70 = t46 - t42;
-    const wam7_real_t t71 = t64 * t70 - t65 * t69;
-    const wam7_real_t t72 = t68 + t71;
-    const wam7_real_t t73 = t65 * t41 - t64 * t47;
-    const wam7_real_t t74 = t73 * t67;
-    const wam7_real_t t75 = t64 * t69 + t65 * t70;
-    const wam7_real_t t76 = t74 + t75;
-    const wam7_real_t t77 = t74 + t76;
-    const wam7_real_t t78 = parameters[XX5] * t72 - t68 * (parameters[YY5] - parameters[ZZ5])
-        - parameters[XY5] * t77;
-    const wam7_real_t t79 = t73 * t66;
-    const wam7_real_t t80 = t50 - t79;
-    const wam7_real_t t81 = t66 * t66;
-    const wam7_real_t t82 = t67 * t67;
-    const wam7_real_t t83 = t47 * t47;
-    const wam7_real_t t84 = t83 + t56;
-    const wam7_real_t t85 = t62 + (WAM7_C(0.3) * t84 + WAM7_C(0.045) * t54);
-    const wam7_real_t t86 = t38 * t60 - t39 * t61;
-    const wam7_real_t t87 = t55 + t56;
-    const wam7_real_t t88 = t86 + (WAM7_C(-0.045) * t87 + WAM7_C(0.3) * t69);
-    const wam7_real_t t89 = t57 + (WAM7_C(0.045) * t51 - WAM7_C(0.3) * t70);
-    const wam7_real_t t90 = t65 * t88 + t64 * t89;
-    const wam7_real_t t91 = t78 - parameters[XZ5] * t80 + (t81 - t82) * parameters[YZ5]
-        - (parameters[MY5] * t85 + parameters[MZ5] * t90);
-    const wam7_real_t t94 = t93 * t73 + t92 * t67;
-    const wam7_real_t t95 = dq[5] + t66;
-    const wam7_real_t t96 = t94 * t95;
-    const wam7_real_t t97 = t79 + t50;
-    const wam7_real_t t98 = t68 + t72;
-    const wam7_real_t t99 = t93 * t97 + t92 * t98;
-    const wam7_real_t t100 = t96 - t99;
-    const wam7_real_t t101 = t93 * t67 - t92 * t73;
-    const wam7_real_t t102 = t101 * t95;
-    const wam7_real_t t103 = t93 * t98 - t92 * t97;
-    const wam7_real_t t104 = t103 - t102;
-    const wam7_real_t t105 = t104 - t102;
-    const wam7_real_t t106 = parameters[XX6] * t100 - t96 * (parameters[YY6] - parameters[ZZ6])
-        + parameters[XY6] * t105;
-    const wam7_real_t t107 = t101 * t94;
-    const wam7_real_t t108 = t76 - t107;
-    const wam7_real_t t109 = t94 * t94;
-    const wam7_real_t t110 = t95 * t95;
-    const wam7_real_t t111 = t64 * t88 - t65 * t89;
-    const wam7_real_t t112 = t93 * t111 + t92 * t85;
-    const wam7_real_t t113 = t106 + parameters[XZ6] * t108 + (t110 - t109) * parameters[YZ6]
-        + (parameters[MZ6] * t112 - parameters[MY6] * t90);
-    const wam7_real_t t116 = t115 * t101 + t114 * t95;
-    const wam7_real_t t117 = dq[6] + t94;
-    const wam7_real_t t118 = t116 * t117;
-    const wam7_real_t t119 = t107 + t76;
-    const wam7_real_t t120 = t96 + t100;
-    const wam7_real_t t121 = t115 * t119 + t114 * t120;
-    const wam7_real_t t122 = t118 - t121;
-    const wam7_real_t t123 = t115 * t95 - t114 * t101;
-    const wam7_real_t t124 = t123 * t117;
-    const wam7_real_t t125 = t115 * t120 - t114 * t119;
-    const wam7_real_t t126 = t124 - t125;
-    const wam7_real_t t127 = t124 + t126;
-    const wam7_real_t t128 = parameters[XX7] * t122 - t118 * (parameters[YY7] - parameters[ZZ7])
-        - parameters[XY7] * t127;
-    const wam7_real_t t129 = t123 * t116;
-    const wam7_real_t t130 = t129 + t104;
-    const wam7_real_t t131 = t116 * t116;
-    const wam7_real_t t132 = t117 * t117;
-    const wam7_real_t t133 = t101 * t101;
-    const wam7_real_t t134 = t133 + t110;
-    const wam7_real_t t135 = WAM7_C(0.06) * t134 + t112;
-    const wam7_real_t t136 = t92 * t111 - t93 * t85;
-    const wam7_real_t t137 = t136 - WAM7_C(-0.06) * t119;
-    const wam7_real_t t138 = t90 + WAM7_C(0.06) * t120;
-    const wam7_real_t t139 = t115 * t137 + t114 * t138;
-    const wam7_real_t t140 = t128 + parameters[XZ7] * t130 + (t131 - t132) * parameters[YZ7]
-        - (parameters[MY7] * t135 + parameters[MZ7] * t139);
-    const wam7_real_t t141 = t118 + t122;
-    const wam7_real_t t142 = parameters[XY7] * t141 - (parameters[YY7] * t126 + t124 * (parameters[ZZ7]
+    const wam7_real_t t18 = t4 * t12;
+    const wam7_real_t t19 = dq[1] * t1;
+    const wam7_real_t t20 = t19 + t18;
+    const wam7_real_t t21 = t12 * t8;
+    const wam7_real_t t22 = t1 * t7;
+    const wam7_real_t t23 = dq[1] * t7;
+    const wam7_real_t t24 = WAM7_C(2.0) * t23;
+    const wam7_real_t t25 = t3 * t22 + t2 * t24;
+    const wam7_real_t t26 = t21 - t25;
+    const wam7_real_t t27 = t21 + t26;
+    const wam7_real_t t28 = t5 * t20 - t9 * t27;
+    const wam7_real_t t29 = t10 * t13;
+    const wam7_real_t t30 = t29 + t28;
+    const wam7_real_t t31 = t17 + t30;
+    const wam7_real_t t33 = t9 * t4 + t5 * t8;
+    const wam7_real_t t34 = t10 * t33;
+    const wam7_real_t t35 = t4 * t8;
+    const wam7_real_t t36 = t2 * t22 - t3 * t24;
+    const wam7_real_t t37 = t35 + t36;
+    const wam7_real_t t38 = t34 + t37;
+    const wam7_real_t t39 = t9 * t20 + t5 * t27;
+    const wam7_real_t t40 = t33 * t13;
+    const wam7_real_t t41 = t39 - t40;
+    const wam7_real_t t42 = t41 - t40;
+    const wam7_real_t t43 = t11 * t42 - t14 * t38;
+    const wam7_real_t t44 = dq[4] + t33;
+    const wam7_real_t t45 = t16 * t44;
+    const wam7_real_t t46 = t45 + t43;
+    const wam7_real_t t47 = t45 + t46;
+    const wam7_real_t t49 = t32 * t31 + t48 * t47;
+    const wam7_real_t t50 = t32 * t15 + t48 * t44;
+    const wam7_real_t t51 = dq[5] + t16;
+    const wam7_real_t t52 = t50 * t51;
+    const wam7_real_t t53 = t52 - t49;
+    const wam7_real_t t54 = t52 + t53;
+    const wam7_real_t t56 = t11 * t38 + t14 * t42;
+    const wam7_real_t t57 = t15 * t44;
+    const wam7_real_t t58 = t57 + t56;
+    const wam7_real_t t59 = t32 * t44 - t48 * t15;
+    const wam7_real_t t60 = t59 * t50;
+    const wam7_real_t t61 = t60 + t58;
+    const wam7_real_t t63 = t62 * t61 + t55 * t54;
+    const wam7_real_t t64 = t62 * t59 + t55 * t51;
+    const wam7_real_t t65 = dq[6] + t50;
+    const wam7_real_t t66 = t64 * t65;
+    const wam7_real_t t67 = t66 - t63;
+    const wam7_real_t t68 = t62 * t54 - t55 * t61;
+    const wam7_real_t t69 = t62 * t51 - t55 * t59;
+    const wam7_real_t t70 = t69 * t65;
+    const wam7_real_t t71 = t70 - t68;
+    const wam7_real_t t72 = t70 + t71;
+    const wam7_real_t t73 = parameters[XX7] * t67 - t66 * (parameters[YY7] - parameters[ZZ7])
+        - parameters[XY7] * t72;
+    const wam7_real_t t74 = t32 * t47 - t48 * t31;
+    const wam7_real_t t75 = t59 * t51;
+    const wam7_real_t t76 = t74 - t75;
+    const wam7_real_t t77 = t69 * t64;
+    const wam7_real_t t78 = t77 + t76;
+    const wam7_real_t t79 = t64 * t64;
+    const wam7_real_t t80 = t65 * t65;
+    const wam7_real_t t81 = t33 * t33;
+    const wam7_real_t t82 = t13 * t13;
+    const wam7_real_t t83 = t81 + t82;
+    const wam7_real_t t84 = t12 * t12;
+    const wam7_real_t t85 = t8 * t8;
+    const wam7_real_t t86 = t84 + t85;
+    const wam7_real_t t87 = WAM7_C(9.81) * t0;
+    const wam7_real_t t88 = t87 + WAM7_C(0.55) * t22;
+    const wam7_real_t t89 = WAM7_C(1.1) * t23;
+    const wam7_real_t t90 = t2 * t88 - t3 * t89;
+    const wam7_real_t t91 = WAM7_C(0.045) * t86 + t90;
+    const wam7_real_t t92 = t35 + t37;
+    const wam7_real_t t93 = t1 * t1;
+    const wam7_real_t t94 = dq[1] * dq[1];
+    const wam7_real_t t95 = WAM7_C(-9.81) * t6;
+    const wam7_real_t t96 = t95 + WAM7_C(0.55) * (t93 + t94);
+    const wam7_real_t t97 = t96 + WAM7_C(-0.045) * t92;
+    const wam7_real_t t98 = t5 * t91 - t9 * t97;
+    const wam7_real_t t99 = t98 + (WAM7_C(-0.045) * t83 + WAM7_C(0.3) * t38);
+    const wam7_real_t t100 = t29 + t30;
+    const wam7_real_t t101 = t18 - t19;
+    const wam7_real_t t102 = t3 * t88 + t2 * t89;
+    const wam7_real_t t103 = t102 + WAM7_C(0.045) * t101;
+    const wam7_real_t t104 = t103 + (WAM7_C(0.045) * t100 - WAM7_C(0.3) * t42);
+    const wam7_real_t t105 = t14 * t99 + t11 * t104;
+    const wam7_real_t t106 = t105 + WAM7_C(0.06) * t54;
+    const wam7_real_t t107 = t11 * t99 - t14 * t104;
+    const wam7_real_t t108 = t10 * t10;
+    const wam7_real_t t109 = t108 + t82;
+    const wam7_real_t t110 = t37 - t34;
+    const wam7_real_t t111 = t9 * t91 + t5 * t97;
+    const wam7_real_t t112 = t111 + (WAM7_C(0.3) * t109 + WAM7_C(0.045) * t110);
+    const wam7_real_t t113 = t48 * t107 - t32 * t112;
+    const wam7_real_t t114 = t113 - WAM7_C(-0.06) * t61;
+    const wam7_real_t t115 = t62 * t114 + t55 * t106;
+    const wam7_real_t t116 = t32 * t107 + t48 * t112;
+    const wam7_real_t t117 = t59 * t59;
+    const wam7_real_t t118 = t51 * t51;
+    const wam7_real_t t119 = t117 + t118;
+    const wam7_real_t t120 = WAM7_C(0.06) * t119 + t116;
+    const wam7_real_t t121 = t73 + parameters[XZ7] * t78 + (t79 - t80) * parameters[YZ7]
+        - (parameters[MY7] * t120 + parameters[MZ7] * t115);
+    const wam7_real_t t122 = t66 + t67;
+    const wam7_real_t t123 = parameters[XY7] * t122 - (parameters[YY7] * t71 + t70 * (parameters[ZZ7]
         - parameters[XX7]));
-    const wam7_real_t t143 = t104 - t129;
-    const wam7_real_t t144 = t123 * t123;
-    const wam7_real_t t145 = t115 * t138 - t114 * t137;
-    const wam7_real_t t146 = t142 + parameters[YZ7] * t143 + (t132 - t144) * parameters[XZ7]
-        + (parameters[MZ7] * t145 + parameters[MX7] * t135);
-    const wam7_real_t t147 = parameters[MZ7] * t125 - ((t131 + t132) * parameters[MX7]
-        + parameters[MY7] * t143);
-    const wam7_real_t t148 = parameters[M7] * t145 + t147;
-    const wam7_real_t t149 = (t144 + t132) * parameters[MY7] - parameters[MX7] * t130
-        - parameters[MZ7] * t121;
-    const wam7_real_t t150 = parameters[M7] * t139 - t149;
-    const wam7_real_t t151 = t115 * t148 + t114 * t150;
-    const wam7_real_t t152 = t113 + (t115 * t146 - t114 * t140 + WAM7_C(0.06) * t151);
-    const wam7_real_t t153 = parameters[YY6] * t104 + t102 * (parameters[XX6] - parameters[ZZ6])
-        + parameters[XY6] * t120;
-    const wam7_real_t t154 = t153 + parameters[YZ6] * t119 + (t133 - t110) * parameters[XZ6]
-        + (parameters[MZ6] * t136 + parameters[MX6] * t90);
-    const wam7_real_t t155 = parameters[ZZ7] * t104 - t129 * (parameters[XX7] - parameters[YY7])
-        + parameters[YZ7] * t125;
-    const wam7_real_t t156 = t155 - parameters[XZ7] * t121 + (t144 - t131) * parameters[XY7]
-        + (parameters[MX7] * t139 - parameters[MY7] * t145);
-    const wam7_real_t t157 = t154 + t156;
-    const wam7_real_t t158 = t91 + (t93 * t157 - t92 * t152);
-    const wam7_real_t t159 = parameters[XY5] * t98 - (parameters[YY5] * t76 + t74 * (parameters[ZZ5]
+    const wam7_real_t t124 = t76 - t77;
+    const wam7_real_t t125 = t69 * t69;
+    const wam7_real_t t126 = t62 * t106 - t55 * t114;
+    const wam7_real_t t127 = t123 + parameters[YZ7] * t124 + (t80 - t125) * parameters[XZ7]
+        + (parameters[MZ7] * t126 + parameters[MX7] * t120);
+    const wam7_real_t t128 = parameters[MZ7] * t68 - ((t79 + t80) * parameters[MX7] + parameters[MY7] * t124);
+    const wam7_real_t t129 = parameters[M7] * t126 + t128;
+    const wam7_real_t t130 = (t125 + t80) * parameters[MY7] - parameters[MX7] * t78 - parameters[MZ7] * t63;
+    const wam7_real_t t131 = parameters[M7] * t115 - t130;
+    const wam7_real_t t132 = t62 * t129 + t55 * t131;
+    const wam7_real_t t133 = t76 - t75;
+    const wam7_real_t t134 = parameters[XX6] * t53 - t52 * (parameters[YY6] - parameters[ZZ6])
+        + parameters[XY6] * t133;
+    const wam7_real_t t135 = t58 - t60;
+    const wam7_real_t t136 = t50 * t50;
+    const wam7_real_t t137 = t134 + parameters[XZ6] * t135 + (t118 - t136) * parameters[YZ6]
+        + (parameters[MZ6] * t116 - parameters[MY6] * t105);
+    const wam7_real_t t138 = t137 + (t62 * t127 - t55 * t121 + WAM7_C(0.06) * t132);
+    const wam7_real_t t139 = parameters[YY6] * t76 + t75 * (parameters[XX6] - parameters[ZZ6])
+        + parameters[XY6] * t54;
+    const wam7_real_t t140 = t139 + parameters[YZ6] * t61 + (t117 - t118) * parameters[XZ6]
+        + (parameters[MZ6] * t113 + parameters[MX6] * t105);
+    const wam7_real_t t141 = parameters[ZZ7] * t76 - t77 * (parameters[XX7] - parameters[YY7])
+        + parameters[YZ7] * t68;
+    const wam7_real_t t142 = t141 - parameters[XZ7] * t63 + (t125 - t79) * parameters[XY7]
+        + (parameters[MX7] * t115 - parameters[MY7] * t126);
+    const wam7_real_t t143 = t140 + t142;
+    const wam7_real_t t144 = t57 + t58;
+    const wam7_real_t t145 = parameters[XX5] * t46 - t45 * (parameters[YY5] - parameters[ZZ5])
+        - parameters[XY5] * t144;
+    const wam7_real_t t146 = t30 - t17;
+    const wam7_real_t t147 = t16 * t16;
+    const wam7_real_t t148 = t44 * t44;
+    const wam7_real_t t149 = t145 - parameters[XZ5] * t146 + (t147 - t148) * parameters[YZ5]
+        - (parameters[MY5] * t112 + parameters[MZ5] * t105);
+    const wam7_real_t t150 = t149 + (t32 * t143 - t48 * t138);
+    const wam7_real_t t151 = t55 * t129 - t62 * t131;
+    const wam7_real_t t152 = parameters[ZZ6] * t58 + t60 * (parameters[XX6] - parameters[YY6])
+        + parameters[YZ6] * t74;
+    const wam7_real_t t153 = parameters[XZ6] * t49 - t152 + (t117 - t136) * parameters[XY6]
+        + (parameters[MX6] * t116 + parameters[MY6] * t113);
+    const wam7_real_t t154 = t153 + (t62 * t121 + t55 * t127 + WAM7_C(0.06) * t151);
+    const wam7_real_t t155 = parameters[XY5] * t47 - (parameters[YY5] * t58 + t57 * (parameters[ZZ5]
         - parameters[XX5]));
-    const wam7_real_t t160 = t73 * t73;
-    const wam7_real_t t161 = t159 - parameters[YZ5] * t97 + (t82 - t160) * parameters[XZ5]
-        + (parameters[MX5] * t85 - parameters[MZ5] * t111);
-    const wam7_real_t t162 = parameters[ZZ6] * t76 + t107 * (parameters[XX6] - parameters[YY6])
-        + parameters[YZ6] * t103;
-    const wam7_real_t t163 = parameters[XZ6] * t99 - t162 + (t133 - t109) * parameters[XY6]
-        + (parameters[MX6] * t112 + parameters[MY6] * t136);
-    const wam7_real_t t164 = t114 * t148 - t115 * t150;
-    const wam7_real_t t165 = t163 + (t115 * t140 + t114 * t146 + WAM7_C(0.06) * t164);
-    const wam7_real_t t166 = t161 + t165;
-    const wam7_real_t t167 = parameters[MY5] * t97 - (t81 + t82) * parameters[MX5] - parameters[MZ5] * t75;
-    const wam7_real_t t168 = (t109 + t110) * parameters[MX6] - parameters[MY6] * t119
-        + parameters[MZ6] * t103;
-    const wam7_real_t t169 = parameters[M6] * t136 + t168 - t164;
-    const wam7_real_t t170 = parameters[MX6] * t108 + t134 * parameters[MY6] + parameters[MZ6] * t99
-        - parameters[M6] * t112;
-    const wam7_real_t t171 = parameters[MX7] * t127 + parameters[MY7] * t141 - (t144
-        + t131) * parameters[MZ7];
-    const wam7_real_t t172 = t170 + (t171 - parameters[M7] * t135);
-    const wam7_real_t t173 = t167 - parameters[M5] * t111 + (t93 * t172 - t92 * t169);
-    const wam7_real_t t174 = parameters[MX5] * t80 + (t160 + t82) * parameters[MY5] + parameters[MZ5] * t71;
-    const wam7_real_t t175 = parameters[MY6] * t120 - parameters[MX6] * t105 + (t133
-        + t109) * parameters[MZ6];
-    const wam7_real_t t176 = parameters[M5] * t90 - t174 + (parameters[M6] * t90 - t175 + t151);
-    const wam7_real_t t177 = t65 * t173 + t64 * t176;
-    const wam7_real_t t178 = t63 + (t65 * t166 - t64 * t158 + WAM7_C(0.3) * t177);
-    const wam7_real_t t179 = t48 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t50
-        - parameters[XY4] * t70;
-    const wam7_real_t t180 = t179 + parameters[YZ4] * t69 + (t83 - t56) * parameters[XZ4]
-        + (parameters[MZ4] * t86 + parameters[MX4] * t57);
-    const wam7_real_t t181 = parameters[ZZ5] * t50 + t79 * (parameters[XX5] - parameters[YY5])
-        + parameters[YZ5] * t75;
-    const wam7_real_t t182 = parameters[XZ5] * t71 - t181 + (t160 - t81) * parameters[XY5]
-        + (parameters[MX5] * t90 + parameters[MY5] * t111);
-    const wam7_real_t t183 = t182 + (t93 * t152 + t92 * t157);
-    const wam7_real_t t184 = t180 + (t183 + WAM7_C(-0.045) * t177);
-    const wam7_real_t t185 = t37 + (t39 * t184 - t38 * t178);
-    const wam7_real_t t186 = parameters[XY3] * t44 - (parameters[YY3] * t24 + t22 * (parameters[ZZ3]
-        - parameters[XX3]));
-    const wam7_real_t t187 = t21 * t21;
-    const wam7_real_t t188 = t186 - parameters[YZ3] * t43 + (t30 - t187) * parameters[XZ3]
-        + (t32 * parameters[MX3] - parameters[MZ3] * t59);
-    const wam7_real_t t189 = parameters[YZ4] * t49 - (parameters[ZZ4] * t24 + t53 * (parameters[XX4]
+    const wam7_real_t t156 = t15 * t15;
+    const wam7_real_t t157 = t155 - parameters[YZ5] * t31 + (t148 - t156) * parameters[XZ5]
+        + (parameters[MX5] * t112 - parameters[MZ5] * t107);
+    const wam7_real_t t158 = t157 + t154;
+    const wam7_real_t t159 = (t136 + t118) * parameters[MX6] - parameters[MY6] * t61 + parameters[MZ6] * t74;
+    const wam7_real_t t160 = parameters[M6] * t113 + t159 - t151;
+    const wam7_real_t t161 = parameters[MX6] * t135 + t119 * parameters[MY6] + parameters[MZ6] * t49
+        - parameters[M6] * t116;
+    const wam7_real_t t162 = parameters[MX7] * t72 + parameters[MY7] * t122 - (t125 + t79) * parameters[MZ7];
+    const wam7_real_t t163 = t161 + (t162 - parameters[M7] * t120);
+    const wam7_real_t t164 = parameters[MY5] * t31 - (t147 + t148) * parameters[MX5] - parameters[MZ5] * t56;
+    const wam7_real_t t165 = t164 - parameters[M5] * t107 + (t32 * t163 - t48 * t160);
+    const wam7_real_t t166 = parameters[MY6] * t54 - parameters[MX6] * t133 + (t117 + t136) * parameters[MZ6];
+    const wam7_real_t t167 = parameters[MX5] * t146 + (t156 + t148) * parameters[MY5] + parameters[MZ5] * t43;
+    const wam7_real_t t168 = parameters[M5] * t105 - t167 + (parameters[M6] * t105 - t166 + t132);
+    const wam7_real_t t169 = t14 * t165 + t11 * t168;
+    const wam7_real_t t170 = parameters[XX4] * t41 + t40 * (parameters[YY4] - parameters[ZZ4])
+        + parameters[XY4] * t100;
+    const wam7_real_t t171 = parameters[XZ4] * t110 - t170 + (t82 - t81) * parameters[YZ4]
+        + (parameters[MZ4] * t111 - parameters[MY4] * t103);
+    const wam7_real_t t172 = t171 + (t14 * t158 - t11 * t150 + WAM7_C(0.3) * t169);
+    const wam7_real_t t173 = parameters[ZZ5] * t30 + t17 * (parameters[XX5] - parameters[YY5])
+        + parameters[YZ5] * t56;
+    const wam7_real_t t174 = parameters[XZ5] * t43 - t173 + (t156 - t147) * parameters[XY5]
+        + (parameters[MX5] * t105 + parameters[MY5] * t107);
+    const wam7_real_t t175 = t174 + (t32 * t138 + t48 * t143);
+    const wam7_real_t t176 = t29 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t30
+        - parameters[XY4] * t42;
+    const wam7_real_t t177 = t176 + parameters[YZ4] * t38 + (t108 - t82) * parameters[XZ4]
+        + (parameters[MZ4] * t98 + parameters[MX4] * t103);
+    const wam7_real_t t178 = t177 + (t175 + WAM7_C(-0.045) * t169);
+    const wam7_real_t t179 = parameters[XX3] * t26 - t21 * (parameters[YY3] - parameters[ZZ3])
+        - parameters[XY3] * t92;
+    const wam7_real_t t180 = t179 + parameters[XZ3] * t101 + (t84 - t85) * parameters[YZ3]
+        - (t96 * parameters[MY3] + parameters[MZ3] * t102);
+    const wam7_real_t t181 = t180 + (t9 * t178 - t5 * t172);
+    const wam7_real_t t182 = t11 * t165 - t14 * t168;
+    const wam7_real_t t183 = parameters[MX5] * t144 + parameters[MY5] * t47 - (t156 + t147) * parameters[MZ5];
+    const wam7_real_t t184 = t183 - parameters[M5] * t112 + (t32 * t160 + t48 * t163);
+    const wam7_real_t t185 = t14 * t150 + t11 * t158 + (WAM7_C(0.045) * t184 + WAM7_C(0.3) * t182);
+    const wam7_real_t t186 = parameters[YZ4] * t28 - (parameters[ZZ4] * t37 + t34 * (parameters[XX4]
         - parameters[YY4]));
-    const wam7_real_t t190 = t189 + parameters[XZ4] * t45 + (t83 - t55) * parameters[XY4]
-        + (parameters[MX4] * t62 + parameters[MY4] * t86);
-    const wam7_real_t t191 = parameters[MX5] * t77 + parameters[MY5] * t98 - (t160 + t81) * parameters[MZ5];
-    const wam7_real_t t192 = t191 - parameters[M5] * t85 + (t93 * t169 + t92 * t172);
-    const wam7_real_t t193 = t64 * t173 - t65 * t176;
-    const wam7_real_t t194 = t65 * t158 + t64 * t166 + (WAM7_C(0.045) * t192 + WAM7_C(0.3) * t193);
-    const wam7_real_t t195 = t190 + t194;
-    const wam7_real_t t196 = parameters[MY4] * t69 - t87 * parameters[MX4] + parameters[MZ4] * t49
-        - parameters[M4] * t86;
-    const wam7_real_t t197 = t196 + t193;
-    const wam7_real_t t198 = parameters[M4] * t62 - (parameters[MX4] * t54 + t84 * parameters[MY4]
-        + parameters[MZ4] * t45);
-    const wam7_real_t t199 = t198 - t192;
-    const wam7_real_t t200 = t188 + (t195 + WAM7_C(0.045) * (t39 * t197 + t38 * t199));
-    const wam7_real_t t201 = parameters[MY3] * t43 - t58 * parameters[MX3] - parameters[MZ3] * t23
-        - parameters[M3] * t59;
-    const wam7_real_t t202 = t201 + (t38 * t197 - t39 * t199);
-    const wam7_real_t t203 = (t187 + t30) * parameters[MY3] - parameters[MX3] * t28 - parameters[MZ3] * t19;
-    const wam7_real_t t204 = parameters[MY4] * t70 - parameters[MX4] * t51 - (t83 + t55) * parameters[MZ4];
-    const wam7_real_t t205 = parameters[M4] * t57 + t204 + t177;
-    const wam7_real_t t206 = parameters[M3] * t36 - t203 + t205;
-    const wam7_real_t t207 = t14 * t200 - t13 * t185 + WAM7_C(0.55) * (t14 * t202 + t13 * t206);
-    const wam7_real_t t208 = t6 * (parameters[XX2] - parameters[ZZ2]) - t6 * parameters[YY2]
-        + t18 * parameters[XY2];
-    const wam7_real_t t209 = t208 + t8 * parameters[YZ2] + (t31 - t10) * parameters[XZ2]
-        + t33 * parameters[MZ2];
-    const wam7_real_t t210 = t6 * parameters[ZZ3] + t27 * (parameters[XX3] - parameters[YY3])
-        + parameters[YZ3] * t23;
-    const wam7_real_t t211 = (t187 - t29) * parameters[XY3] - (t210 + parameters[XZ3] * t19)
-        + (parameters[MX3] * t36 + parameters[MY3] * t59);
-    const wam7_real_t t212 = t211 + (t39 * t178 + t38 * t184 + WAM7_C(0.045) * t205);
-    const wam7_real_t t213 = WAM7_C(0.05209961446285298) * (t1 * (t12 + t207) + t2 * (t209 + t212));
+    const wam7_real_t t187 = t186 + parameters[XZ4] * t39 + (t108 - t81) * parameters[XY4]
+        + (parameters[MX4] * t111 + parameters[MY4] * t98);
+    const wam7_real_t t188 = t187 + t185;
+    const wam7_real_t t189 = parameters[MY4] * t38 - t83 * parameters[MX4] + parameters[MZ4] * t28
+        - parameters[M4] * t98;
+    const wam7_real_t t190 = t189 + t182;
+    const wam7_real_t t191 = parameters[M4] * t111 - (parameters[MX4] * t110 + t109 * parameters[MY4]
+        + parameters[MZ4] * t39);
+    const wam7_real_t t192 = t191 - t184;
+    const wam7_real_t t193 = parameters[XY3] * t27 - (parameters[YY3] * t37 + t35 * (parameters[ZZ3]
+        - parameters[XX3]));
+    const wam7_real_t t194 = t4 * t4;
+    const wam7_real_t t195 = t193 - parameters[YZ3] * t20 + (t85 - t194) * parameters[XZ3]
+        + (t96 * parameters[MX3] - parameters[MZ3] * t90);
+    const wam7_real_t t196 = t195 + (t188 + WAM7_C(0.045) * (t9 * t190 + t5 * t192));
+    const wam7_real_t t197 = parameters[MY3] * t20 - t86 * parameters[MX3] - parameters[MZ3] * t36
+        - parameters[M3] * t90;
+    const wam7_real_t t198 = t197 + (t5 * t190 - t9 * t192);
+    const wam7_real_t t199 = parameters[MY4] * t42 - parameters[MX4] * t100 - (t108 + t81) * parameters[MZ4];
+    const wam7_real_t t200 = parameters[M4] * t103 + t199 + t169;
+    const wam7_real_t t201 = (t194 + t85) * parameters[MY3] - parameters[MX3] * t101 - parameters[MZ3] * t25;
+    const wam7_real_t t202 = parameters[M3] * t102 - t201 + t200;
+    const wam7_real_t t203 = t3 * t196 - t2 * t181 + WAM7_C(0.55) * (t3 * t198 + t2 * t202);
+    const wam7_real_t t204 = t23 * parameters[XX2] + t23 * (parameters[ZZ2] - parameters[YY2])
+        + WAM7_C(-2.0) * t19 * parameters[XY2];
+    const wam7_real_t t205 = t7 * t7;
+    const wam7_real_t t206 = t204 - t22 * parameters[XZ2] + (t94 - t205) * parameters[YZ2]
+        + t95 * parameters[MZ2];
+    const wam7_real_t t207 = t19 * parameters[ZZ3] + t18 * (parameters[XX3] - parameters[YY3])
+        + parameters[YZ3] * t36;
+    const wam7_real_t t208 = (t194 - t84) * parameters[XY3] - (t207 + parameters[XZ3] * t25)
+        + (parameters[MX3] * t102 + parameters[MY3] * t90);
+    const wam7_real_t t209 = t208 + (t9 * t172 + t5 * t178 + WAM7_C(0.045) * t200);
+    const wam7_real_t t210 = t19 * (parameters[XX2] - parameters[ZZ2]) - t19 * parameters[YY2]
+        + t24 * parameters[XY2];
+    const wam7_real_t t211 = t210 + t22 * parameters[YZ2] + (t93 - t94) * parameters[XZ2]
+        + t87 * parameters[MZ2];
+    const wam7_real_t t212 = WAM7_C(0.05209961446285298) * (t0 * (t206 + t203) + t6 * (t211 + t209));
+    const wam7_real_t t213 = wam7_sign(dq[0]);
     const wam7_real_t t214 = WAM7_C(2.1881838074398248) * (WAM7_C(42.0) * dq[0] * parameters[FV1]
-        + t0 * parameters[FC1]) + t213;
+        + t213 * parameters[FC1]) + t212;
     out[0] = t214;
-    const wam7_real_t t215 = wam7_sign(dq[1]);
-    const wam7_real_t t216 = t8 * (parameters[YY2] - parameters[XX2]) + (t31 - t9) * parameters[XY2]
-        + (t11 * parameters[MX2] + t33 * parameters[MY2]);
-    const wam7_real_t t217 = t14 * t185 + t13 * t200 + WAM7_C(0.55) * (t13 * t202 - t14 * t206);
+    const wam7_real_t t215 = t3 * t181 + t2 * t196 + WAM7_C(0.55) * (t2 * t198 - t3 * t202);
+    const wam7_real_t t216 = t22 * (parameters[YY2] - parameters[XX2]) + (t93 - t205) * parameters[XY2]
+        + (t95 * parameters[MX2] + t87 * parameters[MY2]);
+    const wam7_real_t t217 = wam7_sign(dq[1]);
     const wam7_real_t t218 = WAM7_C(2.1881838074398248) * (WAM7_C(28.25) * dq[1] * parameters[FV2]
-        + t215 * parameters[FC2]) + WAM7_C(0.07745783389167521) * (t216 + t217);
+        + t217 * parameters[FC2]) + WAM7_C(0.07745783389167521) * (t216 + t215);
     out[1] = t218;
     const wam7_real_t t219 = wam7_sign(dq[2]);
     const wam7_real_t t220 = WAM7_C(2.1881838074398248) * (WAM7_C(28.25) * dq[2] * parameters[FV3]
-        + t219 * parameters[FC3]) + WAM7_C(0.07745783389167521) * t212;
+        + t219 * parameters[FC3]) + WAM7_C(0.07745783389167521) * t209;
     out[2] = t220;
     const wam7_real_t t221 = wam7_sign(dq[3]);
     const wam7_real_t t222 = WAM7_C(2.1881838074398248) * (WAM7_C(18.0) * dq[3] * parameters[FV4]
-        + t221 * parameters[FC4]) + WAM7_C(0.12156576707999026) * t195;
+        + t221 * parameters[FC4]) + WAM7_C(0.12156576707999026) * t188;
     out[3] = t222;
     const wam7_real_t t223 = wam7_sign(dq[4]);
     const wam7_real_t t224 = WAM7_C(4.237288135593221) * (WAM7_C(9.48) * dq[4] * parameters[FV5]
-        + t223 * parameters[FC5]) + WAM7_C(0.4469713223199599) * t183;
+        + t223 * parameters[FC5]) + WAM7_C(0.4469713223199599) * t175;
     out[4] = t224;
     const wam7_real_t t225 = wam7_sign(dq[5]);
     const wam7_real_t t226 = WAM7_C(4.237288135593221) * (WAM7_C(9.48) * dq[5] * parameters[FV6]
-        + t225 * parameters[FC6]) + WAM7_C(0.4469713223199599) * t165;
+        + t225 * parameters[FC6]) + WAM7_C(0.4469713223199599) * t154;
     out[5] = t226;
     const wam7_real_t t227 = wam7_sign(dq[6]);
     const wam7_real_t t228 = WAM7_C(14.925373134328357) * (WAM7_C(14.93) * dq[6] * parameters[FV7]
-        + t227 * parameters[FC7]) + WAM7_C(0.9996900960702182) * t156;
+        + t227 * parameters[FC7]) + WAM7_C(0.9996900960702182) * t142;
     out[6] = t228;
     return WAM7_STATUS_OK;
 }

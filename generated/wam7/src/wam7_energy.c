@@ -90,7 +90,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -118,10 +118,10 @@ int wam7_energy(
         return status;
     }
 
-    wam7_real_t t0, t2;
-    WAM7_SINCOS(q[1], &t0, &t2);
-    wam7_real_t t8, t7;
-    WAM7_SINCOS(q[2], &t8, &t7);
+    wam7_real_t t0, t6;
+    WAM7_SINCOS(q[1], &t0, &t6);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[2], &t3, &t2);
     wam7_real_t t22, t21;
     WAM7_SINCOS(q[3], &t22, &t21);
     wam7_real_t t35, t34;
@@ -131,32 +131,33 @@ int wam7_energy(
     wam7_real_t t61, t60;
     WAM7_SINCOS(q[6], &t61, &t60);
     const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t3 = t2 * dq[0];
-    const wam7_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 - parameters[XZ2] * dq[1]);
-    const wam7_real_t t5 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1 + parameters[YZ2] * t3));
-    const wam7_real_t t6 = t4 + t3 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t5;
-    const wam7_real_t t9 = t7 * t1 - t8 * dq[1];
-    const wam7_real_t t10 = t8 * t1 + t7 * dq[1];
-    const wam7_real_t t11 = dq[2] + t3;
-    const wam7_real_t t12 = t9 * (parameters[XX3R] * t9 - parameters[XY3R] * t10 - parameters[XZ3] * t11);
-    const wam7_real_t t13 = t11 * (parameters[YZ3] * t10 - parameters[XZ3] * t9 + parameters[ZZ3R] * t11);
-    const wam7_real_t t14 = t12 + t10 * (parameters[YZ3] * t11 - parameters[XY3R] * t9) + t13;
-    const wam7_real_t t15 = WAM7_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + WAM7_C(0.5) * t6
-        + WAM7_C(0.5) * t14;
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
+    const wam7_real_t t7 = t6 * dq[0];
+    const wam7_real_t t8 = dq[2] + t7;
+    const wam7_real_t t9 = t4 * (parameters[XX3R] * t4 - parameters[XY3R] * t5 - parameters[XZ3] * t8);
+    const wam7_real_t t10 = t8 * (parameters[YZ3] * t5 - parameters[XZ3] * t4 + parameters[ZZ3R] * t8);
+    const wam7_real_t t11 = t9 + t5 * (parameters[YZ3] * t8 - parameters[XY3R] * t4) + t10;
+    const wam7_real_t t12 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t7 - parameters[XZ2] * dq[1]);
+    const wam7_real_t t13 = dq[1] * (parameters[ZZ2R] * dq[1] - (parameters[XZ2] * t1
+        + parameters[YZ2] * t7));
+    const wam7_real_t t14 = t12 + t7 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
+    const wam7_real_t t15 = WAM7_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + WAM7_C(0.5) * t14
+        + WAM7_C(0.5) * t11;
     const wam7_real_t t16 = WAM7_C(0.55) * dq[1];
     const wam7_real_t t17 = WAM7_C(-0.55) * t1;
-    const wam7_real_t t18 = t8 * t16 + t7 * t17;
-    const wam7_real_t t19 = t8 * t17 - t7 * t16;
-    const wam7_real_t t20 = t15 + (parameters[MY3R] * (t11 * t19) - parameters[MX3R] * (t11 * t18));
-    const wam7_real_t t23 = t21 * t9 + t22 * t11;
-    const wam7_real_t t24 = t22 * t9 - t21 * t11;
-    const wam7_real_t t25 = dq[3] + t10;
+    const wam7_real_t t18 = t3 * t16 + t2 * t17;
+    const wam7_real_t t19 = t3 * t17 - t2 * t16;
+    const wam7_real_t t20 = t15 + (parameters[MY3R] * (t8 * t19) - parameters[MX3R] * (t8 * t18));
+    const wam7_real_t t23 = t21 * t4 + t22 * t8;
+    const wam7_real_t t24 = t22 * t4 - t21 * t8;
+    const wam7_real_t t25 = dq[3] + t5;
     const wam7_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4R] * t24 - parameters[XZ4] * t25);
     const wam7_real_t t27 = t25 * (parameters[YZ4] * t24 - parameters[XZ4] * t23 + parameters[ZZ4R] * t25);
     const wam7_real_t t28 = t26 + t24 * (parameters[YZ4] * t25 - parameters[XY4R] * t23) + t27;
-    const wam7_real_t t29 = WAM7_C(0.045) * t10;
+    const wam7_real_t t29 = WAM7_C(0.045) * t5;
     const wam7_real_t t30 = t22 * t19 + t21 * t29;
-    const wam7_real_t t31 = t18 + WAM7_C(-0.045) * t11;
+    const wam7_real_t t31 = t18 + WAM7_C(-0.045) * t8;
     const wam7_real_t t32 = t21 * t19 - t22 * t29;
     const wam7_real_t t33 = parameters[MX4R] * (t25 * t30 + t24 * t31) + parameters[MY4R] * (t23 * t31
         + t25 * t32);
@@ -200,9 +201,9 @@ int wam7_energy(
         + WAM7_C(0.5) * (WAM7_C(89.8704) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t72 + WAM7_C(0.5) * (WAM7_C(222.9049) * parameters[IA7] * (dq[6] * dq[6]));
     const wam7_real_t t73 = WAM7_C(-9.81) * t0;
-    const wam7_real_t t74 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t75 = t7 * t73;
-    const wam7_real_t t76 = t8 * t73;
+    const wam7_real_t t74 = WAM7_C(-9.81) * t6;
+    const wam7_real_t t75 = t2 * t73;
+    const wam7_real_t t76 = t3 * t73;
     const wam7_real_t t77 = parameters[MX2] * t73 + parameters[MY2R] * t74 + (parameters[MX3R] * t75
         - parameters[MY3R] * t76);
     const wam7_real_t t78 = t21 * t75 + t22 * t74;

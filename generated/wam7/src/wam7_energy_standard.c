@@ -119,7 +119,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -148,95 +148,96 @@ int wam7_energy_standard(
         return status;
     }
 
-    wam7_real_t t0, t2;
-    WAM7_SINCOS(q[1], &t0, &t2);
-    wam7_real_t t9, t8;
-    WAM7_SINCOS(q[2], &t9, &t8);
-    wam7_real_t t23, t22;
-    WAM7_SINCOS(q[3], &t23, &t22);
-    wam7_real_t t39, t38;
-    WAM7_SINCOS(q[4], &t39, &t38);
+    wam7_real_t t0, t6;
+    WAM7_SINCOS(q[1], &t0, &t6);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[2], &t3, &t2);
+    wam7_real_t t24, t22;
+    WAM7_SINCOS(q[3], &t24, &t22);
+    wam7_real_t t41, t39;
+    WAM7_SINCOS(q[4], &t41, &t39);
     wam7_real_t t56, t55;
     WAM7_SINCOS(q[5], &t56, &t55);
-    wam7_real_t t70, t69;
-    WAM7_SINCOS(q[6], &t70, &t69);
+    wam7_real_t t72, t70;
+    WAM7_SINCOS(q[6], &t72, &t70);
     const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t3 = t2 * dq[0];
-    const wam7_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] - dq[1] * parameters[XZ2]);
-    const wam7_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] - dq[1] * parameters[YZ2]);
-    const wam7_real_t t6 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2] + t3 * parameters[YZ2]));
-    const wam7_real_t t7 = WAM7_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + WAM7_C(0.5) * (t4 + t5 + t6);
-    const wam7_real_t t10 = t8 * t1 - t9 * dq[1];
-    const wam7_real_t t11 = t9 * t1 + t8 * dq[1];
-    const wam7_real_t t12 = dq[2] + t3;
-    const wam7_real_t t13 = t10 * (t10 * parameters[XX3] - t11 * parameters[XY3] - t12 * parameters[XZ3]);
-    const wam7_real_t t14 = t11 * (t11 * parameters[YY3] - t10 * parameters[XY3] + t12 * parameters[YZ3]);
-    const wam7_real_t t15 = t12 * (t11 * parameters[YZ3] - t10 * parameters[XZ3] + t12 * parameters[ZZ3]);
-    const wam7_real_t t16 = WAM7_C(0.55) * dq[1];
-    const wam7_real_t t17 = WAM7_C(0.55) * t1;
-    const wam7_real_t t18 = t8 * t16 + t9 * t17;
-    const wam7_real_t t19 = t9 * t16 - t8 * t17;
-    const wam7_real_t t20 = t13 + t14 + t15 + parameters[M3] * (t18 * t18 + t19 * t19);
-    const wam7_real_t t21 = parameters[MZ3] * (t11 * t18 - t10 * t19) - (parameters[MX3] * (t12 * t19)
-        + parameters[MY3] * (t12 * t18));
-    const wam7_real_t t24 = t22 * t10 + t23 * t12;
-    const wam7_real_t t25 = t23 * t10 - t22 * t12;
-    const wam7_real_t t26 = dq[3] + t11;
-    const wam7_real_t t27 = t24 * (t24 * parameters[XX4] - t25 * parameters[XY4] - t26 * parameters[XZ4]);
-    const wam7_real_t t28 = t25 * (t25 * parameters[YY4] - t24 * parameters[XY4] + t26 * parameters[YZ4]);
-    const wam7_real_t t29 = t26 * (t25 * parameters[YZ4] - t24 * parameters[XZ4] + t26 * parameters[ZZ4]);
-    const wam7_real_t t30 = WAM7_C(0.045) * t11;
-    const wam7_real_t t31 = t22 * t18 + t23 * t30;
-    const wam7_real_t t32 = t22 * t30 - t23 * t18;
-    const wam7_real_t t33 = t19 + WAM7_C(-0.045) * t12;
-    const wam7_real_t t34 = parameters[M4] * (t31 * t31 + t32 * t32 + t33 * t33);
-    const wam7_real_t t35 = t7 + WAM7_C(0.5) * t20 + t21 + WAM7_C(0.5) * (t27 + t28 + t29 + t34);
-    const wam7_real_t t36 = parameters[MX4] * (t26 * t32 + t25 * t33) + parameters[MY4] * (t24 * t33
-        - t26 * t31);
-    const wam7_real_t t37 = t35 + (t36 + parameters[MZ4] * (t25 * t31 + t24 * t32));
-    const wam7_real_t t40 = t39 * t26 - t38 * t24;
-    const wam7_real_t t41 = t39 * t24 + t38 * t26;
-    const wam7_real_t t42 = t25 - dq[4];
-    const wam7_real_t t43 = t40 * (t42 * parameters[XZ5] - (t40 * parameters[XX5] + t41 * parameters[XY5]));
-    const wam7_real_t t44 = t41 * (t40 * parameters[XY5] + t41 * parameters[YY5] - t42 * parameters[YZ5]);
-    const wam7_real_t t45 = t42 * (t40 * parameters[XZ5] + t41 * parameters[YZ5] - t42 * parameters[ZZ5]);
-    const wam7_real_t t46 = t31 + WAM7_C(0.3) * t26;
-    const wam7_real_t t47 = WAM7_C(0.3) * t24 + WAM7_C(0.045) * t25 - t33;
-    const wam7_real_t t48 = t38 * t46 + t39 * t47;
-    const wam7_real_t t49 = t39 * t46 - t38 * t47;
-    const wam7_real_t t50 = t49 * t49;
-    const wam7_real_t t51 = t32 + WAM7_C(-0.045) * t26;
-    const wam7_real_t t52 = t44 - t43 - t45 + parameters[M5] * (t48 * t48 + t50 + t51 * t51);
-    const wam7_real_t t53 = parameters[MX5] * (t42 * t49 + t41 * t51) + parameters[MY5] * (t42 * t48
-        - t40 * t51);
-    const wam7_real_t t54 = t37 + WAM7_C(0.5) * t52 + (t53 + parameters[MZ5] * (t41 * t48 + t40 * t49));
-    const wam7_real_t t57 = t55 * t40 + t56 * t42;
-    const wam7_real_t t58 = t55 * t42 - t56 * t40;
-    const wam7_real_t t59 = dq[5] + t41;
-    const wam7_real_t t60 = t57 * (t57 * parameters[XX6] + t58 * parameters[XY6] + t59 * parameters[XZ6]);
-    const wam7_real_t t61 = t58 * (t57 * parameters[XY6] + t58 * parameters[YY6] + t59 * parameters[YZ6]);
-    const wam7_real_t t62 = t59 * (t57 * parameters[XZ6] + t58 * parameters[YZ6] + t59 * parameters[ZZ6]);
-    const wam7_real_t t63 = t55 * t48 + t56 * t51;
-    const wam7_real_t t64 = t55 * t51 - t56 * t48;
-    const wam7_real_t t65 = t64 * t64;
-    const wam7_real_t t66 = t60 + t61 + t62 + parameters[M6] * (t50 + (t63 * t63 + t65));
-    const wam7_real_t t67 = parameters[MX6] * (t59 * t64 + t58 * t49) - parameters[MY6] * (t57 * t49
-        + t59 * t63);
-    const wam7_real_t t68 = t54 + WAM7_C(0.5) * t66 + (t67 + parameters[MZ6] * (t58 * t63 - t57 * t64));
-    const wam7_real_t t71 = t69 * t57 + t70 * t59;
-    const wam7_real_t t72 = t69 * t59 - t70 * t57;
-    const wam7_real_t t73 = t58 - dq[6];
-    const wam7_real_t t74 = t71 * (t73 * parameters[XZ7] - (t71 * parameters[XX7] + t72 * parameters[XY7]));
-    const wam7_real_t t75 = t72 * (t71 * parameters[XY7] + t72 * parameters[YY7] - t73 * parameters[YZ7]);
-    const wam7_real_t t76 = t73 * (t71 * parameters[XZ7] + t72 * parameters[YZ7] - t73 * parameters[ZZ7]);
-    const wam7_real_t t77 = t63 + WAM7_C(0.06) * t59;
-    const wam7_real_t t78 = WAM7_C(-0.06) * t57 - t49;
-    const wam7_real_t t79 = t69 * t77 + t70 * t78;
-    const wam7_real_t t80 = t70 * t77 - t69 * t78;
-    const wam7_real_t t81 = t75 - t74 - t76 + parameters[M7] * (t65 + (t79 * t79 + t80 * t80));
-    const wam7_real_t t82 = parameters[MX7] * (t73 * t80 + t72 * t64) + parameters[MY7] * (t73 * t79
-        - t71 * t64);
-    const wam7_real_t t83 = t68 + WAM7_C(0.5) * t81 + (t82 + parameters[MZ7] * (t72 * t79 + t71 * t80));
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
+    const wam7_real_t t7 = t6 * dq[0];
+    const wam7_real_t t8 = dq[2] + t7;
+    const wam7_real_t t9 = t4 * (t4 * parameters[XX3] - t5 * parameters[XY3] - t8 * parameters[XZ3]);
+    const wam7_real_t t10 = t5 * (t5 * parameters[YY3] - t4 * parameters[XY3] + t8 * parameters[YZ3]);
+    const wam7_real_t t11 = t8 * (t5 * parameters[YZ3] - t4 * parameters[XZ3] + t8 * parameters[ZZ3]);
+    const wam7_real_t t12 = WAM7_C(0.55) * dq[1];
+    const wam7_real_t t13 = WAM7_C(0.55) * t1;
+    const wam7_real_t t14 = t2 * t12 + t3 * t13;
+    const wam7_real_t t15 = t3 * t12 - t2 * t13;
+    const wam7_real_t t16 = t9 + t10 + t11 + parameters[M3] * (t14 * t14 + t15 * t15);
+    const wam7_real_t t17 = t1 * (t1 * parameters[XX2] + t7 * parameters[XY2] - dq[1] * parameters[XZ2]);
+    const wam7_real_t t18 = t7 * (t1 * parameters[XY2] + t7 * parameters[YY2] - dq[1] * parameters[YZ2]);
+    const wam7_real_t t19 = dq[1] * (dq[1] * parameters[ZZ2] - (t1 * parameters[XZ2] + t7 * parameters[YZ2]));
+    const wam7_real_t t20 = WAM7_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + WAM7_C(0.5) * (t17 + t18
+        + t19);
+    const wam7_real_t t21 = parameters[MZ3] * (t5 * t14 - t4 * t15) - (parameters[MX3] * (t8 * t15)
+        + parameters[MY3] * (t8 * t14));
+    const wam7_real_t t23 = WAM7_C(0.045) * t5;
+    const wam7_real_t t25 = t22 * t14 + t24 * t23;
+    const wam7_real_t t26 = t22 * t23 - t24 * t14;
+    const wam7_real_t t27 = t15 + WAM7_C(-0.045) * t8;
+    const wam7_real_t t28 = parameters[M4] * (t25 * t25 + t26 * t26 + t27 * t27);
+    const wam7_real_t t29 = t22 * t4 + t24 * t8;
+    const wam7_real_t t30 = t24 * t4 - t22 * t8;
+    const wam7_real_t t31 = dq[3] + t5;
+    const wam7_real_t t32 = t29 * (t29 * parameters[XX4] - t30 * parameters[XY4] - t31 * parameters[XZ4]);
+    const wam7_real_t t33 = t30 * (t30 * parameters[YY4] - t29 * parameters[XY4] + t31 * parameters[YZ4]);
+    const wam7_real_t t34 = t31 * (t30 * parameters[YZ4] - t29 * parameters[XZ4] + t31 * parameters[ZZ4]);
+    const wam7_real_t t35 = t20 + WAM7_C(0.5) * t16 + t21 + WAM7_C(0.5) * (t32 + t33 + t34 + t28);
+    const wam7_real_t t36 = parameters[MX4] * (t31 * t26 + t30 * t27) + parameters[MY4] * (t29 * t27
+        - t31 * t25);
+    const wam7_real_t t37 = t35 + (t36 + parameters[MZ4] * (t30 * t25 + t29 * t26));
+    const wam7_real_t t38 = t25 + WAM7_C(0.3) * t31;
+    const wam7_real_t t40 = WAM7_C(0.3) * t29 + WAM7_C(0.045) * t30 - t27;
+    const wam7_real_t t42 = t39 * t38 + t41 * t40;
+    const wam7_real_t t43 = t41 * t38 - t39 * t40;
+    const wam7_real_t t44 = t43 * t43;
+    const wam7_real_t t45 = t26 + WAM7_C(-0.045) * t31;
+    const wam7_real_t t46 = t41 * t31 - t39 * t29;
+    const wam7_real_t t47 = t41 * t29 + t39 * t31;
+    const wam7_real_t t48 = t30 - dq[4];
+    const wam7_real_t t49 = t46 * (t48 * parameters[XZ5] - (t46 * parameters[XX5] + t47 * parameters[XY5]));
+    const wam7_real_t t50 = t47 * (t46 * parameters[XY5] + t47 * parameters[YY5] - t48 * parameters[YZ5]);
+    const wam7_real_t t51 = t48 * (t46 * parameters[XZ5] + t47 * parameters[YZ5] - t48 * parameters[ZZ5]);
+    const wam7_real_t t52 = t50 - t49 - t51 + parameters[M5] * (t42 * t42 + t44 + t45 * t45);
+    const wam7_real_t t53 = parameters[MX5] * (t48 * t43 + t47 * t45) + parameters[MY5] * (t48 * t42
+        - t46 * t45);
+    const wam7_real_t t54 = t37 + WAM7_C(0.5) * t52 + (t53 + parameters[MZ5] * (t47 * t42 + t46 * t43));
+    const wam7_real_t t57 = t55 * t42 + t56 * t45;
+    const wam7_real_t t58 = t55 * t45 - t56 * t42;
+    const wam7_real_t t59 = t58 * t58;
+    const wam7_real_t t60 = t55 * t46 + t56 * t48;
+    const wam7_real_t t61 = t55 * t48 - t56 * t46;
+    const wam7_real_t t62 = dq[5] + t47;
+    const wam7_real_t t63 = t60 * (t60 * parameters[XX6] + t61 * parameters[XY6] + t62 * parameters[XZ6]);
+    const wam7_real_t t64 = t61 * (t60 * parameters[XY6] + t61 * parameters[YY6] + t62 * parameters[YZ6]);
+    const wam7_real_t t65 = t62 * (t60 * parameters[XZ6] + t61 * parameters[YZ6] + t62 * parameters[ZZ6]);
+    const wam7_real_t t66 = t63 + t64 + t65 + parameters[M6] * (t44 + (t57 * t57 + t59));
+    const wam7_real_t t67 = parameters[MX6] * (t62 * t58 + t61 * t43) - parameters[MY6] * (t60 * t43
+        + t62 * t57);
+    const wam7_real_t t68 = t54 + WAM7_C(0.5) * t66 + (t67 + parameters[MZ6] * (t61 * t57 - t60 * t58));
+    const wam7_real_t t69 = t57 + WAM7_C(0.06) * t62;
+    const wam7_real_t t71 = WAM7_C(-0.06) * t60 - t43;
+    const wam7_real_t t73 = t70 * t69 + t72 * t71;
+    const wam7_real_t t74 = t72 * t69 - t70 * t71;
+    const wam7_real_t t75 = t70 * t60 + t72 * t62;
+    const wam7_real_t t76 = t70 * t62 - t72 * t60;
+    const wam7_real_t t77 = t61 - dq[6];
+    const wam7_real_t t78 = t75 * (t77 * parameters[XZ7] - (t75 * parameters[XX7] + t76 * parameters[XY7]));
+    const wam7_real_t t79 = t76 * (t75 * parameters[XY7] + t76 * parameters[YY7] - t77 * parameters[YZ7]);
+    const wam7_real_t t80 = t77 * (t75 * parameters[XZ7] + t76 * parameters[YZ7] - t77 * parameters[ZZ7]);
+    const wam7_real_t t81 = t79 - t78 - t80 + parameters[M7] * (t59 + (t73 * t73 + t74 * t74));
+    const wam7_real_t t82 = parameters[MX7] * (t77 * t74 + t76 * t58) + parameters[MY7] * (t77 * t73
+        - t75 * t58);
+    const wam7_real_t t83 = t68 + WAM7_C(0.5) * t81 + (t82 + parameters[MZ7] * (t76 * t73 + t75 * t74));
     const wam7_real_t t84 = t83 + WAM7_C(0.5) * (dq[0] * dq[0] * (WAM7_C(1764.0) * parameters[IA1]))
         + WAM7_C(0.5) * (dq[1] * dq[1] * (WAM7_C(798.0625) * parameters[IA2]));
     const wam7_real_t t85 = t84 + WAM7_C(0.5) * (dq[2] * dq[2] * (WAM7_C(798.0625) * parameters[IA3]))
@@ -245,21 +246,21 @@ int wam7_energy_standard(
         + WAM7_C(0.5) * (dq[5] * dq[5] * (WAM7_C(89.8704) * parameters[IA6]));
     kinetic[0] = t86 + WAM7_C(0.5) * (dq[6] * dq[6] * (WAM7_C(222.9049) * parameters[IA7]));
     const wam7_real_t t87 = WAM7_C(-9.81) * t0;
-    const wam7_real_t t88 = WAM7_C(9.81) * t2;
-    const wam7_real_t t89 = t8 * t87;
-    const wam7_real_t t90 = t9 * t87;
-    const wam7_real_t t91 = WAM7_C(5.395500000000001) * t2;
+    const wam7_real_t t88 = WAM7_C(9.81) * t6;
+    const wam7_real_t t89 = t2 * t87;
+    const wam7_real_t t90 = t3 * t87;
+    const wam7_real_t t91 = WAM7_C(5.395500000000001) * t6;
     const wam7_real_t t92 = t89 * parameters[MX3] - t90 * parameters[MY3] + t88 * parameters[MZ3]
         + parameters[M3] * t91;
     const wam7_real_t t93 = WAM7_C(9.81) * parameters[MZ1] + (t87 * parameters[MX2] - t88 * parameters[MY2])
         + t92;
-    const wam7_real_t t94 = t23 * t88 - t22 * t89;
-    const wam7_real_t t95 = t23 * t89 + t22 * t88;
+    const wam7_real_t t94 = t24 * t88 - t22 * t89;
+    const wam7_real_t t95 = t24 * t89 + t22 * t88;
     const wam7_real_t t96 = t91 + WAM7_C(0.045) * t89;
     const wam7_real_t t97 = parameters[M4] * t96 - (t94 * parameters[MX4] + t95 * parameters[MY4]
         + t90 * parameters[MZ4]);
-    const wam7_real_t t98 = t38 * t94 + t39 * t90;
-    const wam7_real_t t99 = t39 * t94 - t38 * t90;
+    const wam7_real_t t98 = t39 * t94 + t41 * t90;
+    const wam7_real_t t99 = t41 * t94 - t39 * t90;
     const wam7_real_t t100 = t96 + (WAM7_C(0.045) * t94 + WAM7_C(0.3) * t95);
     const wam7_real_t t101 = t99 * parameters[MY5] - t98 * parameters[MX5] + t95 * parameters[MZ5]
         + parameters[M5] * t100;
@@ -267,8 +268,8 @@ int wam7_energy_standard(
     const wam7_real_t t103 = t55 * t95 - t56 * t98;
     const wam7_real_t t104 = t99 * parameters[MZ6] - (t102 * parameters[MX6] + t103 * parameters[MY6])
         + parameters[M6] * t100;
-    const wam7_real_t t105 = (t70 * t99 - t69 * t102) * parameters[MX7] + (t70 * t102
-        + t69 * t99) * parameters[MY7];
+    const wam7_real_t t105 = (t72 * t99 - t70 * t102) * parameters[MX7] + (t72 * t102
+        + t70 * t99) * parameters[MY7];
     const wam7_real_t t106 = t105 + t103 * parameters[MZ7] + parameters[M7] * (t100 + WAM7_C(0.06) * t103);
     potential[0] = t93 + t97 + t101 + t104 + t106;
     return WAM7_STATUS_OK;

@@ -91,7 +91,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -119,491 +119,492 @@ int wam7_forward_dynamics(
         return status;
     }
 
-    wam7_real_t t2, t3;
-    WAM7_SINCOS(q[1], &t2, &t3);
-    wam7_real_t t13, t12;
-    WAM7_SINCOS(q[2], &t13, &t12);
-    wam7_real_t t34, t33;
-    WAM7_SINCOS(q[3], &t34, &t33);
-    wam7_real_t t58, t57;
-    WAM7_SINCOS(q[4], &t58, &t57);
-    wam7_real_t t85, t84;
-    WAM7_SINCOS(q[5], &t85, &t84);
-    wam7_real_t t109, t108;
-    WAM7_SINCOS(q[6], &t109, &t108);
-    const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0]))
-        + WAM7_C(-42.0) * (parameters[FC1] * t0);
-    const wam7_real_t t4 = t3 * dq[0];
-    const wam7_real_t t5 = dq[1] * t4;
-    const wam7_real_t t6 = t2 * dq[0];
-    const wam7_real_t t7 = dq[1] * t6;
-    const wam7_real_t t8 = parameters[XY2] * (WAM7_C(2.0) * t7) - (parameters[XX2R] * t5
-        + parameters[ZZ2R] * t5);
-    const wam7_real_t t9 = t6 * t4;
-    const wam7_real_t t10 = dq[1] * dq[1];
-    const wam7_real_t t11 = t4 * t4;
-    const wam7_real_t t14 = WAM7_C(2.0) * t5;
-    const wam7_real_t t15 = t13 * t9 + t12 * t14;
-    const wam7_real_t t16 = t13 * t6 + t12 * dq[1];
-    const wam7_real_t t17 = dq[2] + t4;
-    const wam7_real_t t18 = t16 * t17;
-    const wam7_real_t t19 = t15 - t18;
-    const wam7_real_t t20 = t12 * t6 - t13 * dq[1];
-    const wam7_real_t t21 = t20 * t17;
-    const wam7_real_t t22 = t13 * t14 - t12 * t9;
-    const wam7_real_t t23 = t22 + t21;
-    const wam7_real_t t24 = t21 + t23;
-    const wam7_real_t t25 = t20 * t16;
-    const wam7_real_t t26 = t7 + t25;
-    const wam7_real_t t27 = parameters[XX3R] * t19 - parameters[ZZ3R] * t18 - parameters[XY3R] * t24
-        + parameters[XZ3] * t26;
-    const wam7_real_t t28 = t16 * t16;
-    const wam7_real_t t29 = t17 * t17;
-    const wam7_real_t t30 = WAM7_C(9.81) * t3;
-    const wam7_real_t t31 = t6 * t6;
-    const wam7_real_t t32 = t30 + WAM7_C(-0.55) * (t10 + t31);
-    const wam7_real_t t35 = t7 - t25;
-    const wam7_real_t t36 = t19 - t18;
-    const wam7_real_t t37 = t33 * t36 - t34 * t35;
-    const wam7_real_t t38 = t34 * t20 - t33 * t17;
-    const wam7_real_t t39 = dq[3] + t16;
-    const wam7_real_t t40 = t38 * t39;
-    const wam7_real_t t41 = t37 - t40;
-    const wam7_real_t t42 = t33 * t20 + t34 * t17;
-    const wam7_real_t t43 = t42 * t39;
-    const wam7_real_t t44 = t33 * t35 + t34 * t36;
-    const wam7_real_t t45 = t44 + t43;
-    const wam7_real_t t46 = t43 + t45;
-    const wam7_real_t t47 = t42 * t38;
-    const wam7_real_t t48 = t23 - t47;
-    const wam7_real_t t49 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4R] * t46
-        + parameters[XZ4] * t48;
-    const wam7_real_t t50 = t38 * t38;
-    const wam7_real_t t51 = t39 * t39;
-    const wam7_real_t t52 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t53 = t52 + WAM7_C(-0.55) * t9;
-    const wam7_real_t t54 = WAM7_C(1.1) * t5;
-    const wam7_real_t t55 = t13 * t53 - t12 * t54;
-    const wam7_real_t t56 = t55 + WAM7_C(0.045) * t26;
-    const wam7_real_t t59 = t23 + t47;
-    const wam7_real_t t60 = t41 - t40;
-    const wam7_real_t t61 = t57 * t60 - t58 * t59;
-    const wam7_real_t t62 = t58 * t42 + t57 * t39;
-    const wam7_real_t t63 = t38 - dq[4];
-    const wam7_real_t t64 = t62 * t63;
-    const wam7_real_t t65 = t61 + t64;
-    const wam7_real_t t66 = t57 * t42 - t58 * t39;
-    const wam7_real_t t67 = t66 * t63;
-    const wam7_real_t t68 = t57 * t59 + t58 * t60;
-    const wam7_real_t t69 = t68 - t67;
-    const wam7_real_t t70 = t69 - t67;
-    const wam7_real_t t71 = t66 * t62;
-    const wam7_real_t t72 = t45 + t71;
-    const wam7_real_t t73 = parameters[XX5R] * t65 + parameters[ZZ5R] * t64 - parameters[XY5] * t70
-        + parameters[XZ5] * t72;
-    const wam7_real_t t74 = t62 * t62;
-    const wam7_real_t t75 = t63 * t63;
-    const wam7_real_t t76 = t12 * t53 + t13 * t54;
-    const wam7_real_t t77 = t28 + t29;
-    const wam7_real_t t78 = t76 + WAM7_C(-0.045) * t77;
-    const wam7_real_t t79 = t32 - WAM7_C(0.045) * t24;
-    const wam7_real_t t80 = t34 * t78 + t33 * t79;
-    const wam7_real_t t81 = t42 * t42;
-    const wam7_real_t t82 = t81 + t51;
-    const wam7_real_t t83 = t80 + (WAM7_C(0.045) * t48 + WAM7_C(-0.3) * t82);
-    const wam7_real_t t86 = t45 - t71;
-    const wam7_real_t t87 = t64 + t65;
-    const wam7_real_t t88 = t84 * t87 - t85 * t86;
-    const wam7_real_t t89 = t85 * t66 + t84 * t63;
-    const wam7_real_t t90 = dq[5] + t62;
-    const wam7_real_t t91 = t89 * t90;
-    const wam7_real_t t92 = t88 - t91;
-    const wam7_real_t t93 = t85 * t63 - t84 * t66;
-    const wam7_real_t t94 = t93 * t90;
-    const wam7_real_t t95 = t84 * t86 + t85 * t87;
-    const wam7_real_t t96 = t95 - t94;
-    const wam7_real_t t97 = t96 - t94;
-    const wam7_real_t t98 = t93 * t89;
-    const wam7_real_t t99 = t69 + t98;
-    const wam7_real_t t100 = parameters[ZZ6R] * t91 - parameters[XX6R] * t92 + parameters[XY6] * t97
-        + parameters[XZ6] * t99;
-    const wam7_real_t t101 = t89 * t89;
-    const wam7_real_t t102 = t90 * t90;
-    const wam7_real_t t103 = t33 * t78 - t34 * t79;
-    const wam7_real_t t104 = t50 + t51;
-    const wam7_real_t t105 = t103 + (WAM7_C(0.045) * t104 + WAM7_C(0.3) * t59);
-    const wam7_real_t t106 = WAM7_C(0.045) * t46 - WAM7_C(-0.3) * t60 - t56;
-    const wam7_real_t t107 = t58 * t105 - t57 * t106;
-    const wam7_real_t t110 = t69 - t98;
-    const wam7_real_t t111 = t92 - t91;
-    const wam7_real_t t112 = t108 * t111 - t109 * t110;
-    const wam7_real_t t113 = t108 * t90 - t109 * t93;
-    const wam7_real_t t114 = t89 - dq[6];
-    const wam7_real_t t115 = t113 * t114;
-    const wam7_real_t t116 = t112 + t115;
-    const wam7_real_t t117 = t108 * t93 + t109 * t90;
-    const wam7_real_t t118 = t117 * t114;
-    const wam7_real_t t119 = t108 * t110 + t109 * t111;
-    const wam7_real_t t120 = t118 + (t119 + t118);
-    const wam7_real_t t121 = t117 * t113;
-    const wam7_real_t t122 = t96 - t121;
-    const wam7_real_t t123 = parameters[XX7R] * t116 + parameters[ZZ7] * t115 - parameters[XY7] * t120
-        + parameters[XZ7R] * t122;
-    const wam7_real_t t124 = t113 * t113;
-    const wam7_real_t t125 = t114 * t114;
-    const wam7_real_t t126 = t57 * t105 + t58 * t106;
-    const wam7_real_t t127 = t85 * t126 + t84 * t83;
-    const wam7_real_t t128 = t123 - parameters[YZ7R] * (t124 - t125) - parameters[MY7] * t127;
-    const wam7_real_t t129 = t115 + t116;
-    const wam7_real_t t130 = t96 + t121;
-    const wam7_real_t t131 = t118 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t129
-        + parameters[YZ7R] * t130;
-    const wam7_real_t t132 = t117 * t117;
-    const wam7_real_t t133 = t131 + parameters[XZ7R] * (t132 - t125) + parameters[MX7] * t127;
-    const wam7_real_t t134 = t100 + parameters[YZ6] * (t101 - t102) - parameters[MY6R] * t107 + (t109 * t133
-        - t108 * t128);
-    const wam7_real_t t135 = parameters[YZ6] * t110 - (t94 * (parameters[ZZ6R] - parameters[XX6R])
-        + parameters[XY6] * t111);
-    const wam7_real_t t136 = t93 * t93;
-    const wam7_real_t t137 = parameters[ZZ7] * t96 + parameters[XX7R] * t121 - parameters[YZ7R] * t119
-        + parameters[XZ7R] * t112;
-    const wam7_real_t t138 = t84 * t126 - t85 * t83;
-    const wam7_real_t t139 = parameters[MX7] * (t109 * t138 + t108 * t107) + parameters[MY7] * (t108 * t138
-        - t109 * t107);
-    const wam7_real_t t140 = t137 + parameters[XY7] * (t124 - t132) + t139;
-    const wam7_real_t t141 = t135 + parameters[XZ6] * (t102 - t136) + parameters[MX6] * t107 + t140;
-    const wam7_real_t t142 = t73 - parameters[YZ5] * (t74 - t75) - parameters[MY5R] * t83 - (t84 * t134
-        - t85 * t141);
-    const wam7_real_t t143 = parameters[XY5] * t87 - t67 * (parameters[XX5R] - parameters[ZZ5R])
-        + parameters[YZ5] * t86;
-    const wam7_real_t t144 = t66 * t66;
-    const wam7_real_t t145 = parameters[XX6R] * t98 - parameters[ZZ6R] * t69 - parameters[YZ6] * t95
-        + parameters[XZ6] * t88;
-    const wam7_real_t t146 = t145 + parameters[XY6] * (t101 - t136) + (parameters[MX6] * t127
-        + parameters[MY6R] * t138);
-    const wam7_real_t t147 = t146 + (t109 * t128 + t108 * t133);
-    const wam7_real_t t148 = t143 + parameters[XZ5] * (t144 - t75) + parameters[MX5] * t83 + t147;
-    const wam7_real_t t149 = parameters[MX7] * (t124 + t125) - parameters[MY7] * t130;
-    const wam7_real_t t150 = parameters[MX7] * t122 + parameters[MY7] * (t132 + t125);
-    const wam7_real_t t151 = parameters[MX6] * (t101 + t102) + parameters[MY6R] * t110 + (t108 * t149
-        - t109 * t150);
-    const wam7_real_t t152 = parameters[MX6] * t99 - parameters[MY6R] * (t136 + t102)
-        + (parameters[MX7] * t120 + parameters[MY7] * t129);
-    const wam7_real_t t153 = parameters[MX5] * (t74 + t75) - parameters[MY5R] * t86 + (t84 * t151
-        + t85 * t152);
-    const wam7_real_t t154 = parameters[MX6] * t97 + parameters[MY6R] * t111 + (t109 * t149 + t108 * t150);
-    const wam7_real_t t155 = parameters[MX5] * t72 + parameters[MY5R] * (t144 + t75) + t154;
-    const wam7_real_t t156 = t58 * t153 + t57 * t155;
-    const wam7_real_t t157 = t49 + parameters[YZ4] * (t50 - t51) - parameters[MY4R] * t56 + (t58 * t148
-        - t57 * t142 + WAM7_C(0.3) * t156);
-    const wam7_real_t t158 = t43 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t60
-        + parameters[YZ4] * t59;
-    const wam7_real_t t159 = parameters[ZZ5R] * t45 - parameters[XX5R] * t71 - parameters[YZ5] * t68
-        + parameters[XZ5] * t61;
-    const wam7_real_t t160 = t159 + parameters[XY5] * (t74 - t144) + (parameters[MX5] * t107
-        + parameters[MY5R] * t126);
-    const wam7_real_t t161 = t160 + (t85 * t134 + t84 * t141);
-    const wam7_real_t t162 = t158 + parameters[XZ4] * (t51 - t81) + parameters[MX4R] * t56 + (t161
-        + WAM7_C(-0.045) * t156);
-    const wam7_real_t t163 = t27 - parameters[YZ3] * (t28 - t29) - parameters[MY3R] * t32 - (t33 * t157
-        - t34 * t162);
-    const wam7_real_t t164 = t21 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t36
-        + parameters[YZ3] * t35;
-    const wam7_real_t t165 = t20 * t20;
-    const wam7_real_t t166 = parameters[XZ4] * t37 - (parameters[ZZ4R] * t23 + parameters[XX4R] * t47
-        + parameters[YZ4] * t44);
-    const wam7_real_t t167 = t166 + parameters[XY4R] * (t50 - t81) + (parameters[MX4R] * t80
-        + parameters[MY4R] * t103);
-    const wam7_real_t t168 = parameters[MX5] * t70 + parameters[MY5R] * t87 + (t84 * t152 - t85 * t151);
-    const wam7_real_t t169 = t57 * t153 - t58 * t155;
-    const wam7_real_t t170 = t58 * t142 + t57 * t148 + (WAM7_C(0.045) * t168 + WAM7_C(0.3) * t169);
-    const wam7_real_t t171 = t167 + t170;
-    const wam7_real_t t172 = parameters[MX4R] * t104 + parameters[MY4R] * t59 + t169;
-    const wam7_real_t t173 = parameters[MY4R] * t82 - parameters[MX4R] * t48 - t168;
-    const wam7_real_t t174 = t164 + parameters[XZ3] * (t165 - t29) + parameters[MX3R] * t32 + (t171
-        + WAM7_C(0.045) * (t34 * t172 + t33 * t173));
-    const wam7_real_t t175 = parameters[MX3R] * t77 - parameters[MY3R] * t35 + (t33 * t172 - t34 * t173);
-    const wam7_real_t t176 = parameters[MX4R] * t46 + parameters[MY4R] * t60 + t156;
-    const wam7_real_t t177 = parameters[MX3R] * t26 + parameters[MY3R] * (t165 + t29) + t176;
-    const wam7_real_t t178 = t13 * t174 - t12 * t163 + WAM7_C(0.55) * (t13 * t175 + t12 * t177);
-    const wam7_real_t t179 = t8 + parameters[XZ2] * t9 + parameters[YZ2] * (t11 - t10) + t178;
-    const wam7_real_t t180 = t7 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t14
-        - parameters[YZ2] * t9;
-    const wam7_real_t t181 = parameters[ZZ3R] * t7 - parameters[XX3R] * t25 - parameters[YZ3] * t22
-        + parameters[XZ3] * t15;
-    const wam7_real_t t182 = t181 + parameters[XY3R] * (t28 - t165) + (parameters[MX3R] * t55
-        + parameters[MY3R] * t76);
-    const wam7_real_t t183 = t182 + (t34 * t157 + t33 * t162 + WAM7_C(0.045) * t176);
-    const wam7_real_t t184 = t2 * t179 + t3 * (t180 + parameters[XZ2] * (t10 - t31) + t183);
-    const wam7_real_t t185 = wam7_sign(dq[6]);
-    const wam7_real_t t186 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6]))
-        + WAM7_C(-14.93) * (parameters[FC7] * t185);
-    const wam7_real_t t187 = WAM7_C(1.00031) * input[6] + (t186 + t140);
-    const wam7_real_t t188 = t109 * parameters[YZ7R] - t108 * parameters[XZ7R];
-    const wam7_real_t t189 = t84 * t188 - t85 * parameters[ZZ7];
-    const wam7_real_t t190 = t109 * parameters[XZ7R] + t108 * parameters[YZ7R];
-    const wam7_real_t t191 = t108 * parameters[MY7] + t109 * parameters[MX7];
-    const wam7_real_t t192 = t84 * t191;
-    const wam7_real_t t193 = t108 * parameters[MX7] - t109 * parameters[MY7];
-    const wam7_real_t t194 = t57 * t193 - t58 * t192;
-    const wam7_real_t t195 = t57 * t189 + t58 * t190 + WAM7_C(0.3) * t194;
-    const wam7_real_t t196 = t85 * t188 + t84 * parameters[ZZ7];
-    const wam7_real_t t197 = WAM7_C(0.045) * t194;
-    const wam7_real_t t198 = t197 - t196;
-    const wam7_real_t t199 = t33 * t195 + t34 * t198;
-    const wam7_real_t t200 = t85 * t191;
-    const wam7_real_t t201 = t57 * t192 + t58 * t193;
-    const wam7_real_t t202 = t58 * t189 - t57 * t190 + (WAM7_C(-0.045) * t200 + WAM7_C(0.3) * t201);
-    const wam7_real_t t203 = t202 + WAM7_C(0.045) * (t34 * t201 + t33 * t200);
-    const wam7_real_t t204 = t33 * t201 - t34 * t200;
-    const wam7_real_t t205 = t13 * t203 - t12 * t199 + WAM7_C(0.55) * (t13 * t204 - t12 * t194);
-    const wam7_real_t t206 = t33 * t198 - t34 * t195 - t197;
-    const wam7_real_t t207 = t2 * t205 + t3 * t206;
-    const wam7_real_t t208 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
-    if (!(t208 > WAM7_C(1.0e-9))) {
+    wam7_real_t t148, t149;
+    WAM7_SINCOS(q[1], &t148, &t149);
+    wam7_real_t t111, t108;
+    WAM7_SINCOS(q[2], &t111, &t108);
+    wam7_real_t t66, t68;
+    WAM7_SINCOS(q[3], &t66, &t68);
+    wam7_real_t t28, t30;
+    WAM7_SINCOS(q[4], &t28, &t30);
+    wam7_real_t t11, t13;
+    WAM7_SINCOS(q[5], &t11, &t13);
+    wam7_real_t t1, t2;
+    WAM7_SINCOS(q[6], &t1, &t2);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    if (!(t0 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t209 = WAM7_C(-1.0) / t208;
-    const wam7_real_t t210 = t207 * t209;
-    const wam7_real_t t211 = wam7_sign(dq[5]);
-    const wam7_real_t t212 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5]))
-        + WAM7_C(-9.48) * (parameters[FC6] * t211);
-    const wam7_real_t t213 = t190 * t209;
-    const wam7_real_t t214 = WAM7_C(2.23728) * input[5] + (t212 + t147) + t187 * t213;
-    const wam7_real_t t215 = parameters[XY7] * (WAM7_C(2.0) * t109) - t108 * parameters[XX7R];
-    const wam7_real_t t216 = t109 * t215 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t217 = parameters[YZ6] - t190;
-    const wam7_real_t t218 = t84 * t216 + t85 * t217;
-    const wam7_real_t t219 = t108 * t215;
-    const wam7_real_t t220 = parameters[ZZ6R] + (parameters[XX7R] + t219);
-    const wam7_real_t t221 = parameters[MX6] + t193;
-    const wam7_real_t t222 = t84 * parameters[MY6R] + t85 * t221;
-    const wam7_real_t t223 = t58 * t222;
-    const wam7_real_t t224 = t57 * t218 + t58 * t220 + WAM7_C(-0.3) * t223;
-    const wam7_real_t t225 = t84 * t217 - t85 * t216;
-    const wam7_real_t t226 = WAM7_C(-0.045) * t223;
-    const wam7_real_t t227 = t225 + t226;
-    const wam7_real_t t228 = t33 * t224 + t34 * t227;
-    const wam7_real_t t229 = t84 * t221 - t85 * parameters[MY6R];
-    const wam7_real_t t230 = t57 * t222;
-    const wam7_real_t t231 = t58 * t218 - t57 * t220 + (WAM7_C(0.045) * t229 + WAM7_C(0.3) * t230);
-    const wam7_real_t t232 = t231 + WAM7_C(0.045) * (t34 * t230 - t33 * t229);
-    const wam7_real_t t233 = t33 * t230 + t34 * t229;
-    const wam7_real_t t234 = t13 * t232 - t12 * t228 + WAM7_C(0.55) * (t13 * t233 + t12 * t223);
-    const wam7_real_t t235 = t33 * t227 - t34 * t224 - t226;
-    const wam7_real_t t236 = t2 * t234 + t3 * t235 + t207 * t213;
-    const wam7_real_t t237 = t220 + WAM7_C(89.8704) * parameters[IA6] + t190 * t213;
-    if (!(t237 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
+    const wam7_real_t t4 = WAM7_C(-1.0) / t0;
+    const wam7_real_t t5 = t3 * t4;
+    const wam7_real_t t6 = parameters[XY7] * (WAM7_C(2.0) * t1) - t2 * parameters[XX7R];
+    const wam7_real_t t7 = t2 * t6;
+    const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
+    const wam7_real_t t9 = t8 + WAM7_C(89.8704) * parameters[IA6] + t3 * t5;
+    if (!(t9 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t238 = WAM7_C(-1.0) / t237;
-    const wam7_real_t t239 = t236 * t238;
-    const wam7_real_t t240 = WAM7_C(19.194) * input[0] + (t1 + t184) - t187 * t210 - t214 * t239;
-    const wam7_real_t t241 = wam7_sign(dq[4]);
-    const wam7_real_t t242 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4]))
-        + WAM7_C(-9.48) * (parameters[FC5] * t241);
-    const wam7_real_t t243 = t196 * t209;
-    const wam7_real_t t244 = t196 * t213 - t225;
-    const wam7_real_t t245 = t244 * t238;
-    const wam7_real_t t246 = WAM7_C(2.23728) * input[4] + (t242 + t161) + t187 * t243 + t214 * t245;
-    const wam7_real_t t247 = parameters[XY6] + t188;
-    const wam7_real_t t248 = parameters[XX6R] - t219;
-    const wam7_real_t t249 = t84 * (t248 - parameters[ZZ7]) + t247 * (WAM7_C(-2.0) * t85);
-    const wam7_real_t t250 = t247 + t85 * t249 - parameters[XZ5];
-    const wam7_real_t t251 = parameters[YZ5] - t225;
-    const wam7_real_t t252 = t57 * t250 + t58 * t251;
-    const wam7_real_t t253 = parameters[MY5R] + t191;
-    const wam7_real_t t254 = parameters[MX5] + t229;
-    const wam7_real_t t255 = t57 * t254 - t58 * t253;
-    const wam7_real_t t256 = WAM7_C(0.3) * t255;
-    const wam7_real_t t257 = t252 + t256;
-    const wam7_real_t t258 = t84 * t249;
-    const wam7_real_t t259 = parameters[ZZ5R] + (t248 - t258);
-    const wam7_real_t t260 = WAM7_C(0.045) * t255;
-    const wam7_real_t t261 = t260 - t259;
-    const wam7_real_t t262 = t33 * t257 + t34 * t261;
-    const wam7_real_t t263 = t57 * t253 + t58 * t254;
-    const wam7_real_t t264 = t58 * t250 - t57 * t251 + WAM7_C(0.3) * t263;
-    const wam7_real_t t265 = t264 + WAM7_C(0.045) * (t34 * t263);
-    const wam7_real_t t266 = t33 * t263;
-    const wam7_real_t t267 = t13 * t265 - t12 * t262 + WAM7_C(0.55) * (t13 * t266 - t12 * t255);
-    const wam7_real_t t268 = t33 * t261 - t34 * t257 - t260;
-    const wam7_real_t t269 = t2 * t267 + t3 * t268 + t207 * t243 + t236 * t245;
-    const wam7_real_t t270 = t259 + WAM7_C(89.8704) * parameters[IA5] + t196 * t243 + t244 * t245;
-    if (!(t270 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t10 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t12 = parameters[YZ6] - t3;
+    const wam7_real_t t14 = t13 * t12 - t11 * t10;
+    const wam7_real_t t15 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const wam7_real_t t16 = t11 * t15 + t13 * parameters[ZZ7];
+    const wam7_real_t t17 = t16 * t5 - t14;
+    const wam7_real_t t18 = WAM7_C(-1.0) / t9;
+    const wam7_real_t t19 = t17 * t18;
+    const wam7_real_t t20 = parameters[XX6R] - t7;
+    const wam7_real_t t21 = parameters[XY6] + t15;
+    const wam7_real_t t22 = t13 * (t20 - parameters[ZZ7]) + t21 * (WAM7_C(-2.0) * t11);
+    const wam7_real_t t23 = t13 * t22;
+    const wam7_real_t t24 = parameters[ZZ5R] + (t20 - t23);
+    const wam7_real_t t25 = t16 * t4;
+    const wam7_real_t t26 = t24 + WAM7_C(89.8704) * parameters[IA5] + t16 * t25 + t17 * t19;
+    if (!(t26 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t271 = WAM7_C(1.0) / t270;
-    const wam7_real_t t272 = t269 * t271;
-    const wam7_real_t t273 = wam7_sign(dq[3]);
-    const wam7_real_t t274 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3]))
-        + WAM7_C(-18.0) * (parameters[FC4] * t273);
-    const wam7_real_t t275 = t202 * t209;
-    const wam7_real_t t276 = t231 + t202 * t213;
-    const wam7_real_t t277 = t276 * t238;
-    const wam7_real_t t278 = WAM7_C(8.226) * input[3] + (t274 + t171) - t187 * t275 - t214 * t277;
-    const wam7_real_t t279 = t264 + t202 * t243 + t276 * t245;
-    const wam7_real_t t280 = t279 * t271;
-    const wam7_real_t t281 = t278 + t246 * t280;
-    const wam7_real_t t282 = parameters[XY5] - t218;
-    const wam7_real_t t283 = parameters[XX5R] + (parameters[ZZ7] + t258);
-    const wam7_real_t t284 = t57 * (t220 - t283) + t282 * (WAM7_C(2.0) * t58);
-    const wam7_real_t t285 = WAM7_C(-0.045) * t263;
-    const wam7_real_t t286 = parameters[XZ4] + (t282 - t58 * t284 - t285);
-    const wam7_real_t t287 = parameters[YZ4] + t264;
-    const wam7_real_t t288 = t33 * t286 - t34 * t287;
-    const wam7_real_t t289 = t57 * t284;
-    const wam7_real_t t290 = WAM7_C(-0.09) * t255;
-    const wam7_real_t t291 = WAM7_C(-0.6) * t222;
-    const wam7_real_t t292 = parameters[ZZ4R] + (t283 + t289 + (t290 + t291));
-    const wam7_real_t t293 = parameters[MY4R] + t222;
-    const wam7_real_t t294 = parameters[MX4R] + t255;
-    const wam7_real_t t295 = t33 * t294 - t34 * t293;
-    const wam7_real_t t296 = WAM7_C(-0.045) * t295 - t292;
-    const wam7_real_t t297 = t33 * t293 + t34 * t294;
-    const wam7_real_t t298 = t12 * t288 + t13 * t296 + WAM7_C(0.55) * (t13 * t297);
-    const wam7_real_t t299 = t34 * t286 + t33 * t287;
-    const wam7_real_t t300 = t2 * t298 + t3 * t299 - t207 * t275 - t236 * t277;
-    const wam7_real_t t301 = t300 + t269 * t280;
-    const wam7_real_t t302 = t292 + WAM7_C(324.0) * parameters[IA4] + t202 * t275 + t276 * t277;
-    const wam7_real_t t303 = t302 - t279 * t280;
-    if (!(t303 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t27 = t21 + t11 * t22 - parameters[XZ5];
+    const wam7_real_t t29 = parameters[YZ5] - t14;
+    const wam7_real_t t31 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const wam7_real_t t32 = parameters[MY5R] + t31;
+    const wam7_real_t t33 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const wam7_real_t t34 = parameters[MX6] + t33;
+    const wam7_real_t t35 = t13 * t34 - t11 * parameters[MY6R];
+    const wam7_real_t t36 = parameters[MX5] + t35;
+    const wam7_real_t t37 = t30 * t32 + t28 * t36;
+    const wam7_real_t t38 = t28 * t27 - t30 * t29 + WAM7_C(0.3) * t37;
+    const wam7_real_t t39 = t13 * t15 - t11 * parameters[ZZ7];
+    const wam7_real_t t40 = t13 * t31;
+    const wam7_real_t t41 = t30 * t40 + t28 * t33;
+    const wam7_real_t t42 = t11 * t31;
+    const wam7_real_t t43 = t28 * t39 - t30 * t3 + (WAM7_C(-0.045) * t42 + WAM7_C(0.3) * t41);
+    const wam7_real_t t44 = t13 * t10 + t11 * t12;
+    const wam7_real_t t45 = t13 * parameters[MY6R] + t11 * t34;
+    const wam7_real_t t46 = t30 * t45;
+    const wam7_real_t t47 = t28 * t44 - t30 * t8 + (WAM7_C(0.045) * t35 + WAM7_C(0.3) * t46);
+    const wam7_real_t t48 = t47 + t43 * t5;
+    const wam7_real_t t49 = t38 + t43 * t25 + t48 * t19;
+    const wam7_real_t t50 = WAM7_C(1.0) / t26;
+    const wam7_real_t t51 = t49 * t50;
+    const wam7_real_t t52 = t48 * t18;
+    const wam7_real_t t53 = t43 * t4;
+    const wam7_real_t t54 = parameters[XX5R] + (parameters[ZZ7] + t23);
+    const wam7_real_t t55 = parameters[XY5] - t44;
+    const wam7_real_t t56 = t30 * (t8 - t54) + t55 * (WAM7_C(2.0) * t28);
+    const wam7_real_t t57 = t30 * t56;
+    const wam7_real_t t58 = t30 * t36 - t28 * t32;
+    const wam7_real_t t59 = WAM7_C(-0.09) * t58;
+    const wam7_real_t t60 = WAM7_C(-0.6) * t45;
+    const wam7_real_t t61 = parameters[ZZ4R] + (t54 + t57 + (t59 + t60));
+    const wam7_real_t t62 = t61 + WAM7_C(324.0) * parameters[IA4] + t43 * t53 + t48 * t52;
+    const wam7_real_t t63 = t62 - t49 * t51;
+    if (!(t63 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t304 = WAM7_C(1.0) / t303;
-    const wam7_real_t t305 = t301 * t304;
-    const wam7_real_t t306 = wam7_sign(dq[2]);
-    const wam7_real_t t307 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2]))
-        + WAM7_C(-28.25) * (parameters[FC3] * t306);
-    const wam7_real_t t308 = t206 * t209;
-    const wam7_real_t t309 = t235 + t206 * t213;
-    const wam7_real_t t310 = t309 * t238;
-    const wam7_real_t t311 = WAM7_C(12.910250000000001) * input[2] + (t307 + t183) - t187 * t308
-        - t214 * t310;
-    const wam7_real_t t312 = t268 + t206 * t243 + t309 * t245;
-    const wam7_real_t t313 = t312 * t271;
-    const wam7_real_t t314 = t206 * t275 - t299 + t309 * t277 - t312 * t280;
-    const wam7_real_t t315 = t314 * t304;
-    const wam7_real_t t316 = t311 + t246 * t313 - t281 * t315;
-    const wam7_real_t t317 = parameters[XY4R] + (t252 + (t256 + WAM7_C(0.045) * t222));
-    const wam7_real_t t318 = t259 + t290;
-    const wam7_real_t t319 = parameters[XX4R] + (t220 - t289 + t291);
-    const wam7_real_t t320 = t33 * (t318 - t319) + t317 * (WAM7_C(2.0) * t34);
-    const wam7_real_t t321 = t317 - t34 * t320 + WAM7_C(-0.045) * t297 - parameters[XZ3];
-    const wam7_real_t t322 = parameters[YZ3] - t299;
-    const wam7_real_t t323 = parameters[MY3R] + t263;
-    const wam7_real_t t324 = parameters[MX3R] + t295;
-    const wam7_real_t t325 = t12 * t321 + t13 * t322 + WAM7_C(0.55) * (t12 * t324 - t13 * t323);
-    const wam7_real_t t326 = t33 * t320;
-    const wam7_real_t t327 = WAM7_C(0.09) * t295;
-    const wam7_real_t t328 = parameters[ZZ3R] + (t319 + t326 + t327);
-    const wam7_real_t t329 = t2 * t325 + t3 * t328 + t207 * t308 + t236 * t310;
-    const wam7_real_t t330 = t269 * t313 - t329 - t301 * t315;
-    const wam7_real_t t331 = t328 + WAM7_C(798.0625) * parameters[IA3] + t206 * t308 + t309 * t310;
-    const wam7_real_t t332 = t331 - t312 * t313 - t314 * t315;
-    if (!(t332 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t64 = WAM7_C(-0.045) * t37;
+    const wam7_real_t t65 = parameters[XZ4] + (t55 - t28 * t56 - t64);
+    const wam7_real_t t67 = parameters[YZ4] + t38;
+    const wam7_real_t t69 = t66 * t65 + t68 * t67;
+    const wam7_real_t t70 = t30 * t33 - t28 * t40;
+    const wam7_real_t t71 = t30 * t39 + t28 * t3 + WAM7_C(0.3) * t70;
+    const wam7_real_t t72 = WAM7_C(0.045) * t70;
+    const wam7_real_t t73 = t72 - t16;
+    const wam7_real_t t74 = t68 * t73 - t66 * t71 - t72;
+    const wam7_real_t t75 = t28 * t45;
+    const wam7_real_t t76 = t30 * t44 + t28 * t8 + WAM7_C(-0.3) * t75;
+    const wam7_real_t t77 = WAM7_C(-0.045) * t75;
+    const wam7_real_t t78 = t14 + t77;
+    const wam7_real_t t79 = t68 * t78 - t66 * t76 - t77;
+    const wam7_real_t t80 = t79 + t74 * t5;
+    const wam7_real_t t81 = t30 * t27 + t28 * t29;
+    const wam7_real_t t82 = WAM7_C(0.3) * t58;
+    const wam7_real_t t83 = t81 + t82;
+    const wam7_real_t t84 = WAM7_C(0.045) * t58;
+    const wam7_real_t t85 = t84 - t24;
+    const wam7_real_t t86 = t68 * t85 - t66 * t83 - t84;
+    const wam7_real_t t87 = t86 + t74 * t25 + t80 * t19;
+    const wam7_real_t t88 = t74 * t53 - t69 + t80 * t52 - t87 * t51;
+    const wam7_real_t t89 = WAM7_C(1.0) / t63;
+    const wam7_real_t t90 = t88 * t89;
+    const wam7_real_t t91 = t24 + t59;
+    const wam7_real_t t92 = parameters[XX4R] + (t8 - t57 + t60);
+    const wam7_real_t t93 = parameters[XY4R] + (t81 + (t82 + WAM7_C(0.045) * t45));
+    const wam7_real_t t94 = t68 * (t91 - t92) + t93 * (WAM7_C(2.0) * t66);
+    const wam7_real_t t95 = t68 * t94;
+    const wam7_real_t t96 = parameters[MX4R] + t58;
+    const wam7_real_t t97 = parameters[MY4R] + t45;
+    const wam7_real_t t98 = t68 * t96 - t66 * t97;
+    const wam7_real_t t99 = WAM7_C(0.09) * t98;
+    const wam7_real_t t100 = parameters[ZZ3R] + (t92 + t95 + t99);
+    const wam7_real_t t101 = t74 * t4;
+    const wam7_real_t t102 = t80 * t18;
+    const wam7_real_t t103 = t100 + WAM7_C(798.0625) * parameters[IA3] + t74 * t101 + t80 * t102;
+    const wam7_real_t t104 = t87 * t50;
+    const wam7_real_t t105 = t103 - t87 * t104 - t88 * t90;
+    if (!(t105 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t333 = WAM7_C(1.0) / t332;
-    const wam7_real_t t334 = t330 * t333;
-    const wam7_real_t t335 = t240 + t246 * t272 + t281 * t305 + t316 * t334;
-    const wam7_real_t t336 = wam7_sign(dq[1]);
-    const wam7_real_t t337 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1]))
-        + WAM7_C(-28.25) * (parameters[FC2] * t336);
-    const wam7_real_t t338 = parameters[XX2R] * t9 + parameters[XY2] * (t11 - t31) + (parameters[MX2] * t30
-        + parameters[MY2R] * t52);
-    const wam7_real_t t339 = t13 * t163 + t12 * t174 + WAM7_C(0.55) * (t12 * t175 - t13 * t177);
-    const wam7_real_t t340 = t13 * t199 + t12 * t203 + WAM7_C(0.55) * (t12 * t204 + t13 * t194);
-    const wam7_real_t t341 = t340 * t209;
-    const wam7_real_t t342 = WAM7_C(12.910250000000001) * input[1] + (t337 + (t338 + t339)) - t187 * t341;
-    const wam7_real_t t343 = t13 * t228 + t12 * t232 + WAM7_C(0.55) * (t12 * t233 - t13 * t223);
-    const wam7_real_t t344 = t343 + t340 * t213;
-    const wam7_real_t t345 = t344 * t238;
-    const wam7_real_t t346 = t13 * t262 + t12 * t265 + WAM7_C(0.55) * (t12 * t266 + t13 * t255);
-    const wam7_real_t t347 = t346 + t340 * t243 + t344 * t245;
-    const wam7_real_t t348 = t347 * t271;
-    const wam7_real_t t349 = t12 * t296 - t13 * t288 + WAM7_C(0.55) * (t12 * t297);
-    const wam7_real_t t350 = t349 - t340 * t275 - t344 * t277 + t347 * t280;
-    const wam7_real_t t351 = t350 * t304;
-    const wam7_real_t t352 = t342 - t214 * t345 + t246 * t348 + t281 * t351;
-    const wam7_real_t t353 = t13 * t321 - t12 * t322 + WAM7_C(0.55) * (t12 * t323 + t13 * t324);
-    const wam7_real_t t354 = t353 - t340 * t308 - t344 * t310 + t347 * t313;
-    const wam7_real_t t355 = t354 - t350 * t315;
-    const wam7_real_t t356 = t355 * t333;
-    const wam7_real_t t357 = t352 + t316 * t356;
-    const wam7_real_t t358 = parameters[XY3R] + (t285 + t288);
-    const wam7_real_t t359 = t292 + t327;
-    const wam7_real_t t360 = parameters[XX3R] + (t318 - t326);
-    const wam7_real_t t361 = t12 * (t359 - t360) + t358 * (WAM7_C(2.0) * t13);
-    const wam7_real_t t362 = t2 * (parameters[XZ2] + (t358 - t13 * t361)) + t3 * (parameters[YZ2] + t353);
-    const wam7_real_t t363 = t362 - t207 * t341 - t236 * t345 + t269 * t348;
-    const wam7_real_t t364 = t363 + t301 * t351 + t330 * t356;
-    const wam7_real_t t365 = t12 * t361;
-    const wam7_real_t t366 = WAM7_C(-1.1) * t297;
-    const wam7_real_t t367 = parameters[ZZ2R] + (t360 + t365 + t366) + t340 * t341 + t344 * t345;
-    const wam7_real_t t368 = t367 - t347 * t348 - t350 * t351 - t355 * t356;
-    if (!(t368 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t106 = parameters[XX3R] + (t91 - t95);
+    const wam7_real_t t107 = t61 + t99;
+    const wam7_real_t t109 = t68 * t65 - t66 * t67;
+    const wam7_real_t t110 = parameters[XY3R] + (t64 + t109);
+    const wam7_real_t t112 = t108 * (t107 - t106) + t110 * (WAM7_C(2.0) * t111);
+    const wam7_real_t t113 = t108 * t112;
+    const wam7_real_t t114 = t68 * t97 + t66 * t96;
+    const wam7_real_t t115 = WAM7_C(-1.1) * t114;
+    const wam7_real_t t116 = t68 * t71 + t66 * t73;
+    const wam7_real_t t117 = t43 + WAM7_C(0.045) * (t66 * t41 + t68 * t42);
+    const wam7_real_t t118 = t68 * t41 - t66 * t42;
+    const wam7_real_t t119 = t111 * t116 + t108 * t117 + WAM7_C(0.55) * (t108 * t118 + t111 * t70);
+    const wam7_real_t t120 = t119 * t4;
+    const wam7_real_t t121 = t68 * t76 + t66 * t78;
+    const wam7_real_t t122 = t47 + WAM7_C(0.045) * (t66 * t46 - t68 * t35);
+    const wam7_real_t t123 = t68 * t46 + t66 * t35;
+    const wam7_real_t t124 = t111 * t121 + t108 * t122 + WAM7_C(0.55) * (t108 * t123 - t111 * t75);
+    const wam7_real_t t125 = t124 + t119 * t5;
+    const wam7_real_t t126 = t125 * t18;
+    const wam7_real_t t127 = parameters[ZZ2R] + (t106 + t113 + t115) + t119 * t120 + t125 * t126;
+    const wam7_real_t t128 = t68 * t83 + t66 * t85;
+    const wam7_real_t t129 = t38 + WAM7_C(0.045) * (t66 * t37);
+    const wam7_real_t t130 = t68 * t37;
+    const wam7_real_t t131 = t111 * t128 + t108 * t129 + WAM7_C(0.55) * (t108 * t130 + t111 * t58);
+    const wam7_real_t t132 = t131 + t119 * t25 + t125 * t19;
+    const wam7_real_t t133 = t132 * t50;
+    const wam7_real_t t134 = WAM7_C(-0.045) * t98 - t61;
+    const wam7_real_t t135 = t108 * t134 - t111 * t109 + WAM7_C(0.55) * (t108 * t114);
+    const wam7_real_t t136 = t135 - t119 * t53 - t125 * t52 + t132 * t51;
+    const wam7_real_t t137 = t136 * t89;
+    const wam7_real_t t138 = t93 - t66 * t94 + WAM7_C(-0.045) * t114 - parameters[XZ3];
+    const wam7_real_t t139 = parameters[YZ3] - t69;
+    const wam7_real_t t140 = parameters[MY3R] + t37;
+    const wam7_real_t t141 = parameters[MX3R] + t98;
+    const wam7_real_t t142 = t111 * t138 - t108 * t139 + WAM7_C(0.55) * (t108 * t140 + t111 * t141);
+    const wam7_real_t t143 = t142 - t119 * t101 - t125 * t102 + t132 * t104;
+    const wam7_real_t t144 = t143 - t136 * t90;
+    const wam7_real_t t145 = WAM7_C(1.0) / t105;
+    const wam7_real_t t146 = t144 * t145;
+    const wam7_real_t t147 = t127 - t132 * t133 - t136 * t137 - t144 * t146;
+    if (!(t147 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t369 = WAM7_C(1.0) / t368;
-    const wam7_real_t t370 = t364 * t369;
-    const wam7_real_t t371 = parameters[XX2R] + (t359 - t365 + t366);
-    const wam7_real_t t372 = t3 * (t328 - t371) + (parameters[XY2] + t325) * (WAM7_C(2.0) * t2);
-    const wam7_real_t t373 = parameters[ZZ1R] + (t371 + t3 * t372) + t207 * t210 + t236 * t239;
-    const wam7_real_t t374 = t373 - t269 * t272 - t301 * t305 - t330 * t334;
-    const wam7_real_t t375 = t374 - t364 * t370;
-    if (!(t375 > WAM7_C(1.0e-9))) {
+    const wam7_real_t t150 = t148 * (parameters[XZ2] + (t110 - t111 * t112)) + t149 * (parameters[YZ2]
+        + t142);
+    const wam7_real_t t151 = t111 * t117 - t108 * t116 + WAM7_C(0.55) * (t111 * t118 - t108 * t70);
+    const wam7_real_t t152 = t148 * t151 + t149 * t74;
+    const wam7_real_t t153 = t111 * t122 - t108 * t121 + WAM7_C(0.55) * (t111 * t123 + t108 * t75);
+    const wam7_real_t t154 = t148 * t153 + t149 * t79 + t152 * t5;
+    const wam7_real_t t155 = t111 * t129 - t108 * t128 + WAM7_C(0.55) * (t111 * t130 - t108 * t58);
+    const wam7_real_t t156 = t148 * t155 + t149 * t86 + t152 * t25 + t154 * t19;
+    const wam7_real_t t157 = t150 - t152 * t120 - t154 * t126 + t156 * t133;
+    const wam7_real_t t158 = t108 * t109 + t111 * t134 + WAM7_C(0.55) * (t111 * t114);
+    const wam7_real_t t159 = t148 * t158 + t149 * t69 - t152 * t53 - t154 * t52;
+    const wam7_real_t t160 = t159 + t156 * t51;
+    const wam7_real_t t161 = t108 * t138 + t111 * t139 + WAM7_C(0.55) * (t108 * t141 - t111 * t140);
+    const wam7_real_t t162 = t148 * t161 + t149 * t100 + t152 * t101 + t154 * t102;
+    const wam7_real_t t163 = t156 * t104 - t162 - t160 * t90;
+    const wam7_real_t t164 = t157 + t160 * t137 + t163 * t146;
+    const wam7_real_t t165 = WAM7_C(1.0) / t147;
+    const wam7_real_t t166 = t164 * t165;
+    const wam7_real_t t167 = parameters[XX2R] + (t107 - t113 + t115);
+    const wam7_real_t t168 = t149 * (t100 - t167) + (parameters[XY2] + t161) * (WAM7_C(2.0) * t148);
+    const wam7_real_t t169 = t152 * t4;
+    const wam7_real_t t170 = t154 * t18;
+    const wam7_real_t t171 = parameters[ZZ1R] + (t167 + t149 * t168) + t152 * t169 + t154 * t170;
+    const wam7_real_t t172 = t156 * t50;
+    const wam7_real_t t173 = t160 * t89;
+    const wam7_real_t t174 = t163 * t145;
+    const wam7_real_t t175 = t171 - t156 * t172 - t160 * t173 - t163 * t174;
+    const wam7_real_t t176 = t175 - t164 * t166;
+    if (!(t176 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t376 = WAM7_C(1.0) / t375;
-    const wam7_real_t t377 = (t335 + t357 * t370) * t376;
+    const wam7_real_t t177 = t148 * dq[0];
+    const wam7_real_t t178 = t108 * t177 - t111 * dq[1];
+    const wam7_real_t t179 = t111 * t177 + t108 * dq[1];
+    const wam7_real_t t180 = t178 * t179;
+    const wam7_real_t t181 = dq[1] * t177;
+    const wam7_real_t t182 = t181 - t180;
+    const wam7_real_t t183 = t149 * dq[0];
+    const wam7_real_t t184 = t177 * t183;
+    const wam7_real_t t185 = dq[1] * t183;
+    const wam7_real_t t186 = WAM7_C(2.0) * t185;
+    const wam7_real_t t187 = t111 * t184 + t108 * t186;
+    const wam7_real_t t188 = dq[2] + t183;
+    const wam7_real_t t189 = t179 * t188;
+    const wam7_real_t t190 = t187 - t189;
+    const wam7_real_t t191 = t190 - t189;
+    const wam7_real_t t192 = t68 * t182 + t66 * t191;
+    const wam7_real_t t193 = t68 * t178 + t66 * t188;
+    const wam7_real_t t194 = dq[3] + t179;
+    const wam7_real_t t195 = t193 * t194;
+    const wam7_real_t t196 = t192 + t195;
+    const wam7_real_t t197 = t30 * t193 - t28 * t194;
+    const wam7_real_t t198 = t28 * t193 + t30 * t194;
+    const wam7_real_t t199 = t197 * t198;
+    const wam7_real_t t200 = t196 - t199;
+    const wam7_real_t t201 = t111 * t186 - t108 * t184;
+    const wam7_real_t t202 = t178 * t188;
+    const wam7_real_t t203 = t201 + t202;
+    const wam7_real_t t204 = t66 * t178 - t68 * t188;
+    const wam7_real_t t205 = t193 * t204;
+    const wam7_real_t t206 = t203 + t205;
+    const wam7_real_t t207 = t68 * t191 - t66 * t182;
+    const wam7_real_t t208 = t204 * t194;
+    const wam7_real_t t209 = t207 - t208;
+    const wam7_real_t t210 = t209 - t208;
+    const wam7_real_t t211 = t30 * t210 - t28 * t206;
+    const wam7_real_t t212 = t204 - dq[4];
+    const wam7_real_t t213 = t198 * t212;
+    const wam7_real_t t214 = t211 + t213;
+    const wam7_real_t t215 = t213 + t214;
+    const wam7_real_t t216 = t13 * t215 - t11 * t200;
+    const wam7_real_t t217 = t11 * t197 + t13 * t212;
+    const wam7_real_t t218 = dq[5] + t198;
+    const wam7_real_t t219 = t217 * t218;
+    const wam7_real_t t220 = t216 - t219;
+    const wam7_real_t t221 = t220 - t219;
+    const wam7_real_t t222 = t30 * t206 + t28 * t210;
+    const wam7_real_t t223 = t197 * t212;
+    const wam7_real_t t224 = t222 - t223;
+    const wam7_real_t t225 = t11 * t212 - t13 * t197;
+    const wam7_real_t t226 = t225 * t217;
+    const wam7_real_t t227 = t224 - t226;
+    const wam7_real_t t228 = t2 * t221 - t1 * t227;
+    const wam7_real_t t229 = t2 * t218 - t1 * t225;
+    const wam7_real_t t230 = t217 - dq[6];
+    const wam7_real_t t231 = t229 * t230;
+    const wam7_real_t t232 = t228 + t231;
+    const wam7_real_t t233 = t2 * t227 + t1 * t221;
+    const wam7_real_t t234 = t2 * t225 + t1 * t218;
+    const wam7_real_t t235 = t234 * t230;
+    const wam7_real_t t236 = t235 + (t233 + t235);
+    const wam7_real_t t237 = t13 * t200 + t11 * t215;
+    const wam7_real_t t238 = t225 * t218;
+    const wam7_real_t t239 = t237 - t238;
+    const wam7_real_t t240 = t234 * t229;
+    const wam7_real_t t241 = t239 - t240;
+    const wam7_real_t t242 = parameters[XX7R] * t232 + parameters[ZZ7] * t231 - parameters[XY7] * t236
+        + parameters[XZ7R] * t241;
+    const wam7_real_t t243 = t229 * t229;
+    const wam7_real_t t244 = t230 * t230;
+    const wam7_real_t t245 = t204 * t204;
+    const wam7_real_t t246 = t194 * t194;
+    const wam7_real_t t247 = t245 + t246;
+    const wam7_real_t t248 = t179 * t179;
+    const wam7_real_t t249 = t188 * t188;
+    const wam7_real_t t250 = t248 + t249;
+    const wam7_real_t t251 = WAM7_C(-9.81) * t148;
+    const wam7_real_t t252 = t251 + WAM7_C(-0.55) * t184;
+    const wam7_real_t t253 = WAM7_C(1.1) * t185;
+    const wam7_real_t t254 = t108 * t252 + t111 * t253;
+    const wam7_real_t t255 = t254 + WAM7_C(-0.045) * t250;
+    const wam7_real_t t256 = t202 + t203;
+    const wam7_real_t t257 = t177 * t177;
+    const wam7_real_t t258 = dq[1] * dq[1];
+    const wam7_real_t t259 = WAM7_C(9.81) * t149;
+    const wam7_real_t t260 = t259 + WAM7_C(-0.55) * (t258 + t257);
+    const wam7_real_t t261 = t260 - WAM7_C(0.045) * t256;
+    const wam7_real_t t262 = t68 * t255 - t66 * t261;
+    const wam7_real_t t263 = t262 + (WAM7_C(0.045) * t247 + WAM7_C(0.3) * t206);
+    const wam7_real_t t264 = t195 + t196;
+    const wam7_real_t t265 = t181 + t180;
+    const wam7_real_t t266 = t111 * t252 - t108 * t253;
+    const wam7_real_t t267 = t266 + WAM7_C(0.045) * t265;
+    const wam7_real_t t268 = WAM7_C(0.045) * t264 - WAM7_C(-0.3) * t210 - t267;
+    const wam7_real_t t269 = t30 * t263 + t28 * t268;
+    const wam7_real_t t270 = t203 - t205;
+    const wam7_real_t t271 = t193 * t193;
+    const wam7_real_t t272 = t271 + t246;
+    const wam7_real_t t273 = t66 * t255 + t68 * t261;
+    const wam7_real_t t274 = t273 + (WAM7_C(0.045) * t270 + WAM7_C(-0.3) * t272);
+    const wam7_real_t t275 = t11 * t269 + t13 * t274;
+    const wam7_real_t t276 = t242 - parameters[YZ7R] * (t243 - t244) - parameters[MY7] * t275;
+    const wam7_real_t t277 = t231 + t232;
+    const wam7_real_t t278 = t239 + t240;
+    const wam7_real_t t279 = t235 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t277
+        + parameters[YZ7R] * t278;
+    const wam7_real_t t280 = t234 * t234;
+    const wam7_real_t t281 = t279 + parameters[XZ7R] * (t280 - t244) + parameters[MX7] * t275;
+    const wam7_real_t t282 = t239 - t238;
+    const wam7_real_t t283 = t224 + t226;
+    const wam7_real_t t284 = parameters[ZZ6R] * t219 - parameters[XX6R] * t220 + parameters[XY6] * t282
+        + parameters[XZ6] * t283;
+    const wam7_real_t t285 = t217 * t217;
+    const wam7_real_t t286 = t218 * t218;
+    const wam7_real_t t287 = t28 * t263 - t30 * t268;
+    const wam7_real_t t288 = t284 + parameters[YZ6] * (t285 - t286) - parameters[MY6R] * t287 + (t1 * t281
+        - t2 * t276);
+    const wam7_real_t t289 = t13 * t269 - t11 * t274;
+    const wam7_real_t t290 = parameters[MX7] * (t1 * t289 + t2 * t287) + parameters[MY7] * (t2 * t289
+        - t1 * t287);
+    const wam7_real_t t291 = parameters[ZZ7] * t239 + parameters[XX7R] * t240 - parameters[YZ7R] * t233
+        + parameters[XZ7R] * t228;
+    const wam7_real_t t292 = t291 + parameters[XY7] * (t243 - t280) + t290;
+    const wam7_real_t t293 = parameters[YZ6] * t227 - (t238 * (parameters[ZZ6R] - parameters[XX6R])
+        + parameters[XY6] * t221);
+    const wam7_real_t t294 = t225 * t225;
+    const wam7_real_t t295 = t293 + parameters[XZ6] * (t286 - t294) + parameters[MX6] * t287 + t292;
+    const wam7_real_t t296 = t224 - t223;
+    const wam7_real_t t297 = t196 + t199;
+    const wam7_real_t t298 = parameters[XX5R] * t214 + parameters[ZZ5R] * t213 - parameters[XY5] * t296
+        + parameters[XZ5] * t297;
+    const wam7_real_t t299 = t198 * t198;
+    const wam7_real_t t300 = t212 * t212;
+    const wam7_real_t t301 = t298 - parameters[YZ5] * (t299 - t300) - parameters[MY5R] * t274 - (t13 * t288
+        - t11 * t295);
+    const wam7_real_t t302 = parameters[XX6R] * t226 - parameters[ZZ6R] * t224 - parameters[YZ6] * t237
+        + parameters[XZ6] * t216;
+    const wam7_real_t t303 = t302 + parameters[XY6] * (t285 - t294) + (parameters[MX6] * t275
+        + parameters[MY6R] * t289);
+    const wam7_real_t t304 = t303 + (t1 * t276 + t2 * t281);
+    const wam7_real_t t305 = parameters[XY5] * t215 - t223 * (parameters[XX5R] - parameters[ZZ5R])
+        + parameters[YZ5] * t200;
+    const wam7_real_t t306 = t197 * t197;
+    const wam7_real_t t307 = t305 + parameters[XZ5] * (t306 - t300) + parameters[MX5] * t274 + t304;
+    const wam7_real_t t308 = parameters[MX7] * (t243 + t244) - parameters[MY7] * t278;
+    const wam7_real_t t309 = parameters[MX7] * t241 + parameters[MY7] * (t280 + t244);
+    const wam7_real_t t310 = parameters[MX6] * (t285 + t286) + parameters[MY6R] * t227 + (t2 * t308
+        - t1 * t309);
+    const wam7_real_t t311 = parameters[MX6] * t283 - parameters[MY6R] * (t294 + t286)
+        + (parameters[MX7] * t236 + parameters[MY7] * t277);
+    const wam7_real_t t312 = parameters[MX5] * (t299 + t300) - parameters[MY5R] * t200 + (t13 * t310
+        + t11 * t311);
+    const wam7_real_t t313 = parameters[MX6] * t282 + parameters[MY6R] * t221 + (t1 * t308 + t2 * t309);
+    const wam7_real_t t314 = parameters[MX5] * t297 + parameters[MY5R] * (t306 + t300) + t313;
+    const wam7_real_t t315 = t28 * t312 + t30 * t314;
+    const wam7_real_t t316 = parameters[ZZ4R] * t208 - parameters[XX4R] * t209 + parameters[XY4R] * t264
+        + parameters[XZ4] * t270;
+    const wam7_real_t t317 = t316 + parameters[YZ4] * (t245 - t246) - parameters[MY4R] * t267 + (t28 * t307
+        - t30 * t301 + WAM7_C(0.3) * t315);
+    const wam7_real_t t318 = parameters[ZZ5R] * t196 - parameters[XX5R] * t199 - parameters[YZ5] * t222
+        + parameters[XZ5] * t211;
+    const wam7_real_t t319 = t318 + parameters[XY5] * (t299 - t306) + (parameters[MX5] * t287
+        + parameters[MY5R] * t269);
+    const wam7_real_t t320 = t319 + (t11 * t288 + t13 * t295);
+    const wam7_real_t t321 = t195 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t210
+        + parameters[YZ4] * t206;
+    const wam7_real_t t322 = t321 + parameters[XZ4] * (t246 - t271) + parameters[MX4R] * t267 + (t320
+        + WAM7_C(-0.045) * t315);
+    const wam7_real_t t323 = parameters[XX3R] * t190 - parameters[ZZ3R] * t189 - parameters[XY3R] * t256
+        + parameters[XZ3] * t265;
+    const wam7_real_t t324 = t323 - parameters[YZ3] * (t248 - t249) - parameters[MY3R] * t260 - (t68 * t317
+        - t66 * t322);
+    const wam7_real_t t325 = t30 * t312 - t28 * t314;
+    const wam7_real_t t326 = parameters[MX5] * t296 + parameters[MY5R] * t215 + (t13 * t311 - t11 * t310);
+    const wam7_real_t t327 = t28 * t301 + t30 * t307 + (WAM7_C(0.045) * t326 + WAM7_C(0.3) * t325);
+    const wam7_real_t t328 = parameters[XZ4] * t207 - (parameters[ZZ4R] * t203 + parameters[XX4R] * t205
+        + parameters[YZ4] * t192);
+    const wam7_real_t t329 = t328 + parameters[XY4R] * (t245 - t271) + (parameters[MX4R] * t273
+        + parameters[MY4R] * t262);
+    const wam7_real_t t330 = t329 + t327;
+    const wam7_real_t t331 = parameters[MX4R] * t247 + parameters[MY4R] * t206 + t325;
+    const wam7_real_t t332 = parameters[MY4R] * t272 - parameters[MX4R] * t270 - t326;
+    const wam7_real_t t333 = t202 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t191
+        + parameters[YZ3] * t182;
+    const wam7_real_t t334 = t178 * t178;
+    const wam7_real_t t335 = t333 + parameters[XZ3] * (t334 - t249) + parameters[MX3R] * t260 + (t330
+        + WAM7_C(0.045) * (t66 * t331 + t68 * t332));
+    const wam7_real_t t336 = parameters[MX3R] * t250 - parameters[MY3R] * t182 + (t68 * t331 - t66 * t332);
+    const wam7_real_t t337 = parameters[MX4R] * t264 + parameters[MY4R] * t210 + t315;
+    const wam7_real_t t338 = parameters[MX3R] * t265 + parameters[MY3R] * (t334 + t249) + t337;
+    const wam7_real_t t339 = t111 * t335 - t108 * t324 + WAM7_C(0.55) * (t111 * t336 + t108 * t338);
+    const wam7_real_t t340 = parameters[XY2] * (WAM7_C(2.0) * t181) - (parameters[XX2R] * t185
+        + parameters[ZZ2R] * t185);
+    const wam7_real_t t341 = t183 * t183;
+    const wam7_real_t t342 = t340 + parameters[XZ2] * t184 + parameters[YZ2] * (t341 - t258) + t339;
+    const wam7_real_t t343 = parameters[ZZ3R] * t181 - parameters[XX3R] * t180 - parameters[YZ3] * t201
+        + parameters[XZ3] * t187;
+    const wam7_real_t t344 = t343 + parameters[XY3R] * (t248 - t334) + (parameters[MX3R] * t266
+        + parameters[MY3R] * t254);
+    const wam7_real_t t345 = t344 + (t66 * t317 + t68 * t322 + WAM7_C(0.045) * t337);
+    const wam7_real_t t346 = t181 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t186
+        - parameters[YZ2] * t184;
+    const wam7_real_t t347 = t148 * t342 + t149 * (t346 + parameters[XZ2] * (t258 - t257) + t345);
+    const wam7_real_t t348 = wam7_sign(dq[0]);
+    const wam7_real_t t349 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0]))
+        + WAM7_C(-42.0) * (parameters[FC1] * t348);
+    const wam7_real_t t350 = wam7_sign(dq[6]);
+    const wam7_real_t t351 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6]))
+        + WAM7_C(-14.93) * (parameters[FC7] * t350);
+    const wam7_real_t t352 = WAM7_C(1.00031) * input[6] + (t351 + t292);
+    const wam7_real_t t353 = wam7_sign(dq[5]);
+    const wam7_real_t t354 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5]))
+        + WAM7_C(-9.48) * (parameters[FC6] * t353);
+    const wam7_real_t t355 = WAM7_C(2.23728) * input[5] + (t354 + t304) + t352 * t5;
+    const wam7_real_t t356 = WAM7_C(19.194) * input[0] + (t349 + t347) - t352 * t169 - t355 * t170;
+    const wam7_real_t t357 = wam7_sign(dq[4]);
+    const wam7_real_t t358 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4]))
+        + WAM7_C(-9.48) * (parameters[FC5] * t357);
+    const wam7_real_t t359 = WAM7_C(2.23728) * input[4] + (t358 + t320) + t352 * t25 + t355 * t19;
+    const wam7_real_t t360 = wam7_sign(dq[3]);
+    const wam7_real_t t361 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3]))
+        + WAM7_C(-18.0) * (parameters[FC4] * t360);
+    const wam7_real_t t362 = WAM7_C(8.226) * input[3] + (t361 + t330) - t352 * t53 - t355 * t52;
+    const wam7_real_t t363 = t362 + t359 * t51;
+    const wam7_real_t t364 = wam7_sign(dq[2]);
+    const wam7_real_t t365 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2]))
+        + WAM7_C(-28.25) * (parameters[FC3] * t364);
+    const wam7_real_t t366 = WAM7_C(12.910250000000001) * input[2] + (t365 + t345) - t352 * t101
+        - t355 * t102;
+    const wam7_real_t t367 = t366 + t359 * t104 - t363 * t90;
+    const wam7_real_t t368 = t356 + t359 * t172 + t363 * t173 + t367 * t174;
+    const wam7_real_t t369 = t111 * t324 + t108 * t335 + WAM7_C(0.55) * (t108 * t336 - t111 * t338);
+    const wam7_real_t t370 = parameters[XX2R] * t184 + parameters[XY2] * (t341 - t257)
+        + (parameters[MX2] * t259 + parameters[MY2R] * t251);
+    const wam7_real_t t371 = wam7_sign(dq[1]);
+    const wam7_real_t t372 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1]))
+        + WAM7_C(-28.25) * (parameters[FC2] * t371);
+    const wam7_real_t t373 = WAM7_C(12.910250000000001) * input[1] + (t372 + (t370 + t369)) - t352 * t120;
+    const wam7_real_t t374 = t373 - t355 * t126 + t359 * t133 + t363 * t137;
+    const wam7_real_t t375 = t374 + t367 * t146;
+    const wam7_real_t t376 = WAM7_C(1.0) / t176;
+    const wam7_real_t t377 = (t368 + t375 * t166) * t376;
     out[0] = t377;
     if (!(t377 >= WAM7_C(-1.0e15) && t377 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t378 = t357 * t369 + t370 * t377;
+    const wam7_real_t t378 = t375 * t165 + t166 * t377;
     out[1] = t378;
     if (!(t378 >= WAM7_C(-1.0e15) && t378 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t379 = t316 * t333 + t334 * t377 + t356 * t378;
+    const wam7_real_t t379 = t367 * t145 + t174 * t377 + t146 * t378;
     out[2] = t379;
     if (!(t379 >= WAM7_C(-1.0e15) && t379 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t380 = t281 * t304 + t305 * t377 + t351 * t378 - t315 * t379;
+    const wam7_real_t t380 = t363 * t89 + t173 * t377 + t137 * t378 - t90 * t379;
     out[3] = t380;
     if (!(t380 >= WAM7_C(-1.0e15) && t380 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t381 = t246 * t271 + t272 * t377 + t348 * t378 + t313 * t379;
-    const wam7_real_t t382 = t381 + t280 * t380;
+    const wam7_real_t t381 = t359 * t50 + t172 * t377 + t133 * t378 + t104 * t379;
+    const wam7_real_t t382 = t381 + t51 * t380;
     out[4] = t382;
     if (!(t382 >= WAM7_C(-1.0e15) && t382 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t383 = t214 * t238 + t239 * t377 + t345 * t378 + t310 * t379;
-    const wam7_real_t t384 = t245 * t382 - (t383 + t277 * t380);
+    const wam7_real_t t383 = t355 * t18 + t170 * t377 + t126 * t378 + t102 * t379;
+    const wam7_real_t t384 = t19 * t382 - (t383 + t52 * t380);
     out[5] = t384;
     if (!(t384 >= WAM7_C(-1.0e15) && t384 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t385 = t187 * t209 + t210 * t377 + t341 * t378 + t308 * t379;
-    const wam7_real_t t386 = t243 * t382 - (t385 + t275 * t380) + t213 * t384;
+    const wam7_real_t t385 = t352 * t4 + t169 * t377 + t120 * t378 + t101 * t379;
+    const wam7_real_t t386 = t25 * t382 - (t385 + t53 * t380) + t5 * t384;
     out[6] = t386;
     if (!(t386 >= WAM7_C(-1.0e15) && t386 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);

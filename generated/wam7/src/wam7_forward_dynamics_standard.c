@@ -120,7 +120,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -149,549 +149,556 @@ int wam7_forward_dynamics_standard(
         return status;
     }
 
-    wam7_real_t t2, t3;
-    WAM7_SINCOS(q[1], &t2, &t3);
-    wam7_real_t t15, t14;
-    WAM7_SINCOS(q[2], &t15, &t14);
-    wam7_real_t t40, t39;
-    WAM7_SINCOS(q[3], &t40, &t39);
-    wam7_real_t t66, t65;
-    WAM7_SINCOS(q[4], &t66, &t65);
-    wam7_real_t t94, t93;
-    WAM7_SINCOS(q[5], &t94, &t93);
-    wam7_real_t t116, t115;
-    WAM7_SINCOS(q[6], &t116, &t115);
-    const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1])
-        + WAM7_C(-42.0) * (t0 * parameters[FC1]);
-    const wam7_real_t t4 = t3 * dq[0];
-    const wam7_real_t t5 = dq[1] * t4;
-    const wam7_real_t t6 = t2 * dq[0];
-    const wam7_real_t t7 = dq[1] * t6;
-    const wam7_real_t t8 = t5 * (parameters[YY2] - parameters[ZZ2]) - t5 * parameters[XX2]
-        + WAM7_C(2.0) * t7 * parameters[XY2];
-    const wam7_real_t t9 = t6 * t4;
-    const wam7_real_t t10 = t4 * t4;
-    const wam7_real_t t11 = dq[1] * dq[1];
-    const wam7_real_t t12 = WAM7_C(9.81) * t3;
-    const wam7_real_t t13 = t8 + t9 * parameters[XZ2] + (t10 - t11) * parameters[YZ2] + t12 * parameters[MZ2];
-    const wam7_real_t t16 = t15 * t6 + t14 * dq[1];
-    const wam7_real_t t17 = dq[2] + t4;
-    const wam7_real_t t18 = t16 * t17;
-    const wam7_real_t t19 = WAM7_C(2.0) * t5;
-    const wam7_real_t t20 = t15 * t9 + t14 * t19;
-    const wam7_real_t t21 = t20 - t18;
-    const wam7_real_t t22 = t14 * t6 - t15 * dq[1];
-    const wam7_real_t t23 = t22 * t17;
-    const wam7_real_t t24 = t14 * t9 - t15 * t19;
-    const wam7_real_t t25 = t23 - t24;
-    const wam7_real_t t26 = t23 + t25;
-    const wam7_real_t t27 = parameters[XY3] * t26 - (parameters[XX3] * t21 + t18 * (parameters[YY3]
-        - parameters[ZZ3]));
-    const wam7_real_t t28 = t22 * t16;
-    const wam7_real_t t29 = t7 + t28;
-    const wam7_real_t t30 = t16 * t16;
-    const wam7_real_t t31 = t17 * t17;
-    const wam7_real_t t32 = t6 * t6;
-    const wam7_real_t t33 = t12 + WAM7_C(-0.55) * (t32 + t11);
-    const wam7_real_t t34 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t35 = t34 + WAM7_C(-0.55) * t9;
-    const wam7_real_t t36 = WAM7_C(1.1) * t5;
-    const wam7_real_t t37 = t15 * t35 - t14 * t36;
-    const wam7_real_t t38 = t27 - parameters[XZ3] * t29 + (t30 - t31) * parameters[YZ3]
-        + (t33 * parameters[MY3] + parameters[MZ3] * t37);
-    const wam7_real_t t41 = t40 * t22 - t39 * t17;
-    const wam7_real_t t42 = dq[3] + t16;
-    const wam7_real_t t43 = t41 * t42;
-    const wam7_real_t t44 = t28 - t7;
-    const wam7_real_t t45 = t21 - t18;
-    const wam7_real_t t46 = t40 * t44 + t39 * t45;
-    const wam7_real_t t47 = t46 - t43;
-    const wam7_real_t t48 = t39 * t22 + t40 * t17;
-    const wam7_real_t t49 = t48 * t42;
-    const wam7_real_t t50 = t40 * t45 - t39 * t44;
-    const wam7_real_t t51 = t49 + t50;
-    const wam7_real_t t52 = t49 + t51;
-    const wam7_real_t t53 = t43 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t47
-        + parameters[XY4] * t52;
-    const wam7_real_t t54 = t48 * t41;
-    const wam7_real_t t55 = t25 - t54;
-    const wam7_real_t t56 = t41 * t41;
-    const wam7_real_t t57 = t42 * t42;
-    const wam7_real_t t58 = t37 + WAM7_C(0.045) * t29;
-    const wam7_real_t t59 = t30 + t31;
-    const wam7_real_t t60 = t14 * t35 + t15 * t36;
-    const wam7_real_t t61 = WAM7_C(-0.045) * t59 + t60;
-    const wam7_real_t t62 = t33 - WAM7_C(0.045) * t26;
-    const wam7_real_t t63 = t40 * t61 + t39 * t62;
-    const wam7_real_t t64 = t53 + parameters[XZ4] * t55 + (t56 - t57) * parameters[YZ4]
-        + (parameters[MZ4] * t63 - parameters[MY4] * t58);
-    const wam7_real_t t67 = t66 * t48 + t65 * t42;
-    const wam7_real_t t68 = t41 - dq[4];
-    const wam7_real_t t69 = t67 * t68;
-    const wam7_real_t t70 = t54 + t25;
-    const wam7_real_t t71 = t47 - t43;
-    const wam7_real_t t72 = t65 * t71 - t66 * t70;
-    const wam7_real_t t73 = t69 + t72;
-    const wam7_real_t t74 = t65 * t48 - t66 * t42;
-    const wam7_real_t t75 = t74 * t68;
-    const wam7_real_t t76 = t65 * t70 + t66 * t71;
-    const wam7_real_t t77 = t76 - t75;
-    const wam7_real_t t78 = t77 - t75;
-    const wam7_real_t t79 = t69 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t73
-        + parameters[XY5] * t78;
-    const wam7_real_t t80 = t74 * t67;
-    const wam7_real_t t81 = t80 + t51;
-    const wam7_real_t t82 = t67 * t67;
-    const wam7_real_t t83 = t68 * t68;
-    const wam7_real_t t84 = t48 * t48;
-    const wam7_real_t t85 = t84 + t57;
-    const wam7_real_t t86 = WAM7_C(0.3) * t85 + WAM7_C(-0.045) * t55 - t63;
-    const wam7_real_t t87 = t39 * t61 - t40 * t62;
-    const wam7_real_t t88 = t56 + t57;
-    const wam7_real_t t89 = t87 + (WAM7_C(0.045) * t88 + WAM7_C(0.3) * t70);
-    const wam7_real_t t90 = WAM7_C(0.045) * t52 - WAM7_C(-0.3) * t71 - t58;
-    const wam7_real_t t91 = t66 * t89 - t65 * t90;
-    const wam7_real_t t92 = t79 - parameters[XZ5] * t81 + (t82 - t83) * parameters[YZ5]
-        - (parameters[MY5] * t86 - parameters[MZ5] * t91);
-    const wam7_real_t t95 = t94 * t74 + t93 * t68;
-    const wam7_real_t t96 = dq[5] + t67;
-    const wam7_real_t t97 = t95 * t96;
-    const wam7_real_t t98 = t51 - t80;
-    const wam7_real_t t99 = t69 + t73;
-    const wam7_real_t t100 = t93 * t99 - t94 * t98;
-    const wam7_real_t t101 = t97 - t100;
-    const wam7_real_t t102 = t94 * t68 - t93 * t74;
-    const wam7_real_t t103 = t102 * t96;
-    const wam7_real_t t104 = t93 * t98 + t94 * t99;
-    const wam7_real_t t105 = t104 - t103;
-    const wam7_real_t t106 = t105 - t103;
-    const wam7_real_t t107 = parameters[XX6] * t101 + t97 * (parameters[ZZ6] - parameters[YY6])
-        + parameters[XY6] * t106;
-    const wam7_real_t t108 = t102 * t95;
-    const wam7_real_t t109 = t108 + t77;
-    const wam7_real_t t110 = t95 * t95;
-    const wam7_real_t t111 = t96 * t96;
-    const wam7_real_t t112 = t65 * t89 + t66 * t90;
-    const wam7_real_t t113 = t94 * t112 - t93 * t86;
-    const wam7_real_t t114 = t107 + parameters[XZ6] * t109 + (t110 - t111) * parameters[YZ6]
-        + (parameters[MZ6] * t113 - parameters[MY6] * t91);
-    const wam7_real_t t117 = t115 * t96 - t116 * t102;
-    const wam7_real_t t118 = dq[6] - t95;
-    const wam7_real_t t119 = t117 * t118;
-    const wam7_real_t t120 = t77 - t108;
-    const wam7_real_t t121 = t97 + t101;
-    const wam7_real_t t122 = t116 * t120 + t115 * t121;
-    const wam7_real_t t123 = t119 + t122;
-    const wam7_real_t t124 = t115 * t102 + t116 * t96;
-    const wam7_real_t t125 = t124 * t118;
-    const wam7_real_t t126 = t115 * t120 - t116 * t121;
-    const wam7_real_t t127 = t126 - t125;
-    const wam7_real_t t128 = t127 - t125;
-    const wam7_real_t t129 = parameters[XX7] * t123 - t119 * (parameters[YY7] - parameters[ZZ7])
-        + parameters[XY7] * t128;
-    const wam7_real_t t130 = t124 * t117;
-    const wam7_real_t t131 = t105 - t130;
-    const wam7_real_t t132 = t117 * t117;
-    const wam7_real_t t133 = t118 * t118;
-    const wam7_real_t t134 = t102 * t102;
-    const wam7_real_t t135 = t134 + t111;
-    const wam7_real_t t136 = WAM7_C(0.06) * t135 - t113;
-    const wam7_real_t t137 = t93 * t112 + t94 * t86;
-    const wam7_real_t t138 = t137 + WAM7_C(0.06) * t120;
-    const wam7_real_t t139 = t91 + WAM7_C(0.06) * t121;
-    const wam7_real_t t140 = t116 * t138 + t115 * t139;
-    const wam7_real_t t141 = t129 - parameters[XZ7] * t131 + (t132 - t133) * parameters[YZ7]
-        - (parameters[MY7] * t136 - parameters[MZ7] * t140);
-    const wam7_real_t t142 = t119 + t123;
-    const wam7_real_t t143 = parameters[YY7] * t127 + t125 * (parameters[XX7] - parameters[ZZ7])
-        + parameters[XY7] * t142;
-    const wam7_real_t t144 = t130 + t105;
-    const wam7_real_t t145 = t124 * t124;
-    const wam7_real_t t146 = t116 * t139 - t115 * t138;
-    const wam7_real_t t147 = parameters[YZ7] * t144 - t143 + (t145 - t133) * parameters[XZ7]
-        + (parameters[MZ7] * t146 - parameters[MX7] * t136);
-    const wam7_real_t t148 = (t132 + t133) * parameters[MX7] - parameters[MY7] * t144
-        - parameters[MZ7] * t126;
-    const wam7_real_t t149 = parameters[M7] * t146 + t148;
-    const wam7_real_t t150 = parameters[MX7] * t131 + (t145 + t133) * parameters[MY7]
-        + parameters[MZ7] * t122;
-    const wam7_real_t t151 = parameters[M7] * t140 + t150;
-    const wam7_real_t t152 = t116 * t149 + t115 * t151;
-    const wam7_real_t t153 = t114 + (t115 * t141 + t116 * t147 + WAM7_C(0.06) * t152);
-    const wam7_real_t t154 = parameters[YY6] * t105 - t103 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t121;
-    const wam7_real_t t155 = t154 + parameters[YZ6] * t120 + (t111 - t134) * parameters[XZ6]
-        + (parameters[MZ6] * t137 + parameters[MX6] * t91);
-    const wam7_real_t t156 = parameters[YY7] - parameters[XX7];
-    const wam7_real_t t157 = parameters[ZZ7] * t105 - t130 * t156 - parameters[YZ7] * t126
-        - parameters[XZ7] * t122;
-    const wam7_real_t t158 = t157 + (t132 - t145) * parameters[XY7] + (parameters[MX7] * t140
-        - parameters[MY7] * t146);
-    const wam7_real_t t159 = t155 + t158;
-    const wam7_real_t t160 = t92 + (t93 * t153 - t94 * t159);
-    const wam7_real_t t161 = parameters[XY5] * t99 - (parameters[YY5] * t77 + t75 * (parameters[XX5]
-        - parameters[ZZ5]));
-    const wam7_real_t t162 = t74 * t74;
-    const wam7_real_t t163 = t161 + parameters[YZ5] * t98 + (t162 - t83) * parameters[XZ5]
-        - (parameters[MZ5] * t112 + parameters[MX5] * t86);
-    const wam7_real_t t164 = parameters[ZZ6] * t77 + t108 * (parameters[YY6] - parameters[XX6])
-        + parameters[YZ6] * t104;
-    const wam7_real_t t165 = parameters[XZ6] * t100 - t164 + (t110 - t134) * parameters[XY6]
-        + (parameters[MX6] * t113 + parameters[MY6] * t137);
-    const wam7_real_t t166 = t115 * t149 - t116 * t151;
-    const wam7_real_t t167 = t165 + (t115 * t147 - t116 * t141 + WAM7_C(0.06) * t166);
-    const wam7_real_t t168 = t163 + t167;
-    const wam7_real_t t169 = (t82 + t83) * parameters[MX5] - parameters[MY5] * t98 - parameters[MZ5] * t76;
-    const wam7_real_t t170 = (t110 + t111) * parameters[MX6] + parameters[MY6] * t120
-        - parameters[MZ6] * t104;
-    const wam7_real_t t171 = t170 - parameters[M6] * t137 + t166;
-    const wam7_real_t t172 = parameters[MX6] * t109 - t135 * parameters[MY6] + parameters[MZ6] * t100
-        - parameters[M6] * t113;
-    const wam7_real_t t173 = parameters[MX7] * t128 - parameters[MY7] * t142 + (t145
-        + t132) * parameters[MZ7];
-    const wam7_real_t t174 = t172 + (parameters[M7] * t136 + t173);
-    const wam7_real_t t175 = t169 - parameters[M5] * t112 + (t93 * t171 + t94 * t174);
-    const wam7_real_t t176 = parameters[MX5] * t81 + (t162 + t83) * parameters[MY5] - parameters[MZ5] * t72;
-    const wam7_real_t t177 = parameters[MX6] * t106 - parameters[MY6] * t121 + (t134
-        + t110) * parameters[MZ6];
-    const wam7_real_t t178 = parameters[M5] * t91 + t176 + (parameters[M6] * t91 + t177 + t152);
-    const wam7_real_t t179 = t66 * t175 + t65 * t178;
-    const wam7_real_t t180 = t64 + (t65 * t160 + t66 * t168 + WAM7_C(0.3) * t179);
-    const wam7_real_t t181 = parameters[YY4] * t51 + t49 * (parameters[ZZ4] - parameters[XX4])
-        - parameters[XY4] * t71;
-    const wam7_real_t t182 = t181 + parameters[YZ4] * t70 + (t57 - t84) * parameters[XZ4]
-        + (parameters[MZ4] * t87 + parameters[MX4] * t58);
-    const wam7_real_t t183 = parameters[ZZ5] * t51 + t80 * (parameters[YY5] - parameters[XX5])
-        - parameters[YZ5] * t76;
-    const wam7_real_t t184 = t183 + parameters[XZ5] * t72 + (t82 - t162) * parameters[XY5]
-        + (parameters[MX5] * t91 + parameters[MY5] * t112);
-    const wam7_real_t t185 = t184 + (t94 * t153 + t93 * t159);
-    const wam7_real_t t186 = t182 + (t185 + WAM7_C(-0.045) * t179);
-    const wam7_real_t t187 = t38 + (t39 * t180 - t40 * t186);
-    const wam7_real_t t188 = t23 * (parameters[XX3] - parameters[ZZ3]) - parameters[YY3] * t25
-        + parameters[XY3] * t45;
-    const wam7_real_t t189 = t22 * t22;
-    const wam7_real_t t190 = t188 - parameters[YZ3] * t44 + (t189 - t31) * parameters[XZ3]
-        + (t33 * parameters[MX3] - parameters[MZ3] * t60);
-    const wam7_real_t t191 = t54 * (parameters[YY4] - parameters[XX4]) - parameters[ZZ4] * t25
-        - parameters[YZ4] * t50;
-    const wam7_real_t t192 = t191 + parameters[XZ4] * t46 + (t56 - t84) * parameters[XY4]
-        + (parameters[MX4] * t63 + parameters[MY4] * t87);
-    const wam7_real_t t193 = parameters[MX5] * t78 + parameters[MY5] * t99 + (t162 + t82) * parameters[MZ5];
-    const wam7_real_t t194 = parameters[M5] * t86 + t193 + (t93 * t174 - t94 * t171);
-    const wam7_real_t t195 = t65 * t175 - t66 * t178;
-    const wam7_real_t t196 = t65 * t168 - t66 * t160 + (WAM7_C(0.045) * t194 + WAM7_C(0.3) * t195);
-    const wam7_real_t t197 = t192 + t196;
-    const wam7_real_t t198 = t88 * parameters[MX4] + parameters[MY4] * t70 - parameters[MZ4] * t50
-        - parameters[M4] * t87;
-    const wam7_real_t t199 = t198 + t195;
-    const wam7_real_t t200 = parameters[M4] * t63 + (t85 * parameters[MY4] - parameters[MX4] * t55
-        - parameters[MZ4] * t46);
-    const wam7_real_t t201 = t194 - t200;
-    const wam7_real_t t202 = t190 + (t197 + WAM7_C(0.045) * (t40 * t199 - t39 * t201));
-    const wam7_real_t t203 = t59 * parameters[MX3] + parameters[MY3] * t44 + parameters[MZ3] * t24
-        - parameters[M3] * t60;
-    const wam7_real_t t204 = t203 + (t39 * t199 + t40 * t201);
-    const wam7_real_t t205 = parameters[MX3] * t29 + (t189 + t31) * parameters[MY3] - parameters[MZ3] * t20;
-    const wam7_real_t t206 = parameters[MX4] * t52 + parameters[MY4] * t71 + (t84 + t56) * parameters[MZ4];
-    const wam7_real_t t207 = parameters[M4] * t58 + t206 + t179;
-    const wam7_real_t t208 = parameters[M3] * t37 + t205 + t207;
-    const wam7_real_t t209 = t14 * t187 + t15 * t202 + WAM7_C(0.55) * (t15 * t204 + t14 * t208);
-    const wam7_real_t t210 = t7 * parameters[YY2] + t7 * (parameters[ZZ2] - parameters[XX2])
-        - t19 * parameters[XY2];
-    const wam7_real_t t211 = t210 - t9 * parameters[YZ2] + (t11 - t32) * parameters[XZ2]
-        + t34 * parameters[MZ2];
-    const wam7_real_t t212 = t7 * parameters[ZZ3] + t28 * (parameters[YY3] - parameters[XX3])
-        + parameters[YZ3] * t24;
-    const wam7_real_t t213 = t212 + parameters[XZ3] * t20 + (t30 - t189) * parameters[XY3]
-        + (parameters[MX3] * t37 + parameters[MY3] * t60);
-    const wam7_real_t t214 = t213 + (t40 * t180 + t39 * t186 + WAM7_C(0.045) * t207);
-    const wam7_real_t t215 = t1 + (t2 * (t13 + t209) + t3 * (t211 + t214));
-    const wam7_real_t t216 = wam7_sign(dq[6]);
-    const wam7_real_t t217 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7])
-        + WAM7_C(-14.93) * (t216 * parameters[FC7]);
-    const wam7_real_t t218 = WAM7_C(1.00031) * input[6] + (t217 + t158);
-    const wam7_real_t t219 = t115 * parameters[MX7] - t116 * parameters[MY7];
-    const wam7_real_t t220 = t116 * parameters[YZ7] - t115 * parameters[XZ7] + WAM7_C(0.06) * t219;
-    const wam7_real_t t221 = t93 * t220 - t94 * parameters[ZZ7];
-    const wam7_real_t t222 = t115 * parameters[MY7] + t116 * parameters[MX7];
-    const wam7_real_t t223 = WAM7_C(0.06) * t222 - (t116 * parameters[XZ7] + t115 * parameters[YZ7]);
-    const wam7_real_t t224 = t93 * t222;
-    const wam7_real_t t225 = t65 * t219 - t66 * t224;
-    const wam7_real_t t226 = t65 * t221 - t66 * t223 + WAM7_C(0.3) * t225;
-    const wam7_real_t t227 = t94 * t220 + t93 * parameters[ZZ7];
-    const wam7_real_t t228 = WAM7_C(0.045) * t225;
-    const wam7_real_t t229 = t228 - t227;
-    const wam7_real_t t230 = t39 * t226 + t40 * t229;
-    const wam7_real_t t231 = t94 * t222;
-    const wam7_real_t t232 = t65 * t224 + t66 * t219;
-    const wam7_real_t t233 = t66 * t221 + t65 * t223 + (WAM7_C(-0.045) * t231 + WAM7_C(0.3) * t232);
-    const wam7_real_t t234 = t233 + WAM7_C(0.045) * (t40 * t232 + t39 * t231);
-    const wam7_real_t t235 = t39 * t232 - t40 * t231;
-    const wam7_real_t t236 = t15 * t234 - t14 * t230 + WAM7_C(0.55) * (t15 * t235 - t14 * t225);
-    const wam7_real_t t237 = t39 * t229 - t40 * t226 - t228;
-    const wam7_real_t t238 = t2 * t236 + t3 * t237;
-    const wam7_real_t t239 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
-    if (!(t239 > WAM7_C(1.0e-9))) {
+    wam7_real_t t161, t162;
+    WAM7_SINCOS(q[1], &t161, &t162);
+    wam7_real_t t123, t119;
+    WAM7_SINCOS(q[2], &t123, &t119);
+    wam7_real_t t76, t79;
+    WAM7_SINCOS(q[3], &t76, &t79);
+    wam7_real_t t38, t35;
+    WAM7_SINCOS(q[4], &t38, &t35);
+    wam7_real_t t20, t16;
+    WAM7_SINCOS(q[5], &t20, &t16);
+    wam7_real_t t1, t2;
+    WAM7_SINCOS(q[6], &t1, &t2);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    if (!(t0 > WAM7_C(1.0e-9))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t240 = WAM7_C(-1.0) / t239;
-    const wam7_real_t t241 = t238 * t240;
-    const wam7_real_t t242 = wam7_sign(dq[5]);
-    const wam7_real_t t243 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6])
-        + WAM7_C(-9.48) * (t242 * parameters[FC6]);
-    const wam7_real_t t244 = t223 * t240;
-    const wam7_real_t t245 = WAM7_C(2.23728) * input[5] + (t243 + t167) - t218 * t244;
-    const wam7_real_t t246 = t115 * t156 + parameters[XY7] * (WAM7_C(2.0) * t116);
-    const wam7_real_t t247 = t116 * t246 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t248 = parameters[YZ6] + t223;
-    const wam7_real_t t249 = t93 * t247 + t94 * t248;
-    const wam7_real_t t250 = t115 * t246;
-    const wam7_real_t t251 = WAM7_C(0.06) * parameters[M7];
-    const wam7_real_t t252 = WAM7_C(0.06) * (t251 + WAM7_C(2.0) * parameters[MZ7]);
-    const wam7_real_t t253 = parameters[ZZ6] + (parameters[XX7] + t250 + t252);
-    const wam7_real_t t254 = parameters[MZ7] + t251 - parameters[MY6];
-    const wam7_real_t t255 = parameters[MX6] + t219;
-    const wam7_real_t t256 = t93 * t254 - t94 * t255;
-    const wam7_real_t t257 = t66 * t256;
-    const wam7_real_t t258 = t65 * t249 + t66 * t253 + WAM7_C(0.3) * t257;
-    const wam7_real_t t259 = t93 * t248 - t94 * t247;
-    const wam7_real_t t260 = WAM7_C(0.045) * t257;
+    const wam7_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const wam7_real_t t4 = WAM7_C(0.06) * t3 - (t1 * parameters[XZ7] + t2 * parameters[YZ7]);
+    const wam7_real_t t5 = WAM7_C(-1.0) / t0;
+    const wam7_real_t t6 = t4 * t5;
+    const wam7_real_t t7 = parameters[YY7] - parameters[XX7];
+    const wam7_real_t t8 = t2 * t7 + parameters[XY7] * (WAM7_C(2.0) * t1);
+    const wam7_real_t t9 = t2 * t8;
+    const wam7_real_t t10 = WAM7_C(0.06) * parameters[M7];
+    const wam7_real_t t11 = WAM7_C(0.06) * (t10 + WAM7_C(2.0) * parameters[MZ7]);
+    const wam7_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
+    const wam7_real_t t13 = t12 + WAM7_C(89.8704) * parameters[IA6] + t4 * t6;
+    if (!(t13 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t14 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const wam7_real_t t15 = parameters[YY6] + parameters[ZZ7];
+    const wam7_real_t t17 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const wam7_real_t t18 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(0.06) * t17;
+    const wam7_real_t t19 = parameters[XY6] + t18;
+    const wam7_real_t t21 = t16 * (t14 - t15) + t19 * (WAM7_C(-2.0) * t20);
+    const wam7_real_t t22 = t16 * t21;
+    const wam7_real_t t23 = parameters[ZZ5] + (t14 - t22);
+    const wam7_real_t t24 = t20 * t18 + t16 * parameters[ZZ7];
+    const wam7_real_t t25 = t24 * t5;
+    const wam7_real_t t26 = parameters[YZ6] + t4;
+    const wam7_real_t t27 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t28 = t16 * t26 - t20 * t27;
+    const wam7_real_t t29 = t28 + t24 * t6;
+    const wam7_real_t t30 = WAM7_C(1.0) / t13;
+    const wam7_real_t t31 = t29 * t30;
+    const wam7_real_t t32 = t23 + WAM7_C(89.8704) * parameters[IA5] + t24 * t25 - t29 * t31;
+    if (!(t32 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t33 = parameters[XX5] + (t15 + t22);
+    const wam7_real_t t34 = parameters[YY5] + t12;
+    const wam7_real_t t36 = t16 * t27 + t20 * t26;
+    const wam7_real_t t37 = parameters[XY5] - t36;
+    const wam7_real_t t39 = t35 * (t33 - t34) - t37 * (WAM7_C(2.0) * t38);
+    const wam7_real_t t40 = t35 * t39;
+    const wam7_real_t t41 = parameters[MY5] + (parameters[MZ6] + t3);
+    const wam7_real_t t42 = parameters[MX6] + t17;
+    const wam7_real_t t43 = parameters[MZ7] + t10 - parameters[MY6];
+    const wam7_real_t t44 = t20 * t43 + t16 * t42;
+    const wam7_real_t t45 = parameters[MX5] + t44;
+    const wam7_real_t t46 = t35 * t45 - t38 * t41;
+    const wam7_real_t t47 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const wam7_real_t t48 = WAM7_C(0.045) * t47;
+    const wam7_real_t t49 = WAM7_C(0.045) * (t48 + WAM7_C(-2.0) * t46);
+    const wam7_real_t t50 = t16 * t43 - t20 * t42;
+    const wam7_real_t t51 = parameters[MZ5] + t50;
+    const wam7_real_t t52 = WAM7_C(0.3) * t47;
+    const wam7_real_t t53 = WAM7_C(0.3) * (t52 + WAM7_C(2.0) * t51);
+    const wam7_real_t t54 = parameters[ZZ4] + (t33 - t40 + (t49 + t53));
+    const wam7_real_t t55 = t16 * t18 - t20 * parameters[ZZ7];
+    const wam7_real_t t56 = t16 * t3;
+    const wam7_real_t t57 = t35 * t56 + t38 * t17;
+    const wam7_real_t t58 = t20 * t3;
+    const wam7_real_t t59 = t38 * t55 + t35 * t4 + (WAM7_C(-0.045) * t58 + WAM7_C(0.3) * t57);
+    const wam7_real_t t60 = t59 * t5;
+    const wam7_real_t t61 = t35 * t50;
+    const wam7_real_t t62 = t38 * t36 - t35 * t12 + (WAM7_C(0.045) * t44 + WAM7_C(-0.3) * t61);
+    const wam7_real_t t63 = t62 - t59 * t6;
+    const wam7_real_t t64 = t63 * t30;
+    const wam7_real_t t65 = t54 + WAM7_C(324.0) * parameters[IA4] + t59 * t60 - t63 * t64;
+    const wam7_real_t t66 = t19 + t20 * t21 - parameters[XZ5];
+    const wam7_real_t t67 = parameters[YZ5] - t28;
+    const wam7_real_t t68 = t35 * t41 + t38 * t45;
+    const wam7_real_t t69 = t38 * t66 - t35 * t67 + WAM7_C(0.3) * t68;
+    const wam7_real_t t70 = t69 + t59 * t25 + t63 * t31;
+    const wam7_real_t t71 = WAM7_C(1.0) / t32;
+    const wam7_real_t t72 = t70 * t71;
+    const wam7_real_t t73 = t65 - t70 * t72;
+    if (!(t73 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t74 = t35 * t66 + t38 * t67;
+    const wam7_real_t t75 = t74 + WAM7_C(0.3) * t46;
+    const wam7_real_t t77 = WAM7_C(0.045) * t46;
+    const wam7_real_t t78 = t77 - t23;
+    const wam7_real_t t80 = t79 * t78 - t76 * t75 - t77;
+    const wam7_real_t t81 = t35 * t17 - t38 * t56;
+    const wam7_real_t t82 = t35 * t55 - t38 * t4 + WAM7_C(0.3) * t81;
+    const wam7_real_t t83 = WAM7_C(0.045) * t81;
+    const wam7_real_t t84 = t83 - t24;
+    const wam7_real_t t85 = t79 * t84 - t76 * t82 - t83;
+    const wam7_real_t t86 = t38 * t50;
+    const wam7_real_t t87 = t35 * t36 + t38 * t12 + WAM7_C(0.3) * t86;
+    const wam7_real_t t88 = WAM7_C(0.045) * t86;
+    const wam7_real_t t89 = t28 + t88;
+    const wam7_real_t t90 = t79 * t89 - t76 * t87 - t88;
+    const wam7_real_t t91 = t90 - t85 * t6;
+    const wam7_real_t t92 = t80 + t85 * t25 + t91 * t31;
+    const wam7_real_t t93 = parameters[XZ4] + (t37 + t38 * t39 + WAM7_C(0.045) * t68);
+    const wam7_real_t t94 = parameters[YZ4] + t69;
+    const wam7_real_t t95 = t76 * t93 + t79 * t94;
+    const wam7_real_t t96 = t85 * t60 - t95 - t91 * t64 - t92 * t72;
+    const wam7_real_t t97 = WAM7_C(1.0) / t73;
+    const wam7_real_t t98 = t96 * t97;
+    const wam7_real_t t99 = t92 * t71;
+    const wam7_real_t t100 = t85 * t5;
+    const wam7_real_t t101 = parameters[XX4] + (t34 + t40 + t53);
+    const wam7_real_t t102 = parameters[YY4] + (t23 + t49);
+    const wam7_real_t t103 = t46 - t48;
+    const wam7_real_t t104 = parameters[XY4] + (t74 + (WAM7_C(-0.045) * t51 + WAM7_C(0.3) * t103));
+    const wam7_real_t t105 = t79 * (t101 - t102) - t104 * (WAM7_C(2.0) * t76);
+    const wam7_real_t t106 = t79 * t105;
+    const wam7_real_t t107 = parameters[MX4] + t103;
+    const wam7_real_t t108 = t51 + t52 - parameters[MY4];
+    const wam7_real_t t109 = t76 * t108 + t79 * t107;
+    const wam7_real_t t110 = parameters[M4] + t47;
+    const wam7_real_t t111 = WAM7_C(0.045) * t110;
+    const wam7_real_t t112 = WAM7_C(0.045) * (t111 + WAM7_C(2.0) * t109);
+    const wam7_real_t t113 = parameters[ZZ3] + (t101 - t106 + t112);
+    const wam7_real_t t114 = t91 * t30;
+    const wam7_real_t t115 = t113 + WAM7_C(798.0625) * parameters[IA3] + t85 * t100 - t91 * t114;
+    const wam7_real_t t116 = t115 - t92 * t99 - t96 * t98;
+    if (!(t116 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t117 = parameters[XX3] + (t102 + t106);
+    const wam7_real_t t118 = parameters[YY3] + (t54 + t112);
+    const wam7_real_t t120 = t79 * t93 - t76 * t94;
+    const wam7_real_t t121 = parameters[MZ4] + t68;
+    const wam7_real_t t122 = parameters[XY3] + (t120 + WAM7_C(-0.045) * t121);
+    const wam7_real_t t124 = t119 * (t118 - t117) + t122 * (WAM7_C(2.0) * t123);
+    const wam7_real_t t125 = t119 * t124;
+    const wam7_real_t t126 = t79 * t108 - t76 * t107;
+    const wam7_real_t t127 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t110)
+        + WAM7_C(2.0) * (parameters[MZ3] + t126));
+    const wam7_real_t t128 = t79 * t82 + t76 * t84;
+    const wam7_real_t t129 = t59 + WAM7_C(0.045) * (t76 * t57 + t79 * t58);
+    const wam7_real_t t130 = t79 * t57 - t76 * t58;
+    const wam7_real_t t131 = t123 * t128 + t119 * t129 + WAM7_C(0.55) * (t119 * t130 + t123 * t81);
+    const wam7_real_t t132 = t131 * t5;
+    const wam7_real_t t133 = parameters[ZZ2] + (t117 + t125 + t127) + WAM7_C(798.0625) * parameters[IA2]
+        + t131 * t132;
+    const wam7_real_t t134 = t79 * t87 + t76 * t89;
+    const wam7_real_t t135 = t62 + WAM7_C(-0.045) * (t76 * t61 + t79 * t44);
+    const wam7_real_t t136 = t76 * t44 - t79 * t61;
+    const wam7_real_t t137 = t123 * t134 + t119 * t135 + WAM7_C(0.55) * (t119 * t136 + t123 * t86);
+    const wam7_real_t t138 = t137 - t131 * t6;
+    const wam7_real_t t139 = t138 * t30;
+    const wam7_real_t t140 = t79 * t75 + t76 * t78;
+    const wam7_real_t t141 = t69 + WAM7_C(0.045) * (t76 * t68);
+    const wam7_real_t t142 = t79 * t68;
+    const wam7_real_t t143 = t123 * t140 + t119 * t141 + WAM7_C(0.55) * (t119 * t142 + t123 * t46);
+    const wam7_real_t t144 = t143 + t131 * t25 + t138 * t31;
+    const wam7_real_t t145 = t144 * t71;
+    const wam7_real_t t146 = WAM7_C(-0.045) * t109 - t54;
+    const wam7_real_t t147 = t119 * t146 - t123 * t120 + WAM7_C(-0.55) * (t119 * t126);
+    const wam7_real_t t148 = t147 - t131 * t60 + t138 * t64 + t144 * t72;
+    const wam7_real_t t149 = t148 * t97;
+    const wam7_real_t t150 = t133 - t138 * t139 - t144 * t145 - t148 * t149;
+    const wam7_real_t t151 = t104 + t76 * t105 + WAM7_C(0.045) * t126 - parameters[XZ3];
+    const wam7_real_t t152 = parameters[YZ3] - t95;
+    const wam7_real_t t153 = parameters[MY3] + t121;
+    const wam7_real_t t154 = parameters[MX3] + (t109 + t111);
+    const wam7_real_t t155 = t123 * t151 - t119 * t152 + WAM7_C(0.55) * (t119 * t153 + t123 * t154);
+    const wam7_real_t t156 = t155 - t131 * t100 + t138 * t114 + t144 * t99;
+    const wam7_real_t t157 = t156 - t148 * t98;
+    const wam7_real_t t158 = WAM7_C(1.0) / t116;
+    const wam7_real_t t159 = t157 * t158;
+    const wam7_real_t t160 = t150 - t157 * t159;
+    if (!(t160 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t163 = t161 * (parameters[XZ2] + (t122 - t123 * t124)) + t162 * (parameters[YZ2]
+        + t155);
+    const wam7_real_t t164 = t123 * t129 - t119 * t128 + WAM7_C(0.55) * (t123 * t130 - t119 * t81);
+    const wam7_real_t t165 = t161 * t164 + t162 * t85;
+    const wam7_real_t t166 = t123 * t135 - t119 * t134 + WAM7_C(0.55) * (t123 * t136 - t119 * t86);
+    const wam7_real_t t167 = t161 * t166 + t162 * t90 - t165 * t6;
+    const wam7_real_t t168 = t123 * t141 - t119 * t140 + WAM7_C(0.55) * (t123 * t142 - t119 * t46);
+    const wam7_real_t t169 = t161 * t168 + t162 * t80 + t165 * t25 + t167 * t31;
+    const wam7_real_t t170 = t163 - t165 * t132 + t167 * t139 + t169 * t145;
+    const wam7_real_t t171 = t119 * t120 + t123 * t146 + WAM7_C(-0.55) * (t123 * t126);
+    const wam7_real_t t172 = t161 * t171 + t162 * t95 - t165 * t60 + t167 * t64;
+    const wam7_real_t t173 = t172 + t169 * t72;
+    const wam7_real_t t174 = t119 * t151 + t123 * t152 + WAM7_C(0.55) * (t119 * t154 - t123 * t153);
+    const wam7_real_t t175 = t161 * t174 + t162 * t113 + t165 * t100 - t167 * t114;
+    const wam7_real_t t176 = t169 * t99 - t175 - t173 * t98;
+    const wam7_real_t t177 = t170 + t173 * t149 + t176 * t159;
+    const wam7_real_t t178 = WAM7_C(1.0) / t160;
+    const wam7_real_t t179 = t177 * t178;
+    const wam7_real_t t180 = parameters[XX2] + (t118 - t125 + t127);
+    const wam7_real_t t181 = t162 * (parameters[YY2] + t113 - t180) + (parameters[XY2]
+        + t174) * (WAM7_C(2.0) * t161);
+    const wam7_real_t t182 = t165 * t5;
+    const wam7_real_t t183 = parameters[ZZ1] + (t180 + t162 * t181) + WAM7_C(1764.0) * parameters[IA1]
+        + t165 * t182;
+    const wam7_real_t t184 = t167 * t30;
+    const wam7_real_t t185 = t169 * t71;
+    const wam7_real_t t186 = t173 * t97;
+    const wam7_real_t t187 = t183 - t167 * t184 - t169 * t185 - t173 * t186;
+    const wam7_real_t t188 = t176 * t158;
+    const wam7_real_t t189 = t187 - t176 * t188 - t177 * t179;
+    if (!(t189 > WAM7_C(1.0e-9))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t190 = t161 * dq[0];
+    const wam7_real_t t191 = t119 * t190 - t123 * dq[1];
+    const wam7_real_t t192 = t162 * dq[0];
+    const wam7_real_t t193 = dq[2] + t192;
+    const wam7_real_t t194 = t79 * t191 + t76 * t193;
+    const wam7_real_t t195 = t123 * t190 + t119 * dq[1];
+    const wam7_real_t t196 = dq[3] + t195;
+    const wam7_real_t t197 = t35 * t194 - t38 * t196;
+    const wam7_real_t t198 = t38 * t194 + t35 * t196;
+    const wam7_real_t t199 = t197 * t198;
+    const wam7_real_t t200 = t191 * t195;
+    const wam7_real_t t201 = dq[1] * t190;
+    const wam7_real_t t202 = t200 - t201;
+    const wam7_real_t t203 = t195 * t193;
+    const wam7_real_t t204 = t190 * t192;
+    const wam7_real_t t205 = dq[1] * t192;
+    const wam7_real_t t206 = WAM7_C(2.0) * t205;
+    const wam7_real_t t207 = t123 * t204 + t119 * t206;
+    const wam7_real_t t208 = t207 - t203;
+    const wam7_real_t t209 = t208 - t203;
+    const wam7_real_t t210 = t76 * t209 - t79 * t202;
+    const wam7_real_t t211 = t194 * t196;
+    const wam7_real_t t212 = t211 + t210;
+    const wam7_real_t t213 = t212 - t199;
+    const wam7_real_t t214 = t76 * t191 - t79 * t193;
+    const wam7_real_t t215 = t194 * t214;
+    const wam7_real_t t216 = t191 * t193;
+    const wam7_real_t t217 = t119 * t204 - t123 * t206;
+    const wam7_real_t t218 = t216 - t217;
+    const wam7_real_t t219 = t215 + t218;
+    const wam7_real_t t220 = t76 * t202 + t79 * t209;
+    const wam7_real_t t221 = t214 * t196;
+    const wam7_real_t t222 = t220 - t221;
+    const wam7_real_t t223 = t222 - t221;
+    const wam7_real_t t224 = t35 * t223 - t38 * t219;
+    const wam7_real_t t225 = t214 - dq[4];
+    const wam7_real_t t226 = t198 * t225;
+    const wam7_real_t t227 = t226 + t224;
+    const wam7_real_t t228 = t226 + t227;
+    const wam7_real_t t229 = t16 * t228 - t20 * t213;
+    const wam7_real_t t230 = t20 * t197 + t16 * t225;
+    const wam7_real_t t231 = dq[5] + t198;
+    const wam7_real_t t232 = t230 * t231;
+    const wam7_real_t t233 = t232 - t229;
+    const wam7_real_t t234 = t232 + t233;
+    const wam7_real_t t235 = t35 * t219 + t38 * t223;
+    const wam7_real_t t236 = t197 * t225;
+    const wam7_real_t t237 = t235 - t236;
+    const wam7_real_t t238 = t20 * t225 - t16 * t197;
+    const wam7_real_t t239 = t238 * t230;
+    const wam7_real_t t240 = t237 - t239;
+    const wam7_real_t t241 = t1 * t240 + t2 * t234;
+    const wam7_real_t t242 = t2 * t231 - t1 * t238;
+    const wam7_real_t t243 = dq[6] - t230;
+    const wam7_real_t t244 = t242 * t243;
+    const wam7_real_t t245 = t244 + t241;
+    const wam7_real_t t246 = t2 * t240 - t1 * t234;
+    const wam7_real_t t247 = t2 * t238 + t1 * t231;
+    const wam7_real_t t248 = t247 * t243;
+    const wam7_real_t t249 = t246 - t248;
+    const wam7_real_t t250 = t249 - t248;
+    const wam7_real_t t251 = parameters[XX7] * t245 - t244 * (parameters[YY7] - parameters[ZZ7])
+        + parameters[XY7] * t250;
+    const wam7_real_t t252 = t16 * t213 + t20 * t228;
+    const wam7_real_t t253 = t238 * t231;
+    const wam7_real_t t254 = t252 - t253;
+    const wam7_real_t t255 = t247 * t242;
+    const wam7_real_t t256 = t254 - t255;
+    const wam7_real_t t257 = t242 * t242;
+    const wam7_real_t t258 = t243 * t243;
+    const wam7_real_t t259 = t214 * t214;
+    const wam7_real_t t260 = t196 * t196;
     const wam7_real_t t261 = t259 + t260;
-    const wam7_real_t t262 = t39 * t258 + t40 * t261;
-    const wam7_real_t t263 = t94 * t254 + t93 * t255;
-    const wam7_real_t t264 = t65 * t256;
-    const wam7_real_t t265 = t66 * t249 - t65 * t253 + (WAM7_C(0.045) * t263 + WAM7_C(-0.3) * t264);
-    const wam7_real_t t266 = t265 + WAM7_C(-0.045) * (t40 * t264 + t39 * t263);
-    const wam7_real_t t267 = t40 * t263 - t39 * t264;
-    const wam7_real_t t268 = t15 * t266 - t14 * t262 + WAM7_C(0.55) * (t15 * t267 - t14 * t257);
-    const wam7_real_t t269 = t39 * t261 - t40 * t258 - t260;
-    const wam7_real_t t270 = t2 * t268 + t3 * t269 - t238 * t244;
-    const wam7_real_t t271 = t253 + WAM7_C(89.8704) * parameters[IA6] + t223 * t244;
-    if (!(t271 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t272 = WAM7_C(1.0) / t271;
-    const wam7_real_t t273 = t270 * t272;
-    const wam7_real_t t274 = WAM7_C(19.194) * input[0] + t215 - t218 * t241 + t245 * t273;
-    const wam7_real_t t275 = wam7_sign(dq[4]);
-    const wam7_real_t t276 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5])
-        + WAM7_C(-9.48) * (t275 * parameters[FC5]);
-    const wam7_real_t t277 = t227 * t240;
-    const wam7_real_t t278 = t259 + t227 * t244;
-    const wam7_real_t t279 = t278 * t272;
-    const wam7_real_t t280 = WAM7_C(2.23728) * input[4] + (t276 + t185) + t218 * t277 + t245 * t279;
-    const wam7_real_t t281 = parameters[XY6] + t220;
-    const wam7_real_t t282 = parameters[XX6] + (parameters[YY7] - t250 + t252);
-    const wam7_real_t t283 = parameters[YY6] + parameters[ZZ7];
-    const wam7_real_t t284 = t93 * (t282 - t283) + t281 * (WAM7_C(-2.0) * t94);
-    const wam7_real_t t285 = t281 + t94 * t284 - parameters[XZ5];
-    const wam7_real_t t286 = parameters[YZ5] - t259;
-    const wam7_real_t t287 = t65 * t285 + t66 * t286;
-    const wam7_real_t t288 = parameters[MY5] + (parameters[MZ6] + t222);
-    const wam7_real_t t289 = parameters[MX5] + t263;
-    const wam7_real_t t290 = t65 * t289 - t66 * t288;
-    const wam7_real_t t291 = t287 + WAM7_C(0.3) * t290;
-    const wam7_real_t t292 = t93 * t284;
-    const wam7_real_t t293 = parameters[ZZ5] + (t282 - t292);
-    const wam7_real_t t294 = WAM7_C(0.045) * t290;
-    const wam7_real_t t295 = t294 - t293;
-    const wam7_real_t t296 = t39 * t291 + t40 * t295;
-    const wam7_real_t t297 = t65 * t288 + t66 * t289;
-    const wam7_real_t t298 = t66 * t285 - t65 * t286 + WAM7_C(0.3) * t297;
-    const wam7_real_t t299 = t298 + WAM7_C(0.045) * (t40 * t297);
-    const wam7_real_t t300 = t39 * t297;
-    const wam7_real_t t301 = t15 * t299 - t14 * t296 + WAM7_C(0.55) * (t15 * t300 - t14 * t290);
-    const wam7_real_t t302 = t39 * t295 - t40 * t291 - t294;
-    const wam7_real_t t303 = t2 * t301 + t3 * t302 + t238 * t277 + t270 * t279;
-    const wam7_real_t t304 = t293 + WAM7_C(89.8704) * parameters[IA5] + t227 * t277 - t278 * t279;
-    if (!(t304 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t305 = WAM7_C(1.0) / t304;
-    const wam7_real_t t306 = t303 * t305;
-    const wam7_real_t t307 = wam7_sign(dq[3]);
-    const wam7_real_t t308 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4])
-        + WAM7_C(-18.0) * (t307 * parameters[FC4]);
-    const wam7_real_t t309 = t233 * t240;
-    const wam7_real_t t310 = t265 - t233 * t244;
-    const wam7_real_t t311 = t310 * t272;
-    const wam7_real_t t312 = WAM7_C(8.226) * input[3] + (t308 + t197) - t218 * t309 + t245 * t311;
-    const wam7_real_t t313 = t298 + t233 * t277 + t310 * t279;
-    const wam7_real_t t314 = t313 * t305;
-    const wam7_real_t t315 = t312 + t280 * t314;
-    const wam7_real_t t316 = parameters[XY5] - t249;
-    const wam7_real_t t317 = parameters[XX5] + (t283 + t292);
-    const wam7_real_t t318 = parameters[YY5] + t253;
-    const wam7_real_t t319 = t65 * (t317 - t318) - t316 * (WAM7_C(2.0) * t66);
-    const wam7_real_t t320 = parameters[XZ4] + (t316 + t66 * t319 + WAM7_C(0.045) * t297);
-    const wam7_real_t t321 = parameters[YZ4] + t298;
-    const wam7_real_t t322 = t39 * t320 - t40 * t321;
-    const wam7_real_t t323 = t65 * t319;
-    const wam7_real_t t324 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const wam7_real_t t325 = WAM7_C(0.045) * t324;
-    const wam7_real_t t326 = WAM7_C(0.045) * (t325 + WAM7_C(-2.0) * t290);
-    const wam7_real_t t327 = WAM7_C(0.3) * t324;
-    const wam7_real_t t328 = parameters[MZ5] + t256;
-    const wam7_real_t t329 = WAM7_C(0.3) * (t327 + WAM7_C(2.0) * t328);
-    const wam7_real_t t330 = parameters[ZZ4] + (t317 - t323 + (t326 + t329));
-    const wam7_real_t t331 = t328 + t327 - parameters[MY4];
-    const wam7_real_t t332 = t290 - t325;
-    const wam7_real_t t333 = parameters[MX4] + t332;
-    const wam7_real_t t334 = t40 * t331 + t39 * t333;
-    const wam7_real_t t335 = WAM7_C(-0.045) * t334 - t330;
-    const wam7_real_t t336 = t39 * t331 - t40 * t333;
-    const wam7_real_t t337 = t14 * t322 + t15 * t335 + WAM7_C(-0.55) * (t15 * t336);
-    const wam7_real_t t338 = t40 * t320 + t39 * t321;
-    const wam7_real_t t339 = t2 * t337 + t3 * t338 - t238 * t309 + t270 * t311;
-    const wam7_real_t t340 = t339 + t303 * t314;
-    const wam7_real_t t341 = t330 + WAM7_C(324.0) * parameters[IA4] + t233 * t309 - t310 * t311;
-    const wam7_real_t t342 = t341 - t313 * t314;
-    if (!(t342 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t343 = WAM7_C(1.0) / t342;
-    const wam7_real_t t344 = t340 * t343;
-    const wam7_real_t t345 = wam7_sign(dq[2]);
-    const wam7_real_t t346 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3])
-        + WAM7_C(-28.25) * (t345 * parameters[FC3]);
-    const wam7_real_t t347 = t237 * t240;
-    const wam7_real_t t348 = t269 - t237 * t244;
-    const wam7_real_t t349 = t348 * t272;
-    const wam7_real_t t350 = WAM7_C(12.910250000000001) * input[2] + (t346 + t214) - t218 * t347
-        + t245 * t349;
-    const wam7_real_t t351 = t302 + t237 * t277 + t348 * t279;
-    const wam7_real_t t352 = t351 * t305;
-    const wam7_real_t t353 = t237 * t309 - t338 - t348 * t311 - t351 * t314;
-    const wam7_real_t t354 = t353 * t343;
-    const wam7_real_t t355 = t350 + t280 * t352 - t315 * t354;
-    const wam7_real_t t356 = parameters[XY4] + (t287 + (WAM7_C(-0.045) * t328 + WAM7_C(0.3) * t332));
-    const wam7_real_t t357 = parameters[XX4] + (t318 + t323 + t329);
-    const wam7_real_t t358 = parameters[YY4] + (t293 + t326);
-    const wam7_real_t t359 = t39 * (t357 - t358) - t356 * (WAM7_C(2.0) * t40);
-    const wam7_real_t t360 = t356 + t40 * t359 + WAM7_C(0.045) * t336 - parameters[XZ3];
-    const wam7_real_t t361 = parameters[YZ3] - t338;
-    const wam7_real_t t362 = parameters[MZ4] + t297;
-    const wam7_real_t t363 = parameters[MY3] + t362;
-    const wam7_real_t t364 = parameters[M4] + t324;
-    const wam7_real_t t365 = WAM7_C(0.045) * t364;
-    const wam7_real_t t366 = parameters[MX3] + (t334 + t365);
-    const wam7_real_t t367 = t14 * t360 + t15 * t361 + WAM7_C(0.55) * (t14 * t366 - t15 * t363);
-    const wam7_real_t t368 = t39 * t359;
-    const wam7_real_t t369 = WAM7_C(0.045) * (t365 + WAM7_C(2.0) * t334);
-    const wam7_real_t t370 = parameters[ZZ3] + (t357 - t368 + t369);
-    const wam7_real_t t371 = t2 * t367 + t3 * t370 + t238 * t347 - t270 * t349;
-    const wam7_real_t t372 = t303 * t352 - t371 - t340 * t354;
-    const wam7_real_t t373 = t370 + WAM7_C(798.0625) * parameters[IA3] + t237 * t347 - t348 * t349;
-    const wam7_real_t t374 = t373 - t351 * t352 - t353 * t354;
-    if (!(t374 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t375 = WAM7_C(1.0) / t374;
-    const wam7_real_t t376 = t372 * t375;
-    const wam7_real_t t377 = t274 + t280 * t306 + t315 * t344 + t355 * t376;
-    const wam7_real_t t378 = wam7_sign(dq[1]);
-    const wam7_real_t t379 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2])
-        + WAM7_C(-28.25) * (t378 * parameters[FC2]);
-    const wam7_real_t t380 = t9 * (parameters[XX2] - parameters[YY2]) + (t10 - t32) * parameters[XY2]
-        + (t12 * parameters[MX2] + t34 * parameters[MY2]);
-    const wam7_real_t t381 = t14 * t202 - t15 * t187 + WAM7_C(0.55) * (t14 * t204 - t15 * t208);
-    const wam7_real_t t382 = t15 * t230 + t14 * t234 + WAM7_C(0.55) * (t14 * t235 + t15 * t225);
-    const wam7_real_t t383 = t382 * t240;
-    const wam7_real_t t384 = WAM7_C(12.910250000000001) * input[1] + (t379 + (t380 + t381)) - t218 * t383;
-    const wam7_real_t t385 = t15 * t262 + t14 * t266 + WAM7_C(0.55) * (t14 * t267 + t15 * t257);
-    const wam7_real_t t386 = t385 - t382 * t244;
-    const wam7_real_t t387 = t386 * t272;
-    const wam7_real_t t388 = t15 * t296 + t14 * t299 + WAM7_C(0.55) * (t14 * t300 + t15 * t290);
-    const wam7_real_t t389 = t388 + t382 * t277 + t386 * t279;
-    const wam7_real_t t390 = t389 * t305;
-    const wam7_real_t t391 = t14 * t335 - t15 * t322 + WAM7_C(-0.55) * (t14 * t336);
-    const wam7_real_t t392 = t391 - t382 * t309 + t386 * t311 + t389 * t314;
-    const wam7_real_t t393 = t392 * t343;
-    const wam7_real_t t394 = t384 + t245 * t387 + t280 * t390 + t315 * t393;
-    const wam7_real_t t395 = t15 * t360 - t14 * t361 + WAM7_C(0.55) * (t14 * t363 + t15 * t366);
-    const wam7_real_t t396 = t395 - t382 * t347 + t386 * t349 + t389 * t352;
-    const wam7_real_t t397 = t396 - t392 * t354;
-    const wam7_real_t t398 = t397 * t375;
-    const wam7_real_t t399 = t394 + t355 * t398;
-    const wam7_real_t t400 = parameters[XY3] + (t322 + WAM7_C(-0.045) * t362);
-    const wam7_real_t t401 = parameters[XX3] + (t358 + t368);
-    const wam7_real_t t402 = parameters[YY3] + (t330 + t369);
-    const wam7_real_t t403 = t14 * (t402 - t401) + t400 * (WAM7_C(2.0) * t15);
-    const wam7_real_t t404 = t2 * (parameters[XZ2] + (t400 - t15 * t403)) + t3 * (parameters[YZ2] + t395);
-    const wam7_real_t t405 = t404 - t238 * t383 + t270 * t387 + t303 * t390;
-    const wam7_real_t t406 = t405 + t340 * t393 + t372 * t398;
-    const wam7_real_t t407 = t14 * t403;
-    const wam7_real_t t408 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t364)
-        + WAM7_C(2.0) * (parameters[MZ3] + t336));
-    const wam7_real_t t409 = parameters[ZZ2] + (t401 + t407 + t408) + WAM7_C(798.0625) * parameters[IA2]
-        + t382 * t383;
-    const wam7_real_t t410 = t409 - t386 * t387 - t389 * t390 - t392 * t393;
-    const wam7_real_t t411 = t410 - t397 * t398;
-    if (!(t411 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t412 = WAM7_C(1.0) / t411;
-    const wam7_real_t t413 = t406 * t412;
-    const wam7_real_t t414 = parameters[XX2] + (t402 - t407 + t408);
-    const wam7_real_t t415 = t3 * (parameters[YY2] + t370 - t414) + (parameters[XY2]
-        + t367) * (WAM7_C(2.0) * t2);
-    const wam7_real_t t416 = parameters[ZZ1] + (t414 + t3 * t415) + WAM7_C(1764.0) * parameters[IA1]
-        + t238 * t241;
-    const wam7_real_t t417 = t416 - t270 * t273 - t303 * t306 - t340 * t344;
-    const wam7_real_t t418 = t417 - t372 * t376 - t406 * t413;
-    if (!(t418 > WAM7_C(1.0e-9))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t419 = WAM7_C(1.0) / t418;
-    const wam7_real_t t420 = (t377 + t399 * t413) * t419;
+    const wam7_real_t t262 = t195 * t195;
+    const wam7_real_t t263 = t193 * t193;
+    const wam7_real_t t264 = t262 + t263;
+    const wam7_real_t t265 = WAM7_C(-9.81) * t161;
+    const wam7_real_t t266 = t265 + WAM7_C(-0.55) * t204;
+    const wam7_real_t t267 = WAM7_C(1.1) * t205;
+    const wam7_real_t t268 = t119 * t266 + t123 * t267;
+    const wam7_real_t t269 = WAM7_C(-0.045) * t264 + t268;
+    const wam7_real_t t270 = t216 + t218;
+    const wam7_real_t t271 = t190 * t190;
+    const wam7_real_t t272 = dq[1] * dq[1];
+    const wam7_real_t t273 = WAM7_C(9.81) * t162;
+    const wam7_real_t t274 = t273 + WAM7_C(-0.55) * (t271 + t272);
+    const wam7_real_t t275 = t274 - WAM7_C(0.045) * t270;
+    const wam7_real_t t276 = t79 * t269 - t76 * t275;
+    const wam7_real_t t277 = t276 + (WAM7_C(0.045) * t261 + WAM7_C(0.3) * t219);
+    const wam7_real_t t278 = t211 + t212;
+    const wam7_real_t t279 = t201 + t200;
+    const wam7_real_t t280 = t123 * t266 - t119 * t267;
+    const wam7_real_t t281 = t280 + WAM7_C(0.045) * t279;
+    const wam7_real_t t282 = WAM7_C(0.045) * t278 - WAM7_C(-0.3) * t223 - t281;
+    const wam7_real_t t283 = t38 * t277 - t35 * t282;
+    const wam7_real_t t284 = t283 + WAM7_C(0.06) * t234;
+    const wam7_real_t t285 = t35 * t277 + t38 * t282;
+    const wam7_real_t t286 = t194 * t194;
+    const wam7_real_t t287 = t286 + t260;
+    const wam7_real_t t288 = t218 - t215;
+    const wam7_real_t t289 = t76 * t269 + t79 * t275;
+    const wam7_real_t t290 = WAM7_C(0.3) * t287 + WAM7_C(-0.045) * t288 - t289;
+    const wam7_real_t t291 = t16 * t285 + t20 * t290;
+    const wam7_real_t t292 = t291 + WAM7_C(0.06) * t240;
+    const wam7_real_t t293 = t1 * t292 + t2 * t284;
+    const wam7_real_t t294 = t20 * t285 - t16 * t290;
+    const wam7_real_t t295 = t238 * t238;
+    const wam7_real_t t296 = t231 * t231;
+    const wam7_real_t t297 = t295 + t296;
+    const wam7_real_t t298 = WAM7_C(0.06) * t297 - t294;
+    const wam7_real_t t299 = t251 - parameters[XZ7] * t256 + (t257 - t258) * parameters[YZ7]
+        - (parameters[MY7] * t298 - parameters[MZ7] * t293);
+    const wam7_real_t t300 = t244 + t245;
+    const wam7_real_t t301 = parameters[YY7] * t249 + t248 * (parameters[XX7] - parameters[ZZ7])
+        + parameters[XY7] * t300;
+    const wam7_real_t t302 = t255 + t254;
+    const wam7_real_t t303 = t247 * t247;
+    const wam7_real_t t304 = t1 * t284 - t2 * t292;
+    const wam7_real_t t305 = parameters[YZ7] * t302 - t301 + (t303 - t258) * parameters[XZ7]
+        + (parameters[MZ7] * t304 - parameters[MX7] * t298);
+    const wam7_real_t t306 = (t257 + t258) * parameters[MX7] - parameters[MY7] * t302
+        - parameters[MZ7] * t246;
+    const wam7_real_t t307 = parameters[M7] * t304 + t306;
+    const wam7_real_t t308 = parameters[MX7] * t256 + (t303 + t258) * parameters[MY7]
+        + parameters[MZ7] * t241;
+    const wam7_real_t t309 = parameters[M7] * t293 + t308;
+    const wam7_real_t t310 = t1 * t307 + t2 * t309;
+    const wam7_real_t t311 = t254 - t253;
+    const wam7_real_t t312 = parameters[XX6] * t233 + t232 * (parameters[ZZ6] - parameters[YY6])
+        + parameters[XY6] * t311;
+    const wam7_real_t t313 = t239 + t237;
+    const wam7_real_t t314 = t230 * t230;
+    const wam7_real_t t315 = t312 + parameters[XZ6] * t313 + (t314 - t296) * parameters[YZ6]
+        + (parameters[MZ6] * t294 - parameters[MY6] * t283);
+    const wam7_real_t t316 = t315 + (t2 * t299 + t1 * t305 + WAM7_C(0.06) * t310);
+    const wam7_real_t t317 = parameters[YY6] * t254 - t253 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t234;
+    const wam7_real_t t318 = t317 + parameters[YZ6] * t240 + (t296 - t295) * parameters[XZ6]
+        + (parameters[MZ6] * t291 + parameters[MX6] * t283);
+    const wam7_real_t t319 = parameters[ZZ7] * t254 - t255 * t7 - parameters[YZ7] * t246
+        - parameters[XZ7] * t241;
+    const wam7_real_t t320 = t319 + (t257 - t303) * parameters[XY7] + (parameters[MX7] * t293
+        - parameters[MY7] * t304);
+    const wam7_real_t t321 = t318 + t320;
+    const wam7_real_t t322 = t237 - t236;
+    const wam7_real_t t323 = t226 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t227
+        + parameters[XY5] * t322;
+    const wam7_real_t t324 = t199 + t212;
+    const wam7_real_t t325 = t198 * t198;
+    const wam7_real_t t326 = t225 * t225;
+    const wam7_real_t t327 = t323 - parameters[XZ5] * t324 + (t325 - t326) * parameters[YZ5]
+        - (parameters[MY5] * t290 - parameters[MZ5] * t283);
+    const wam7_real_t t328 = t327 + (t16 * t316 - t20 * t321);
+    const wam7_real_t t329 = t2 * t307 - t1 * t309;
+    const wam7_real_t t330 = parameters[ZZ6] * t237 + t239 * (parameters[YY6] - parameters[XX6])
+        + parameters[YZ6] * t252;
+    const wam7_real_t t331 = parameters[XZ6] * t229 - t330 + (t314 - t295) * parameters[XY6]
+        + (parameters[MX6] * t294 + parameters[MY6] * t291);
+    const wam7_real_t t332 = t331 + (t2 * t305 - t1 * t299 + WAM7_C(0.06) * t329);
+    const wam7_real_t t333 = parameters[XY5] * t228 - (parameters[YY5] * t237 + t236 * (parameters[XX5]
+        - parameters[ZZ5]));
+    const wam7_real_t t334 = t197 * t197;
+    const wam7_real_t t335 = t333 + parameters[YZ5] * t213 + (t334 - t326) * parameters[XZ5]
+        - (parameters[MZ5] * t285 + parameters[MX5] * t290);
+    const wam7_real_t t336 = t335 + t332;
+    const wam7_real_t t337 = (t314 + t296) * parameters[MX6] + parameters[MY6] * t240
+        - parameters[MZ6] * t252;
+    const wam7_real_t t338 = t337 - parameters[M6] * t291 + t329;
+    const wam7_real_t t339 = parameters[MX6] * t313 - t297 * parameters[MY6] + parameters[MZ6] * t229
+        - parameters[M6] * t294;
+    const wam7_real_t t340 = parameters[MX7] * t250 - parameters[MY7] * t300 + (t303
+        + t257) * parameters[MZ7];
+    const wam7_real_t t341 = t339 + (parameters[M7] * t298 + t340);
+    const wam7_real_t t342 = (t325 + t326) * parameters[MX5] - parameters[MY5] * t213
+        - parameters[MZ5] * t235;
+    const wam7_real_t t343 = t342 - parameters[M5] * t285 + (t16 * t338 + t20 * t341);
+    const wam7_real_t t344 = parameters[MX6] * t311 - parameters[MY6] * t234 + (t295
+        + t314) * parameters[MZ6];
+    const wam7_real_t t345 = parameters[MX5] * t324 + (t334 + t326) * parameters[MY5]
+        - parameters[MZ5] * t224;
+    const wam7_real_t t346 = parameters[M5] * t283 + t345 + (parameters[M6] * t283 + t344 + t310);
+    const wam7_real_t t347 = t38 * t343 + t35 * t346;
+    const wam7_real_t t348 = t221 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t222
+        + parameters[XY4] * t278;
+    const wam7_real_t t349 = t348 + parameters[XZ4] * t288 + (t259 - t260) * parameters[YZ4]
+        + (parameters[MZ4] * t289 - parameters[MY4] * t281);
+    const wam7_real_t t350 = t349 + (t35 * t328 + t38 * t336 + WAM7_C(0.3) * t347);
+    const wam7_real_t t351 = parameters[ZZ5] * t212 + t199 * (parameters[YY5] - parameters[XX5])
+        - parameters[YZ5] * t235;
+    const wam7_real_t t352 = t351 + parameters[XZ5] * t224 + (t325 - t334) * parameters[XY5]
+        + (parameters[MX5] * t283 + parameters[MY5] * t285);
+    const wam7_real_t t353 = t352 + (t20 * t316 + t16 * t321);
+    const wam7_real_t t354 = parameters[YY4] * t212 + t211 * (parameters[ZZ4] - parameters[XX4])
+        - parameters[XY4] * t223;
+    const wam7_real_t t355 = t354 + parameters[YZ4] * t219 + (t260 - t286) * parameters[XZ4]
+        + (parameters[MZ4] * t276 + parameters[MX4] * t281);
+    const wam7_real_t t356 = t355 + (t353 + WAM7_C(-0.045) * t347);
+    const wam7_real_t t357 = parameters[XY3] * t270 - (parameters[XX3] * t208 + t203 * (parameters[YY3]
+        - parameters[ZZ3]));
+    const wam7_real_t t358 = t357 - parameters[XZ3] * t279 + (t262 - t263) * parameters[YZ3]
+        + (t274 * parameters[MY3] + parameters[MZ3] * t280);
+    const wam7_real_t t359 = t358 + (t79 * t350 - t76 * t356);
+    const wam7_real_t t360 = t35 * t343 - t38 * t346;
+    const wam7_real_t t361 = parameters[MX5] * t322 + parameters[MY5] * t228 + (t334
+        + t325) * parameters[MZ5];
+    const wam7_real_t t362 = parameters[M5] * t290 + t361 + (t16 * t341 - t20 * t338);
+    const wam7_real_t t363 = t35 * t336 - t38 * t328 + (WAM7_C(0.045) * t362 + WAM7_C(0.3) * t360);
+    const wam7_real_t t364 = t215 * (parameters[YY4] - parameters[XX4]) - parameters[ZZ4] * t218
+        - parameters[YZ4] * t210;
+    const wam7_real_t t365 = t364 + parameters[XZ4] * t220 + (t259 - t286) * parameters[XY4]
+        + (parameters[MX4] * t289 + parameters[MY4] * t276);
+    const wam7_real_t t366 = t365 + t363;
+    const wam7_real_t t367 = t261 * parameters[MX4] + parameters[MY4] * t219 - parameters[MZ4] * t210
+        - parameters[M4] * t276;
+    const wam7_real_t t368 = t367 + t360;
+    const wam7_real_t t369 = parameters[M4] * t289 + (t287 * parameters[MY4] - parameters[MX4] * t288
+        - parameters[MZ4] * t220);
+    const wam7_real_t t370 = t362 - t369;
+    const wam7_real_t t371 = t216 * (parameters[XX3] - parameters[ZZ3]) - parameters[YY3] * t218
+        + parameters[XY3] * t209;
+    const wam7_real_t t372 = t191 * t191;
+    const wam7_real_t t373 = t371 - parameters[YZ3] * t202 + (t372 - t263) * parameters[XZ3]
+        + (t274 * parameters[MX3] - parameters[MZ3] * t268);
+    const wam7_real_t t374 = t373 + (t366 + WAM7_C(0.045) * (t76 * t368 - t79 * t370));
+    const wam7_real_t t375 = t264 * parameters[MX3] + parameters[MY3] * t202 + parameters[MZ3] * t217
+        - parameters[M3] * t268;
+    const wam7_real_t t376 = t375 + (t79 * t368 + t76 * t370);
+    const wam7_real_t t377 = parameters[MX4] * t278 + parameters[MY4] * t223 + (t286
+        + t259) * parameters[MZ4];
+    const wam7_real_t t378 = parameters[M4] * t281 + t377 + t347;
+    const wam7_real_t t379 = parameters[MX3] * t279 + (t372 + t263) * parameters[MY3]
+        - parameters[MZ3] * t207;
+    const wam7_real_t t380 = parameters[M3] * t280 + t379 + t378;
+    const wam7_real_t t381 = t119 * t359 + t123 * t374 + WAM7_C(0.55) * (t123 * t376 + t119 * t380);
+    const wam7_real_t t382 = t205 * (parameters[YY2] - parameters[ZZ2]) - t205 * parameters[XX2]
+        + WAM7_C(2.0) * t201 * parameters[XY2];
+    const wam7_real_t t383 = t192 * t192;
+    const wam7_real_t t384 = t382 + t204 * parameters[XZ2] + (t383 - t272) * parameters[YZ2]
+        + t273 * parameters[MZ2];
+    const wam7_real_t t385 = t201 * parameters[ZZ3] + t200 * (parameters[YY3] - parameters[XX3])
+        + parameters[YZ3] * t217;
+    const wam7_real_t t386 = t385 + parameters[XZ3] * t207 + (t262 - t372) * parameters[XY3]
+        + (parameters[MX3] * t280 + parameters[MY3] * t268);
+    const wam7_real_t t387 = t386 + (t76 * t350 + t79 * t356 + WAM7_C(0.045) * t378);
+    const wam7_real_t t388 = t201 * parameters[YY2] + t201 * (parameters[ZZ2] - parameters[XX2])
+        - t206 * parameters[XY2];
+    const wam7_real_t t389 = t388 - t204 * parameters[YZ2] + (t272 - t271) * parameters[XZ2]
+        + t265 * parameters[MZ2];
+    const wam7_real_t t390 = wam7_sign(dq[0]);
+    const wam7_real_t t391 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1])
+        + WAM7_C(-42.0) * (t390 * parameters[FC1]);
+    const wam7_real_t t392 = t391 + (t161 * (t384 + t381) + t162 * (t389 + t387));
+    const wam7_real_t t393 = wam7_sign(dq[6]);
+    const wam7_real_t t394 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7])
+        + WAM7_C(-14.93) * (t393 * parameters[FC7]);
+    const wam7_real_t t395 = WAM7_C(1.00031) * input[6] + (t394 + t320);
+    const wam7_real_t t396 = wam7_sign(dq[5]);
+    const wam7_real_t t397 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6])
+        + WAM7_C(-9.48) * (t396 * parameters[FC6]);
+    const wam7_real_t t398 = WAM7_C(2.23728) * input[5] + (t397 + t332) - t395 * t6;
+    const wam7_real_t t399 = WAM7_C(19.194) * input[0] + t392 - t395 * t182 + t398 * t184;
+    const wam7_real_t t400 = wam7_sign(dq[4]);
+    const wam7_real_t t401 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5])
+        + WAM7_C(-9.48) * (t400 * parameters[FC5]);
+    const wam7_real_t t402 = WAM7_C(2.23728) * input[4] + (t401 + t353) + t395 * t25 + t398 * t31;
+    const wam7_real_t t403 = wam7_sign(dq[3]);
+    const wam7_real_t t404 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4])
+        + WAM7_C(-18.0) * (t403 * parameters[FC4]);
+    const wam7_real_t t405 = WAM7_C(8.226) * input[3] + (t404 + t366) - t395 * t60 + t398 * t64;
+    const wam7_real_t t406 = t405 + t402 * t72;
+    const wam7_real_t t407 = wam7_sign(dq[2]);
+    const wam7_real_t t408 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3])
+        + WAM7_C(-28.25) * (t407 * parameters[FC3]);
+    const wam7_real_t t409 = WAM7_C(12.910250000000001) * input[2] + (t408 + t387) - t395 * t100
+        + t398 * t114;
+    const wam7_real_t t410 = t409 + t402 * t99 - t406 * t98;
+    const wam7_real_t t411 = t399 + t402 * t185 + t406 * t186 + t410 * t188;
+    const wam7_real_t t412 = t119 * t374 - t123 * t359 + WAM7_C(0.55) * (t119 * t376 - t123 * t380);
+    const wam7_real_t t413 = t204 * (parameters[XX2] - parameters[YY2]) + (t383 - t271) * parameters[XY2]
+        + (t273 * parameters[MX2] + t265 * parameters[MY2]);
+    const wam7_real_t t414 = wam7_sign(dq[1]);
+    const wam7_real_t t415 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2])
+        + WAM7_C(-28.25) * (t414 * parameters[FC2]);
+    const wam7_real_t t416 = WAM7_C(12.910250000000001) * input[1] + (t415 + (t413 + t412)) - t395 * t132;
+    const wam7_real_t t417 = t416 + t398 * t139 + t402 * t145 + t406 * t149;
+    const wam7_real_t t418 = t417 + t410 * t159;
+    const wam7_real_t t419 = WAM7_C(1.0) / t189;
+    const wam7_real_t t420 = (t411 + t418 * t179) * t419;
     out[0] = t420;
     if (!(t420 >= WAM7_C(-1.0e15) && t420 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t421 = t399 * t412 + t413 * t420;
+    const wam7_real_t t421 = t418 * t178 + t179 * t420;
     out[1] = t421;
     if (!(t421 >= WAM7_C(-1.0e15) && t421 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t422 = t355 * t375 + t376 * t420 + t398 * t421;
+    const wam7_real_t t422 = t410 * t158 + t188 * t420 + t159 * t421;
     out[2] = t422;
     if (!(t422 >= WAM7_C(-1.0e15) && t422 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t423 = t315 * t343 + t344 * t420 + t393 * t421 - t354 * t422;
+    const wam7_real_t t423 = t406 * t97 + t186 * t420 + t149 * t421 - t98 * t422;
     out[3] = t423;
     if (!(t423 >= WAM7_C(-1.0e15) && t423 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t424 = t280 * t305 + t306 * t420 + t390 * t421 + t352 * t422;
-    const wam7_real_t t425 = t424 + t314 * t423;
+    const wam7_real_t t424 = t402 * t71 + t185 * t420 + t145 * t421 + t99 * t422;
+    const wam7_real_t t425 = t424 + t72 * t423;
     out[4] = t425;
     if (!(t425 >= WAM7_C(-1.0e15) && t425 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t426 = t245 * t272 + t273 * t420 + t387 * t421 + t349 * t422;
-    const wam7_real_t t427 = t426 + t311 * t423 + t279 * t425;
+    const wam7_real_t t426 = t398 * t30 + t184 * t420 + t139 * t421 + t114 * t422;
+    const wam7_real_t t427 = t426 + t64 * t423 + t31 * t425;
     out[5] = t427;
     if (!(t427 >= WAM7_C(-1.0e15) && t427 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t428 = t218 * t240 + t241 * t420 + t383 * t421 + t347 * t422;
-    const wam7_real_t t429 = t277 * t425 - (t428 + t309 * t423) - t244 * t427;
+    const wam7_real_t t428 = t395 * t5 + t182 * t420 + t132 * t421 + t100 * t422;
+    const wam7_real_t t429 = t25 * t425 - (t428 + t60 * t423) - t6 * t427;
     out[6] = t429;
     if (!(t429 >= WAM7_C(-1.0e15) && t429 <= WAM7_C(1.0e15))) {
         wam7_zero(out, 7);

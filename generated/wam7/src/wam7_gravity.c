@@ -88,7 +88,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -112,47 +112,47 @@ int wam7_gravity(
         return status;
     }
 
-    wam7_real_t t0, t2;
-    WAM7_SINCOS(q[1], &t0, &t2);
-    wam7_real_t t5, t1;
-    WAM7_SINCOS(q[2], &t5, &t1);
-    wam7_real_t t9, t4;
-    WAM7_SINCOS(q[3], &t9, &t4);
-    wam7_real_t t13, t8;
-    WAM7_SINCOS(q[4], &t13, &t8);
-    wam7_real_t t17, t12;
-    WAM7_SINCOS(q[5], &t17, &t12);
-    wam7_real_t t21, t16;
-    WAM7_SINCOS(q[6], &t21, &t16);
-    const wam7_real_t t3 = WAM7_C(-9.81) * t2;
-    const wam7_real_t t6 = WAM7_C(9.81) * t0;
-    const wam7_real_t t7 = t5 * t6;
-    const wam7_real_t t10 = t1 * t6;
-    const wam7_real_t t11 = t9 * t10 + t4 * t3;
-    const wam7_real_t t14 = t4 * t10 - t9 * t3;
-    const wam7_real_t t15 = t13 * t14 + t8 * t7;
-    const wam7_real_t t18 = t8 * t14 - t13 * t7;
-    const wam7_real_t t19 = t17 * t18 + t12 * t11;
-    const wam7_real_t t20 = parameters[MY7] * t19;
-    const wam7_real_t t22 = parameters[MX7] * t19;
-    const wam7_real_t t23 = t16 * t20 + t21 * t22 - parameters[MY6R] * t15;
-    const wam7_real_t t24 = t12 * t18 - t17 * t11;
-    const wam7_real_t t25 = parameters[MX7] * (t21 * t24 + t16 * t15) + parameters[MY7] * (t16 * t24
-        - t21 * t15);
-    const wam7_real_t t26 = parameters[MX6] * t15 + t25;
-    const wam7_real_t t27 = parameters[MY5R] * t11 - (t17 * t26 - t12 * t23);
-    const wam7_real_t t28 = parameters[MX6] * t19 + parameters[MY6R] * t24 + (t16 * t22 - t21 * t20);
-    const wam7_real_t t29 = parameters[MX5] * t11 + t28;
-    const wam7_real_t t30 = t8 * t27 + t13 * t29 - parameters[MY4R] * t7;
-    const wam7_real_t t31 = parameters[MX5] * t15 + parameters[MY5R] * t18 + (t17 * t23 + t12 * t26);
-    const wam7_real_t t32 = parameters[MX4R] * t7 + t31;
-    const wam7_real_t t33 = t9 * t32 - t4 * t30 - parameters[MY3R] * t3;
-    const wam7_real_t t34 = parameters[MX4R] * t11 + parameters[MY4R] * t14 + (t8 * t29 - t13 * t27);
-    const wam7_real_t t35 = parameters[MX3R] * t3 + t34;
-    const wam7_real_t t36 = parameters[MX3R] * t7 + parameters[MY3R] * t10 + (t9 * t30 + t4 * t32);
-    const wam7_real_t t37 = t0 * (t5 * t35 - t1 * t33) + t2 * t36;
+    wam7_real_t t0, t5;
+    WAM7_SINCOS(q[1], &t0, &t5);
+    wam7_real_t t10, t2;
+    WAM7_SINCOS(q[2], &t10, &t2);
+    wam7_real_t t7, t4;
+    WAM7_SINCOS(q[3], &t7, &t4);
+    wam7_real_t t12, t9;
+    WAM7_SINCOS(q[4], &t12, &t9);
+    wam7_real_t t14, t16;
+    WAM7_SINCOS(q[5], &t14, &t16);
+    wam7_real_t t21, t19;
+    WAM7_SINCOS(q[6], &t21, &t19);
+    const wam7_real_t t1 = WAM7_C(9.81) * t0;
+    const wam7_real_t t3 = t2 * t1;
+    const wam7_real_t t6 = WAM7_C(-9.81) * t5;
+    const wam7_real_t t8 = t4 * t3 - t7 * t6;
+    const wam7_real_t t11 = t10 * t1;
+    const wam7_real_t t13 = t9 * t8 - t12 * t11;
+    const wam7_real_t t15 = t7 * t3 + t4 * t6;
+    const wam7_real_t t17 = t14 * t13 + t16 * t15;
+    const wam7_real_t t18 = parameters[MY7] * t17;
+    const wam7_real_t t20 = parameters[MX7] * t17;
+    const wam7_real_t t22 = t12 * t8 + t9 * t11;
+    const wam7_real_t t23 = t19 * t18 + t21 * t20 - parameters[MY6R] * t22;
+    const wam7_real_t t24 = t16 * t13 - t14 * t15;
+    const wam7_real_t t25 = parameters[MX7] * (t21 * t24 + t19 * t22) + parameters[MY7] * (t19 * t24
+        - t21 * t22);
+    const wam7_real_t t26 = parameters[MX6] * t22 + t25;
+    const wam7_real_t t27 = parameters[MY5R] * t15 - (t14 * t26 - t16 * t23);
+    const wam7_real_t t28 = parameters[MX6] * t17 + parameters[MY6R] * t24 + (t19 * t20 - t21 * t18);
+    const wam7_real_t t29 = parameters[MX5] * t15 + t28;
+    const wam7_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11;
+    const wam7_real_t t31 = parameters[MX5] * t22 + parameters[MY5R] * t13 + (t14 * t23 + t16 * t26);
+    const wam7_real_t t32 = parameters[MX4R] * t11 + t31;
+    const wam7_real_t t33 = t7 * t32 - t4 * t30 - parameters[MY3R] * t6;
+    const wam7_real_t t34 = parameters[MX4R] * t15 + parameters[MY4R] * t8 + (t9 * t29 - t12 * t27);
+    const wam7_real_t t35 = parameters[MX3R] * t6 + t34;
+    const wam7_real_t t36 = parameters[MX3R] * t11 + parameters[MY3R] * t3 + (t7 * t30 + t4 * t32);
+    const wam7_real_t t37 = t0 * (t10 * t35 - t2 * t33) + t5 * t36;
     out[0] = WAM7_C(0.05209961446285298) * t37;
-    const wam7_real_t t38 = parameters[MX2] * t3 + parameters[MY2R] * t6 + (t5 * t33 + t1 * t35);
+    const wam7_real_t t38 = parameters[MX2] * t6 + parameters[MY2R] * t1 + (t10 * t33 + t2 * t35);
     out[1] = WAM7_C(0.07745783389167521) * t38;
     out[2] = WAM7_C(0.07745783389167521) * t36;
     out[3] = WAM7_C(0.12156576707999026) * t34;

@@ -117,7 +117,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -142,72 +142,72 @@ int wam7_gravity_standard(
         return status;
     }
 
-    wam7_real_t t0, t1;
-    WAM7_SINCOS(q[1], &t0, &t1);
-    wam7_real_t t4, t3;
-    WAM7_SINCOS(q[2], &t4, &t3);
-    wam7_real_t t8, t7;
-    WAM7_SINCOS(q[3], &t8, &t7);
-    wam7_real_t t12, t11;
-    WAM7_SINCOS(q[4], &t12, &t11);
-    wam7_real_t t16, t15;
-    WAM7_SINCOS(q[5], &t16, &t15);
-    wam7_real_t t20, t19;
-    WAM7_SINCOS(q[6], &t20, &t19);
-    const wam7_real_t t2 = WAM7_C(-9.81) * t1;
-    const wam7_real_t t5 = WAM7_C(9.81) * t0;
-    const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t9 = t3 * t5;
-    const wam7_real_t t10 = t8 * t9 + t7 * t2;
-    const wam7_real_t t13 = t7 * t9 - t8 * t2;
-    const wam7_real_t t14 = t12 * t13 + t11 * t6;
-    const wam7_real_t t17 = t11 * t13 - t12 * t6;
-    const wam7_real_t t18 = t16 * t17 + t15 * t10;
-    const wam7_real_t t21 = t15 * t17 - t16 * t10;
-    const wam7_real_t t22 = t20 * t21 + t19 * t14;
-    const wam7_real_t t23 = t18 * parameters[MY7] + t22 * parameters[MZ7];
-    const wam7_real_t t24 = t20 * t14 - t19 * t21;
-    const wam7_real_t t25 = t24 * parameters[MZ7] + t18 * parameters[MX7];
+    wam7_real_t t0, t5;
+    WAM7_SINCOS(q[1], &t0, &t5);
+    wam7_real_t t10, t2;
+    WAM7_SINCOS(q[2], &t10, &t2);
+    wam7_real_t t7, t4;
+    WAM7_SINCOS(q[3], &t7, &t4);
+    wam7_real_t t12, t9;
+    WAM7_SINCOS(q[4], &t12, &t9);
+    wam7_real_t t14, t16;
+    WAM7_SINCOS(q[5], &t14, &t16);
+    wam7_real_t t19, t21;
+    WAM7_SINCOS(q[6], &t19, &t21);
+    const wam7_real_t t1 = WAM7_C(9.81) * t0;
+    const wam7_real_t t3 = t2 * t1;
+    const wam7_real_t t6 = WAM7_C(-9.81) * t5;
+    const wam7_real_t t8 = t4 * t3 - t7 * t6;
+    const wam7_real_t t11 = t10 * t1;
+    const wam7_real_t t13 = t9 * t8 - t12 * t11;
+    const wam7_real_t t15 = t7 * t3 + t4 * t6;
+    const wam7_real_t t17 = t14 * t13 + t16 * t15;
+    const wam7_real_t t18 = t16 * t13 - t14 * t15;
+    const wam7_real_t t20 = t12 * t8 + t9 * t11;
+    const wam7_real_t t22 = t19 * t18 + t21 * t20;
+    const wam7_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7];
+    const wam7_real_t t24 = t19 * t20 - t21 * t18;
+    const wam7_real_t t25 = t24 * parameters[MZ7] + t17 * parameters[MX7];
     const wam7_real_t t26 = t24 * parameters[M7];
     const wam7_real_t t27 = t22 * parameters[M7];
-    const wam7_real_t t28 = t20 * t26 + t19 * t27;
-    const wam7_real_t t29 = t18 * parameters[MZ6] - t14 * parameters[MY6] + (t19 * t23 + t20 * t25
+    const wam7_real_t t28 = t19 * t26 + t21 * t27;
+    const wam7_real_t t29 = t17 * parameters[MZ6] - t20 * parameters[MY6] + (t21 * t23 + t19 * t25
         + WAM7_C(0.06) * t28);
     const wam7_real_t t30 = t22 * parameters[MX7] - t24 * parameters[MY7];
-    const wam7_real_t t31 = t21 * parameters[MZ6] + t14 * parameters[MX6] + t30;
-    const wam7_real_t t32 = t10 * parameters[MY5] + t14 * parameters[MZ5] - (t16 * t31 - t15 * t29);
-    const wam7_real_t t33 = t19 * t26 - t20 * t27;
-    const wam7_real_t t34 = t18 * parameters[MX6] + t21 * parameters[MY6] + (t19 * t25 - t20 * t23
+    const wam7_real_t t31 = t18 * parameters[MZ6] + t20 * parameters[MX6] + t30;
+    const wam7_real_t t32 = t15 * parameters[MY5] + t20 * parameters[MZ5] - (t14 * t31 - t16 * t29);
+    const wam7_real_t t33 = t21 * t26 - t19 * t27;
+    const wam7_real_t t34 = t17 * parameters[MX6] + t18 * parameters[MY6] + (t21 * t25 - t19 * t23
         + WAM7_C(0.06) * t33);
-    const wam7_real_t t35 = t10 * parameters[MX5] - t17 * parameters[MZ5] + t34;
-    const wam7_real_t t36 = t21 * parameters[M6] - t33;
-    const wam7_real_t t37 = t18 * parameters[M6] + t18 * parameters[M7];
-    const wam7_real_t t38 = t17 * parameters[M5] + (t15 * t36 + t16 * t37);
-    const wam7_real_t t39 = t14 * parameters[M5] + (t14 * parameters[M6] + t28);
-    const wam7_real_t t40 = t11 * t39 - t12 * t38;
-    const wam7_real_t t41 = t10 * parameters[MZ4] - t6 * parameters[MY4] + (t11 * t32 + t12 * t35
+    const wam7_real_t t35 = t15 * parameters[MX5] - t13 * parameters[MZ5] + t34;
+    const wam7_real_t t36 = t18 * parameters[M6] - t33;
+    const wam7_real_t t37 = t17 * parameters[M6] + t17 * parameters[M7];
+    const wam7_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37);
+    const wam7_real_t t39 = t20 * parameters[M5] + (t20 * parameters[M6] + t28);
+    const wam7_real_t t40 = t9 * t39 - t12 * t38;
+    const wam7_real_t t41 = t15 * parameters[MZ4] - t11 * parameters[MY4] + (t9 * t32 + t12 * t35
         + WAM7_C(0.3) * t40);
-    const wam7_real_t t42 = t14 * parameters[MX5] + t17 * parameters[MY5] + (t16 * t29 + t15 * t31);
-    const wam7_real_t t43 = t13 * parameters[MZ4] + t6 * parameters[MX4] + (t42 + WAM7_C(-0.045) * t40);
-    const wam7_real_t t44 = t8 * t43 - t7 * t41 - (t2 * parameters[MY3] + t6 * parameters[MZ3]);
-    const wam7_real_t t45 = t16 * t36 - t15 * t37 - t10 * parameters[M5];
-    const wam7_real_t t46 = t11 * t38 + t12 * t39;
-    const wam7_real_t t47 = t11 * t35 - t12 * t32 + (WAM7_C(0.045) * t45 + WAM7_C(-0.3) * t46);
-    const wam7_real_t t48 = t10 * parameters[MX4] + t13 * parameters[MY4] + t47;
-    const wam7_real_t t49 = t13 * parameters[M4] + t46;
-    const wam7_real_t t50 = t10 * parameters[M4] - t45;
-    const wam7_real_t t51 = t2 * parameters[MX3] - t9 * parameters[MZ3] + (t48 + WAM7_C(0.045) * (t7 * t50
-        - t8 * t49));
-    const wam7_real_t t52 = t9 * parameters[M3] + (t7 * t49 + t8 * t50);
-    const wam7_real_t t53 = t6 * parameters[M4] + t40;
-    const wam7_real_t t54 = t6 * parameters[M3] + t53;
-    const wam7_real_t t55 = t4 * t51 - t3 * t44 + WAM7_C(0.55) * (t3 * t54 - t4 * t52);
-    const wam7_real_t t56 = t6 * parameters[MX3] + t9 * parameters[MY3] + (t8 * t41 + t7 * t43
+    const wam7_real_t t42 = t20 * parameters[MX5] + t13 * parameters[MY5] + (t14 * t29 + t16 * t31);
+    const wam7_real_t t43 = t8 * parameters[MZ4] + t11 * parameters[MX4] + (t42 + WAM7_C(-0.045) * t40);
+    const wam7_real_t t44 = t7 * t43 - t4 * t41 - (t6 * parameters[MY3] + t11 * parameters[MZ3]);
+    const wam7_real_t t45 = t14 * t36 - t16 * t37 - t15 * parameters[M5];
+    const wam7_real_t t46 = t9 * t38 + t12 * t39;
+    const wam7_real_t t47 = t9 * t35 - t12 * t32 + (WAM7_C(0.045) * t45 + WAM7_C(-0.3) * t46);
+    const wam7_real_t t48 = t15 * parameters[MX4] + t8 * parameters[MY4] + t47;
+    const wam7_real_t t49 = t8 * parameters[M4] + t46;
+    const wam7_real_t t50 = t15 * parameters[M4] - t45;
+    const wam7_real_t t51 = t6 * parameters[MX3] - t3 * parameters[MZ3] + (t48 + WAM7_C(0.045) * (t4 * t50
+        - t7 * t49));
+    const wam7_real_t t52 = t3 * parameters[M3] + (t4 * t49 + t7 * t50);
+    const wam7_real_t t53 = t11 * parameters[M4] + t40;
+    const wam7_real_t t54 = t11 * parameters[M3] + t53;
+    const wam7_real_t t55 = t10 * t51 - t2 * t44 + WAM7_C(0.55) * (t2 * t54 - t10 * t52);
+    const wam7_real_t t56 = t11 * parameters[MX3] + t3 * parameters[MY3] + (t7 * t41 + t4 * t43
         + WAM7_C(0.045) * t53);
-    const wam7_real_t t57 = t0 * (t2 * parameters[MZ2] + t55) + t1 * (t5 * parameters[MZ2] + t56);
+    const wam7_real_t t57 = t0 * (t6 * parameters[MZ2] + t55) + t5 * (t1 * parameters[MZ2] + t56);
     out[0] = WAM7_C(0.05209961446285298) * t57;
-    const wam7_real_t t58 = t4 * t44 + t3 * t51 + WAM7_C(-0.55) * (t3 * t52 + t4 * t54);
-    out[1] = WAM7_C(0.07745783389167521) * (t2 * parameters[MX2] + t5 * parameters[MY2] + t58);
+    const wam7_real_t t58 = t10 * t44 + t2 * t51 + WAM7_C(-0.55) * (t2 * t52 + t10 * t54);
+    out[1] = WAM7_C(0.07745783389167521) * (t6 * parameters[MX2] + t1 * parameters[MY2] + t58);
     out[2] = WAM7_C(0.07745783389167521) * t56;
     out[3] = WAM7_C(0.12156576707999026) * t48;
     out[4] = WAM7_C(0.4469713223199599) * t42;

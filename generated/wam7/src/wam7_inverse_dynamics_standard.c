@@ -119,7 +119,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -148,304 +148,300 @@ int wam7_inverse_dynamics_standard(
         return status;
     }
 
-    wam7_real_t t2, t3;
-    WAM7_SINCOS(q[1], &t2, &t3);
-    wam7_real_t t19, t18;
-    WAM7_SINCOS(q[2], &t19, &t18);
-    wam7_real_t t46, t45;
-    WAM7_SINCOS(q[3], &t46, &t45);
-    wam7_real_t t73, t72;
-    WAM7_SINCOS(q[4], &t73, &t72);
-    wam7_real_t t102, t101;
-    WAM7_SINCOS(q[5], &t102, &t101);
-    wam7_real_t t125, t124;
-    WAM7_SINCOS(q[6], &t125, &t124);
-    const wam7_real_t t0 = wam7_sign(dq[0]);
-    const wam7_real_t t1 = WAM7_C(42.0) * dq[0] * parameters[FV1] + t0 * parameters[FC1]
+    wam7_real_t t0, t7;
+    WAM7_SINCOS(q[1], &t0, &t7);
+    wam7_real_t t3, t2;
+    WAM7_SINCOS(q[2], &t3, &t2);
+    wam7_real_t t26, t13;
+    WAM7_SINCOS(q[3], &t26, &t13);
+    wam7_real_t t34, t33;
+    WAM7_SINCOS(q[4], &t34, &t33);
+    wam7_real_t t39, t56;
+    WAM7_SINCOS(q[5], &t39, &t56);
+    wam7_real_t t71, t63;
+    WAM7_SINCOS(q[6], &t71, &t63);
+    const wam7_real_t t1 = t0 * dq[0];
+    const wam7_real_t t4 = t3 * dq[1] - t2 * t1;
+    const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
+    const wam7_real_t t6 = t4 * t5;
+    const wam7_real_t t8 = t7 * ddq[0];
+    const wam7_real_t t9 = dq[1] * t1;
+    const wam7_real_t t10 = t8 - t9;
+    const wam7_real_t t11 = ddq[2] + t10;
+    const wam7_real_t t12 = t6 - t11;
+    const wam7_real_t t14 = t7 * dq[0];
+    const wam7_real_t t15 = t1 * t14;
+    const wam7_real_t t16 = t15 - ddq[1];
+    const wam7_real_t t17 = t0 * ddq[0];
+    const wam7_real_t t18 = dq[1] * t14;
+    const wam7_real_t t19 = t17 + t18;
+    const wam7_real_t t20 = t18 + t19;
+    const wam7_real_t t21 = t3 * t16 + t2 * t20;
+    const wam7_real_t t22 = dq[2] + t14;
+    const wam7_real_t t23 = t5 * t22;
+    const wam7_real_t t24 = t23 - t21;
+    const wam7_real_t t25 = t23 + t24;
+    const wam7_real_t t27 = t26 * t25 - t13 * t12;
+    const wam7_real_t t28 = t26 * t22 - t13 * t4;
+    const wam7_real_t t29 = dq[3] + t5;
+    const wam7_real_t t30 = t28 * t29;
+    const wam7_real_t t31 = t27 - t30;
+    const wam7_real_t t32 = ddq[4] + t31;
+    const wam7_real_t t35 = t34 * t29 - t33 * t28;
+    const wam7_real_t t36 = t34 * t28 + t33 * t29;
+    const wam7_real_t t37 = t35 * t36;
+    const wam7_real_t t38 = t32 - t37;
+    const wam7_real_t t40 = t3 * t20 - t2 * t16;
+    const wam7_real_t t41 = t4 * t22;
+    const wam7_real_t t42 = t41 - t40;
+    const wam7_real_t t43 = t42 - ddq[3];
+    const wam7_real_t t44 = t26 * t4 + t13 * t22;
+    const wam7_real_t t45 = t28 * t44;
+    const wam7_real_t t46 = t43 + t45;
+    const wam7_real_t t47 = t26 * t12 + t13 * t25;
+    const wam7_real_t t48 = t44 * t29;
+    const wam7_real_t t49 = t47 - t48;
+    const wam7_real_t t50 = t49 - t48;
+    const wam7_real_t t51 = t33 * t50 - t34 * t46;
+    const wam7_real_t t52 = dq[4] + t44;
+    const wam7_real_t t53 = t36 * t52;
+    const wam7_real_t t54 = t51 + t53;
+    const wam7_real_t t55 = t53 + t54;
+    const wam7_real_t t57 = t39 * t38 - t56 * t55;
+    const wam7_real_t t58 = t39 * t35 + t56 * t52;
+    const wam7_real_t t59 = dq[5] + t36;
+    const wam7_real_t t60 = t58 * t59;
+    const wam7_real_t t61 = t57 + t60;
+    const wam7_real_t t62 = t60 + t61;
+    const wam7_real_t t64 = t33 * t46 + t34 * t50;
+    const wam7_real_t t65 = t35 * t52;
+    const wam7_real_t t66 = t64 + t65;
+    const wam7_real_t t67 = t66 - ddq[5];
+    const wam7_real_t t68 = t39 * t52 - t56 * t35;
+    const wam7_real_t t69 = t68 * t58;
+    const wam7_real_t t70 = t67 + t69;
+    const wam7_real_t t72 = t71 * t70 + t63 * t62;
+    const wam7_real_t t73 = t71 * t68 + t63 * t59;
+    const wam7_real_t t74 = dq[6] + t58;
+    const wam7_real_t t75 = t73 * t74;
+    const wam7_real_t t76 = t75 - t72;
+    const wam7_real_t t77 = t71 * t62 - t63 * t70;
+    const wam7_real_t t78 = t71 * t59 - t63 * t68;
+    const wam7_real_t t79 = t78 * t74;
+    const wam7_real_t t80 = t79 - t77;
+    const wam7_real_t t81 = t79 + t80;
+    const wam7_real_t t82 = t75 * (parameters[YY7] - parameters[ZZ7]) - t76 * parameters[XX7]
+        + t81 * parameters[XY7];
+    const wam7_real_t t83 = t56 * t38 + t39 * t55;
+    const wam7_real_t t84 = t68 * t59;
+    const wam7_real_t t85 = t83 - t84;
+    const wam7_real_t t86 = ddq[6] + t85;
+    const wam7_real_t t87 = t78 * t73;
+    const wam7_real_t t88 = t86 + t87;
+    const wam7_real_t t89 = t73 * t73;
+    const wam7_real_t t90 = t74 * t74;
+    const wam7_real_t t91 = t44 * t44;
+    const wam7_real_t t92 = t29 * t29;
+    const wam7_real_t t93 = t91 + t92;
+    const wam7_real_t t94 = WAM7_C(9.81) * t0;
+    const wam7_real_t t95 = t94 + WAM7_C(0.55) * t16;
+    const wam7_real_t t96 = WAM7_C(0.55) * t20;
+    const wam7_real_t t97 = t2 * t95 - t3 * t96;
+    const wam7_real_t t98 = t5 * t5;
+    const wam7_real_t t99 = t22 * t22;
+    const wam7_real_t t100 = t98 + t99;
+    const wam7_real_t t101 = t97 + WAM7_C(0.045) * t100;
+    const wam7_real_t t102 = t41 + t42;
+    const wam7_real_t t103 = t1 * t1;
+    const wam7_real_t t104 = dq[1] * dq[1];
+    const wam7_real_t t105 = WAM7_C(-9.81) * t7;
+    const wam7_real_t t106 = t105 + WAM7_C(0.55) * (t103 + t104);
+    const wam7_real_t t107 = t106 + WAM7_C(-0.045) * t102;
+    const wam7_real_t t108 = t13 * t101 - t26 * t107;
+    const wam7_real_t t109 = t108 + (WAM7_C(-0.045) * t93 + WAM7_C(0.3) * t46);
+    const wam7_real_t t110 = t31 - t30;
+    const wam7_real_t t111 = t3 * t95 + t2 * t96;
+    const wam7_real_t t112 = t11 + t6;
+    const wam7_real_t t113 = t111 + WAM7_C(0.045) * t112;
+    const wam7_real_t t114 = t113 + (WAM7_C(-0.045) * t110 - WAM7_C(0.3) * t50);
+    const wam7_real_t t115 = t34 * t109 + t33 * t114;
+    const wam7_real_t t116 = t115 + WAM7_C(0.06) * t62;
+    const wam7_real_t t117 = t33 * t109 - t34 * t114;
+    const wam7_real_t t118 = t43 - t45;
+    const wam7_real_t t119 = t28 * t28;
+    const wam7_real_t t120 = t119 + t92;
+    const wam7_real_t t121 = t26 * t101 + t13 * t107;
+    const wam7_real_t t122 = t121 - (WAM7_C(-0.045) * t118 - WAM7_C(0.3) * t120);
+    const wam7_real_t t123 = t56 * t117 - t39 * t122;
+    const wam7_real_t t124 = t123 - WAM7_C(-0.06) * t70;
+    const wam7_real_t t125 = t71 * t124 + t63 * t116;
+    const wam7_real_t t126 = t39 * t117 + t56 * t122;
+    const wam7_real_t t127 = t68 * t68;
+    const wam7_real_t t128 = t59 * t59;
+    const wam7_real_t t129 = t127 + t128;
+    const wam7_real_t t130 = t126 + WAM7_C(0.06) * t129;
+    const wam7_real_t t131 = (t89 - t90) * parameters[YZ7] - (t82 - t88 * parameters[XZ7])
+        - (t130 * parameters[MY7] + t125 * parameters[MZ7]);
+    const wam7_real_t t132 = t75 + t76;
+    const wam7_real_t t133 = t132 * parameters[XY7] - (t79 * (parameters[ZZ7] - parameters[XX7])
+        + t80 * parameters[YY7]);
+    const wam7_real_t t134 = t86 - t87;
+    const wam7_real_t t135 = t78 * t78;
+    const wam7_real_t t136 = t71 * t116 - t63 * t124;
+    const wam7_real_t t137 = (t90 - t135) * parameters[XZ7] + (t133 + t134 * parameters[YZ7])
+        + (t136 * parameters[MZ7] + t130 * parameters[MX7]);
+    const wam7_real_t t138 = t77 * parameters[MZ7] - ((t89 + t90) * parameters[MX7] + t134 * parameters[MY7]);
+    const wam7_real_t t139 = t136 * parameters[M7] + t138;
+    const wam7_real_t t140 = (t135 + t90) * parameters[MY7] - t88 * parameters[MX7] - t72 * parameters[MZ7];
+    const wam7_real_t t141 = t125 * parameters[M7] - t140;
+    const wam7_real_t t142 = t71 * t139 + t63 * t141;
+    const wam7_real_t t143 = t85 - t84;
+    const wam7_real_t t144 = t61 * parameters[XX6] - t60 * (parameters[YY6] - parameters[ZZ6])
+        + t143 * parameters[XY6];
+    const wam7_real_t t145 = t67 - t69;
+    const wam7_real_t t146 = t58 * t58;
+    const wam7_real_t t147 = (t128 - t146) * parameters[YZ6] + (t144 + t145 * parameters[XZ6])
+        + (t126 * parameters[MZ6] - t115 * parameters[MY6]);
+    const wam7_real_t t148 = t147 + (t71 * t137 - t63 * t131 + WAM7_C(0.06) * t142);
+    const wam7_real_t t149 = t84 * (parameters[XX6] - parameters[ZZ6]) + t85 * parameters[YY6]
+        + t62 * parameters[XY6];
+    const wam7_real_t t150 = (t127 - t128) * parameters[XZ6] + (t149 + t70 * parameters[YZ6])
+        + (t123 * parameters[MZ6] + t115 * parameters[MX6]);
+    const wam7_real_t t151 = t86 * parameters[ZZ7] - t87 * (parameters[XX7] - parameters[YY7])
+        + t77 * parameters[YZ7];
+    const wam7_real_t t152 = (t135 - t89) * parameters[XY7] + (t151 - t72 * parameters[XZ7])
+        + (t125 * parameters[MX7] - t136 * parameters[MY7]);
+    const wam7_real_t t153 = t150 + t152;
+    const wam7_real_t t154 = t65 + t66;
+    const wam7_real_t t155 = t53 * (parameters[YY5] - parameters[ZZ5]) - t54 * parameters[XX5]
+        + t154 * parameters[XY5];
+    const wam7_real_t t156 = t32 + t37;
+    const wam7_real_t t157 = t36 * t36;
+    const wam7_real_t t158 = t52 * t52;
+    const wam7_real_t t159 = (t157 - t158) * parameters[YZ5] - (t155 - t156 * parameters[XZ5])
+        - (t122 * parameters[MY5] + t115 * parameters[MZ5]);
+    const wam7_real_t t160 = t159 + (t39 * t153 - t56 * t148);
+    const wam7_real_t t161 = t63 * t139 - t71 * t141;
+    const wam7_real_t t162 = t69 * (parameters[XX6] - parameters[YY6]) + t67 * parameters[ZZ6]
+        + t83 * parameters[YZ6];
+    const wam7_real_t t163 = (t127 - t146) * parameters[XY6] - (t162 + t57 * parameters[XZ6])
+        + (t126 * parameters[MX6] + t123 * parameters[MY6]);
+    const wam7_real_t t164 = t163 + (t71 * t131 + t63 * t137 + WAM7_C(0.06) * t161);
+    const wam7_real_t t165 = t55 * parameters[XY5] - (t65 * (parameters[ZZ5] - parameters[XX5])
+        + t66 * parameters[YY5]);
+    const wam7_real_t t166 = t35 * t35;
+    const wam7_real_t t167 = (t158 - t166) * parameters[XZ5] + (t165 + t38 * parameters[YZ5])
+        + (t122 * parameters[MX5] - t117 * parameters[MZ5]);
+    const wam7_real_t t168 = t167 + t164;
+    const wam7_real_t t169 = (t146 + t128) * parameters[MX6] - t70 * parameters[MY6] + t83 * parameters[MZ6];
+    const wam7_real_t t170 = t123 * parameters[M6] + t169 - t161;
+    const wam7_real_t t171 = t129 * parameters[MY6] + t145 * parameters[MX6] - t57 * parameters[MZ6]
+        - t126 * parameters[M6];
+    const wam7_real_t t172 = t81 * parameters[MX7] + t132 * parameters[MY7] - (t135 + t89) * parameters[MZ7];
+    const wam7_real_t t173 = t171 + (t172 - t130 * parameters[M7]);
+    const wam7_real_t t174 = (t157 + t158) * parameters[MX5] + t38 * parameters[MY5] + t64 * parameters[MZ5];
+    const wam7_real_t t175 = t39 * t173 - t56 * t170 - (t117 * parameters[M5] + t174);
+    const wam7_real_t t176 = (t127 + t146) * parameters[MZ6] + (t62 * parameters[MY6]
+        - t143 * parameters[MX6]);
+    const wam7_real_t t177 = (t166 + t158) * parameters[MY5] - t156 * parameters[MX5] + t51 * parameters[MZ5];
+    const wam7_real_t t178 = t115 * parameters[M5] - t177 + (t115 * parameters[M6] - t176 + t142);
+    const wam7_real_t t179 = t34 * t175 + t33 * t178;
+    const wam7_real_t t180 = t110 * parameters[XY4] - (t48 * (parameters[YY4] - parameters[ZZ4])
+        + t49 * parameters[XX4]);
+    const wam7_real_t t181 = (t92 - t91) * parameters[YZ4] + (t180 + t118 * parameters[XZ4])
+        + (t121 * parameters[MZ4] - t113 * parameters[MY4]);
+    const wam7_real_t t182 = t181 + (t34 * t168 - t33 * t160 + WAM7_C(0.3) * t179);
+    const wam7_real_t t183 = t32 * parameters[ZZ5] - t37 * (parameters[XX5] - parameters[YY5])
+        - t64 * parameters[YZ5];
+    const wam7_real_t t184 = (t166 - t157) * parameters[XY5] + (t183 + t51 * parameters[XZ5])
+        + (t115 * parameters[MX5] + t117 * parameters[MY5]);
+    const wam7_real_t t185 = t184 + (t39 * t148 + t56 * t153);
+    const wam7_real_t t186 = t30 * (parameters[XX4] - parameters[ZZ4]) + t31 * parameters[YY4]
+        - t50 * parameters[XY4];
+    const wam7_real_t t187 = (t119 - t92) * parameters[XZ4] + (t186 + t46 * parameters[YZ4])
+        + (t108 * parameters[MZ4] + t113 * parameters[MX4]);
+    const wam7_real_t t188 = t187 + (t185 + WAM7_C(-0.045) * t179);
+    const wam7_real_t t189 = t23 * (parameters[YY3] - parameters[ZZ3]) - t24 * parameters[XX3]
+        + t102 * parameters[XY3];
+    const wam7_real_t t190 = (t98 - t99) * parameters[YZ3] - (t189 - t112 * parameters[XZ3])
+        - (t106 * parameters[MY3] + t111 * parameters[MZ3]);
+    const wam7_real_t t191 = t190 + (t26 * t188 - t13 * t182);
+    const wam7_real_t t192 = t33 * t175 - t34 * t178;
+    const wam7_real_t t193 = t154 * parameters[MX5] + t55 * parameters[MY5] - (t166 + t157) * parameters[MZ5];
+    const wam7_real_t t194 = t193 - t122 * parameters[M5] + (t39 * t170 + t56 * t173);
+    const wam7_real_t t195 = t34 * t160 + t33 * t168 + (WAM7_C(0.045) * t194 + WAM7_C(0.3) * t192);
+    const wam7_real_t t196 = t45 * (parameters[XX4] - parameters[YY4]) + t43 * parameters[ZZ4]
+        + t27 * parameters[YZ4];
+    const wam7_real_t t197 = (t119 - t91) * parameters[XY4] + (t47 * parameters[XZ4] - t196)
+        + (t121 * parameters[MX4] + t108 * parameters[MY4]);
+    const wam7_real_t t198 = t197 + t195;
+    const wam7_real_t t199 = t46 * parameters[MY4] - t93 * parameters[MX4] - t27 * parameters[MZ4]
+        - t108 * parameters[M4];
+    const wam7_real_t t200 = t199 + t192;
+    const wam7_real_t t201 = t121 * parameters[M4] - (t120 * parameters[MY4] + t118 * parameters[MX4]
+        + t47 * parameters[MZ4]);
+    const wam7_real_t t202 = t201 - t194;
+    const wam7_real_t t203 = t25 * parameters[XY3] - (t41 * (parameters[ZZ3] - parameters[XX3])
+        + t42 * parameters[YY3]);
+    const wam7_real_t t204 = t4 * t4;
+    const wam7_real_t t205 = (t99 - t204) * parameters[XZ3] + (t203 - t12 * parameters[YZ3])
+        + (t106 * parameters[MX3] - t97 * parameters[MZ3]);
+    const wam7_real_t t206 = t205 + (t198 + WAM7_C(0.045) * (t26 * t200 + t13 * t202));
+    const wam7_real_t t207 = t12 * parameters[MY3] - t100 * parameters[MX3] + t40 * parameters[MZ3]
+        - t97 * parameters[M3];
+    const wam7_real_t t208 = t207 + (t13 * t200 - t26 * t202);
+    const wam7_real_t t209 = t110 * parameters[MX4] + t50 * parameters[MY4] - (t119 + t91) * parameters[MZ4];
+    const wam7_real_t t210 = t113 * parameters[M4] + t209 + t179;
+    const wam7_real_t t211 = (t204 + t99) * parameters[MY3] - t112 * parameters[MX3] - t21 * parameters[MZ3];
+    const wam7_real_t t212 = t111 * parameters[M3] - t211 + t210;
+    const wam7_real_t t213 = t3 * t206 - t2 * t191 + WAM7_C(0.55) * (t3 * t208 + t2 * t212);
+    const wam7_real_t t214 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] + (t10
+        - t9) * parameters[XY2];
+    const wam7_real_t t215 = t14 * t14;
+    const wam7_real_t t216 = (t104 - t215) * parameters[YZ2] + (t214 - (ddq[1] + t15) * parameters[XZ2]);
+    const wam7_real_t t217 = t11 * parameters[ZZ3] - t6 * (parameters[XX3] - parameters[YY3])
+        + t40 * parameters[YZ3];
+    const wam7_real_t t218 = (t204 - t98) * parameters[XY3] + (t217 - t21 * parameters[XZ3])
+        + (t111 * parameters[MX3] + t97 * parameters[MY3]);
+    const wam7_real_t t219 = t218 + (t26 * t182 + t13 * t188 + WAM7_C(0.045) * t210);
+    const wam7_real_t t220 = t9 * (parameters[XX2] - parameters[ZZ2]) + t10 * parameters[YY2]
+        + t20 * parameters[XY2];
+    const wam7_real_t t221 = t94 * parameters[MZ2] + ((t103 - t104) * parameters[XZ2] + (t220
+        + t16 * parameters[YZ2]));
+    const wam7_real_t t222 = t0 * (t105 * parameters[MZ2] + t216 + t213) + t7 * (t221 + t219);
+    const wam7_real_t t223 = wam7_sign(dq[0]);
+    const wam7_real_t t224 = WAM7_C(42.0) * dq[0] * parameters[FV1] + t223 * parameters[FC1]
         + WAM7_C(42.0) * ddq[0] * parameters[IA1];
-    const wam7_real_t t4 = WAM7_C(-9.81) * t3;
-    const wam7_real_t t5 = t3 * dq[0];
-    const wam7_real_t t6 = t5 * t5;
-    const wam7_real_t t7 = dq[1] * dq[1];
-    const wam7_real_t t8 = dq[1] * t5;
-    const wam7_real_t t9 = t2 * ddq[0];
-    const wam7_real_t t10 = t9 + t8;
-    const wam7_real_t t11 = t2 * dq[0];
-    const wam7_real_t t12 = dq[1] * t11;
-    const wam7_real_t t13 = t3 * ddq[0];
-    const wam7_real_t t14 = t13 - t12;
-    const wam7_real_t t15 = t8 * (parameters[ZZ2] - parameters[YY2]) + t10 * parameters[XX2] + (t14
-        - t12) * parameters[XY2];
-    const wam7_real_t t16 = t11 * t5;
-    const wam7_real_t t17 = (t7 - t6) * parameters[YZ2] + (t15 - (ddq[1] + t16) * parameters[XZ2]);
-    const wam7_real_t t20 = t19 * t11 + t18 * dq[1];
-    const wam7_real_t t21 = t20 * t20;
-    const wam7_real_t t22 = dq[2] + t5;
-    const wam7_real_t t23 = t22 * t22;
-    const wam7_real_t t24 = t20 * t22;
-    const wam7_real_t t25 = t16 - ddq[1];
-    const wam7_real_t t26 = t8 + t10;
-    const wam7_real_t t27 = t19 * t25 + t18 * t26;
-    const wam7_real_t t28 = t24 - t27;
-    const wam7_real_t t29 = t19 * dq[1] - t18 * t11;
-    const wam7_real_t t30 = t29 * t22;
-    const wam7_real_t t31 = t19 * t26 - t18 * t25;
-    const wam7_real_t t32 = t30 - t31;
-    const wam7_real_t t33 = t30 + t32;
-    const wam7_real_t t34 = t24 * (parameters[YY3] - parameters[ZZ3]) - t28 * parameters[XX3]
-        + t33 * parameters[XY3];
-    const wam7_real_t t35 = ddq[2] + t14;
-    const wam7_real_t t36 = t29 * t20;
-    const wam7_real_t t37 = t35 + t36;
-    const wam7_real_t t38 = t11 * t11;
-    const wam7_real_t t39 = t4 + WAM7_C(0.55) * (t38 + t7);
-    const wam7_real_t t40 = WAM7_C(9.81) * t2;
-    const wam7_real_t t41 = t40 + WAM7_C(0.55) * t25;
-    const wam7_real_t t42 = WAM7_C(0.55) * t26;
-    const wam7_real_t t43 = t19 * t41 + t18 * t42;
-    const wam7_real_t t44 = (t21 - t23) * parameters[YZ3] - (t34 - t37 * parameters[XZ3])
-        - (t39 * parameters[MY3] + t43 * parameters[MZ3]);
-    const wam7_real_t t47 = t46 * t29 + t45 * t22;
-    const wam7_real_t t48 = t47 * t47;
-    const wam7_real_t t49 = dq[3] + t20;
-    const wam7_real_t t50 = t49 * t49;
-    const wam7_real_t t51 = t47 * t49;
-    const wam7_real_t t52 = t36 - t35;
-    const wam7_real_t t53 = t24 + t28;
-    const wam7_real_t t54 = t46 * t52 + t45 * t53;
-    const wam7_real_t t55 = t54 - t51;
-    const wam7_real_t t56 = t46 * t22 - t45 * t29;
-    const wam7_real_t t57 = t56 * t49;
-    const wam7_real_t t58 = t46 * t53 - t45 * t52;
-    const wam7_real_t t59 = t58 - t57;
-    const wam7_real_t t60 = t59 - t57;
-    const wam7_real_t t61 = t60 * parameters[XY4] - (t51 * (parameters[YY4] - parameters[ZZ4])
-        + t55 * parameters[XX4]);
-    const wam7_real_t t62 = t32 - ddq[3];
-    const wam7_real_t t63 = t56 * t47;
-    const wam7_real_t t64 = t62 - t63;
-    const wam7_real_t t65 = t43 + WAM7_C(0.045) * t37;
-    const wam7_real_t t66 = t18 * t41 - t19 * t42;
-    const wam7_real_t t67 = t21 + t23;
-    const wam7_real_t t68 = t66 + WAM7_C(0.045) * t67;
-    const wam7_real_t t69 = t39 + WAM7_C(-0.045) * t33;
-    const wam7_real_t t70 = t46 * t68 + t45 * t69;
-    const wam7_real_t t71 = (t50 - t48) * parameters[YZ4] + (t61 + t64 * parameters[XZ4])
-        + (t70 * parameters[MZ4] - t65 * parameters[MY4]);
-    const wam7_real_t t74 = t73 * t56 + t72 * t49;
-    const wam7_real_t t75 = t74 * t74;
-    const wam7_real_t t76 = dq[4] + t47;
-    const wam7_real_t t77 = t76 * t76;
-    const wam7_real_t t78 = t74 * t76;
-    const wam7_real_t t79 = t62 + t63;
-    const wam7_real_t t80 = t55 - t51;
-    const wam7_real_t t81 = t72 * t80 - t73 * t79;
-    const wam7_real_t t82 = t81 + t78;
-    const wam7_real_t t83 = t73 * t49 - t72 * t56;
-    const wam7_real_t t84 = t83 * t76;
-    const wam7_real_t t85 = t72 * t79 + t73 * t80;
-    const wam7_real_t t86 = t85 + t84;
-    const wam7_real_t t87 = t84 + t86;
-    const wam7_real_t t88 = t78 * (parameters[YY5] - parameters[ZZ5]) - t82 * parameters[XX5]
-        + t87 * parameters[XY5];
-    const wam7_real_t t89 = ddq[4] + t59;
-    const wam7_real_t t90 = t83 * t74;
-    const wam7_real_t t91 = t89 + t90;
-    const wam7_real_t t92 = t56 * t56;
-    const wam7_real_t t93 = t92 + t50;
-    const wam7_real_t t94 = t70 - (WAM7_C(-0.045) * t64 - WAM7_C(0.3) * t93);
-    const wam7_real_t t95 = t45 * t68 - t46 * t69;
-    const wam7_real_t t96 = t48 + t50;
-    const wam7_real_t t97 = t95 + (WAM7_C(-0.045) * t96 + WAM7_C(0.3) * t79);
-    const wam7_real_t t98 = t65 + (WAM7_C(-0.045) * t60 - WAM7_C(0.3) * t80);
-    const wam7_real_t t99 = t73 * t97 + t72 * t98;
-    const wam7_real_t t100 = (t75 - t77) * parameters[YZ5] - (t88 - t91 * parameters[XZ5])
-        - (t94 * parameters[MY5] + t99 * parameters[MZ5]);
-    const wam7_real_t t103 = t102 * t83 + t101 * t76;
-    const wam7_real_t t104 = t103 * t103;
-    const wam7_real_t t105 = dq[5] + t74;
-    const wam7_real_t t106 = t105 * t105;
-    const wam7_real_t t107 = t103 * t105;
-    const wam7_real_t t108 = t89 - t90;
-    const wam7_real_t t109 = t78 + t82;
-    const wam7_real_t t110 = t102 * t108 - t101 * t109;
-    const wam7_real_t t111 = t110 + t107;
-    const wam7_real_t t112 = t102 * t76 - t101 * t83;
-    const wam7_real_t t113 = t112 * t105;
-    const wam7_real_t t114 = t101 * t108 + t102 * t109;
-    const wam7_real_t t115 = t114 - t113;
-    const wam7_real_t t116 = t115 - t113;
-    const wam7_real_t t117 = t111 * parameters[XX6] - t107 * (parameters[YY6] - parameters[ZZ6])
-        + t116 * parameters[XY6];
-    const wam7_real_t t118 = t86 - ddq[5];
-    const wam7_real_t t119 = t112 * t103;
-    const wam7_real_t t120 = t118 - t119;
-    const wam7_real_t t121 = t72 * t97 - t73 * t98;
-    const wam7_real_t t122 = t102 * t121 + t101 * t94;
-    const wam7_real_t t123 = (t106 - t104) * parameters[YZ6] + (t117 + t120 * parameters[XZ6])
-        + (t122 * parameters[MZ6] - t99 * parameters[MY6]);
-    const wam7_real_t t126 = t125 * t112 + t124 * t105;
-    const wam7_real_t t127 = t126 * t126;
-    const wam7_real_t t128 = dq[6] + t103;
-    const wam7_real_t t129 = t128 * t128;
-    const wam7_real_t t130 = t126 * t128;
-    const wam7_real_t t131 = t118 + t119;
-    const wam7_real_t t132 = t107 + t111;
-    const wam7_real_t t133 = t125 * t131 + t124 * t132;
-    const wam7_real_t t134 = t130 - t133;
-    const wam7_real_t t135 = t125 * t105 - t124 * t112;
-    const wam7_real_t t136 = t135 * t128;
-    const wam7_real_t t137 = t125 * t132 - t124 * t131;
-    const wam7_real_t t138 = t136 - t137;
-    const wam7_real_t t139 = t136 + t138;
-    const wam7_real_t t140 = t130 * (parameters[YY7] - parameters[ZZ7]) - t134 * parameters[XX7]
-        + t139 * parameters[XY7];
-    const wam7_real_t t141 = ddq[6] + t115;
-    const wam7_real_t t142 = t135 * t126;
-    const wam7_real_t t143 = t141 + t142;
-    const wam7_real_t t144 = t112 * t112;
-    const wam7_real_t t145 = t144 + t106;
-    const wam7_real_t t146 = t122 + WAM7_C(0.06) * t145;
-    const wam7_real_t t147 = t101 * t121 - t102 * t94;
-    const wam7_real_t t148 = t147 - WAM7_C(-0.06) * t131;
-    const wam7_real_t t149 = t99 + WAM7_C(0.06) * t132;
-    const wam7_real_t t150 = t125 * t148 + t124 * t149;
-    const wam7_real_t t151 = (t127 - t129) * parameters[YZ7] - (t140 - t143 * parameters[XZ7])
-        - (t146 * parameters[MY7] + t150 * parameters[MZ7]);
-    const wam7_real_t t152 = t135 * t135;
-    const wam7_real_t t153 = t130 + t134;
-    const wam7_real_t t154 = t153 * parameters[XY7] - (t136 * (parameters[ZZ7] - parameters[XX7])
-        + t138 * parameters[YY7]);
-    const wam7_real_t t155 = t141 - t142;
-    const wam7_real_t t156 = t125 * t149 - t124 * t148;
-    const wam7_real_t t157 = (t129 - t152) * parameters[XZ7] + (t154 + t155 * parameters[YZ7])
-        + (t156 * parameters[MZ7] + t146 * parameters[MX7]);
-    const wam7_real_t t158 = t137 * parameters[MZ7] - ((t127 + t129) * parameters[MX7]
-        + t155 * parameters[MY7]);
-    const wam7_real_t t159 = t156 * parameters[M7] + t158;
-    const wam7_real_t t160 = (t152 + t129) * parameters[MY7] - t143 * parameters[MX7]
-        - t133 * parameters[MZ7];
-    const wam7_real_t t161 = t150 * parameters[M7] - t160;
-    const wam7_real_t t162 = t125 * t159 + t124 * t161;
-    const wam7_real_t t163 = t123 + (t125 * t157 - t124 * t151 + WAM7_C(0.06) * t162);
-    const wam7_real_t t164 = t113 * (parameters[XX6] - parameters[ZZ6]) + t115 * parameters[YY6]
-        + t132 * parameters[XY6];
-    const wam7_real_t t165 = (t144 - t106) * parameters[XZ6] + (t164 + t131 * parameters[YZ6])
-        + (t147 * parameters[MZ6] + t99 * parameters[MX6]);
-    const wam7_real_t t166 = t141 * parameters[ZZ7] - t142 * (parameters[XX7] - parameters[YY7])
-        + t137 * parameters[YZ7];
-    const wam7_real_t t167 = (t152 - t127) * parameters[XY7] + (t166 - t133 * parameters[XZ7])
-        + (t150 * parameters[MX7] - t156 * parameters[MY7]);
-    const wam7_real_t t168 = t165 + t167;
-    const wam7_real_t t169 = t100 + (t102 * t168 - t101 * t163);
-    const wam7_real_t t170 = t83 * t83;
-    const wam7_real_t t171 = t109 * parameters[XY5] - (t84 * (parameters[ZZ5] - parameters[XX5])
-        + t86 * parameters[YY5]);
-    const wam7_real_t t172 = (t77 - t170) * parameters[XZ5] + (t171 + t108 * parameters[YZ5])
-        + (t94 * parameters[MX5] - t121 * parameters[MZ5]);
-    const wam7_real_t t173 = t119 * (parameters[XX6] - parameters[YY6]) + t118 * parameters[ZZ6]
-        + t114 * parameters[YZ6];
-    const wam7_real_t t174 = (t144 - t104) * parameters[XY6] - (t173 + t110 * parameters[XZ6])
-        + (t122 * parameters[MX6] + t147 * parameters[MY6]);
-    const wam7_real_t t175 = t124 * t159 - t125 * t161;
-    const wam7_real_t t176 = t174 + (t125 * t151 + t124 * t157 + WAM7_C(0.06) * t175);
-    const wam7_real_t t177 = t172 + t176;
-    const wam7_real_t t178 = (t75 + t77) * parameters[MX5] + t108 * parameters[MY5] + t85 * parameters[MZ5];
-    const wam7_real_t t179 = (t104 + t106) * parameters[MX6] - t131 * parameters[MY6]
-        + t114 * parameters[MZ6];
-    const wam7_real_t t180 = t147 * parameters[M6] + t179 - t175;
-    const wam7_real_t t181 = t145 * parameters[MY6] + t120 * parameters[MX6] - t110 * parameters[MZ6]
-        - t122 * parameters[M6];
-    const wam7_real_t t182 = t139 * parameters[MX7] + t153 * parameters[MY7] - (t152
-        + t127) * parameters[MZ7];
-    const wam7_real_t t183 = t181 + (t182 - t146 * parameters[M7]);
-    const wam7_real_t t184 = t102 * t183 - t101 * t180 - (t121 * parameters[M5] + t178);
-    const wam7_real_t t185 = (t170 + t77) * parameters[MY5] - t91 * parameters[MX5] + t81 * parameters[MZ5];
-    const wam7_real_t t186 = (t144 + t104) * parameters[MZ6] + (t132 * parameters[MY6]
-        - t116 * parameters[MX6]);
-    const wam7_real_t t187 = t99 * parameters[M5] - t185 + (t99 * parameters[M6] - t186 + t162);
-    const wam7_real_t t188 = t73 * t184 + t72 * t187;
-    const wam7_real_t t189 = t71 + (t73 * t177 - t72 * t169 + WAM7_C(0.3) * t188);
-    const wam7_real_t t190 = t57 * (parameters[XX4] - parameters[ZZ4]) + t59 * parameters[YY4]
-        - t80 * parameters[XY4];
-    const wam7_real_t t191 = (t92 - t50) * parameters[XZ4] + (t190 + t79 * parameters[YZ4])
-        + (t95 * parameters[MZ4] + t65 * parameters[MX4]);
-    const wam7_real_t t192 = t89 * parameters[ZZ5] - t90 * (parameters[XX5] - parameters[YY5])
-        - t85 * parameters[YZ5];
-    const wam7_real_t t193 = (t170 - t75) * parameters[XY5] + (t192 + t81 * parameters[XZ5])
-        + (t99 * parameters[MX5] + t121 * parameters[MY5]);
-    const wam7_real_t t194 = t193 + (t102 * t163 + t101 * t168);
-    const wam7_real_t t195 = t191 + (t194 + WAM7_C(-0.045) * t188);
-    const wam7_real_t t196 = t44 + (t46 * t195 - t45 * t189);
-    const wam7_real_t t197 = t29 * t29;
-    const wam7_real_t t198 = t53 * parameters[XY3] - (t30 * (parameters[ZZ3] - parameters[XX3])
-        + t32 * parameters[YY3]);
-    const wam7_real_t t199 = (t23 - t197) * parameters[XZ3] + (t198 - t52 * parameters[YZ3])
-        + (t39 * parameters[MX3] - t66 * parameters[MZ3]);
-    const wam7_real_t t200 = t63 * (parameters[XX4] - parameters[YY4]) + t62 * parameters[ZZ4]
-        + t58 * parameters[YZ4];
-    const wam7_real_t t201 = (t92 - t48) * parameters[XY4] + (t54 * parameters[XZ4] - t200)
-        + (t70 * parameters[MX4] + t95 * parameters[MY4]);
-    const wam7_real_t t202 = t87 * parameters[MX5] + t109 * parameters[MY5] - (t170 + t75) * parameters[MZ5];
-    const wam7_real_t t203 = t202 - t94 * parameters[M5] + (t102 * t180 + t101 * t183);
-    const wam7_real_t t204 = t72 * t184 - t73 * t187;
-    const wam7_real_t t205 = t73 * t169 + t72 * t177 + (WAM7_C(0.045) * t203 + WAM7_C(0.3) * t204);
-    const wam7_real_t t206 = t201 + t205;
-    const wam7_real_t t207 = t79 * parameters[MY4] - t96 * parameters[MX4] - t58 * parameters[MZ4]
-        - t95 * parameters[M4];
-    const wam7_real_t t208 = t207 + t204;
-    const wam7_real_t t209 = t70 * parameters[M4] - (t93 * parameters[MY4] + t64 * parameters[MX4]
-        + t54 * parameters[MZ4]);
-    const wam7_real_t t210 = t209 - t203;
-    const wam7_real_t t211 = t199 + (t206 + WAM7_C(0.045) * (t46 * t208 + t45 * t210));
-    const wam7_real_t t212 = t52 * parameters[MY3] - t67 * parameters[MX3] + t31 * parameters[MZ3]
-        - t66 * parameters[M3];
-    const wam7_real_t t213 = t212 + (t45 * t208 - t46 * t210);
-    const wam7_real_t t214 = (t197 + t23) * parameters[MY3] - t37 * parameters[MX3] - t27 * parameters[MZ3];
-    const wam7_real_t t215 = t60 * parameters[MX4] + t80 * parameters[MY4] - (t92 + t48) * parameters[MZ4];
-    const wam7_real_t t216 = t65 * parameters[M4] + t215 + t188;
-    const wam7_real_t t217 = t43 * parameters[M3] - t214 + t216;
-    const wam7_real_t t218 = t19 * t211 - t18 * t196 + WAM7_C(0.55) * (t19 * t213 + t18 * t217);
-    const wam7_real_t t219 = t12 * (parameters[XX2] - parameters[ZZ2]) + t14 * parameters[YY2]
-        + t26 * parameters[XY2];
-    const wam7_real_t t220 = t40 * parameters[MZ2] + ((t38 - t7) * parameters[XZ2] + (t219
-        + t25 * parameters[YZ2]));
-    const wam7_real_t t221 = t35 * parameters[ZZ3] - t36 * (parameters[XX3] - parameters[YY3])
-        + t31 * parameters[YZ3];
-    const wam7_real_t t222 = (t197 - t21) * parameters[XY3] + (t221 - t27 * parameters[XZ3])
-        + (t43 * parameters[MX3] + t66 * parameters[MY3]);
-    const wam7_real_t t223 = t222 + (t46 * t189 + t45 * t195 + WAM7_C(0.045) * t216);
-    const wam7_real_t t224 = t2 * (t4 * parameters[MZ2] + t17 + t218) + t3 * (t220 + t223);
-    out[0] = WAM7_C(2.1881838074398248) * t1 + WAM7_C(0.05209961446285298) * (ddq[0] * parameters[ZZ1]
-        + t224);
-    const wam7_real_t t225 = wam7_sign(dq[1]);
-    const wam7_real_t t226 = WAM7_C(28.25) * dq[1] * parameters[FV2] + t225 * parameters[FC2]
+    out[0] = WAM7_C(2.1881838074398248) * t224 + WAM7_C(0.05209961446285298) * (ddq[0] * parameters[ZZ1]
+        + t222);
+    const wam7_real_t t225 = t3 * t191 + t2 * t206 + WAM7_C(0.55) * (t2 * t208 - t3 * t212);
+    const wam7_real_t t226 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
+        - t8 * parameters[YZ2];
+    const wam7_real_t t227 = t105 * parameters[MX2] + t94 * parameters[MY2] + ((t103 - t215) * parameters[XY2]
+        + (t226 - t17 * parameters[XZ2]));
+    const wam7_real_t t228 = wam7_sign(dq[1]);
+    const wam7_real_t t229 = WAM7_C(28.25) * dq[1] * parameters[FV2] + t228 * parameters[FC2]
         + WAM7_C(28.25) * ddq[1] * parameters[IA2];
-    const wam7_real_t t227 = t16 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
-        - t13 * parameters[YZ2];
-    const wam7_real_t t228 = t4 * parameters[MX2] + t40 * parameters[MY2] + ((t38 - t6) * parameters[XY2]
-        + (t227 - t9 * parameters[XZ2]));
-    const wam7_real_t t229 = t19 * t196 + t18 * t211 + WAM7_C(0.55) * (t18 * t213 - t19 * t217);
-    out[1] = WAM7_C(2.1881838074398248) * t226 + WAM7_C(0.07745783389167521) * (t228 + t229);
+    out[1] = WAM7_C(2.1881838074398248) * t229 + WAM7_C(0.07745783389167521) * (t227 + t225);
     const wam7_real_t t230 = wam7_sign(dq[2]);
     const wam7_real_t t231 = WAM7_C(28.25) * dq[2] * parameters[FV3] + t230 * parameters[FC3]
         + WAM7_C(28.25) * ddq[2] * parameters[IA3];
-    out[2] = WAM7_C(2.1881838074398248) * t231 + WAM7_C(0.07745783389167521) * t223;
+    out[2] = WAM7_C(2.1881838074398248) * t231 + WAM7_C(0.07745783389167521) * t219;
     const wam7_real_t t232 = wam7_sign(dq[3]);
     const wam7_real_t t233 = WAM7_C(18.0) * dq[3] * parameters[FV4] + t232 * parameters[FC4]
         + WAM7_C(18.0) * ddq[3] * parameters[IA4];
-    out[3] = WAM7_C(2.1881838074398248) * t233 + WAM7_C(0.12156576707999026) * t206;
+    out[3] = WAM7_C(2.1881838074398248) * t233 + WAM7_C(0.12156576707999026) * t198;
     const wam7_real_t t234 = wam7_sign(dq[4]);
     const wam7_real_t t235 = WAM7_C(9.48) * dq[4] * parameters[FV5] + t234 * parameters[FC5]
         + WAM7_C(9.48) * ddq[4] * parameters[IA5];
-    out[4] = WAM7_C(4.237288135593221) * t235 + WAM7_C(0.4469713223199599) * t194;
+    out[4] = WAM7_C(4.237288135593221) * t235 + WAM7_C(0.4469713223199599) * t185;
     const wam7_real_t t236 = wam7_sign(dq[5]);
     const wam7_real_t t237 = WAM7_C(9.48) * dq[5] * parameters[FV6] + t236 * parameters[FC6]
         + WAM7_C(9.48) * ddq[5] * parameters[IA6];
-    out[5] = WAM7_C(4.237288135593221) * t237 + WAM7_C(0.4469713223199599) * t176;
+    out[5] = WAM7_C(4.237288135593221) * t237 + WAM7_C(0.4469713223199599) * t164;
     const wam7_real_t t238 = wam7_sign(dq[6]);
     const wam7_real_t t239 = WAM7_C(14.93) * dq[6] * parameters[FV7] + t238 * parameters[FC7]
         + WAM7_C(14.93) * ddq[6] * parameters[IA7];
-    out[6] = WAM7_C(14.925373134328357) * t239 + WAM7_C(0.9996900960702182) * t167;
+    out[6] = WAM7_C(14.925373134328357) * t239 + WAM7_C(0.9996900960702182) * t152;
     return WAM7_STATUS_OK;
 }

@@ -11,7 +11,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xA48E985DUL
+#if WAM7_GENERATION != 0x8C84F77BUL
 #error "wam7.h and wam7_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 wam7_pair_t wam7_sincos(wam7_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * WAM7_C(0.636619772) + WAM7_C(16384.5));
+    const wam7_real_t turns = x * WAM7_C(0.636619772) + WAM7_C(16384.5);
+    const long quarter = (long)turns;
     const wam7_real_t k = (wam7_real_t)quarter - WAM7_C(16384.0);
     const wam7_real_t r = x - k * WAM7_C(1.5703125) - k * WAM7_C(4.83826792e-4);
     const wam7_real_t z = r * r;

@@ -64,7 +64,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -89,113 +89,114 @@ int yaw3pitch_bias_standard(
         return status;
     }
 
-    yaw3pitch_real_t t0, t1;
-    YAW3PITCH_SINCOS(q[1], &t0, &t1);
-    yaw3pitch_real_t t16, t14;
-    YAW3PITCH_SINCOS(q[2], &t16, &t14);
-    yaw3pitch_real_t t34, t32;
-    YAW3PITCH_SINCOS(q[3], &t34, &t32);
-    const yaw3pitch_real_t t2 = t1 * dq[0];
-    const yaw3pitch_real_t t3 = dq[1] * t2;
-    const yaw3pitch_real_t t4 = t0 * dq[0];
-    const yaw3pitch_real_t t5 = dq[1] * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(-2.0) * t5;
-    const yaw3pitch_real_t t7 = t3 * parameters[XX2] + t3 * (parameters[ZZ2] - parameters[YY2])
-        + t6 * parameters[XY2];
-    const yaw3pitch_real_t t8 = t4 * t2;
-    const yaw3pitch_real_t t9 = t2 * t2;
-    const yaw3pitch_real_t t10 = dq[1] * dq[1];
-    const yaw3pitch_real_t t11 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
-    const yaw3pitch_real_t t12 = t0 * t11 + YAW3PITCH_C(-9.81) * t1;
-    const yaw3pitch_real_t t13 = t7 + t8 * parameters[XZ2] + (t9 - t10) * parameters[YZ2]
-        + t12 * parameters[MZ2];
-    const yaw3pitch_real_t t15 = dq[1] + dq[2];
-    const yaw3pitch_real_t t17 = t16 * t4 - t14 * t2;
-    const yaw3pitch_real_t t18 = t15 * t17;
-    const yaw3pitch_real_t t19 = t14 * t4 + t16 * t2;
-    const yaw3pitch_real_t t20 = t15 * t19;
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(-2.0) * t20;
-    const yaw3pitch_real_t t22 = t18 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t18
-        + parameters[XY3] * t21;
-    const yaw3pitch_real_t t23 = t19 * t17;
-    const yaw3pitch_real_t t24 = t15 * t15;
-    const yaw3pitch_real_t t25 = t17 * t17;
-    const yaw3pitch_real_t t26 = YAW3PITCH_C(1.6) * t5;
-    const yaw3pitch_real_t t27 = t1 * t11 + YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t28 = YAW3PITCH_C(0.8) * (t9 + t10) - t27;
-    const yaw3pitch_real_t t29 = t12 + YAW3PITCH_C(-0.8) * t8;
-    const yaw3pitch_real_t t30 = t14 * t29 - t16 * t28;
-    const yaw3pitch_real_t t31 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t25 - t24)
-        + (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const yaw3pitch_real_t t33 = dq[3] + t15;
-    const yaw3pitch_real_t t35 = t34 * t19 + t32 * t17;
-    const yaw3pitch_real_t t36 = t33 * t35;
-    const yaw3pitch_real_t t37 = t32 * t19 - t34 * t17;
-    const yaw3pitch_real_t t38 = t33 * t37;
-    const yaw3pitch_real_t t39 = YAW3PITCH_C(-2.0) * t38;
-    const yaw3pitch_real_t t40 = t36 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t36
-        + parameters[XY4] * t39;
-    const yaw3pitch_real_t t41 = t37 * t35;
-    const yaw3pitch_real_t t42 = t33 * t33;
-    const yaw3pitch_real_t t43 = t35 * t35;
-    const yaw3pitch_real_t t44 = t26 + YAW3PITCH_C(1.4) * t20;
-    const yaw3pitch_real_t t45 = t14 * t28 + t16 * t29;
-    const yaw3pitch_real_t t46 = t24 + t25;
-    const yaw3pitch_real_t t47 = t45 + YAW3PITCH_C(0.7) * t46;
-    const yaw3pitch_real_t t48 = t30 + YAW3PITCH_C(0.7) * t23;
-    const yaw3pitch_real_t t49 = t34 * t47 - t32 * t48;
-    const yaw3pitch_real_t t50 = t40 - parameters[XZ4] * t41 + parameters[YZ4] * (t43 - t42)
-        + (parameters[MY4] * t44 - parameters[MZ4] * t49);
-    const yaw3pitch_real_t t51 = YAW3PITCH_C(2.0) * t36;
-    const yaw3pitch_real_t t52 = parameters[YY4] * t38 + t38 * (parameters[ZZ4] - parameters[XX4])
-        + parameters[XY4] * t51;
-    const yaw3pitch_real_t t53 = t37 * t37;
-    const yaw3pitch_real_t t54 = t32 * t47 + t34 * t48;
-    const yaw3pitch_real_t t55 = t52 - parameters[YZ4] * t41 + parameters[XZ4] * (t53 - t42)
-        + (parameters[MZ4] * t54 + parameters[MX4] * t44);
-    const yaw3pitch_real_t t56 = t31 + (t32 * t50 + t34 * t55);
-    const yaw3pitch_real_t t57 = YAW3PITCH_C(2.0) * t18;
-    const yaw3pitch_real_t t58 = parameters[YY3] * t20 - t20 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t57;
-    const yaw3pitch_real_t t59 = t19 * t19;
-    const yaw3pitch_real_t t60 = t58 - parameters[YZ3] * t23 - parameters[XZ3] * (t24 - t59)
-        + (parameters[MZ3] * t45 + parameters[MX3] * t26);
-    const yaw3pitch_real_t t61 = parameters[MX4] * t39 + parameters[MY4] * t51 + parameters[MZ4] * (t53
-        + t43);
-    const yaw3pitch_real_t t62 = t61 - parameters[M4] * t44;
-    const yaw3pitch_real_t t63 = t60 + (t32 * t55 - t34 * t50 + YAW3PITCH_C(-0.7) * t62);
-    const yaw3pitch_real_t t64 = YAW3PITCH_C(2.0) * t3;
-    const yaw3pitch_real_t t65 = t5 * (parameters[XX2] - parameters[ZZ2]) - t5 * parameters[YY2]
-        + t64 * parameters[XY2];
-    const yaw3pitch_real_t t66 = t4 * t4;
-    const yaw3pitch_real_t t67 = t65 - t8 * parameters[YZ2] + (t10 - t66) * parameters[XZ2]
-        + t27 * parameters[MZ2];
-    const yaw3pitch_real_t t68 = parameters[MX3] * t21 + parameters[MY3] * t57 + parameters[MZ3] * (t59
-        + t25);
-    const yaw3pitch_real_t t69 = t68 - parameters[M3] * t26 + t62;
-    const yaw3pitch_real_t t70 = t67 + (t16 * t56 - t14 * t63 + YAW3PITCH_C(0.8) * t69);
-    const yaw3pitch_real_t t71 = t0 * (t13 + (t14 * t56 + t16 * t63)) + t1 * t70;
-    const yaw3pitch_real_t t72 = t6 * parameters[MX2] - t64 * parameters[MY2] + (t66 + t9) * parameters[MZ2];
-    out[0] = t71 + YAW3PITCH_C(0.12) * (t72 + t69);
-    const yaw3pitch_real_t t73 = t8 * (parameters[YY2] - parameters[XX2]) + (t66 - t9) * parameters[XY2]
-        - (t12 * parameters[MX2] + t27 * parameters[MY2]);
-    const yaw3pitch_real_t t74 = t23 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t59 - t25)
-        + (parameters[MY3] * t45 - parameters[MX3] * t30);
-    const yaw3pitch_real_t t75 = (parameters[XX4] - parameters[YY4]) * t41 + parameters[XY4] * (t53 - t43)
-        + (parameters[MX4] * t49 + parameters[MY4] * t54);
-    const yaw3pitch_real_t t76 = parameters[M4] * t54 + (parameters[MX4] * (t42 + t43)
-        + parameters[MY4] * t41);
-    const yaw3pitch_real_t t77 = parameters[M4] * t49 - (parameters[MX4] * t41 + parameters[MY4] * (t42
-        + t53));
-    const yaw3pitch_real_t t78 = t32 * t77 - t34 * t76;
-    const yaw3pitch_real_t t79 = t74 + (t75 + YAW3PITCH_C(0.7) * t78);
-    const yaw3pitch_real_t t80 = parameters[M3] * t45 + (parameters[MX3] * t46 + parameters[MY3] * t23)
-        + (t32 * t76 + t34 * t77);
-    const yaw3pitch_real_t t81 = parameters[M3] * t30 + (parameters[MX3] * t23 + parameters[MY3] * (t24
-        + t59));
-    const yaw3pitch_real_t t82 = t79 + YAW3PITCH_C(0.8) * (t14 * (t78 - t81) - t16 * t80);
-    out[1] = t73 + t82;
-    out[2] = t79;
-    out[3] = t75;
+    yaw3pitch_real_t t0, t3;
+    YAW3PITCH_SINCOS(q[1], &t0, &t3);
+    yaw3pitch_real_t t5, t2;
+    YAW3PITCH_SINCOS(q[2], &t5, &t2);
+    yaw3pitch_real_t t7, t9;
+    YAW3PITCH_SINCOS(q[3], &t7, &t9);
+    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t4 = t3 * dq[0];
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t8 = t5 * t1 - t2 * t4;
+    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8;
+    const yaw3pitch_real_t t11 = dq[1] + dq[2];
+    const yaw3pitch_real_t t12 = dq[3] + t11;
+    const yaw3pitch_real_t t13 = t12 * t10;
+    const yaw3pitch_real_t t14 = t9 * t6 - t7 * t8;
+    const yaw3pitch_real_t t15 = t12 * t14;
+    const yaw3pitch_real_t t16 = YAW3PITCH_C(-2.0) * t15;
+    const yaw3pitch_real_t t17 = t13 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t13
+        + parameters[XY4] * t16;
+    const yaw3pitch_real_t t18 = t14 * t10;
+    const yaw3pitch_real_t t19 = t10 * t10;
+    const yaw3pitch_real_t t20 = t12 * t12;
+    const yaw3pitch_real_t t21 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t22 = t3 * t21 + YAW3PITCH_C(9.81) * t0;
+    const yaw3pitch_real_t t23 = t4 * t4;
+    const yaw3pitch_real_t t24 = dq[1] * dq[1];
+    const yaw3pitch_real_t t25 = YAW3PITCH_C(0.8) * (t23 + t24) - t22;
+    const yaw3pitch_real_t t26 = t0 * t21 + YAW3PITCH_C(-9.81) * t3;
+    const yaw3pitch_real_t t27 = t1 * t4;
+    const yaw3pitch_real_t t28 = t26 + YAW3PITCH_C(-0.8) * t27;
+    const yaw3pitch_real_t t29 = t2 * t25 + t5 * t28;
+    const yaw3pitch_real_t t30 = t8 * t8;
+    const yaw3pitch_real_t t31 = t11 * t11;
+    const yaw3pitch_real_t t32 = t31 + t30;
+    const yaw3pitch_real_t t33 = t29 + YAW3PITCH_C(0.7) * t32;
+    const yaw3pitch_real_t t34 = t2 * t28 - t5 * t25;
+    const yaw3pitch_real_t t35 = t6 * t8;
+    const yaw3pitch_real_t t36 = t34 + YAW3PITCH_C(0.7) * t35;
+    const yaw3pitch_real_t t37 = t7 * t33 - t9 * t36;
+    const yaw3pitch_real_t t38 = t11 * t6;
+    const yaw3pitch_real_t t39 = dq[1] * t1;
+    const yaw3pitch_real_t t40 = YAW3PITCH_C(1.6) * t39;
+    const yaw3pitch_real_t t41 = t40 + YAW3PITCH_C(1.4) * t38;
+    const yaw3pitch_real_t t42 = t17 - parameters[XZ4] * t18 + parameters[YZ4] * (t19 - t20)
+        + (parameters[MY4] * t41 - parameters[MZ4] * t37);
+    const yaw3pitch_real_t t43 = YAW3PITCH_C(2.0) * t13;
+    const yaw3pitch_real_t t44 = parameters[YY4] * t15 + t15 * (parameters[ZZ4] - parameters[XX4])
+        + parameters[XY4] * t43;
+    const yaw3pitch_real_t t45 = t14 * t14;
+    const yaw3pitch_real_t t46 = t9 * t33 + t7 * t36;
+    const yaw3pitch_real_t t47 = t44 - parameters[YZ4] * t18 + parameters[XZ4] * (t45 - t20)
+        + (parameters[MZ4] * t46 + parameters[MX4] * t41);
+    const yaw3pitch_real_t t48 = t11 * t8;
+    const yaw3pitch_real_t t49 = YAW3PITCH_C(-2.0) * t38;
+    const yaw3pitch_real_t t50 = t48 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t48
+        + parameters[XY3] * t49;
+    const yaw3pitch_real_t t51 = t50 - parameters[XZ3] * t35 + parameters[YZ3] * (t30 - t31)
+        + (parameters[MY3] * t40 + parameters[MZ3] * t34);
+    const yaw3pitch_real_t t52 = t51 + (t9 * t42 + t7 * t47);
+    const yaw3pitch_real_t t53 = parameters[MX4] * t16 + parameters[MY4] * t43 + parameters[MZ4] * (t45
+        + t19);
+    const yaw3pitch_real_t t54 = t53 - parameters[M4] * t41;
+    const yaw3pitch_real_t t55 = YAW3PITCH_C(2.0) * t48;
+    const yaw3pitch_real_t t56 = parameters[YY3] * t38 - t38 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t55;
+    const yaw3pitch_real_t t57 = t6 * t6;
+    const yaw3pitch_real_t t58 = t56 - parameters[YZ3] * t35 - parameters[XZ3] * (t31 - t57)
+        + (parameters[MZ3] * t29 + parameters[MX3] * t40);
+    const yaw3pitch_real_t t59 = t58 + (t9 * t47 - t7 * t42 + YAW3PITCH_C(-0.7) * t54);
+    const yaw3pitch_real_t t60 = dq[1] * t4;
+    const yaw3pitch_real_t t61 = YAW3PITCH_C(-2.0) * t39;
+    const yaw3pitch_real_t t62 = t60 * parameters[XX2] + t60 * (parameters[ZZ2] - parameters[YY2])
+        + t61 * parameters[XY2];
+    const yaw3pitch_real_t t63 = t62 + t27 * parameters[XZ2] + (t23 - t24) * parameters[YZ2]
+        + t26 * parameters[MZ2];
+    const yaw3pitch_real_t t64 = parameters[MX3] * t49 + parameters[MY3] * t55 + parameters[MZ3] * (t57
+        + t30);
+    const yaw3pitch_real_t t65 = t64 - parameters[M3] * t40 + t54;
+    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t60;
+    const yaw3pitch_real_t t67 = t39 * (parameters[XX2] - parameters[ZZ2]) - t39 * parameters[YY2]
+        + t66 * parameters[XY2];
+    const yaw3pitch_real_t t68 = t1 * t1;
+    const yaw3pitch_real_t t69 = t67 - t27 * parameters[YZ2] + (t24 - t68) * parameters[XZ2]
+        + t22 * parameters[MZ2];
+    const yaw3pitch_real_t t70 = t69 + (t5 * t52 - t2 * t59 + YAW3PITCH_C(0.8) * t65);
+    const yaw3pitch_real_t t71 = t0 * (t63 + (t2 * t52 + t5 * t59)) + t3 * t70;
+    const yaw3pitch_real_t t72 = t61 * parameters[MX2] - t66 * parameters[MY2] + (t68
+        + t23) * parameters[MZ2];
+    out[0] = t71 + YAW3PITCH_C(0.12) * (t72 + t65);
+    const yaw3pitch_real_t t73 = parameters[M4] * t46 + (parameters[MX4] * (t20 + t19)
+        + parameters[MY4] * t18);
+    const yaw3pitch_real_t t74 = parameters[M4] * t37 - (parameters[MX4] * t18 + parameters[MY4] * (t20
+        + t45));
+    const yaw3pitch_real_t t75 = parameters[M3] * t29 + (parameters[MX3] * t32 + parameters[MY3] * t35)
+        + (t9 * t73 + t7 * t74);
+    const yaw3pitch_real_t t76 = t9 * t74 - t7 * t73;
+    const yaw3pitch_real_t t77 = parameters[M3] * t34 + (parameters[MX3] * t35 + parameters[MY3] * (t31
+        + t57));
+    const yaw3pitch_real_t t78 = (parameters[XX4] - parameters[YY4]) * t18 + parameters[XY4] * (t45 - t19)
+        + (parameters[MX4] * t37 + parameters[MY4] * t46);
+    const yaw3pitch_real_t t79 = t35 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t57 - t30)
+        + (parameters[MY3] * t29 - parameters[MX3] * t34);
+    const yaw3pitch_real_t t80 = t79 + (t78 + YAW3PITCH_C(0.7) * t76);
+    const yaw3pitch_real_t t81 = t80 + YAW3PITCH_C(0.8) * (t2 * (t76 - t77) - t5 * t75);
+    const yaw3pitch_real_t t82 = t27 * (parameters[YY2] - parameters[XX2]) + (t68 - t23) * parameters[XY2]
+        - (t26 * parameters[MX2] + t22 * parameters[MY2]);
+    out[1] = t82 + t81;
+    out[2] = t80;
+    out[3] = t78;
     return YAW3PITCH_STATUS_OK;
 }

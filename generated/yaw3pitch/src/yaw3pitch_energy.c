@@ -47,7 +47,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -97,11 +97,11 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t15 = t13 * (parameters[XZ3R] * t11 + parameters[YZ3] * t12
         + parameters[ZZ3R] * t13);
     const yaw3pitch_real_t t16 = t14 + t12 * (parameters[XY3] * t11 + parameters[YZ3] * t13) + t15;
-    const yaw3pitch_real_t t17 = YAW3PITCH_C(0.8) * dq[1];
-    const yaw3pitch_real_t t18 = t9 * t17;
-    const yaw3pitch_real_t t19 = t7 + YAW3PITCH_C(-0.8) * t3;
-    const yaw3pitch_real_t t20 = t10 * t17;
-    const yaw3pitch_real_t t21 = parameters[MX3R] * (t13 * t18 - t12 * t19) + parameters[MY3] * (t11 * t19
+    const yaw3pitch_real_t t17 = t7 + YAW3PITCH_C(-0.8) * t3;
+    const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * dq[1];
+    const yaw3pitch_real_t t19 = t9 * t18;
+    const yaw3pitch_real_t t20 = t10 * t18;
+    const yaw3pitch_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3] * (t11 * t17
         - t13 * t20);
     const yaw3pitch_real_t t24 = t22 * t11 + t23 * t12;
     const yaw3pitch_real_t t25 = t22 * t12 - t23 * t11;
@@ -111,10 +111,10 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t28 = t26 * (parameters[XZ4] * t24 + parameters[YZ4] * t25
         + parameters[ZZ4] * t26);
     const yaw3pitch_real_t t29 = t27 + t25 * (parameters[XY4] * t24 + parameters[YZ4] * t26) + t28;
-    const yaw3pitch_real_t t30 = t18 + YAW3PITCH_C(0.7) * t13;
-    const yaw3pitch_real_t t31 = t19 + YAW3PITCH_C(-0.7) * t12;
-    const yaw3pitch_real_t t32 = t26 * (t22 * t30 - t23 * t20) - t25 * t31;
-    const yaw3pitch_real_t t33 = t24 * t31 - t26 * (t22 * t20 + t23 * t30);
+    const yaw3pitch_real_t t30 = t17 + YAW3PITCH_C(-0.7) * t12;
+    const yaw3pitch_real_t t31 = t19 + YAW3PITCH_C(0.7) * t13;
+    const yaw3pitch_real_t t32 = t26 * (t22 * t31 - t23 * t20) - t25 * t30;
+    const yaw3pitch_real_t t33 = t24 * t30 - t26 * (t22 * t20 + t23 * t31);
     const yaw3pitch_real_t t34 = t8 + YAW3PITCH_C(0.5) * t16 + t21 + YAW3PITCH_C(0.5) * t29
         + (parameters[MX4] * t32 + parameters[MY4] * t33);
     kinetic[0] = t34;
@@ -122,10 +122,10 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t36 = YAW3PITCH_C(9.81) * t2;
     const yaw3pitch_real_t t37 = t9 * t35 + t10 * t36;
     const yaw3pitch_real_t t38 = t9 * t36 - t10 * t35;
-    const yaw3pitch_real_t t39 = parameters[MX2R] * t35 + parameters[MY2] * t36 + (parameters[MX3R] * t37
-        + parameters[MY3] * t38);
-    const yaw3pitch_real_t t40 = parameters[MX4] * (t22 * t37 + t23 * t38) + parameters[MY4] * (t22 * t38
+    const yaw3pitch_real_t t39 = parameters[MX4] * (t22 * t37 + t23 * t38) + parameters[MY4] * (t22 * t38
         - t23 * t37);
-    potential[0] = t39 + t40;
+    const yaw3pitch_real_t t40 = parameters[MX2R] * t35 + parameters[MY2] * t36 + (parameters[MX3R] * t37
+        + parameters[MY3] * t38);
+    potential[0] = t40 + t39;
     return YAW3PITCH_STATUS_OK;
 }

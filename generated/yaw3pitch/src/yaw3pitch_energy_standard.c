@@ -65,7 +65,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -92,69 +92,66 @@ int yaw3pitch_energy_standard(
         return status;
     }
 
-    yaw3pitch_real_t t0, t2;
-    YAW3PITCH_SINCOS(q[1], &t0, &t2);
-    yaw3pitch_real_t t11, t10;
-    YAW3PITCH_SINCOS(q[2], &t11, &t10);
-    yaw3pitch_real_t t26, t25;
-    YAW3PITCH_SINCOS(q[3], &t26, &t25);
+    yaw3pitch_real_t t0, t3;
+    YAW3PITCH_SINCOS(q[1], &t0, &t3);
+    yaw3pitch_real_t t5, t2;
+    YAW3PITCH_SINCOS(q[2], &t5, &t2);
+    yaw3pitch_real_t t9, t7;
+    YAW3PITCH_SINCOS(q[3], &t9, &t7);
     const yaw3pitch_real_t t1 = t0 * dq[0];
-    const yaw3pitch_real_t t3 = t2 * dq[0];
-    const yaw3pitch_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2] + dq[1] * parameters[XZ2]);
-    const yaw3pitch_real_t t5 = t3 * (t1 * parameters[XY2] + t3 * parameters[YY2] + dq[1] * parameters[YZ2]);
-    const yaw3pitch_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2]
+    const yaw3pitch_real_t t4 = t3 * dq[0];
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t8 = t2 * t4 - t5 * t1;
+    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8;
+    const yaw3pitch_real_t t11 = t7 * t8 - t9 * t6;
+    const yaw3pitch_real_t t12 = dq[1] + dq[2];
+    const yaw3pitch_real_t t13 = dq[3] + t12;
+    const yaw3pitch_real_t t14 = t10 * (parameters[XX4] * t10 + parameters[XY4] * t11
+        + t13 * parameters[XZ4]);
+    const yaw3pitch_real_t t15 = t11 * (parameters[XY4] * t10 + parameters[YY4] * t11
+        + t13 * parameters[YZ4]);
+    const yaw3pitch_real_t t16 = t13 * (parameters[XZ4] * t10 + parameters[YZ4] * t11
+        + t13 * parameters[ZZ4]);
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(0.8) * dq[1];
+    const yaw3pitch_real_t t18 = t2 * t17;
+    const yaw3pitch_real_t t19 = YAW3PITCH_C(-0.7) * t12 - t18;
+    const yaw3pitch_real_t t20 = t5 * t17;
+    const yaw3pitch_real_t t21 = t7 * t20 - t9 * t19;
+    const yaw3pitch_real_t t22 = t9 * t20 + t7 * t19;
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.12) * dq[0];
+    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(0.8) * t4;
+    const yaw3pitch_real_t t25 = t24 - YAW3PITCH_C(-0.7) * t8;
+    const yaw3pitch_real_t t26 = parameters[M4] * (t21 * t21 + t22 * t22 + t25 * t25);
+    const yaw3pitch_real_t t27 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t8 + t12 * parameters[XZ3]);
+    const yaw3pitch_real_t t28 = t8 * (parameters[XY3] * t6 + parameters[YY3] * t8 + t12 * parameters[YZ3]);
+    const yaw3pitch_real_t t29 = t12 * (parameters[XZ3] * t6 + parameters[YZ3] * t8 + t12 * parameters[ZZ3]);
+    const yaw3pitch_real_t t30 = parameters[M3] * (t20 * t20 + t18 * t18 + t24 * t24);
+    const yaw3pitch_real_t t31 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
+    const yaw3pitch_real_t t32 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
+    const yaw3pitch_real_t t33 = dq[1] * (t1 * parameters[XZ2] + t4 * parameters[YZ2]
         + dq[1] * parameters[ZZ2]);
-    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.12) * dq[0];
-    const yaw3pitch_real_t t8 = YAW3PITCH_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
-    const yaw3pitch_real_t t9 = YAW3PITCH_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
-        + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const yaw3pitch_real_t t12 = t10 * t1 + t11 * t3;
-    const yaw3pitch_real_t t13 = t10 * t3 - t11 * t1;
-    const yaw3pitch_real_t t14 = dq[1] + dq[2];
-    const yaw3pitch_real_t t15 = t12 * (parameters[XX3] * t12 + parameters[XY3] * t13
-        + t14 * parameters[XZ3]);
-    const yaw3pitch_real_t t16 = t13 * (parameters[XY3] * t12 + parameters[YY3] * t13
-        + t14 * parameters[YZ3]);
-    const yaw3pitch_real_t t17 = t14 * (parameters[XZ3] * t12 + parameters[YZ3] * t13
-        + t14 * parameters[ZZ3]);
-    const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * dq[1];
-    const yaw3pitch_real_t t19 = t11 * t18;
-    const yaw3pitch_real_t t20 = t10 * t18;
-    const yaw3pitch_real_t t21 = t7 + YAW3PITCH_C(0.8) * t3;
-    const yaw3pitch_real_t t22 = parameters[M3] * (t19 * t19 + t20 * t20 + t21 * t21);
-    const yaw3pitch_real_t t23 = parameters[MX3] * (t14 * t20 + t13 * t21) - parameters[MY3] * (t12 * t21
-        + t14 * t19);
-    const yaw3pitch_real_t t24 = t9 + YAW3PITCH_C(0.5) * (t15 + t16 + t17 + t22) + (t23
-        + parameters[MZ3] * (t13 * t19 - t12 * t20));
-    const yaw3pitch_real_t t27 = t25 * t12 + t26 * t13;
-    const yaw3pitch_real_t t28 = t25 * t13 - t26 * t12;
-    const yaw3pitch_real_t t29 = dq[3] + t14;
-    const yaw3pitch_real_t t30 = t27 * (parameters[XX4] * t27 + parameters[XY4] * t28
-        + t29 * parameters[XZ4]);
-    const yaw3pitch_real_t t31 = t28 * (parameters[XY4] * t27 + parameters[YY4] * t28
-        + t29 * parameters[YZ4]);
-    const yaw3pitch_real_t t32 = t29 * (parameters[XZ4] * t27 + parameters[YZ4] * t28
-        + t29 * parameters[ZZ4]);
-    const yaw3pitch_real_t t33 = YAW3PITCH_C(-0.7) * t14 - t20;
-    const yaw3pitch_real_t t34 = t25 * t19 - t26 * t33;
-    const yaw3pitch_real_t t35 = t26 * t19 + t25 * t33;
-    const yaw3pitch_real_t t36 = t21 - YAW3PITCH_C(-0.7) * t13;
-    const yaw3pitch_real_t t37 = parameters[M4] * (t34 * t34 + t35 * t35 + t36 * t36);
-    const yaw3pitch_real_t t38 = parameters[MX4] * (t28 * t36 - t29 * t35) - parameters[MY4] * (t27 * t36
-        + t29 * t34);
-    const yaw3pitch_real_t t39 = t24 + YAW3PITCH_C(0.5) * (t30 + t31 + t32 + t37) + (t38
-        + parameters[MZ4] * (t28 * t34 + t27 * t35));
+    const yaw3pitch_real_t t34 = YAW3PITCH_C(0.5) * (t31 + t32 + t33 + parameters[M2] * (t23 * t23));
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t34
+        + (parameters[MX2] * (t4 * t23) - parameters[MY2] * (t1 * t23));
+    const yaw3pitch_real_t t36 = parameters[MX3] * (t12 * t18 + t8 * t24) - parameters[MY3] * (t6 * t24
+        + t12 * t20);
+    const yaw3pitch_real_t t37 = t35 + YAW3PITCH_C(0.5) * (t27 + t28 + t29 + t30) + (t36
+        + parameters[MZ3] * (t8 * t20 - t6 * t18));
+    const yaw3pitch_real_t t38 = parameters[MX4] * (t11 * t25 - t13 * t22) - parameters[MY4] * (t10 * t25
+        + t13 * t21);
+    const yaw3pitch_real_t t39 = t37 + YAW3PITCH_C(0.5) * (t14 + t15 + t16 + t26) + (t38
+        + parameters[MZ4] * (t11 * t21 + t10 * t22));
     kinetic[0] = t39;
     const yaw3pitch_real_t t40 = YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t41 = YAW3PITCH_C(9.81) * t2;
+    const yaw3pitch_real_t t41 = YAW3PITCH_C(9.81) * t3;
     const yaw3pitch_real_t t42 = YAW3PITCH_C(9.81) * parameters[MZ1] + YAW3PITCH_C(4.4145) * parameters[M1]
         + (t40 * parameters[MX2] + t41 * parameters[MY2] + YAW3PITCH_C(4.4145) * parameters[M2]);
-    const yaw3pitch_real_t t43 = t10 * t40 + t11 * t41;
-    const yaw3pitch_real_t t44 = t10 * t41 - t11 * t40;
+    const yaw3pitch_real_t t43 = t2 * t40 + t5 * t41;
+    const yaw3pitch_real_t t44 = t2 * t41 - t5 * t40;
     const yaw3pitch_real_t t45 = YAW3PITCH_C(7.848000000000001) * t0 + YAW3PITCH_C(4.4145);
     const yaw3pitch_real_t t46 = t42 + (t43 * parameters[MX3] + t44 * parameters[MY3] + parameters[M3] * t45);
-    const yaw3pitch_real_t t47 = (t25 * t43 + t26 * t44) * parameters[MX4] + (t25 * t44
-        - t26 * t43) * parameters[MY4];
+    const yaw3pitch_real_t t47 = (t7 * t43 + t9 * t44) * parameters[MX4] + (t7 * t44
+        - t9 * t43) * parameters[MY4];
     potential[0] = t46 + (t47 + parameters[M4] * (t45 + YAW3PITCH_C(0.7) * t43));
     return YAW3PITCH_STATUS_OK;
 }

@@ -48,7 +48,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -74,183 +74,183 @@ int yaw3pitch_forward_dynamics(
         return status;
     }
 
+    yaw3pitch_real_t t32, t30;
+    YAW3PITCH_SINCOS(q[1], &t32, &t30);
+    yaw3pitch_real_t t11, t13;
+    YAW3PITCH_SINCOS(q[2], &t11, &t13);
     yaw3pitch_real_t t0, t1;
-    YAW3PITCH_SINCOS(q[1], &t0, &t1);
-    yaw3pitch_real_t t12, t11;
-    YAW3PITCH_SINCOS(q[2], &t12, &t11);
-    yaw3pitch_real_t t25, t24;
-    YAW3PITCH_SINCOS(q[3], &t25, &t24);
-    const yaw3pitch_real_t t2 = t1 * dq[0];
-    const yaw3pitch_real_t t3 = dq[1] * t2;
-    const yaw3pitch_real_t t4 = t0 * dq[0];
-    const yaw3pitch_real_t t5 = dq[1] * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(2.0) * t5;
-    const yaw3pitch_real_t t7 = t4 * t2;
-    const yaw3pitch_real_t t8 = parameters[XY2] * t6 - (parameters[XX2R] * t3 + parameters[ZZ2R] * t3)
-        - parameters[XZ2R] * t7;
-    const yaw3pitch_real_t t9 = t2 * t2;
-    const yaw3pitch_real_t t10 = dq[1] * dq[1];
-    const yaw3pitch_real_t t13 = t12 * t4 - t11 * t2;
-    const yaw3pitch_real_t t14 = dq[1] + dq[2];
-    const yaw3pitch_real_t t15 = t13 * t14;
-    const yaw3pitch_real_t t16 = t11 * t4 + t12 * t2;
-    const yaw3pitch_real_t t17 = t16 * t14;
-    const yaw3pitch_real_t t18 = YAW3PITCH_C(2.0) * t17;
-    const yaw3pitch_real_t t19 = t16 * t13;
-    const yaw3pitch_real_t t20 = parameters[XX3R] * t15 + parameters[ZZ3R] * t15 + parameters[XY3] * t18
-        + parameters[XZ3R] * t19;
-    const yaw3pitch_real_t t21 = t13 * t13;
-    const yaw3pitch_real_t t22 = t14 * t14;
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(-1.6) * t5;
-    const yaw3pitch_real_t t26 = t25 * t16 + t24 * t13;
-    const yaw3pitch_real_t t27 = dq[3] + t14;
-    const yaw3pitch_real_t t28 = t26 * t27;
+    YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-9))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t29 = t24 * t16 - t25 * t13;
-    const yaw3pitch_real_t t30 = t29 * t27;
-    const yaw3pitch_real_t t31 = YAW3PITCH_C(2.0) * t30;
-    const yaw3pitch_real_t t32 = t29 * t26;
-    const yaw3pitch_real_t t33 = parameters[XX4R] * t28 + parameters[ZZ4] * t28 + parameters[XY4] * t31
-        + parameters[XZ4] * t32;
-    const yaw3pitch_real_t t34 = t26 * t26;
-    const yaw3pitch_real_t t35 = t27 * t27;
-    const yaw3pitch_real_t t36 = t23 + YAW3PITCH_C(-1.4) * t17;
-    const yaw3pitch_real_t t37 = t33 + parameters[YZ4] * (t35 - t34) + parameters[MY4] * t36;
-    const yaw3pitch_real_t t38 = YAW3PITCH_C(-2.0) * t28;
-    const yaw3pitch_real_t t39 = t30 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t38
-        + parameters[YZ4] * t32;
-    const yaw3pitch_real_t t40 = t29 * t29;
-    const yaw3pitch_real_t t41 = t39 + parameters[XZ4] * (t35 - t40) + parameters[MX4] * t36;
-    const yaw3pitch_real_t t42 = t20 + parameters[YZ3] * (t22 - t21) + parameters[MY3] * t23 + (t24 * t37
-        + t25 * t41);
-    const yaw3pitch_real_t t43 = YAW3PITCH_C(-2.0) * t15;
-    const yaw3pitch_real_t t44 = t17 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t43
-        + parameters[YZ3] * t19;
-    const yaw3pitch_real_t t45 = t16 * t16;
-    const yaw3pitch_real_t t46 = parameters[MX4] * t31 + parameters[MY4] * t38;
-    const yaw3pitch_real_t t47 = t44 - parameters[XZ3R] * (t45 - t22) + parameters[MX3R] * t23 - (t25 * t37
-        - t24 * t41 + YAW3PITCH_C(0.7) * t46);
-    const yaw3pitch_real_t t48 = t8 + parameters[YZ2] * (t10 - t9) + (t11 * t42 + t12 * t47);
-    const yaw3pitch_real_t t49 = YAW3PITCH_C(2.0) * t3;
-    const yaw3pitch_real_t t50 = t5 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t49
-        + parameters[YZ2] * t7;
-    const yaw3pitch_real_t t51 = t4 * t4;
-    const yaw3pitch_real_t t52 = parameters[MX3R] * t18 + parameters[MY3] * t43 + t46;
-    const yaw3pitch_real_t t53 = t50 + parameters[XZ2R] * (t51 - t10) + (t12 * t42 - t11 * t47
-        + YAW3PITCH_C(0.8) * t52);
-    const yaw3pitch_real_t t54 = t0 * t48 + t1 * t53 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t6
-        + parameters[MY2] * t49 + t52);
-    const yaw3pitch_real_t t55 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
-    const yaw3pitch_real_t t56 = t1 * t55 - YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t57 = t56 + YAW3PITCH_C(0.8) * (t9 + t10);
-    const yaw3pitch_real_t t58 = t0 * t55 + YAW3PITCH_C(9.81) * t1;
-    const yaw3pitch_real_t t59 = t58 + YAW3PITCH_C(0.8) * t7;
-    const yaw3pitch_real_t t60 = t11 * t57 - t12 * t59;
-    const yaw3pitch_real_t t61 = t21 + t22;
-    const yaw3pitch_real_t t62 = t60 + YAW3PITCH_C(0.7) * t61;
-    const yaw3pitch_real_t t63 = t12 * t57 + t11 * t59;
-    const yaw3pitch_real_t t64 = t63 - YAW3PITCH_C(0.7) * t19;
-    const yaw3pitch_real_t t65 = parameters[MX4] * (t25 * t62 + t24 * t64) + parameters[MY4] * (t24 * t62
-        - t25 * t64);
-    const yaw3pitch_real_t t66 = parameters[XX4R] * t32 + parameters[XY4] * (t40 - t34) + t65;
-    const yaw3pitch_real_t t67 = input[3] - t66;
-    const yaw3pitch_real_t t68 = t25 * parameters[YZ4] - t24 * parameters[XZ4];
-    const yaw3pitch_real_t t69 = t25 * parameters[XZ4] + t24 * parameters[YZ4];
-    const yaw3pitch_real_t t70 = t1 * (t11 * t69 - t12 * t68) - t0 * (t11 * t68 + t12 * t69);
-    const yaw3pitch_real_t t71 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
-    const yaw3pitch_real_t t72 = t70 * t71;
-    const yaw3pitch_real_t t73 = parameters[XX3R] * t19 + parameters[XY3] * (t45 - t21)
-        + (parameters[MX3R] * t63 + parameters[MY3] * t60);
-    const yaw3pitch_real_t t74 = parameters[MX4] * (t34 + t35) + parameters[MY4] * t32;
-    const yaw3pitch_real_t t75 = parameters[MX4] * t32 + parameters[MY4] * (t40 + t35);
-    const yaw3pitch_real_t t76 = t25 * t74 + t24 * t75;
-    const yaw3pitch_real_t t77 = t73 + (t66 - YAW3PITCH_C(0.7) * t76);
-    const yaw3pitch_real_t t78 = t25 * parameters[MY4] - t24 * parameters[MX4];
-    const yaw3pitch_real_t t79 = YAW3PITCH_C(0.7) * t78 - parameters[ZZ4];
-    const yaw3pitch_real_t t80 = t79 * t71;
-    const yaw3pitch_real_t t81 = input[2] - t77 - t67 * t80;
-    const yaw3pitch_real_t t82 = t68 - parameters[XZ3R];
-    const yaw3pitch_real_t t83 = parameters[YZ3] + t69;
-    const yaw3pitch_real_t t84 = t11 * t82 + t12 * t83;
-    const yaw3pitch_real_t t85 = t12 * t82 - t11 * t83;
-    const yaw3pitch_real_t t86 = t0 * t84 + t1 * t85 + t70 * t80;
-    const yaw3pitch_real_t t87 = YAW3PITCH_C(-1.4) * t78;
-    const yaw3pitch_real_t t88 = parameters[ZZ3R] + (parameters[ZZ4] + t87);
-    const yaw3pitch_real_t t89 = t88 + t79 * t80;
-    if (!(t89 > YAW3PITCH_C(1.0e-9))) {
+    const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
+    const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
+    const yaw3pitch_real_t t4 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
+    const yaw3pitch_real_t t5 = t3 * t4;
+    const yaw3pitch_real_t t6 = YAW3PITCH_C(-1.4) * t2;
+    const yaw3pitch_real_t t7 = parameters[ZZ3R] + (parameters[ZZ4] + t6);
+    const yaw3pitch_real_t t8 = t7 + t3 * t5;
+    if (!(t8 > YAW3PITCH_C(1.0e-9))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t90 = YAW3PITCH_C(1.0) / t89;
-    const yaw3pitch_real_t t91 = t86 * t90;
-    const yaw3pitch_real_t t92 = parameters[XX2R] * t7 - parameters[XY2] * (t51 - t9)
-        - (parameters[MX2R] * t58 + parameters[MY2] * t56);
-    const yaw3pitch_real_t t93 = parameters[MX3R] * t61 + parameters[MY3] * t19 + (t24 * t74 - t25 * t75);
-    const yaw3pitch_real_t t94 = t11 * (parameters[MX3R] * t19 + parameters[MY3] * (t45 + t22) + t76);
-    const yaw3pitch_real_t t95 = input[1] + (t92 - (t77 - YAW3PITCH_C(0.8) * (t12 * t93 + t94)));
-    const yaw3pitch_real_t t96 = t24 * parameters[MY4] + t25 * parameters[MX4];
-    const yaw3pitch_real_t t97 = t79 + YAW3PITCH_C(0.8) * (t12 * t96 + t11 * t78);
-    const yaw3pitch_real_t t98 = t97 * t71;
-    const yaw3pitch_real_t t99 = parameters[MY3] + t96;
-    const yaw3pitch_real_t t100 = parameters[MX3R] - t78;
-    const yaw3pitch_real_t t101 = t11 * t100 - t12 * t99;
-    const yaw3pitch_real_t t102 = YAW3PITCH_C(-0.8) * t101 - t88 - t97 * t80;
-    const yaw3pitch_real_t t103 = t102 * t90;
-    const yaw3pitch_real_t t104 = t95 - t67 * t98 + t81 * t103;
-    const yaw3pitch_real_t t105 = t0 * (t84 - parameters[XZ2R]) + t1 * (t85 - parameters[YZ2]) + t70 * t98;
-    const yaw3pitch_real_t t106 = t105 + t86 * t103;
-    const yaw3pitch_real_t t107 = YAW3PITCH_C(1.6) * t101;
-    const yaw3pitch_real_t t108 = parameters[ZZ2R] + (t88 + t107) + t97 * t98 - t102 * t103;
-    if (!(t108 > YAW3PITCH_C(1.0e-9))) {
+    const yaw3pitch_real_t t9 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t10 = parameters[MY3] + t9;
+    const yaw3pitch_real_t t12 = parameters[MX3R] - t2;
+    const yaw3pitch_real_t t14 = t13 * t12 - t11 * t10;
+    const yaw3pitch_real_t t15 = t3 + YAW3PITCH_C(0.8) * (t11 * t9 + t13 * t2);
+    const yaw3pitch_real_t t16 = YAW3PITCH_C(-0.8) * t14 - t7 - t15 * t5;
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(1.0) / t8;
+    const yaw3pitch_real_t t18 = t16 * t17;
+    const yaw3pitch_real_t t19 = t15 * t4;
+    const yaw3pitch_real_t t20 = YAW3PITCH_C(1.6) * t14;
+    const yaw3pitch_real_t t21 = parameters[ZZ2R] + (t7 + t20) + t15 * t19 - t16 * t18;
+    if (!(t21 > YAW3PITCH_C(1.0e-9))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t109 = YAW3PITCH_C(1.0) / t108;
-    const yaw3pitch_real_t t110 = t106 * t109;
-    const yaw3pitch_real_t t111 = input[0] + t54 + t67 * t72 + t81 * t91 + t104 * t110;
-    const yaw3pitch_real_t t112 = t24 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t25);
-    const yaw3pitch_real_t t113 = t24 * t112;
-    const yaw3pitch_real_t t114 = parameters[XX4R] - t113 + t87;
-    const yaw3pitch_real_t t115 = parameters[XX3R] + t113;
-    const yaw3pitch_real_t t116 = parameters[XY3] + (parameters[XY4] + t25 * t112 + YAW3PITCH_C(-0.7) * t96);
-    const yaw3pitch_real_t t117 = t11 * (t114 - t115) + t116 * (YAW3PITCH_C(2.0) * t12);
-    const yaw3pitch_real_t t118 = t11 * t117;
-    const yaw3pitch_real_t t119 = parameters[XX2R] + (t114 - t118);
-    const yaw3pitch_real_t t120 = t11 * t99 + t12 * t100;
-    const yaw3pitch_real_t t121 = (parameters[XY2] + (t116 - t12 * t117
-        + YAW3PITCH_C(-0.8) * t120)) * (YAW3PITCH_C(2.0) * t0);
-    const yaw3pitch_real_t t122 = t1 * (t1 * (t115 + t118 + t107 - t119) + t121);
-    const yaw3pitch_real_t t123 = YAW3PITCH_C(0.24) * (t1 * (parameters[MX2R] + t101) - t0 * (parameters[MY2]
-        + t120));
-    const yaw3pitch_real_t t124 = parameters[ZZ1R] + (t119 + t122 + t123) + t70 * t72 - t86 * t91;
-    const yaw3pitch_real_t t125 = t124 - t106 * t110;
-    if (!(t125 > YAW3PITCH_C(1.0e-9))) {
+    const yaw3pitch_real_t t22 = t1 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t23 = t1 * t22;
+    const yaw3pitch_real_t t24 = parameters[XX4R] - t23 + t6;
+    const yaw3pitch_real_t t25 = parameters[XX3R] + t23;
+    const yaw3pitch_real_t t26 = parameters[XY3] + (parameters[XY4] + t0 * t22 + YAW3PITCH_C(-0.7) * t9);
+    const yaw3pitch_real_t t27 = t13 * (t24 - t25) + t26 * (YAW3PITCH_C(2.0) * t11);
+    const yaw3pitch_real_t t28 = t13 * t27;
+    const yaw3pitch_real_t t29 = parameters[XX2R] + (t24 - t28);
+    const yaw3pitch_real_t t31 = t13 * t10 + t11 * t12;
+    const yaw3pitch_real_t t33 = (parameters[XY2] + (t26 - t11 * t27
+        + YAW3PITCH_C(-0.8) * t31)) * (YAW3PITCH_C(2.0) * t32);
+    const yaw3pitch_real_t t34 = t30 * (t30 * (t25 + t28 + t20 - t29) + t33);
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(0.24) * (t30 * (parameters[MX2R] + t14) - t32 * (parameters[MY2]
+        + t31));
+    const yaw3pitch_real_t t36 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t37 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t38 = t30 * (t13 * t37 - t11 * t36) - t32 * (t13 * t36 + t11 * t37);
+    const yaw3pitch_real_t t39 = t38 * t4;
+    const yaw3pitch_real_t t40 = t36 - parameters[XZ3R];
+    const yaw3pitch_real_t t41 = parameters[YZ3] + t37;
+    const yaw3pitch_real_t t42 = t13 * t40 + t11 * t41;
+    const yaw3pitch_real_t t43 = t11 * t40 - t13 * t41;
+    const yaw3pitch_real_t t44 = t32 * t42 + t30 * t43 + t38 * t5;
+    const yaw3pitch_real_t t45 = t44 * t17;
+    const yaw3pitch_real_t t46 = parameters[ZZ1R] + (t29 + t34 + t35) + t38 * t39 - t44 * t45;
+    const yaw3pitch_real_t t47 = t32 * (t42 - parameters[XZ2R]) + t30 * (t43 - parameters[YZ2]) + t38 * t19;
+    const yaw3pitch_real_t t48 = t47 + t44 * t18;
+    const yaw3pitch_real_t t49 = YAW3PITCH_C(1.0) / t21;
+    const yaw3pitch_real_t t50 = t48 * t49;
+    const yaw3pitch_real_t t51 = t46 - t48 * t50;
+    if (!(t51 > YAW3PITCH_C(1.0e-9))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t126 = YAW3PITCH_C(1.0) / t125;
-    const yaw3pitch_real_t t127 = t111 * t126;
+    const yaw3pitch_real_t t52 = t32 * dq[0];
+    const yaw3pitch_real_t t53 = t30 * dq[0];
+    const yaw3pitch_real_t t54 = t13 * t52 + t11 * t53;
+    const yaw3pitch_real_t t55 = t11 * t52 - t13 * t53;
+    const yaw3pitch_real_t t56 = t0 * t54 + t1 * t55;
+    const yaw3pitch_real_t t57 = dq[1] + dq[2];
+    const yaw3pitch_real_t t58 = dq[3] + t57;
+    const yaw3pitch_real_t t59 = t56 * t58;
+    const yaw3pitch_real_t t60 = t1 * t54 - t0 * t55;
+    const yaw3pitch_real_t t61 = t60 * t58;
+    const yaw3pitch_real_t t62 = YAW3PITCH_C(2.0) * t61;
+    const yaw3pitch_real_t t63 = t60 * t56;
+    const yaw3pitch_real_t t64 = parameters[XX4R] * t59 + parameters[ZZ4] * t59 + parameters[XY4] * t62
+        + parameters[XZ4] * t63;
+    const yaw3pitch_real_t t65 = t56 * t56;
+    const yaw3pitch_real_t t66 = t58 * t58;
+    const yaw3pitch_real_t t67 = t54 * t57;
+    const yaw3pitch_real_t t68 = dq[1] * t52;
+    const yaw3pitch_real_t t69 = YAW3PITCH_C(-1.6) * t68;
+    const yaw3pitch_real_t t70 = t69 + YAW3PITCH_C(-1.4) * t67;
+    const yaw3pitch_real_t t71 = t64 + parameters[YZ4] * (t66 - t65) + parameters[MY4] * t70;
+    const yaw3pitch_real_t t72 = YAW3PITCH_C(-2.0) * t59;
+    const yaw3pitch_real_t t73 = t61 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t72
+        + parameters[YZ4] * t63;
+    const yaw3pitch_real_t t74 = t60 * t60;
+    const yaw3pitch_real_t t75 = t73 + parameters[XZ4] * (t66 - t74) + parameters[MX4] * t70;
+    const yaw3pitch_real_t t76 = t55 * t57;
+    const yaw3pitch_real_t t77 = YAW3PITCH_C(2.0) * t67;
+    const yaw3pitch_real_t t78 = t54 * t55;
+    const yaw3pitch_real_t t79 = parameters[XX3R] * t76 + parameters[ZZ3R] * t76 + parameters[XY3] * t77
+        + parameters[XZ3R] * t78;
+    const yaw3pitch_real_t t80 = t55 * t55;
+    const yaw3pitch_real_t t81 = t57 * t57;
+    const yaw3pitch_real_t t82 = t79 + parameters[YZ3] * (t81 - t80) + parameters[MY3] * t69 + (t1 * t71
+        + t0 * t75);
+    const yaw3pitch_real_t t83 = parameters[MX4] * t62 + parameters[MY4] * t72;
+    const yaw3pitch_real_t t84 = YAW3PITCH_C(-2.0) * t76;
+    const yaw3pitch_real_t t85 = t67 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t84
+        + parameters[YZ3] * t78;
+    const yaw3pitch_real_t t86 = t54 * t54;
+    const yaw3pitch_real_t t87 = t85 - parameters[XZ3R] * (t86 - t81) + parameters[MX3R] * t69 - (t0 * t71
+        - t1 * t75 + YAW3PITCH_C(0.7) * t83);
+    const yaw3pitch_real_t t88 = dq[1] * t53;
+    const yaw3pitch_real_t t89 = YAW3PITCH_C(2.0) * t68;
+    const yaw3pitch_real_t t90 = t52 * t53;
+    const yaw3pitch_real_t t91 = parameters[XY2] * t89 - (parameters[XX2R] * t88 + parameters[ZZ2R] * t88)
+        - parameters[XZ2R] * t90;
+    const yaw3pitch_real_t t92 = t53 * t53;
+    const yaw3pitch_real_t t93 = dq[1] * dq[1];
+    const yaw3pitch_real_t t94 = t91 + parameters[YZ2] * (t93 - t92) + (t13 * t82 + t11 * t87);
+    const yaw3pitch_real_t t95 = parameters[MX3R] * t77 + parameters[MY3] * t84 + t83;
+    const yaw3pitch_real_t t96 = YAW3PITCH_C(2.0) * t88;
+    const yaw3pitch_real_t t97 = t68 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t96
+        + parameters[YZ2] * t90;
+    const yaw3pitch_real_t t98 = t52 * t52;
+    const yaw3pitch_real_t t99 = t97 + parameters[XZ2R] * (t98 - t93) + (t11 * t82 - t13 * t87
+        + YAW3PITCH_C(0.8) * t95);
+    const yaw3pitch_real_t t100 = t32 * t94 + t30 * t99 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t89
+        + parameters[MY2] * t96 + t95);
+    const yaw3pitch_real_t t101 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t102 = t30 * t101 - YAW3PITCH_C(9.81) * t32;
+    const yaw3pitch_real_t t103 = t102 + YAW3PITCH_C(0.8) * (t92 + t93);
+    const yaw3pitch_real_t t104 = t32 * t101 + YAW3PITCH_C(9.81) * t30;
+    const yaw3pitch_real_t t105 = t104 + YAW3PITCH_C(0.8) * t90;
+    const yaw3pitch_real_t t106 = t13 * t103 - t11 * t105;
+    const yaw3pitch_real_t t107 = t80 + t81;
+    const yaw3pitch_real_t t108 = t106 + YAW3PITCH_C(0.7) * t107;
+    const yaw3pitch_real_t t109 = t11 * t103 + t13 * t105;
+    const yaw3pitch_real_t t110 = t109 - YAW3PITCH_C(0.7) * t78;
+    const yaw3pitch_real_t t111 = parameters[MX4] * (t0 * t108 + t1 * t110) + parameters[MY4] * (t1 * t108
+        - t0 * t110);
+    const yaw3pitch_real_t t112 = parameters[XX4R] * t63 + parameters[XY4] * (t74 - t65) + t111;
+    const yaw3pitch_real_t t113 = input[3] - t112;
+    const yaw3pitch_real_t t114 = parameters[MX4] * (t65 + t66) + parameters[MY4] * t63;
+    const yaw3pitch_real_t t115 = parameters[MX4] * t63 + parameters[MY4] * (t74 + t66);
+    const yaw3pitch_real_t t116 = t0 * t114 + t1 * t115;
+    const yaw3pitch_real_t t117 = parameters[XX3R] * t78 + parameters[XY3] * (t86 - t80)
+        + (parameters[MX3R] * t109 + parameters[MY3] * t106);
+    const yaw3pitch_real_t t118 = t117 + (t112 - YAW3PITCH_C(0.7) * t116);
+    const yaw3pitch_real_t t119 = input[2] - t118 - t113 * t5;
+    const yaw3pitch_real_t t120 = parameters[MX3R] * t107 + parameters[MY3] * t78 + (t1 * t114 - t0 * t115);
+    const yaw3pitch_real_t t121 = t13 * (parameters[MX3R] * t78 + parameters[MY3] * (t86 + t81) + t116);
+    const yaw3pitch_real_t t122 = parameters[XX2R] * t90 - parameters[XY2] * (t98 - t92)
+        - (parameters[MX2R] * t104 + parameters[MY2] * t102);
+    const yaw3pitch_real_t t123 = input[1] + (t122 - (t118 - YAW3PITCH_C(0.8) * (t11 * t120 + t121)));
+    const yaw3pitch_real_t t124 = t123 - t113 * t19 + t119 * t18;
+    const yaw3pitch_real_t t125 = input[0] + t100 + t113 * t39 + t119 * t45 + t124 * t50;
+    const yaw3pitch_real_t t126 = YAW3PITCH_C(1.0) / t51;
+    const yaw3pitch_real_t t127 = t125 * t126;
     out[0] = t127;
     if (!(t127 >= YAW3PITCH_C(-1.0e15) && t127 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t128 = t104 * t109 + t110 * t127;
+    const yaw3pitch_real_t t128 = t124 * t49 + t50 * t127;
     out[1] = t128;
     if (!(t128 >= YAW3PITCH_C(-1.0e15) && t128 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t129 = t81 * t90 + t91 * t127 + t103 * t128;
+    const yaw3pitch_real_t t129 = t119 * t17 + t45 * t127 + t18 * t128;
     out[2] = t129;
     if (!(t129 >= YAW3PITCH_C(-1.0e15) && t129 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t130 = t72 * t127 - t67 * t71 - t98 * t128 - t80 * t129;
+    const yaw3pitch_real_t t130 = t39 * t127 - t113 * t4 - t19 * t128 - t5 * t129;
     out[3] = t130;
     if (!(t130 >= YAW3PITCH_C(-1.0e15) && t130 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);

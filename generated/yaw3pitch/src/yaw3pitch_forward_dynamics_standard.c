@@ -66,7 +66,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -93,202 +93,204 @@ int yaw3pitch_forward_dynamics_standard(
         return status;
     }
 
+    yaw3pitch_real_t t36, t34;
+    YAW3PITCH_SINCOS(q[1], &t36, &t34);
+    yaw3pitch_real_t t12, t14;
+    YAW3PITCH_SINCOS(q[2], &t12, &t14);
     yaw3pitch_real_t t0, t1;
-    YAW3PITCH_SINCOS(q[1], &t0, &t1);
-    yaw3pitch_real_t t16, t14;
-    YAW3PITCH_SINCOS(q[2], &t16, &t14);
-    yaw3pitch_real_t t34, t32;
-    YAW3PITCH_SINCOS(q[3], &t34, &t32);
-    const yaw3pitch_real_t t2 = t1 * dq[0];
-    const yaw3pitch_real_t t3 = dq[1] * t2;
-    const yaw3pitch_real_t t4 = t0 * dq[0];
-    const yaw3pitch_real_t t5 = dq[1] * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(2.0) * t5;
-    const yaw3pitch_real_t t7 = t3 * (parameters[YY2] - parameters[ZZ2]) - t3 * parameters[XX2]
-        + t6 * parameters[XY2];
-    const yaw3pitch_real_t t8 = t4 * t2;
-    const yaw3pitch_real_t t9 = t2 * t2;
-    const yaw3pitch_real_t t10 = dq[1] * dq[1];
-    const yaw3pitch_real_t t11 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
-    const yaw3pitch_real_t t12 = t0 * t11 + YAW3PITCH_C(9.81) * t1;
-    const yaw3pitch_real_t t13 = t7 - t8 * parameters[XZ2] + (t10 - t9) * parameters[YZ2]
-        + t12 * parameters[MZ2];
-    const yaw3pitch_real_t t15 = dq[1] + dq[2];
-    const yaw3pitch_real_t t17 = t14 * t2 - t16 * t4;
-    const yaw3pitch_real_t t18 = t15 * t17;
-    const yaw3pitch_real_t t19 = t14 * t4 + t16 * t2;
-    const yaw3pitch_real_t t20 = t15 * t19;
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(2.0) * t20;
-    const yaw3pitch_real_t t22 = parameters[XY3] * t21 - (parameters[XX3] * t18 + t18 * (parameters[ZZ3]
-        - parameters[YY3]));
-    const yaw3pitch_real_t t23 = t19 * t17;
-    const yaw3pitch_real_t t24 = t15 * t15;
-    const yaw3pitch_real_t t25 = t17 * t17;
-    const yaw3pitch_real_t t26 = YAW3PITCH_C(-1.6) * t5;
-    const yaw3pitch_real_t t27 = t1 * t11 + YAW3PITCH_C(-9.81) * t0;
-    const yaw3pitch_real_t t28 = t27 + YAW3PITCH_C(0.8) * (t9 + t10);
-    const yaw3pitch_real_t t29 = t12 + YAW3PITCH_C(0.8) * t8;
-    const yaw3pitch_real_t t30 = t16 * t28 + t14 * t29;
-    const yaw3pitch_real_t t31 = t22 - parameters[XZ3] * t23 + parameters[YZ3] * (t24 - t25)
-        + (parameters[MY3] * t26 + parameters[MZ3] * t30);
-    const yaw3pitch_real_t t33 = dq[3] + t15;
-    const yaw3pitch_real_t t35 = t32 * t17 - t34 * t19;
-    const yaw3pitch_real_t t36 = t33 * t35;
+    YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-9))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t37 = t32 * t19 + t34 * t17;
-    const yaw3pitch_real_t t38 = t33 * t37;
-    const yaw3pitch_real_t t39 = YAW3PITCH_C(2.0) * t38;
-    const yaw3pitch_real_t t40 = parameters[XY4] * t39 - (parameters[XX4] * t36 + t36 * (parameters[ZZ4]
+    const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
+    const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
+    const yaw3pitch_real_t t4 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
+    const yaw3pitch_real_t t5 = t3 * t4;
+    const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * parameters[M4];
+    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(-2.0) * t2);
+    const yaw3pitch_real_t t8 = parameters[ZZ3] + (parameters[ZZ4] + t7);
+    const yaw3pitch_real_t t9 = t8 + t3 * t5;
+    if (!(t9 > YAW3PITCH_C(1.0e-9))) {
+        yaw3pitch_zero(out, 4);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t11 = parameters[MY3] + t10;
+    const yaw3pitch_real_t t13 = parameters[MX3] - (t2 - t6);
+    const yaw3pitch_real_t t15 = t14 * t13 - t12 * t11;
+    const yaw3pitch_real_t t16 = t3 + YAW3PITCH_C(0.8) * (t12 * t10 + t14 * t2);
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(-0.8) * t15 - t8 - t16 * t5;
+    const yaw3pitch_real_t t18 = YAW3PITCH_C(1.0) / t9;
+    const yaw3pitch_real_t t19 = t17 * t18;
+    const yaw3pitch_real_t t20 = t16 * t4;
+    const yaw3pitch_real_t t21 = parameters[M3] + parameters[M4];
+    const yaw3pitch_real_t t22 = YAW3PITCH_C(0.8) * t21;
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * (t22 + YAW3PITCH_C(2.0) * t15);
+    const yaw3pitch_real_t t24 = parameters[ZZ2] + (t8 + t23) + t16 * t20 - t17 * t19;
+    if (!(t24 > YAW3PITCH_C(1.0e-9))) {
+        yaw3pitch_zero(out, 4);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t25 = parameters[XX4] - parameters[YY4];
+    const yaw3pitch_real_t t26 = t1 * t25 + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t27 = t1 * t26;
+    const yaw3pitch_real_t t28 = parameters[YY3] + (parameters[XX4] - t27 + t7);
+    const yaw3pitch_real_t t29 = parameters[XX3] + (parameters[YY4] + t27);
+    const yaw3pitch_real_t t30 = parameters[XY3] + (parameters[XY4] + t0 * t26 + YAW3PITCH_C(-0.7) * t10);
+    const yaw3pitch_real_t t31 = t14 * (t29 - t28) - t30 * (YAW3PITCH_C(2.0) * t12);
+    const yaw3pitch_real_t t32 = t14 * t31;
+    const yaw3pitch_real_t t33 = parameters[XX2] + (t28 + t32);
+    const yaw3pitch_real_t t35 = t14 * t11 + t12 * t13;
+    const yaw3pitch_real_t t37 = (parameters[XY2] + (t30 + t12 * t31
+        + YAW3PITCH_C(-0.8) * t35)) * (YAW3PITCH_C(2.0) * t36);
+    const yaw3pitch_real_t t38 = t34 * (parameters[YY2] + (t29 - t32 + t23) - t33) + t37;
+    const yaw3pitch_real_t t39 = t34 * (parameters[MX2] + (t15 + t22)) - t36 * (parameters[MY2] + t35);
+    const yaw3pitch_real_t t40 = t33 + t34 * t38 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
+        + t21) + YAW3PITCH_C(2.0) * t39);
+    const yaw3pitch_real_t t41 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t42 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t43 = t34 * (t14 * t42 - t12 * t41) - t36 * (t14 * t41 + t12 * t42);
+    const yaw3pitch_real_t t44 = t43 * t4;
+    const yaw3pitch_real_t t45 = t41 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
+    const yaw3pitch_real_t t46 = parameters[YZ3] + t42;
+    const yaw3pitch_real_t t47 = t14 * t45 + t12 * t46;
+    const yaw3pitch_real_t t48 = t12 * t45 - t14 * t46;
+    const yaw3pitch_real_t t49 = t36 * t47 + t34 * t48 + t43 * t5;
+    const yaw3pitch_real_t t50 = t49 * t18;
+    const yaw3pitch_real_t t51 = t36 * (t47 + YAW3PITCH_C(0.8) * (parameters[MZ3] + parameters[MZ4])
+        - parameters[XZ2]) + t34 * (t48 - parameters[YZ2]);
+    const yaw3pitch_real_t t52 = t51 + t43 * t20 + t49 * t19;
+    const yaw3pitch_real_t t53 = YAW3PITCH_C(1.0) / t24;
+    const yaw3pitch_real_t t54 = t52 * t53;
+    const yaw3pitch_real_t t55 = parameters[ZZ1] + t40 + t43 * t44 - t49 * t50 - t52 * t54;
+    if (!(t55 > YAW3PITCH_C(1.0e-9))) {
+        yaw3pitch_zero(out, 4);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t56 = t36 * dq[0];
+    const yaw3pitch_real_t t57 = t34 * dq[0];
+    const yaw3pitch_real_t t58 = t14 * t56 + t12 * t57;
+    const yaw3pitch_real_t t59 = t14 * t57 - t12 * t56;
+    const yaw3pitch_real_t t60 = t1 * t59 - t0 * t58;
+    const yaw3pitch_real_t t61 = dq[1] + dq[2];
+    const yaw3pitch_real_t t62 = dq[3] + t61;
+    const yaw3pitch_real_t t63 = t62 * t60;
+    const yaw3pitch_real_t t64 = t1 * t58 + t0 * t59;
+    const yaw3pitch_real_t t65 = t62 * t64;
+    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t65;
+    const yaw3pitch_real_t t67 = parameters[XY4] * t66 - (parameters[XX4] * t63 + t63 * (parameters[ZZ4]
         - parameters[YY4]));
-    const yaw3pitch_real_t t41 = t37 * t35;
-    const yaw3pitch_real_t t42 = t33 * t33;
-    const yaw3pitch_real_t t43 = t35 * t35;
-    const yaw3pitch_real_t t44 = t26 + YAW3PITCH_C(-1.4) * t20;
-    const yaw3pitch_real_t t45 = t14 * t28 - t16 * t29;
-    const yaw3pitch_real_t t46 = t24 + t25;
-    const yaw3pitch_real_t t47 = t45 + YAW3PITCH_C(0.7) * t46;
-    const yaw3pitch_real_t t48 = t30 + YAW3PITCH_C(0.7) * t23;
-    const yaw3pitch_real_t t49 = t34 * t47 + t32 * t48;
-    const yaw3pitch_real_t t50 = t40 - parameters[XZ4] * t41 + parameters[YZ4] * (t42 - t43)
-        + (parameters[MY4] * t44 + parameters[MZ4] * t49);
-    const yaw3pitch_real_t t51 = YAW3PITCH_C(2.0) * t36;
-    const yaw3pitch_real_t t52 = t38 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t38
-        + parameters[XY4] * t51;
-    const yaw3pitch_real_t t53 = t37 * t37;
-    const yaw3pitch_real_t t54 = t34 * t48 - t32 * t47;
-    const yaw3pitch_real_t t55 = t52 - parameters[YZ4] * t41 + parameters[XZ4] * (t42 - t53)
-        + (parameters[MZ4] * t54 + parameters[MX4] * t44);
-    const yaw3pitch_real_t t56 = t31 + (t32 * t50 + t34 * t55);
-    const yaw3pitch_real_t t57 = YAW3PITCH_C(2.0) * t18;
-    const yaw3pitch_real_t t58 = parameters[YY3] * t20 - t20 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t57;
-    const yaw3pitch_real_t t59 = t19 * t19;
-    const yaw3pitch_real_t t60 = t58 + parameters[YZ3] * t23 - parameters[XZ3] * (t24 - t59)
-        + (parameters[MZ3] * t45 - parameters[MX3] * t26);
-    const yaw3pitch_real_t t61 = parameters[MX4] * t39 + parameters[MY4] * t51 - parameters[MZ4] * (t53
-        + t43);
-    const yaw3pitch_real_t t62 = t61 - parameters[M4] * t44;
-    const yaw3pitch_real_t t63 = t60 + (t34 * t50 - t32 * t55 + YAW3PITCH_C(0.7) * t62);
-    const yaw3pitch_real_t t64 = YAW3PITCH_C(2.0) * t3;
-    const yaw3pitch_real_t t65 = t5 * parameters[YY2] + t5 * (parameters[ZZ2] - parameters[XX2])
-        - t64 * parameters[XY2];
-    const yaw3pitch_real_t t66 = t4 * t4;
-    const yaw3pitch_real_t t67 = t65 + t8 * parameters[YZ2] + (t66 - t10) * parameters[XZ2]
-        + t27 * parameters[MZ2];
-    const yaw3pitch_real_t t68 = parameters[MX3] * t21 + parameters[MY3] * t57 - parameters[MZ3] * (t59
-        + t25);
-    const yaw3pitch_real_t t69 = t68 - parameters[M3] * t26 + t62;
-    const yaw3pitch_real_t t70 = t67 + (t16 * t56 + t14 * t63 + YAW3PITCH_C(0.8) * t69);
-    const yaw3pitch_real_t t71 = t0 * (t13 + (t14 * t56 - t16 * t63)) + t1 * t70;
-    const yaw3pitch_real_t t72 = t6 * parameters[MX2] + t64 * parameters[MY2] - (t66 + t9) * parameters[MZ2];
-    const yaw3pitch_real_t t73 = parameters[XX4] - parameters[YY4];
-    const yaw3pitch_real_t t74 = parameters[XY4] * (t53 - t43) - t73 * t41 + (parameters[MX4] * t49
-        - parameters[MY4] * t54);
-    const yaw3pitch_real_t t75 = input[3] - t74;
-    const yaw3pitch_real_t t76 = t34 * parameters[YZ4] - t32 * parameters[XZ4];
-    const yaw3pitch_real_t t77 = t34 * parameters[XZ4] + t32 * parameters[YZ4];
-    const yaw3pitch_real_t t78 = t1 * (t14 * t77 - t16 * t76) - t0 * (t14 * t76 + t16 * t77);
-    const yaw3pitch_real_t t79 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
-    const yaw3pitch_real_t t80 = t78 * t79;
-    const yaw3pitch_real_t t81 = input[0] + (t71 + YAW3PITCH_C(0.12) * (t72 + t69)) + t75 * t80;
-    const yaw3pitch_real_t t82 = parameters[XY3] * (t59 - t25) - t23 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MX3] * t30 + parameters[MY3] * t45);
-    const yaw3pitch_real_t t83 = parameters[MX4] * (t42 + t43) - parameters[MY4] * t41 - parameters[M4] * t54;
-    const yaw3pitch_real_t t84 = parameters[M4] * t49 - (parameters[MY4] * (t42 + t53)
-        - parameters[MX4] * t41);
-    const yaw3pitch_real_t t85 = t34 * t83 - t32 * t84;
-    const yaw3pitch_real_t t86 = t82 + (t74 - YAW3PITCH_C(0.7) * t85);
-    const yaw3pitch_real_t t87 = t34 * parameters[MY4] - t32 * parameters[MX4];
-    const yaw3pitch_real_t t88 = YAW3PITCH_C(0.7) * t87 - parameters[ZZ4];
-    const yaw3pitch_real_t t89 = t88 * t79;
-    const yaw3pitch_real_t t90 = input[2] - t86 - t75 * t89;
-    const yaw3pitch_real_t t91 = t76 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
-    const yaw3pitch_real_t t92 = parameters[YZ3] + t77;
-    const yaw3pitch_real_t t93 = t14 * t91 + t16 * t92;
-    const yaw3pitch_real_t t94 = t16 * t91 - t14 * t92;
-    const yaw3pitch_real_t t95 = t0 * t93 + t1 * t94 + t78 * t89;
-    const yaw3pitch_real_t t96 = YAW3PITCH_C(0.7) * parameters[M4];
-    const yaw3pitch_real_t t97 = YAW3PITCH_C(0.7) * (t96 + YAW3PITCH_C(-2.0) * t87);
-    const yaw3pitch_real_t t98 = parameters[ZZ3] + (parameters[ZZ4] + t97);
-    const yaw3pitch_real_t t99 = t98 + t88 * t89;
-    if (!(t99 > YAW3PITCH_C(1.0e-9))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t100 = YAW3PITCH_C(1.0) / t99;
-    const yaw3pitch_real_t t101 = t95 * t100;
-    const yaw3pitch_real_t t102 = t8 * (parameters[XX2] - parameters[YY2]) - (t66 - t9) * parameters[XY2]
-        - (t12 * parameters[MX2] + t27 * parameters[MY2]);
-    const yaw3pitch_real_t t103 = parameters[M3] * t45 + (parameters[MX3] * t46 - parameters[MY3] * t23)
-        + (t32 * t83 + t34 * t84);
-    const yaw3pitch_real_t t104 = parameters[M3] * t30 - (parameters[MY3] * (t24 + t59)
-        - parameters[MX3] * t23);
-    const yaw3pitch_real_t t105 = t86 - YAW3PITCH_C(0.8) * (t16 * t103 - t14 * (t104 - t85));
-    const yaw3pitch_real_t t106 = t32 * parameters[MY4] + t34 * parameters[MX4];
-    const yaw3pitch_real_t t107 = t88 + YAW3PITCH_C(0.8) * (t16 * t106 + t14 * t87);
-    const yaw3pitch_real_t t108 = t107 * t79;
-    const yaw3pitch_real_t t109 = parameters[MY3] + t106;
-    const yaw3pitch_real_t t110 = parameters[MX3] - (t87 - t96);
-    const yaw3pitch_real_t t111 = t14 * t110 - t16 * t109;
-    const yaw3pitch_real_t t112 = YAW3PITCH_C(-0.8) * t111 - t98 - t107 * t89;
-    const yaw3pitch_real_t t113 = t112 * t100;
-    const yaw3pitch_real_t t114 = input[1] + (t102 - t105) - t75 * t108 + t90 * t113;
-    const yaw3pitch_real_t t115 = t0 * (t93 + YAW3PITCH_C(0.8) * (parameters[MZ3] + parameters[MZ4])
-        - parameters[XZ2]) + t1 * (t94 - parameters[YZ2]);
-    const yaw3pitch_real_t t116 = t115 + t78 * t108 + t95 * t113;
-    const yaw3pitch_real_t t117 = parameters[M3] + parameters[M4];
-    const yaw3pitch_real_t t118 = YAW3PITCH_C(0.8) * t117;
-    const yaw3pitch_real_t t119 = YAW3PITCH_C(0.8) * (t118 + YAW3PITCH_C(2.0) * t111);
-    const yaw3pitch_real_t t120 = parameters[ZZ2] + (t98 + t119) + t107 * t108 - t112 * t113;
-    if (!(t120 > YAW3PITCH_C(1.0e-9))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t121 = YAW3PITCH_C(1.0) / t120;
-    const yaw3pitch_real_t t122 = t116 * t121;
-    const yaw3pitch_real_t t123 = t32 * t73 + parameters[XY4] * (YAW3PITCH_C(-2.0) * t34);
-    const yaw3pitch_real_t t124 = t32 * t123;
-    const yaw3pitch_real_t t125 = parameters[YY3] + (parameters[XX4] - t124 + t97);
-    const yaw3pitch_real_t t126 = parameters[XX3] + (parameters[YY4] + t124);
-    const yaw3pitch_real_t t127 = parameters[XY3] + (parameters[XY4] + t34 * t123 + YAW3PITCH_C(-0.7) * t106);
-    const yaw3pitch_real_t t128 = t14 * (t126 - t125) - t127 * (YAW3PITCH_C(2.0) * t16);
-    const yaw3pitch_real_t t129 = t14 * t128;
-    const yaw3pitch_real_t t130 = parameters[XX2] + (t125 + t129);
-    const yaw3pitch_real_t t131 = t14 * t109 + t16 * t110;
-    const yaw3pitch_real_t t132 = (parameters[XY2] + (t127 + t16 * t128
-        + YAW3PITCH_C(-0.8) * t131)) * (YAW3PITCH_C(2.0) * t0);
-    const yaw3pitch_real_t t133 = t1 * (parameters[YY2] + (t126 - t129 + t119) - t130) + t132;
-    const yaw3pitch_real_t t134 = t1 * (parameters[MX2] + (t111 + t118)) - t0 * (parameters[MY2] + t131);
-    const yaw3pitch_real_t t135 = t130 + t1 * t133 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
-        + t117) + YAW3PITCH_C(2.0) * t134);
-    const yaw3pitch_real_t t136 = parameters[ZZ1] + t135 + t78 * t80 - t95 * t101 - t116 * t122;
-    if (!(t136 > YAW3PITCH_C(1.0e-9))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t137 = YAW3PITCH_C(1.0) / t136;
-    const yaw3pitch_real_t t138 = (t81 + t90 * t101 + t114 * t122) * t137;
+    const yaw3pitch_real_t t68 = t64 * t60;
+    const yaw3pitch_real_t t69 = t60 * t60;
+    const yaw3pitch_real_t t70 = t62 * t62;
+    const yaw3pitch_real_t t71 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t72 = t34 * t71 + YAW3PITCH_C(-9.81) * t36;
+    const yaw3pitch_real_t t73 = t57 * t57;
+    const yaw3pitch_real_t t74 = dq[1] * dq[1];
+    const yaw3pitch_real_t t75 = t72 + YAW3PITCH_C(0.8) * (t73 + t74);
+    const yaw3pitch_real_t t76 = t36 * t71 + YAW3PITCH_C(9.81) * t34;
+    const yaw3pitch_real_t t77 = t56 * t57;
+    const yaw3pitch_real_t t78 = t76 + YAW3PITCH_C(0.8) * t77;
+    const yaw3pitch_real_t t79 = t14 * t75 - t12 * t78;
+    const yaw3pitch_real_t t80 = t59 * t59;
+    const yaw3pitch_real_t t81 = t61 * t61;
+    const yaw3pitch_real_t t82 = t81 + t80;
+    const yaw3pitch_real_t t83 = t79 + YAW3PITCH_C(0.7) * t82;
+    const yaw3pitch_real_t t84 = t12 * t75 + t14 * t78;
+    const yaw3pitch_real_t t85 = t58 * t59;
+    const yaw3pitch_real_t t86 = t84 + YAW3PITCH_C(0.7) * t85;
+    const yaw3pitch_real_t t87 = t0 * t83 + t1 * t86;
+    const yaw3pitch_real_t t88 = t61 * t58;
+    const yaw3pitch_real_t t89 = dq[1] * t56;
+    const yaw3pitch_real_t t90 = YAW3PITCH_C(-1.6) * t89;
+    const yaw3pitch_real_t t91 = t90 + YAW3PITCH_C(-1.4) * t88;
+    const yaw3pitch_real_t t92 = t67 - parameters[XZ4] * t68 + parameters[YZ4] * (t70 - t69)
+        + (parameters[MY4] * t91 + parameters[MZ4] * t87);
+    const yaw3pitch_real_t t93 = YAW3PITCH_C(2.0) * t63;
+    const yaw3pitch_real_t t94 = t65 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t65
+        + parameters[XY4] * t93;
+    const yaw3pitch_real_t t95 = t64 * t64;
+    const yaw3pitch_real_t t96 = t0 * t86 - t1 * t83;
+    const yaw3pitch_real_t t97 = t94 - parameters[YZ4] * t68 + parameters[XZ4] * (t70 - t95)
+        + (parameters[MZ4] * t96 + parameters[MX4] * t91);
+    const yaw3pitch_real_t t98 = t61 * t59;
+    const yaw3pitch_real_t t99 = YAW3PITCH_C(2.0) * t88;
+    const yaw3pitch_real_t t100 = parameters[XY3] * t99 - (parameters[XX3] * t98 + t98 * (parameters[ZZ3]
+        - parameters[YY3]));
+    const yaw3pitch_real_t t101 = t100 - parameters[XZ3] * t85 + parameters[YZ3] * (t81 - t80)
+        + (parameters[MY3] * t90 + parameters[MZ3] * t84);
+    const yaw3pitch_real_t t102 = t101 + (t1 * t92 + t0 * t97);
+    const yaw3pitch_real_t t103 = parameters[MX4] * t66 + parameters[MY4] * t93 - parameters[MZ4] * (t95
+        + t69);
+    const yaw3pitch_real_t t104 = t103 - parameters[M4] * t91;
+    const yaw3pitch_real_t t105 = YAW3PITCH_C(2.0) * t98;
+    const yaw3pitch_real_t t106 = parameters[YY3] * t88 - t88 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t105;
+    const yaw3pitch_real_t t107 = t58 * t58;
+    const yaw3pitch_real_t t108 = t106 + parameters[YZ3] * t85 - parameters[XZ3] * (t81 - t107)
+        + (parameters[MZ3] * t79 - parameters[MX3] * t90);
+    const yaw3pitch_real_t t109 = t108 + (t0 * t92 - t1 * t97 + YAW3PITCH_C(0.7) * t104);
+    const yaw3pitch_real_t t110 = dq[1] * t57;
+    const yaw3pitch_real_t t111 = YAW3PITCH_C(2.0) * t89;
+    const yaw3pitch_real_t t112 = t110 * (parameters[YY2] - parameters[ZZ2]) - t110 * parameters[XX2]
+        + t111 * parameters[XY2];
+    const yaw3pitch_real_t t113 = t112 - t77 * parameters[XZ2] + (t74 - t73) * parameters[YZ2]
+        + t76 * parameters[MZ2];
+    const yaw3pitch_real_t t114 = parameters[MX3] * t99 + parameters[MY3] * t105 - parameters[MZ3] * (t107
+        + t80);
+    const yaw3pitch_real_t t115 = t114 - parameters[M3] * t90 + t104;
+    const yaw3pitch_real_t t116 = YAW3PITCH_C(2.0) * t110;
+    const yaw3pitch_real_t t117 = t89 * parameters[YY2] + t89 * (parameters[ZZ2] - parameters[XX2])
+        - t116 * parameters[XY2];
+    const yaw3pitch_real_t t118 = t56 * t56;
+    const yaw3pitch_real_t t119 = t117 + t77 * parameters[YZ2] + (t118 - t74) * parameters[XZ2]
+        + t72 * parameters[MZ2];
+    const yaw3pitch_real_t t120 = t119 + (t12 * t102 + t14 * t109 + YAW3PITCH_C(0.8) * t115);
+    const yaw3pitch_real_t t121 = t36 * (t113 + (t14 * t102 - t12 * t109)) + t34 * t120;
+    const yaw3pitch_real_t t122 = t111 * parameters[MX2] + t116 * parameters[MY2] - (t118
+        + t73) * parameters[MZ2];
+    const yaw3pitch_real_t t123 = parameters[XY4] * (t95 - t69) - t25 * t68 + (parameters[MX4] * t87
+        - parameters[MY4] * t96);
+    const yaw3pitch_real_t t124 = input[3] - t123;
+    const yaw3pitch_real_t t125 = input[0] + (t121 + YAW3PITCH_C(0.12) * (t122 + t115)) + t124 * t44;
+    const yaw3pitch_real_t t126 = parameters[MX4] * (t70 + t69) - parameters[MY4] * t68
+        - parameters[M4] * t96;
+    const yaw3pitch_real_t t127 = parameters[M4] * t87 - (parameters[MY4] * (t70 + t95)
+        - parameters[MX4] * t68);
+    const yaw3pitch_real_t t128 = t0 * t126 - t1 * t127;
+    const yaw3pitch_real_t t129 = parameters[XY3] * (t107 - t80) - t85 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MX3] * t84 + parameters[MY3] * t79);
+    const yaw3pitch_real_t t130 = t129 + (t123 - YAW3PITCH_C(0.7) * t128);
+    const yaw3pitch_real_t t131 = input[2] - t130 - t124 * t5;
+    const yaw3pitch_real_t t132 = parameters[M3] * t79 + (parameters[MX3] * t82 - parameters[MY3] * t85)
+        + (t1 * t126 + t0 * t127);
+    const yaw3pitch_real_t t133 = parameters[M3] * t84 - (parameters[MY3] * (t81 + t107)
+        - parameters[MX3] * t85);
+    const yaw3pitch_real_t t134 = t130 - YAW3PITCH_C(0.8) * (t12 * t132 - t14 * (t133 - t128));
+    const yaw3pitch_real_t t135 = t77 * (parameters[XX2] - parameters[YY2]) - (t118 - t73) * parameters[XY2]
+        - (t76 * parameters[MX2] + t72 * parameters[MY2]);
+    const yaw3pitch_real_t t136 = input[1] + (t135 - t134) - t124 * t20 + t131 * t19;
+    const yaw3pitch_real_t t137 = YAW3PITCH_C(1.0) / t55;
+    const yaw3pitch_real_t t138 = (t125 + t131 * t50 + t136 * t54) * t137;
     out[0] = t138;
     if (!(t138 >= YAW3PITCH_C(-1.0e15) && t138 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t139 = t114 * t121 + t122 * t138;
+    const yaw3pitch_real_t t139 = t136 * t53 + t54 * t138;
     out[1] = t139;
     if (!(t139 >= YAW3PITCH_C(-1.0e15) && t139 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t140 = t90 * t100 + t101 * t138 + t113 * t139;
+    const yaw3pitch_real_t t140 = t131 * t18 + t50 * t138 + t19 * t139;
     out[2] = t140;
     if (!(t140 >= YAW3PITCH_C(-1.0e15) && t140 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t141 = t80 * t138 - t75 * t79 - t108 * t139 - t89 * t140;
+    const yaw3pitch_real_t t141 = t44 * t138 - t124 * t4 - t20 * t139 - t5 * t140;
     out[3] = t141;
     if (!(t141 >= YAW3PITCH_C(-1.0e15) && t141 <= YAW3PITCH_C(1.0e15))) {
         yaw3pitch_zero(out, 4);

@@ -45,7 +45,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_gravity.c are of different generations: generate the arm again"
 #endif
 
@@ -67,20 +67,20 @@ int yaw3pitch_gravity(
         return status;
     }
 
-    yaw3pitch_real_t t2, t0;
-    YAW3PITCH_SINCOS(q[1], &t2, &t0);
-    yaw3pitch_real_t t4, t5;
-    YAW3PITCH_SINCOS(q[2], &t4, &t5);
-    yaw3pitch_real_t t8, t9;
-    YAW3PITCH_SINCOS(q[3], &t8, &t9);
-    const yaw3pitch_real_t t1 = YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t3 = YAW3PITCH_C(-9.81) * t2;
-    const yaw3pitch_real_t t6 = t4 * t3 + t5 * t1;
-    const yaw3pitch_real_t t7 = t5 * t3 - t4 * t1;
-    const yaw3pitch_real_t t10 = parameters[MX4] * (t8 * t7 + t9 * t6) + parameters[MY4] * (t9 * t7
-        - t8 * t6);
-    const yaw3pitch_real_t t11 = parameters[MX3R] * t6 + parameters[MY3] * t7 + t10;
-    out[1] = parameters[MX2R] * t1 + parameters[MY2] * t3 + t11;
+    yaw3pitch_real_t t0, t3;
+    YAW3PITCH_SINCOS(q[1], &t0, &t3);
+    yaw3pitch_real_t t5, t2;
+    YAW3PITCH_SINCOS(q[2], &t5, &t2);
+    yaw3pitch_real_t t7, t9;
+    YAW3PITCH_SINCOS(q[3], &t7, &t9);
+    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0;
+    const yaw3pitch_real_t t4 = YAW3PITCH_C(9.81) * t3;
+    const yaw3pitch_real_t t6 = t2 * t1 - t5 * t4;
+    const yaw3pitch_real_t t8 = t5 * t1 + t2 * t4;
+    const yaw3pitch_real_t t10 = parameters[MX4] * (t7 * t6 + t9 * t8) + parameters[MY4] * (t9 * t6
+        - t7 * t8);
+    const yaw3pitch_real_t t11 = parameters[MX3R] * t8 + parameters[MY3] * t6 + t10;
+    out[1] = parameters[MX2R] * t4 + parameters[MY2] * t1 + t11;
     out[2] = t11;
     out[3] = t10;
     /* always zero */

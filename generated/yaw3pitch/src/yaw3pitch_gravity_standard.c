@@ -63,7 +63,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -86,34 +86,34 @@ int yaw3pitch_gravity_standard(
         return status;
     }
 
-    yaw3pitch_real_t t0, t1;
-    YAW3PITCH_SINCOS(q[1], &t0, &t1);
-    yaw3pitch_real_t t4, t3;
-    YAW3PITCH_SINCOS(q[2], &t4, &t3);
-    yaw3pitch_real_t t8, t7;
-    YAW3PITCH_SINCOS(q[3], &t8, &t7);
-    const yaw3pitch_real_t t2 = YAW3PITCH_C(-9.81) * t1;
-    const yaw3pitch_real_t t5 = YAW3PITCH_C(-9.81) * t0;
-    const yaw3pitch_real_t t6 = t3 * t2 - t4 * t5;
-    const yaw3pitch_real_t t9 = t3 * t5 + t4 * t2;
-    const yaw3pitch_real_t t10 = t7 * t6 - t8 * t9;
+    yaw3pitch_real_t t0, t3;
+    YAW3PITCH_SINCOS(q[1], &t0, &t3);
+    yaw3pitch_real_t t5, t2;
+    YAW3PITCH_SINCOS(q[2], &t5, &t2);
+    yaw3pitch_real_t t7, t9;
+    YAW3PITCH_SINCOS(q[3], &t7, &t9);
+    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0;
+    const yaw3pitch_real_t t4 = YAW3PITCH_C(-9.81) * t3;
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t8 = t2 * t4 - t5 * t1;
+    const yaw3pitch_real_t t10 = t9 * t8 - t7 * t6;
     const yaw3pitch_real_t t11 = t10 * parameters[MZ4];
-    const yaw3pitch_real_t t12 = t7 * t9 + t8 * t6;
+    const yaw3pitch_real_t t12 = t9 * t6 + t7 * t8;
     const yaw3pitch_real_t t13 = t12 * parameters[MZ4];
-    const yaw3pitch_real_t t14 = t6 * parameters[MZ3] + (t7 * t11 + t8 * t13);
-    const yaw3pitch_real_t t15 = t8 * t11 - t7 * t13 - t9 * parameters[MZ3];
-    const yaw3pitch_real_t t16 = t0 * (t2 * parameters[MZ2] + (t3 * t14 - t4 * t15));
-    const yaw3pitch_real_t t17 = t1 * (t4 * t14 + t3 * t15 - t5 * parameters[MZ2]);
+    const yaw3pitch_real_t t14 = t8 * parameters[MZ3] + (t9 * t11 + t7 * t13);
+    const yaw3pitch_real_t t15 = t7 * t11 - t9 * t13 - t6 * parameters[MZ3];
+    const yaw3pitch_real_t t16 = t0 * (t4 * parameters[MZ2] + (t2 * t14 - t5 * t15));
+    const yaw3pitch_real_t t17 = t3 * (t5 * t14 + t2 * t15 - t1 * parameters[MZ2]);
     out[0] = t16 + t17;
     const yaw3pitch_real_t t18 = t12 * parameters[MY4] - t10 * parameters[MX4];
     const yaw3pitch_real_t t19 = t12 * parameters[M4];
     const yaw3pitch_real_t t20 = t10 * parameters[M4];
-    const yaw3pitch_real_t t21 = t8 * t19 + t7 * t20;
-    const yaw3pitch_real_t t22 = t9 * parameters[MY3] - t6 * parameters[MX3] + (t18
+    const yaw3pitch_real_t t21 = t7 * t19 + t9 * t20;
+    const yaw3pitch_real_t t22 = t6 * parameters[MY3] - t8 * parameters[MX3] + (t18
         + YAW3PITCH_C(-0.7) * t21);
-    const yaw3pitch_real_t t23 = t4 * (t8 * t20 - t7 * t19 - t9 * parameters[M3]);
-    const yaw3pitch_real_t t24 = t22 + YAW3PITCH_C(0.8) * (t23 - t3 * (t6 * parameters[M3] + t21));
-    out[1] = t5 * parameters[MY2] - t2 * parameters[MX2] + t24;
+    const yaw3pitch_real_t t23 = t5 * (t7 * t20 - t9 * t19 - t6 * parameters[M3]);
+    const yaw3pitch_real_t t24 = t22 + YAW3PITCH_C(0.8) * (t23 - t2 * (t8 * parameters[M3] + t21));
+    out[1] = t1 * parameters[MY2] - t4 * parameters[MX2] + t24;
     out[2] = t22;
     out[3] = t18;
     return YAW3PITCH_STATUS_OK;

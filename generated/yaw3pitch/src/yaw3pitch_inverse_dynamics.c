@@ -47,7 +47,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -73,125 +73,125 @@ int yaw3pitch_inverse_dynamics(
         return status;
     }
 
-    yaw3pitch_real_t t0, t1;
-    YAW3PITCH_SINCOS(q[1], &t0, &t1);
-    yaw3pitch_real_t t20, t16;
-    YAW3PITCH_SINCOS(q[2], &t20, &t16);
-    yaw3pitch_real_t t39, t36;
-    YAW3PITCH_SINCOS(q[3], &t39, &t36);
-    const yaw3pitch_real_t t2 = t1 * dq[0];
-    const yaw3pitch_real_t t3 = t2 * t2;
-    const yaw3pitch_real_t t4 = dq[1] * dq[1];
-    const yaw3pitch_real_t t5 = dq[1] * t2;
-    const yaw3pitch_real_t t6 = t0 * ddq[0];
-    const yaw3pitch_real_t t7 = t5 + t6;
-    const yaw3pitch_real_t t8 = t0 * dq[0];
-    const yaw3pitch_real_t t9 = dq[1] * t8;
-    const yaw3pitch_real_t t10 = t1 * ddq[0];
-    const yaw3pitch_real_t t11 = t10 - t9 - t9;
-    const yaw3pitch_real_t t12 = t8 * t2;
-    const yaw3pitch_real_t t13 = ddq[1] + t12;
-    const yaw3pitch_real_t t14 = parameters[ZZ2R] * t5 + parameters[XX2R] * t7 + parameters[XY2] * t11
-        + parameters[XZ2R] * t13;
-    const yaw3pitch_real_t t15 = YAW3PITCH_C(-0.12) * ddq[0];
-    const yaw3pitch_real_t t17 = t15 + YAW3PITCH_C(-0.8) * t11;
-    const yaw3pitch_real_t t18 = dq[1] + dq[2];
-    const yaw3pitch_real_t t19 = t18 * t18;
-    const yaw3pitch_real_t t21 = t1 * t16 - t0 * t20;
-    const yaw3pitch_real_t t22 = dq[0] * t21;
-    const yaw3pitch_real_t t23 = t22 * t22;
-    const yaw3pitch_real_t t24 = t18 * t22;
-    const yaw3pitch_real_t t25 = t0 * t16 + t1 * t20;
-    const yaw3pitch_real_t t26 = ddq[0] * t25;
-    const yaw3pitch_real_t t27 = t24 + t26;
-    const yaw3pitch_real_t t28 = dq[0] * t25;
-    const yaw3pitch_real_t t29 = t18 * t28;
-    const yaw3pitch_real_t t30 = ddq[0] * t21;
-    const yaw3pitch_real_t t31 = t30 - t29 - t29;
-    const yaw3pitch_real_t t32 = t28 * t22;
-    const yaw3pitch_real_t t33 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t34 = t32 + t33;
-    const yaw3pitch_real_t t35 = parameters[ZZ3R] * t24 + parameters[XX3R] * t27 + parameters[XY3] * t31
-        + parameters[XZ3R] * t34;
-    const yaw3pitch_real_t t37 = dq[3] + t18;
-    const yaw3pitch_real_t t38 = t37 * t37;
-    const yaw3pitch_real_t t40 = t36 * t21 - t39 * t25;
-    const yaw3pitch_real_t t41 = dq[0] * t40;
-    const yaw3pitch_real_t t42 = t41 * t41;
-    const yaw3pitch_real_t t43 = t37 * t41;
-    const yaw3pitch_real_t t44 = t36 * t25 + t39 * t21;
-    const yaw3pitch_real_t t45 = ddq[0] * t44;
-    const yaw3pitch_real_t t46 = t43 + t45;
-    const yaw3pitch_real_t t47 = dq[0] * t44;
-    const yaw3pitch_real_t t48 = t37 * t47;
-    const yaw3pitch_real_t t49 = ddq[0] * t40;
-    const yaw3pitch_real_t t50 = t49 - t48 - t48;
-    const yaw3pitch_real_t t51 = t47 * t41;
-    const yaw3pitch_real_t t52 = ddq[3] + t33;
-    const yaw3pitch_real_t t53 = t51 + t52;
-    const yaw3pitch_real_t t54 = parameters[ZZ4] * t43 + parameters[XX4R] * t46 + parameters[XY4] * t50
-        + parameters[XZ4] * t53;
-    const yaw3pitch_real_t t55 = t17 + YAW3PITCH_C(-0.7) * t31;
-    const yaw3pitch_real_t t56 = parameters[YZ4] * (t42 - t38) + t54 + parameters[MY4] * t55;
-    const yaw3pitch_real_t t57 = t47 * t47;
-    const yaw3pitch_real_t t58 = t43 + t46;
-    const yaw3pitch_real_t t59 = t51 - t52;
-    const yaw3pitch_real_t t60 = (parameters[ZZ4] - parameters[XX4R]) * t48 - parameters[XY4] * t58
-        + parameters[YZ4] * t59;
-    const yaw3pitch_real_t t61 = parameters[XZ4] * (t57 - t38) + t60 + parameters[MX4] * t55;
-    const yaw3pitch_real_t t62 = parameters[MY3] * t17 + (parameters[YZ3] * (t23 - t19) + t35) + (t36 * t56
-        + t39 * t61);
-    const yaw3pitch_real_t t63 = t28 * t28;
-    const yaw3pitch_real_t t64 = t24 + t27;
-    const yaw3pitch_real_t t65 = t32 - t33;
-    const yaw3pitch_real_t t66 = (parameters[XX3R] - parameters[ZZ3R]) * t29 + parameters[XY3] * t64
-        - parameters[YZ3] * t65;
-    const yaw3pitch_real_t t67 = parameters[MX4] * t50 - parameters[MY4] * t58;
-    const yaw3pitch_real_t t68 = parameters[XZ3R] * (t19 - t63) + t66 - parameters[MX3R] * t17 - (t36 * t61
-        - t39 * t56 + YAW3PITCH_C(-0.7) * t67);
-    const yaw3pitch_real_t t69 = parameters[YZ2] * (t3 - t4) + t14 + parameters[MY2] * t15 + (t16 * t62
-        - t20 * t68);
-    const yaw3pitch_real_t t70 = t8 * t8;
-    const yaw3pitch_real_t t71 = t5 + t7;
-    const yaw3pitch_real_t t72 = t9 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t71
-        + parameters[YZ2] * (ddq[1] - t12);
-    const yaw3pitch_real_t t73 = parameters[MX3R] * t31 - parameters[MY3] * t64 + t67;
-    const yaw3pitch_real_t t74 = parameters[XZ2R] * (t4 - t70) + t72 - parameters[MX2R] * t15 + (t20 * t62
-        + t16 * t68 + YAW3PITCH_C(0.8) * t73);
-    const yaw3pitch_real_t t75 = t0 * t69 + t1 * t74 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t11
-        - parameters[MY2] * t71 + t73);
+    yaw3pitch_real_t t0, t2;
+    YAW3PITCH_SINCOS(q[1], &t0, &t2);
+    yaw3pitch_real_t t3, t1;
+    YAW3PITCH_SINCOS(q[2], &t3, &t1);
+    yaw3pitch_real_t t5, t7;
+    YAW3PITCH_SINCOS(q[3], &t5, &t7);
+    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3;
+    const yaw3pitch_real_t t6 = t2 * t1 - t0 * t3;
+    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4;
+    const yaw3pitch_real_t t9 = dq[0] * t8;
+    const yaw3pitch_real_t t10 = dq[1] + dq[2];
+    const yaw3pitch_real_t t11 = dq[3] + t10;
+    const yaw3pitch_real_t t12 = t11 * t9;
+    const yaw3pitch_real_t t13 = t7 * t4 + t5 * t6;
+    const yaw3pitch_real_t t14 = ddq[0] * t13;
+    const yaw3pitch_real_t t15 = t12 + t14;
+    const yaw3pitch_real_t t16 = dq[0] * t13;
+    const yaw3pitch_real_t t17 = t11 * t16;
+    const yaw3pitch_real_t t18 = ddq[0] * t8;
+    const yaw3pitch_real_t t19 = t18 - t17 - t17;
+    const yaw3pitch_real_t t20 = t16 * t9;
+    const yaw3pitch_real_t t21 = ddq[1] + ddq[2];
+    const yaw3pitch_real_t t22 = ddq[3] + t21;
+    const yaw3pitch_real_t t23 = t20 + t22;
+    const yaw3pitch_real_t t24 = parameters[ZZ4] * t12 + parameters[XX4R] * t15 + parameters[XY4] * t19
+        + parameters[XZ4] * t23;
+    const yaw3pitch_real_t t25 = t9 * t9;
+    const yaw3pitch_real_t t26 = t11 * t11;
+    const yaw3pitch_real_t t27 = dq[0] * t4;
+    const yaw3pitch_real_t t28 = t10 * t27;
+    const yaw3pitch_real_t t29 = ddq[0] * t6;
+    const yaw3pitch_real_t t30 = t29 - t28 - t28;
+    const yaw3pitch_real_t t31 = t0 * dq[0];
+    const yaw3pitch_real_t t32 = dq[1] * t31;
+    const yaw3pitch_real_t t33 = t2 * ddq[0];
+    const yaw3pitch_real_t t34 = t33 - t32 - t32;
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(-0.12) * ddq[0];
+    const yaw3pitch_real_t t36 = t35 + YAW3PITCH_C(-0.8) * t34;
+    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(-0.7) * t30;
+    const yaw3pitch_real_t t38 = parameters[YZ4] * (t25 - t26) + t24 + parameters[MY4] * t37;
+    const yaw3pitch_real_t t39 = t12 + t15;
+    const yaw3pitch_real_t t40 = t20 - t22;
+    const yaw3pitch_real_t t41 = (parameters[ZZ4] - parameters[XX4R]) * t17 - parameters[XY4] * t39
+        + parameters[YZ4] * t40;
+    const yaw3pitch_real_t t42 = t16 * t16;
+    const yaw3pitch_real_t t43 = parameters[XZ4] * (t42 - t26) + t41 + parameters[MX4] * t37;
+    const yaw3pitch_real_t t44 = dq[0] * t6;
+    const yaw3pitch_real_t t45 = t10 * t44;
+    const yaw3pitch_real_t t46 = ddq[0] * t4;
+    const yaw3pitch_real_t t47 = t45 + t46;
+    const yaw3pitch_real_t t48 = t27 * t44;
+    const yaw3pitch_real_t t49 = t48 + t21;
+    const yaw3pitch_real_t t50 = parameters[ZZ3R] * t45 + parameters[XX3R] * t47 + parameters[XY3] * t30
+        + parameters[XZ3R] * t49;
+    const yaw3pitch_real_t t51 = t44 * t44;
+    const yaw3pitch_real_t t52 = t10 * t10;
+    const yaw3pitch_real_t t53 = parameters[MY3] * t36 + (parameters[YZ3] * (t51 - t52) + t50) + (t7 * t38
+        + t5 * t43);
+    const yaw3pitch_real_t t54 = parameters[MX4] * t19 - parameters[MY4] * t39;
+    const yaw3pitch_real_t t55 = t45 + t47;
+    const yaw3pitch_real_t t56 = t48 - t21;
+    const yaw3pitch_real_t t57 = (parameters[XX3R] - parameters[ZZ3R]) * t28 + parameters[XY3] * t55
+        - parameters[YZ3] * t56;
+    const yaw3pitch_real_t t58 = t27 * t27;
+    const yaw3pitch_real_t t59 = parameters[XZ3R] * (t52 - t58) + t57 - parameters[MX3R] * t36 - (t7 * t43
+        - t5 * t38 + YAW3PITCH_C(-0.7) * t54);
+    const yaw3pitch_real_t t60 = t2 * dq[0];
+    const yaw3pitch_real_t t61 = dq[1] * t60;
+    const yaw3pitch_real_t t62 = t0 * ddq[0];
+    const yaw3pitch_real_t t63 = t61 + t62;
+    const yaw3pitch_real_t t64 = t31 * t60;
+    const yaw3pitch_real_t t65 = ddq[1] + t64;
+    const yaw3pitch_real_t t66 = parameters[ZZ2R] * t61 + parameters[XX2R] * t63 + parameters[XY2] * t34
+        + parameters[XZ2R] * t65;
+    const yaw3pitch_real_t t67 = t60 * t60;
+    const yaw3pitch_real_t t68 = dq[1] * dq[1];
+    const yaw3pitch_real_t t69 = parameters[YZ2] * (t67 - t68) + t66 + parameters[MY2] * t35 + (t1 * t53
+        - t3 * t59);
+    const yaw3pitch_real_t t70 = parameters[MX3R] * t30 - parameters[MY3] * t55 + t54;
+    const yaw3pitch_real_t t71 = t61 + t63;
+    const yaw3pitch_real_t t72 = t32 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t71
+        + parameters[YZ2] * (ddq[1] - t64);
+    const yaw3pitch_real_t t73 = t31 * t31;
+    const yaw3pitch_real_t t74 = parameters[XZ2R] * (t68 - t73) + t72 - parameters[MX2R] * t35 + (t3 * t53
+        + t1 * t59 + YAW3PITCH_C(0.8) * t70);
+    const yaw3pitch_real_t t75 = t0 * t69 + t2 * t74 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t34
+        - parameters[MY2] * t71 + t70);
     out[0] = parameters[ZZ1R] * ddq[0] + t75;
     const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
-    const yaw3pitch_real_t t77 = t0 * t76 + YAW3PITCH_C(9.81) * t1;
-    const yaw3pitch_real_t t78 = t1 * t76 + YAW3PITCH_C(-9.81) * t0;
-    const yaw3pitch_real_t t79 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t12 + parameters[YZ2] * t10
-        + parameters[XZ2R] * t6;
-    const yaw3pitch_real_t t80 = parameters[MX2R] * t77 + parameters[MY2] * t78 + (parameters[XY2] * (t70
-        - t3) + t79);
-    const yaw3pitch_real_t t81 = t78 + YAW3PITCH_C(0.8) * (t3 + t4);
-    const yaw3pitch_real_t t82 = t77 + YAW3PITCH_C(0.8) * t13;
-    const yaw3pitch_real_t t83 = t20 * t81 + t16 * t82;
-    const yaw3pitch_real_t t84 = t16 * t81 - t20 * t82;
-    const yaw3pitch_real_t t85 = parameters[ZZ3R] * t33 - parameters[XX3R] * t32 + parameters[YZ3] * t30
-        + parameters[XZ3R] * t26;
-    const yaw3pitch_real_t t86 = parameters[MX3R] * t83 + parameters[MY3] * t84 + (parameters[XY3] * (t63
-        - t23) + t85);
-    const yaw3pitch_real_t t87 = parameters[ZZ4] * t52 - parameters[XX4R] * t51 + parameters[YZ4] * t49
-        + parameters[XZ4] * t45;
-    const yaw3pitch_real_t t88 = t19 + t23;
-    const yaw3pitch_real_t t89 = YAW3PITCH_C(0.7) * t88 + t84;
-    const yaw3pitch_real_t t90 = t83 - YAW3PITCH_C(-0.7) * t34;
-    const yaw3pitch_real_t t91 = parameters[MX4] * (t39 * t89 + t36 * t90) + parameters[MY4] * (t36 * t89
-        - t39 * t90);
-    const yaw3pitch_real_t t92 = parameters[XY4] * (t57 - t42) + t87 + t91;
-    const yaw3pitch_real_t t93 = parameters[MY4] * t59 - parameters[MX4] * (t38 + t42);
-    const yaw3pitch_real_t t94 = parameters[MY4] * (t38 + t57) - parameters[MX4] * t53;
-    const yaw3pitch_real_t t95 = t39 * t93 - t36 * t94;
-    const yaw3pitch_real_t t96 = t86 + (t92 + YAW3PITCH_C(0.7) * t95);
-    const yaw3pitch_real_t t97 = parameters[MY3] * t65 - parameters[MX3R] * t88 + (t36 * t93 + t39 * t94);
-    const yaw3pitch_real_t t98 = t16 * (parameters[MX3R] * t34 - parameters[MY3] * (t19 + t63) + t95);
-    out[1] = t80 + (t96 + YAW3PITCH_C(0.8) * (t20 * t97 + t98));
-    out[2] = t96;
-    out[3] = t92;
+    const yaw3pitch_real_t t77 = t2 * t76 + YAW3PITCH_C(-9.81) * t0;
+    const yaw3pitch_real_t t78 = t77 + YAW3PITCH_C(0.8) * (t67 + t68);
+    const yaw3pitch_real_t t79 = t0 * t76 + YAW3PITCH_C(9.81) * t2;
+    const yaw3pitch_real_t t80 = t79 + YAW3PITCH_C(0.8) * t65;
+    const yaw3pitch_real_t t81 = t1 * t78 - t3 * t80;
+    const yaw3pitch_real_t t82 = t52 + t51;
+    const yaw3pitch_real_t t83 = YAW3PITCH_C(0.7) * t82 + t81;
+    const yaw3pitch_real_t t84 = t3 * t78 + t1 * t80;
+    const yaw3pitch_real_t t85 = t84 - YAW3PITCH_C(-0.7) * t49;
+    const yaw3pitch_real_t t86 = parameters[MX4] * (t5 * t83 + t7 * t85) + parameters[MY4] * (t7 * t83
+        - t5 * t85);
+    const yaw3pitch_real_t t87 = parameters[ZZ4] * t22 - parameters[XX4R] * t20 + parameters[YZ4] * t18
+        + parameters[XZ4] * t14;
+    const yaw3pitch_real_t t88 = parameters[XY4] * (t42 - t25) + t87 + t86;
+    const yaw3pitch_real_t t89 = parameters[MY4] * t40 - parameters[MX4] * (t26 + t25);
+    const yaw3pitch_real_t t90 = parameters[MY4] * (t26 + t42) - parameters[MX4] * t23;
+    const yaw3pitch_real_t t91 = t5 * t89 - t7 * t90;
+    const yaw3pitch_real_t t92 = parameters[ZZ3R] * t21 - parameters[XX3R] * t48 + parameters[YZ3] * t29
+        + parameters[XZ3R] * t46;
+    const yaw3pitch_real_t t93 = parameters[MX3R] * t84 + parameters[MY3] * t81 + (parameters[XY3] * (t58
+        - t51) + t92);
+    const yaw3pitch_real_t t94 = t93 + (t88 + YAW3PITCH_C(0.7) * t91);
+    const yaw3pitch_real_t t95 = parameters[MY3] * t56 - parameters[MX3R] * t82 + (t7 * t89 + t5 * t90);
+    const yaw3pitch_real_t t96 = t1 * (parameters[MX3R] * t49 - parameters[MY3] * (t52 + t58) + t91);
+    const yaw3pitch_real_t t97 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t64 + parameters[YZ2] * t33
+        + parameters[XZ2R] * t62;
+    const yaw3pitch_real_t t98 = parameters[MX2R] * t79 + parameters[MY2] * t77 + (parameters[XY2] * (t73
+        - t67) + t97);
+    out[1] = t98 + (t94 + YAW3PITCH_C(0.8) * (t3 * t95 + t96));
+    out[2] = t94;
+    out[3] = t88;
     return YAW3PITCH_STATUS_OK;
 }

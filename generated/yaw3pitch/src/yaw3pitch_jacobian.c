@@ -19,7 +19,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_jacobian.c are of different generations: generate the arm again"
 #endif
 
@@ -37,36 +37,36 @@ int yaw3pitch_jacobian(
         return status;
     }
 
-    yaw3pitch_real_t t0, t9;
-    YAW3PITCH_SINCOS(q[0], &t0, &t9);
-    yaw3pitch_real_t t6, t2;
-    YAW3PITCH_SINCOS(q[1], &t6, &t2);
-    yaw3pitch_real_t t5, t4;
-    YAW3PITCH_SINCOS(q[2], &t5, &t4);
+    yaw3pitch_real_t t0, t11;
+    YAW3PITCH_SINCOS(q[0], &t0, &t11);
+    yaw3pitch_real_t t5, t2;
+    YAW3PITCH_SINCOS(q[1], &t5, &t2);
+    yaw3pitch_real_t t6, t4;
+    YAW3PITCH_SINCOS(q[2], &t6, &t4);
     const yaw3pitch_real_t t1 = YAW3PITCH_C(-0.12) * t0;
     const yaw3pitch_real_t t3 = t0 * t2;
-    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t5 * (t0 * t6) - t4 * t3);
+    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 * (t0 * t5) - t4 * t3);
     const yaw3pitch_real_t t8 = t1 + YAW3PITCH_C(-0.8) * t3 + t7;
     out[0] = t8;
-    const yaw3pitch_real_t t10 = YAW3PITCH_C(-0.7) * (t6 * t4 + t2 * t5);
-    const yaw3pitch_real_t t11 = YAW3PITCH_C(-0.8) * t6 - YAW3PITCH_C(0.45) + t10 + YAW3PITCH_C(0.45);
-    out[1] = t9 * t11;
-    out[2] = t9 * t10;
-    const yaw3pitch_real_t t12 = YAW3PITCH_C(0.12) * t9;
-    const yaw3pitch_real_t t13 = t9 * t2;
-    const yaw3pitch_real_t t14 = YAW3PITCH_C(0.7) * (t4 * t13 - t5 * (t9 * t6));
+    const yaw3pitch_real_t t9 = YAW3PITCH_C(-0.7) * (t5 * t4 + t2 * t6);
+    const yaw3pitch_real_t t10 = YAW3PITCH_C(-0.8) * t5 - YAW3PITCH_C(0.45) + t9 + YAW3PITCH_C(0.45);
+    out[1] = t11 * t10;
+    out[2] = t11 * t9;
+    const yaw3pitch_real_t t12 = YAW3PITCH_C(0.12) * t11;
+    const yaw3pitch_real_t t13 = t11 * t2;
+    const yaw3pitch_real_t t14 = YAW3PITCH_C(0.7) * (t4 * t13 - t6 * (t11 * t5));
     const yaw3pitch_real_t t15 = t12 + YAW3PITCH_C(0.8) * t13 + t14;
     out[4] = t15;
-    out[5] = t0 * t11;
-    out[6] = t0 * t10;
-    out[9] = t0 * (t1 - t8) + t9 * (t15 - t12);
-    out[10] = t9 * t14 - t0 * t7;
+    out[5] = t0 * t10;
+    out[6] = t0 * t9;
+    out[9] = t0 * (t1 - t8) + t11 * (t15 - t12);
+    out[10] = t11 * t14 - t0 * t7;
     out[13] = t0;
     out[14] = t0;
     out[15] = t0;
-    out[17] = -t9;
-    out[18] = -t9;
-    out[19] = -t9;
+    out[17] = -t11;
+    out[18] = -t11;
+    out[19] = -t11;
     out[20] = YAW3PITCH_C(1.0);
     /* always zero */
     out[3] = YAW3PITCH_C(0.0);

@@ -45,7 +45,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -67,10 +67,10 @@ int yaw3pitch_mass_matrix(
         return status;
     }
 
-    yaw3pitch_real_t t21, t15;
-    YAW3PITCH_SINCOS(q[1], &t21, &t15);
-    yaw3pitch_real_t t11, t7;
-    YAW3PITCH_SINCOS(q[2], &t11, &t7);
+    yaw3pitch_real_t t21, t19;
+    YAW3PITCH_SINCOS(q[1], &t21, &t19);
+    yaw3pitch_real_t t11, t8;
+    YAW3PITCH_SINCOS(q[2], &t11, &t8);
     yaw3pitch_real_t t1, t0;
     YAW3PITCH_SINCOS(q[3], &t1, &t0);
     const yaw3pitch_real_t t2 = t0 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t1);
@@ -78,42 +78,42 @@ int yaw3pitch_mass_matrix(
     const yaw3pitch_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
     const yaw3pitch_real_t t5 = YAW3PITCH_C(1.4) * t4;
     const yaw3pitch_real_t t6 = parameters[XX4R] - t3 + t5;
-    const yaw3pitch_real_t t8 = parameters[XX3R] + t3;
+    const yaw3pitch_real_t t7 = parameters[XX3R] + t3;
     const yaw3pitch_real_t t9 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const yaw3pitch_real_t t10 = parameters[XY3] + (parameters[XY4] + t1 * t2 + YAW3PITCH_C(-0.7) * t9);
-    const yaw3pitch_real_t t12 = t7 * (t6 - t8) + t10 * (YAW3PITCH_C(2.0) * t11);
-    const yaw3pitch_real_t t13 = t7 * t12;
-    const yaw3pitch_real_t t14 = parameters[XX2R] + (t6 - t13);
-    const yaw3pitch_real_t t16 = parameters[MY3] + t9;
-    const yaw3pitch_real_t t17 = parameters[MX3R] + t4;
-    const yaw3pitch_real_t t18 = t7 * t17 - t11 * t16;
-    const yaw3pitch_real_t t19 = YAW3PITCH_C(1.6) * t18;
-    const yaw3pitch_real_t t20 = t7 * t16 + t11 * t17;
+    const yaw3pitch_real_t t12 = t8 * (t6 - t7) + t10 * (YAW3PITCH_C(2.0) * t11);
+    const yaw3pitch_real_t t13 = t8 * t12;
+    const yaw3pitch_real_t t14 = parameters[MY3] + t9;
+    const yaw3pitch_real_t t15 = parameters[MX3R] + t4;
+    const yaw3pitch_real_t t16 = t8 * t15 - t11 * t14;
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(1.6) * t16;
+    const yaw3pitch_real_t t18 = parameters[XX2R] + (t6 - t13);
+    const yaw3pitch_real_t t20 = t8 * t14 + t11 * t15;
     const yaw3pitch_real_t t22 = (parameters[XY2] + (t10 - t11 * t12
         + YAW3PITCH_C(-0.8) * t20)) * (YAW3PITCH_C(2.0) * t21);
-    const yaw3pitch_real_t t23 = t15 * (t15 * (t8 + t13 + t19 - t14) + t22);
-    const yaw3pitch_real_t t24 = YAW3PITCH_C(0.24) * (t15 * (parameters[MX2R] + t18) - t21 * (parameters[MY2]
+    const yaw3pitch_real_t t23 = t19 * (t19 * (t7 + t13 + t17 - t18) + t22);
+    const yaw3pitch_real_t t24 = YAW3PITCH_C(0.24) * (t19 * (parameters[MX2R] + t16) - t21 * (parameters[MY2]
         + t20));
-    out[0] = parameters[ZZ1R] + (t14 + t23 + t24);
+    out[0] = parameters[ZZ1R] + (t18 + t23 + t24);
     const yaw3pitch_real_t t25 = t0 * parameters[XZ4] - t1 * parameters[YZ4];
     const yaw3pitch_real_t t26 = parameters[XZ3R] + t25;
     const yaw3pitch_real_t t27 = t1 * parameters[XZ4] + t0 * parameters[YZ4];
     const yaw3pitch_real_t t28 = parameters[YZ3] + t27;
-    const yaw3pitch_real_t t29 = t7 * t26 - t11 * t28;
-    const yaw3pitch_real_t t30 = t11 * t26 + t7 * t28;
-    const yaw3pitch_real_t t31 = t21 * (parameters[XZ2R] + t29) + t15 * (parameters[YZ2] + t30);
+    const yaw3pitch_real_t t29 = t8 * t26 - t11 * t28;
+    const yaw3pitch_real_t t30 = t11 * t26 + t8 * t28;
+    const yaw3pitch_real_t t31 = t21 * (parameters[XZ2R] + t29) + t19 * (parameters[YZ2] + t30);
     out[1] = t31;
-    const yaw3pitch_real_t t32 = t21 * t29 + t15 * t30;
+    const yaw3pitch_real_t t32 = t21 * t29 + t19 * t30;
     out[2] = t32;
-    const yaw3pitch_real_t t33 = t21 * (t7 * t25 - t11 * t27) + t15 * (t11 * t25 + t7 * t27);
+    const yaw3pitch_real_t t33 = t21 * (t8 * t25 - t11 * t27) + t19 * (t11 * t25 + t8 * t27);
     out[3] = t33;
     out[4] = t31;
     const yaw3pitch_real_t t34 = parameters[ZZ3R] + (parameters[ZZ4] + t5);
-    out[5] = parameters[ZZ2R] + (t34 + t19);
-    const yaw3pitch_real_t t35 = t34 + YAW3PITCH_C(0.8) * t18;
+    out[5] = parameters[ZZ2R] + (t34 + t17);
+    const yaw3pitch_real_t t35 = t34 + YAW3PITCH_C(0.8) * t16;
     out[6] = t35;
     const yaw3pitch_real_t t36 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t4;
-    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(0.8) * (t7 * t4 - t11 * t9);
+    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(0.8) * (t8 * t4 - t11 * t9);
     out[7] = t37;
     out[8] = t32;
     out[9] = t35;

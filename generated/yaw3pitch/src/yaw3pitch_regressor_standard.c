@@ -29,7 +29,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -212,19 +212,19 @@ int yaw3pitch_regressor_standard(
     const yaw3pitch_real_t t87 = t57 + YAW3PITCH_C(0.7) * t54;
     const yaw3pitch_real_t t88 = t53 + YAW3PITCH_C(0.7) * t44;
     const yaw3pitch_real_t t89 = t61 * t87 + t60 * t88;
-    const yaw3pitch_real_t t90 = t56 + YAW3PITCH_C(0.7);
-    const yaw3pitch_real_t t91 = t60 * t55 - t61 * t90;
-    const yaw3pitch_real_t t92 = t78 + t82;
-    const yaw3pitch_real_t t93 = t61 * t55 + t60 * t90;
-    out[76] = t89 + (t91 * t92 + t93 * t81);
+    const yaw3pitch_real_t t90 = t78 + t82;
+    const yaw3pitch_real_t t91 = t56 + YAW3PITCH_C(0.7);
+    const yaw3pitch_real_t t92 = t60 * t55 - t61 * t91;
+    const yaw3pitch_real_t t93 = t61 * t55 + t60 * t91;
+    out[76] = t89 + (t92 * t90 + t93 * t81);
     const yaw3pitch_real_t t94 = YAW3PITCH_C(-0.7) * t61;
     const yaw3pitch_real_t t95 = YAW3PITCH_C(0.7) * t60;
-    out[116] = t89 + (t94 * t92 + t95 * t81);
+    out[116] = t89 + (t94 * t90 + t95 * t81);
     out[156] = t89;
     out[37] = t62 * t86 - t85 * t73;
     const yaw3pitch_real_t t96 = t60 * t87 - t61 * t88;
     const yaw3pitch_real_t t97 = t77 + t82;
-    out[77] = t96 - (t91 * t84 + t93 * t97);
+    out[77] = t96 - (t92 * t84 + t93 * t97);
     out[117] = t96 - (t94 * t84 + t95 * t97);
     out[157] = t96;
     out[38] = YAW3PITCH_C(-0.7) * t46 + t58;
@@ -232,7 +232,7 @@ int yaw3pitch_regressor_standard(
     out[78] = t98 + t59;
     out[118] = t98;
     out[39] = -(t86 * t85);
-    out[79] = t96 * t91 + t89 * t93;
+    out[79] = t96 * t92 + t89 * t93;
     out[119] = t96 * t94 + t89 * t95;
     /* always zero */
     out[0] = out[1] = out[2] = out[3] = out[4] = out[6] = out[7] = out[8] = out[9] = out[18] =

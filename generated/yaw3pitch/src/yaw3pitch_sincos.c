@@ -11,7 +11,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x9BD22590UL
+#if YAW3PITCH_GENERATION != 0x413EB315UL
 #error "yaw3pitch.h and yaw3pitch_sincos.c are of different generations: generate the arm again"
 #endif
 
@@ -19,7 +19,8 @@
 yaw3pitch_pair_t yaw3pitch_sincos(yaw3pitch_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const long quarter = (long)(x * YAW3PITCH_C(0.636619772) + YAW3PITCH_C(16384.5));
+    const yaw3pitch_real_t turns = x * YAW3PITCH_C(0.636619772) + YAW3PITCH_C(16384.5);
+    const long quarter = (long)turns;
     const yaw3pitch_real_t k = (yaw3pitch_real_t)quarter - YAW3PITCH_C(16384.0);
     const yaw3pitch_real_t r = x - k * YAW3PITCH_C(1.5703125) - k * YAW3PITCH_C(4.83826792e-4);
     const yaw3pitch_real_t z = r * r;
