@@ -72,6 +72,17 @@ Serialised = Annotated[
 Plant = Annotated[
     bool, typer.Option("--casadi-plant", help="Also write the C plant for casadi.external: <arm>/plant/.")
 ]
+MaxFlash = Annotated[
+    int | None,
+    typer.Option(metavar="BYTES", min=1, help="Most flash that a function may take.", show_default=False),
+]
+MaxStack = Annotated[
+    int | None,
+    typer.Option(metavar="BYTES", min=1, help="Most stack that a function may take.", show_default=False),
+]
+Target = Annotated[
+    str, typer.Option(metavar="NAME", help="Whose compiler measures them: cortex-m4f, cortex-m7, host.")
+]
 Jobs = Annotated[
     int | None,
     typer.Option(
@@ -106,17 +117,31 @@ def generate(
     jacobian_link: JacobianLink = None,
     casadi: Serialised = False,
     casadi_plant: Plant = False,
+    max_flash: MaxFlash = None,
+    max_stack: MaxStack = None,
+    target: Target = "cortex-m4f",
     jobs: Jobs = None,
     as_json: Json = False,
 ) -> None:
     """Write C99 and CasADi functions of every arm."""
-    from modelgen.cli.generating import run
+    from modelgen.cli.generating import budget_of, run
     from modelgen.cli.selecting import options, selected
 
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
+    budget = budget_of(target, max_flash, max_stack)
     file, found = selected(arms, arm or [])
     artefacts = [name for name, asked in (("casadi", casadi), ("plant", casadi_plant)) if asked]
-    run(found, file, chosen, out, check=check, artefacts=artefacts, processes=jobs, as_json=as_json)
+    run(
+        found,
+        file,
+        chosen,
+        out,
+        check=check,
+        artefacts=artefacts,
+        budget=budget,
+        processes=jobs,
+        as_json=as_json,
+    )
 
 
 @app.command()

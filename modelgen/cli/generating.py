@@ -13,8 +13,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from modelgen.cli.guard import CHECK_FAILED
 from modelgen.cli.output import print_json, print_table
 from modelgen.description import Arm
+from modelgen.description.messages import suggest
+from modelgen.errors import InputError
 from modelgen.functions import Options
-from modelgen.generation import GeneratedArm, Report, generate
+from modelgen.generation import TARGETS, Budget, GeneratedArm, Report, generate
 
 
 def run(
@@ -25,6 +27,7 @@ def run(
     *,
     check: bool,
     artefacts: Sequence[str],
+    budget: Budget | None,
     processes: int | None,
     as_json: bool,
 ) -> None:
@@ -39,6 +42,7 @@ def run(
             options,
             check=check,
             artefacts=artefacts,
+            budget=budget,
             processes=processes,
             progress=lambda name: bar.update(task, advance=1, description=name),
         )
@@ -49,12 +53,28 @@ def run(
         print_json(_data(report))
     else:
         _table(report)
+    if report.excess and budget is not None:
+        for found in report.excess:
+            typer.echo(
+                f"{found.function}: {found.bytes} bytes of {found.kind} on {budget.target}, "
+                f"budget {found.budget}",
+                err=True,
+            )
+        typer.echo(f"over budget: nothing is written under {out}", err=True)
+        raise typer.Exit(CHECK_FAILED)
     if report.drift:
         for drift in report.drift:
             typer.echo(f"{drift.path}: {drift.kind}", err=True)
         count = f"{len(report.drift)} file{'s' if len(report.drift) > 1 else ''}"
         typer.echo(f"{count} under {out} differ from what {file} describes; run modelgen generate", err=True)
         raise typer.Exit(CHECK_FAILED)
+
+
+def budget_of(target: str, flash: int | None, stack: int | None) -> Budget | None:
+    """The budget, None where nothing is limited. Raises InputError for a target that does not exist."""
+    if target not in TARGETS:
+        raise InputError(f"--target: found '{target}'{suggest(target, TARGETS)}")
+    return None if flash is None and stack is None else Budget(target, flash, stack)
 
 
 def total(operations: Mapping[str, int]) -> int:

@@ -11,6 +11,7 @@ from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.generation.arm import GeneratedArm
+from modelgen.generation.budget import Budget, Excess, excesses
 from modelgen.generation.folders import ARTEFACTS, check_output, differences, write_folder
 from modelgen.generation.pool import generate_arms
 
@@ -25,10 +26,11 @@ class Drift:
 
 @dataclass(frozen=True)
 class Report:
-    """What was generated; `drift` is filled by a check alone."""
+    """What was generated; `drift` is filled by a check alone, `excess` where a budget is given."""
 
     arms: tuple[GeneratedArm, ...]
     drift: tuple[Drift, ...] = ()
+    excess: tuple[Excess, ...] = ()
 
 
 def generate(
@@ -38,12 +40,14 @@ def generate(
     *,
     check: bool = False,
     artefacts: Collection[str] = (),
+    budget: Budget | None = None,
     processes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Report:
     """Write the folder `out/<arm>` of every arm, or with `check` compare it and write nothing.
 
     `artefacts` are those of ARTEFACTS to build as well; a check looks at no others.
+    With `budget` nothing is written either where a function exceeds it.
     Nothing is written before every arm has been generated, and each folder is replaced whole.
     `processes` is one per processor by default. Raises InputError for an arm that has no model, for
     arms whose names collide in C or on the disk, and where `out` cannot be written.
@@ -53,6 +57,10 @@ def generate(
         check_output(out, [arm.name for arm in arms])
     generated = generate_arms(arms, options, processes or os.cpu_count() or 1, progress, artefacts)
     refuse_collisions(arms, generated)
+    if budget is not None:
+        excess = excesses(generated, budget)
+        if excess:
+            return Report(tuple(generated), excess=tuple(excess))
     if check:
         unasked = [name for name in ARTEFACTS if name not in artefacts]
         drift = [
