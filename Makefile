@@ -5,6 +5,7 @@
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
 #   make bench   CPU time of generation, per arm and over the number of joints
+#   make size    flash, stack and instructions of every function on a Cortex-M4F
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make clean   remove the environment and the caches
@@ -14,7 +15,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench prove fuzz clean
+.PHONY: run test pytest lint format bench size prove fuzz clean
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
@@ -35,6 +36,9 @@ format: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
+
+size: $(INSTALLED)
+	$(BIN)/python benchmarks/size.py
 
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva
