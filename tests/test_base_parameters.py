@@ -2,6 +2,7 @@
 
 import functools
 import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -299,6 +300,48 @@ def test_random_arms_with_symbols_print_them() -> None:
     assert len(with_symbols) >= 5
     texts = [text for seed in with_symbols for text in expressions(generated(seed)).values()]
     assert sum("length" in text for text in texts) >= 10
+
+
+def test_a_lever_in_symbols_leaves_the_other_formulas_alone() -> None:
+    """The oracle tries other lengths; a lever near its dead centre would not close with them."""
+    n, long, short = (geometry_symbol(name) for name in ("n", "long", "short"))
+    gear = Joint(
+        "j1",
+        "revolute",
+        drive=DirectDrive(n, 0.1),
+        effects=(EffectUse("friction_offset"), EffectUse("spring")),
+    )
+    lever = Joint(
+        "j2",
+        "revolute",
+        alpha=1.0,
+        antecedent=0,
+        drive=LeveredDrive(long, short, (0.2679, 0.3684), (0.0, 2e4), 1, 0.0, 4e-3),
+    )
+    symbols = {"n": 30.0, "long": 0.323, "short": 0.058}
+    arm = Arm("two", (gear, lever), (None, None), (9.81, 0.0, 0.0), symbols=symbols)
+    (text,) = (text for name, text in expressions(build(arm, Options())).items() if name == "FO1R")
+    assert factors(text, ["FO1", "KO1"], {"n": 50.0}) == pytest.approx({"FO1": 1, "KO1": 1 / 50})
+
+
+def test_many_symbols_take_no_longer_than_few() -> None:
+    """A factor is sought over the symbols that it depends on."""
+    arm = ARMS["scara"]
+    extra = {name: 0.1 + 0.03 * k for k, name in enumerate(("h1", "h2", "h4", "e1", "e4", "w4"))}
+    h1, h2, h4, e1, e4, w4 = (geometry_symbol(name) for name in extra)
+    joints = list(arm.joints)
+    joints[0] = replace(joints[0], r=h1, d=e1)
+    joints[1] = replace(joints[1], r=h2)
+    joints[3] = replace(joints[3], d=e4, r=h4, theta=w4)
+    start = time.process_time()
+    found = group(Equations(replace(arm, joints=tuple(joints), symbols={**arm.symbols, **extra})))
+    assert time.process_time() - start < 5.0
+    printed = {b.name: b.expression for b in found.base}
+    assert printed["MX2R"] == "MX2 + MX3 + e4*M4"
+    standard = [p.name for p in shipped("scara").model.standard]
+    turned = factors(printed["ZZ2R"], standard, {**arm.symbols, "e4": 0.3})
+    l2 = arm.symbols["l2"]
+    assert turned == pytest.approx({"ZZ2": 1, "ZZ3": 1, "MX3": 2 * l2, "M4": 0.3**2 + 2 * 0.3 * l2})
 
 
 # -- whatever the units and the speeds -------------------------------------------------------

@@ -60,9 +60,9 @@ def test_motor_coordinates_by_the_points_of_the_mechanism(name: str) -> None:
     emitted, witness = built(name)
     q, (dq, ddq) = inside(witness), rates()
     found = emitted("motor_from_joint", q, dq, ddq)
-    agree(found[0], witness.motor(q), 1e-12)
-    agree(found[1], witness.k1(q) * dq, 1e-12)
-    agree(found[2], witness.k1(q) * ddq + witness.slope(q) * dq**2, 1e-12)
+    agree(found[0], witness.motor(q))
+    agree(found[1], witness.k1(q) * dq)
+    agree(found[2], witness.k1(q) * ddq + witness.slope(q) * dq**2)
 
 
 @each_drive
@@ -86,9 +86,8 @@ def test_there_and_back(name: str) -> None:
     emitted, witness = built(name)
     q, (dq, ddq) = inside(witness), rates()
     back = emitted("joint_from_motor", *emitted("motor_from_joint", q, dq, ddq))
-    agree(back[0], q, 1e-11)
-    agree(back[1], dq, 1e-9)  # beside a dead centre a joint speed is a quotient of small numbers
-    agree(back[2], ddq, 1e-7)
+    for there, here in zip((q, dq, ddq), back, strict=True):
+        agree(here, there, 1e-11)
 
 
 @each_drive

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -19,39 +19,53 @@ from modelgen.description.objects import geometry_symbol
 Factors = dict[tuple[int, int], float]  # (dependent, kept) -> factor
 
 _SAMPLES = 16
+_NAMES = 4  # most symbols in one factor
 _DEGREE = 4  # of a single monomial; sums of monomials go to one less
 
 
 def closed_forms(
-    symbols: Mapping[str, float], factors_at: Callable[[dict[str, float]], Factors], found: Factors
+    symbols: Mapping[str, float],
+    factors_at: Callable[[dict[str, float]], Factors],
+    found: Factors,
+    held: Collection[str] = (),
 ) -> dict[tuple[int, int], sp.Expr | float]:
     """`found` with a formula in place of each factor that changes with the symbols.
 
-    factors_at: the oracle's factors for other values of the symbols. A factor for which no formula
-    is found keeps its number.
+    factors_at: the oracle's factors for other values of the symbols, of which those in `held` keep
+    theirs. A factor for which no formula is found keeps its number.
     """
-    if not symbols or not found:
+    names = [name for name in symbols if name not in held]
+    if not names or not found:
         return dict(found)
     generator = np.random.default_rng(1)
-    names = list(symbols)
-    points = [
-        {name: symbols[name] * (1.0 + 0.4 * generator.uniform(-1, 1)) for name in names}
-        for _ in range(_SAMPLES)
-    ]
+
+    def elsewhere(moved: Collection[str]) -> dict[str, float]:
+        return {
+            name: value * (1.0 + 0.4 * generator.uniform(-1, 1)) if name in moved else value
+            for name, value in symbols.items()
+        }
+
+    alone = {name: factors_at(elsewhere([name])) for name in names}
+    needed = {key: [n for n in names if _differ(alone[n].get(key), value)] for key, value in found.items()}
+    moved = {name for which in needed.values() for name in which}
+    points = [elsewhere(moved) for _ in range(_SAMPLES if moved else 0)]
     answers = [factors_at(point) for point in points]
     return {
-        key: _formula(names, points, [a.get(key) for a in answers], value) for key, value in found.items()
+        key: _formula(needed[key], points, [a.get(key) for a in answers], value)
+        for key, value in found.items()
     }
+
+
+def _differ(other: float | None, value: float) -> bool:
+    return other is None or abs(other - value) > 1e-9 * abs(value)
 
 
 def _formula(
     names: Sequence[str], points: Sequence[Mapping[str, float]], values: Sequence[float | None], now: float
 ) -> sp.Expr | float:
-    if any(v is None for v in values):
+    if not 0 < len(names) <= _NAMES or any(v is None for v in values):
         return now
     y = np.array(values, dtype=float)
-    if np.ptp(y) <= 1e-9 * abs(now):
-        return now
     table = np.array([[point[name] for name in names] for point in points])
     powers = sorted(
         (p for p in itertools.product(range(-2, _DEGREE + 1), repeat=len(names)) if _size(p) <= _DEGREE),

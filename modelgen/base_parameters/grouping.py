@@ -19,7 +19,7 @@ from modelgen.base_parameters.closed_form import Factors, closed_forms
 from modelgen.base_parameters.objects import BaseParameter, Grouping
 from modelgen.base_parameters.oracle import rank, regressor_values
 from modelgen.base_parameters.printing import printed
-from modelgen.description.objects import Arm, Scalar, geometry_symbol
+from modelgen.description.objects import Arm, LeveredDrive, Scalar, geometry_symbol
 from modelgen.graph import Expr
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
@@ -77,13 +77,24 @@ def _settled(arm: Arm, candidates: Sequence[int], row: int | None) -> list[Combi
         return tuple(candidates[k] for k in result.kept), pairs
 
     kept, found = factors(dict(arm.symbols))
-    formulas = closed_forms(arm.symbols, lambda values: factors(values)[1], found)
+    formulas = closed_forms(arm.symbols, lambda values: factors(values)[1], found, _of_levers(arm))
     settled: list[Combination] = [{} for _ in range(max(candidates, default=-1) + 1)]
     for k in kept:
         settled[k] = {k: 1.0}
     for (k, m), factor in formulas.items():
         settled[k][m] = factor
     return settled
+
+
+def _of_levers(arm: Arm) -> set[str]:
+    """Symbols in the levers: no factor depends on them, and other values may leave no triangle."""
+    names = set()
+    for joint in arm.joints:
+        drive = joint.drive
+        if isinstance(drive, LeveredDrive):
+            for value in (drive.l1, drive.l2, *drive.length, drive.offset):
+                names |= {symbol.name for symbol in sp.sympify(value).free_symbols}
+    return names
 
 
 def _grouping(
