@@ -197,3 +197,18 @@ def test_dimensions(name: str) -> None:
     np.testing.assert_array_equal(units["ZZ1"] - 2 * second, torque)
     np.testing.assert_array_equal(units["MX1"] + dimension("m") - 2 * second, torque)
     np.testing.assert_array_equal(units["M1"] + 2 * np.array(dimension("m")) - 2 * second, torque)
+
+
+def test_dimensions_in_a_fluid() -> None:
+    """Density times gravity times a first moment of volume is a torque, times a volume a force."""
+    arm = Arm("one", (Joint("j1", "revolute"),), (None,), (3.0, 9.0, 1.0), fluid_density=1000.0)
+    units = {p.name: np.array(dimension(p.unit)) for p in build(arm).model.standard}
+    weight = (
+        np.array(dimension("kg"))
+        - 3 * np.array(dimension("m"))
+        + dimension("m")
+        - 2 * np.array(dimension("s"))
+    )
+    for axis in "XYZ":
+        np.testing.assert_array_equal(units[f"V{axis}1"] + weight, dimension("N m"))
+    np.testing.assert_array_equal(units["V1"] + weight, dimension("N"))
