@@ -14,7 +14,7 @@ from witness.mechanism import Mechanism, states
 from witness.program import run
 
 from modelgen.base_parameters import group
-from modelgen.description import Arm, LeveredDrive, geometry_symbol
+from modelgen.description import Arm, Joint, LeveredDrive, geometry_symbol
 from modelgen.errors import InputError
 from modelgen.functions import STATUS_PIVOT, STATUS_STROKE, Function, Options
 from modelgen.model.equations import Equations
@@ -130,38 +130,29 @@ def test_run_time_geometry_at_other_values_is_another_arm(name: str) -> None:
     agree(free("drive_gain", case.q, geometry=changed), np.stack(gains, axis=1))
 
 
-def trespasses(emitted: Emitted, name: str, given: dict[str, list[float]]) -> int:
-    """How many of a function's guards of strokes and sides say no."""
-    program = emitted.functions[name].program
-    found = run(program, {**given, "geometry": list(geometry(emitted))}).guards
-    values = [value for bit, value in found if bit == STATUS_STROKE]
-    assert len(values) == 6  # two for each lever
-    return sum(not value > 0 for value in values)
-
-
-@pytest.mark.parametrize("name", ["drive_gain", "gravity", "motor_from_joint"])
-def test_with_run_time_geometry_the_stroke_is_guarded_in_the_program(name: str) -> None:
+@pytest.mark.parametrize("name", ["drive_gain", "gravity", "motor_from_joint", "forward_dynamics"])
+@pytest.mark.parametrize("rev", [1, -1])
+def test_with_run_time_geometry_the_stroke_is_guarded_in_the_program(rev: int, name: str) -> None:
     """Folded: a range of q. At run time: what is positive on the stroke and on the lever's side."""
-    free, folded = calibrated("ariane4"), shipped("ariane4")
+    lever = LeveredDrive(0.323, 0.058, (0.2679, 0.3684), (0.0, 2e4), rev, 0.4, 4e-3)
+    arm = Arm("one", (Joint("j1", "revolute", drive=lever),), (None,), (9.81, 0.0, 0.0))
+    free, folded = build(arm, Options(runtime_geometry=True)), build(arm, Options())
     assert free.functions[name].ranges == ()
-    assert len(folded.functions[name].ranges) == 3
-    given = {a.name: [0.1] * a.size for a in free.functions[name].arguments if a.name != "q"}
-    given.pop("geometry")
-    drives = [Drive(folded.arm, k) for k in range(3)]
-    spans = [drive.span() or (0.0, 0.0) for drive in drives]
-    middle = [(low + high) / 2 for low, high in spans]
-    assert trespasses(free, name, {**given, "q": middle}) == 0
-    for k, (low, high) in enumerate(spans):
-        mirrored = 2 * drives[k].offset - middle[k]  # the same length, on the other side
-        for q, inside in (
-            (low + 1e-3, True),
-            (high - 1e-3, True),
-            (low - 0.03, False),
-            (high + 0.03, False),
-            (mirrored, False),
-        ):
-            at = [*middle[:k], q, *middle[k + 1 :]]
-            assert trespasses(free, name, {**given, "q": at}) == (0 if inside else 1)
+    assert len(folded.functions[name].ranges) == 1
+    low, high = Drive(arm, 0).span() or (0.0, 0.0)
+    given = {a.name: [1.0] * a.size for a in free.functions[name].arguments}
+    given["geometry"] = list(geometry(free))
+
+    def trespasses(q: float) -> int:
+        found = run(free.functions[name].program, {**given, "q": [q]}).guards
+        values = [value for bit, value in found if bit == STATUS_STROKE]
+        assert len(values) == 2
+        return sum(not value > 0 for value in values)
+
+    for q in (low + 1e-3, (low + high) / 2, high - 1e-3):
+        assert trespasses(q) == 0
+        assert trespasses(2 * lever.offset - q) == 1  # the same length, on the other side
+    assert trespasses(low - 0.03) == trespasses(high + 0.03) == 1
 
 
 def test_with_run_time_geometry_a_triangle_that_does_not_close_is_guarded() -> None:
