@@ -6,6 +6,7 @@
 #   make format  let ruff rewrite the layout
 #   make bench   CPU time of generation, per arm and over the number of joints
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
+#   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make clean   remove the environment and the caches
@@ -15,7 +16,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench size prove fuzz clean
+.PHONY: run test pytest lint format bench size run-examples prove fuzz clean
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
@@ -39,6 +40,10 @@ bench: $(INSTALLED)
 
 size: $(INSTALLED)
 	$(BIN)/python benchmarks/size.py
+
+run-examples: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[examples]'
+	$(BIN)/python examples/firmware/run.py
 
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva

@@ -103,7 +103,7 @@ def compile_seeded(tool: str, folder: Path) -> list[Object]:
         return compile_arm(M4F, "seeded", folder, folder / "objects")
     with pytest.raises(RuntimeError, match="undefined symbol"):
         zig_program(M4F, "seeded", folder, folder / "objects")
-    return [read_object(folder / "objects" / "arm.o")]
+    return [read_object(folder / "objects" / "code.o")]
 
 
 @pytest.mark.parametrize("symbol", ["__aeabi_idiv", "memset", "acosf", "sqrtf", "__aeabi_fadd"])

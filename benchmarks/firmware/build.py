@@ -107,9 +107,8 @@ def compile_arm(target: Target, arm: str, folder: Path, out: Path, extra: Sequen
 def read_object(path: Path) -> Object:
     """Sizes and undefined symbols of an object; the stack from the compiler's report beside it."""
     report = path.with_suffix(".su")
-    frames = (
-        [int(line.split("\t")[1]) for line in report.read_text().splitlines()] if report.exists() else [0]
-    )
+    lines = report.read_text(encoding="utf-8").splitlines() if report.exists() else []
+    frames = [int(line.split("\t")[1]) for line in lines]
     with path.open("rb") as file:
         elf = ELFFile(file)
         flash = sum(
@@ -164,8 +163,14 @@ def link_functions(target: Target, objects: Sequence[Object], out: Path) -> Path
 def zig_program(target: Target, arm: str, folder: Path, out: Path) -> tuple[Object, Path]:
     """The arm by the compiler of the Python package ziglang: one object, and a program of all functions.
 
-    Nothing of it needs an installed tool. The program has no main function; see `machine`.
+    The program has no main function; see `machine`.
     """
+    flags = [f"-D{arm.upper()}_REAL={target.real}", *WARNINGS, f"-I{folder / 'include'}"]
+    return zig_link(target, sorted((folder / "src").glob("*.c")), flags, out)
+
+
+def zig_link(target: Target, sources: Sequence[Path], extra: Sequence[str], out: Path) -> tuple[Object, Path]:
+    """Sources by the compiler of ziglang, which needs no installed tool: one object, and a program."""
     import ziglang  # noqa: PLC0415 - of the test environment
 
     out.mkdir(parents=True, exist_ok=True)
@@ -174,12 +179,10 @@ def zig_program(target: Target, arm: str, folder: Path, out: Path) -> tuple[Obje
     # No tables for unwinding, and none of the checks that zig adds by default.
     flags = [*target.zig, "-O2", "-fno-math-errno", "-ffunction-sections", "-fno-sanitize=all"]
     flags += ["-fno-unwind-tables", "-fno-asynchronous-unwind-tables"]
-    own = ["-std=c99", "-ffp-contract=fast", f"-D{arm.upper()}_REAL={target.real}", *WARNINGS]
-    sources = sorted((folder / "src").glob("*.c"))
-    code, library, program = out / "arm.o", out / "library.o", out / "arm.elf"
-    run([*zig, "cc", *flags, *own, "-I", folder / "include", "-c", *sources, "-o", code])
+    code, library, program = out / "code.o", out / "library.o", out / "program.elf"
+    run([*zig, "cc", *flags, "-std=c99", "-ffp-contract=fast", *extra, "-c", *sources, "-o", code])
     parts = [musl / "src" / "math" / f"{name}.c" for name in _LIBRARY[target.real]]
-    parts.append(musl / "src" / "string" / "memset.c")
+    parts += [musl / "src" / "string" / "memset.c", BOARD / "memory.c"]
     inner = ("src/include", "src/internal", "arch/arm", "arch/generic")
     include = [f"-I{musl / name}" for name in inner]
     run([*zig, "cc", *flags, "-fno-builtin", *include, "-c", *parts, "-o", library])

@@ -30,9 +30,8 @@ def standard_parameters(model: Model) -> Array:
     return np.array([values.get(p.name, _COEFFICIENT) for p in model.standard])
 
 
-def base_parameters(model: Model) -> Array:
-    """What they give for the base parameters."""
-    standard = standard_parameters(model)
+def base_of(model: Model, standard: Array) -> Array:
+    """The base parameters of a vector of standard parameters."""
     return np.array(
         [
             sum(standard[i] * _number(factor, model) for i, factor in parameter.terms)
@@ -47,7 +46,8 @@ class Inputs:
     def __init__(self, model: Model, seed: int) -> None:
         self.model = model
         self.rng = np.random.default_rng(seed)
-        self.standard, self.base = standard_parameters(model), base_parameters(model)
+        self.standard = standard_parameters(model)
+        self.base = base_of(model, self.standard)
 
     def __call__(self, function: Function, *, ends: bool = False) -> list[Array]:
         """A sample of every input. `ends`: each lever at one end of its stroke or the other."""
