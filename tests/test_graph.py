@@ -293,7 +293,7 @@ EXPRESSIONS = [
     sp.Max(X, Y, X * Y) - sp.Min(X, 0.5, Y),
     sp.Piecewise((X, X > Y), (Y**2, True)),
     sp.Piecewise((X, Y < 0.5), (2 * X, Y < 1), (3 * X, True)),
-    sp.Piecewise((1, X >= 1), (-1, X <= -1), (X, True)),
+    sp.Piecewise((5, X >= 1), (-5, X <= -1), (X, True)),
     sp.Piecewise((sp.sin(X), X * Y > 0), (sp.cos(Y), X > 1), (0, True)),
     sp.pi * X + sp.E * Y + sp.Rational(1, 7),
     sp.Integer(3),
