@@ -44,6 +44,7 @@ size: $(INSTALLED)
 run-examples: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[examples]'
 	$(BIN)/python examples/firmware/run.py
+	$(BIN)/python examples/mpc/mpc_run.py
 
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva
