@@ -1,0 +1,48 @@
+"""A record: one log, or a part of one, in the coordinates and units of its arm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Record:
+    """N samples of an arm with n coordinates, on one uniform time axis.
+
+    name: what the user called it (FILE@t0:t1). t: (N,) [s]. q: (N, n) joint coordinates [rad, m].
+    motor: (N, n) motor coordinates [motor unit], q where a joint has no drive. input: (N, n) in the
+    contract's unit of an input [A for a driven joint, N m or N for an undriven one], None for a free
+    motion; `gain`: (N, n), what the input is multiplied by to give what the log carried (K(q) where
+    it carried tau<n>, 1 where it carried a current); effort_unit: unit of that, by joint. dq, ddq:
+    measured rates where the log has them. temperature: (N, n) [deg C]. motor_side: whether joint n was
+    logged as qm<n>. hold: time by which the input lies after the position's stamp [s].
+    """
+
+    name: str
+    t: Array
+    q: Array
+    motor: Array
+    input: Array | None = None
+    gain: Array | None = None
+    effort_unit: tuple[str, ...] = ()
+    dq: Array | None = None
+    ddq: Array | None = None
+    temperature: Array | None = None
+    motor_side: tuple[bool, ...] = ()
+    hold: float = 0.0
+    remarks: tuple[str, ...] = field(default=())
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.q.shape[1]
+
+    @property
+    def step(self) -> float:
+        """Sampling period [s]."""
+        return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
