@@ -40,7 +40,7 @@ class Record:
     @property
     def n(self) -> int:
         """Number of coordinates."""
-        return self.q.shape[1]
+        return int(self.q.shape[1])
 
     @property
     def step(self) -> float:
