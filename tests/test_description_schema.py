@@ -88,9 +88,11 @@ def test_a_wrong_value_is_marked(document: Any, place: list[str | int], value: A
 def test_effects_are_checked_where_the_catalogue_is_known(document: Any) -> None:
     for entry in ("viscuous_friction", {"coulomb_friction": {"magnitud": 1}}, {"spring": {}}):
         changed = copy.deepcopy(document)
-        changed["arms"]["rx90"]["joints"][0]["effects"] = [entry]
-        assert problems(changed, json_schema()) == []
-        assert problems(changed, json_schema(EFFECTS)) != []
+        for owner in (changed["arms"]["rx90"]["joints"][0], changed["arms"]["rx90"]):
+            owner["effects"] = [entry]
+            assert problems(changed, json_schema()) == []
+            assert problems(changed, json_schema(EFFECTS)) != []
+            del owner["effects"]
 
 
 def test_every_field_is_described_and_every_quantity_has_its_unit() -> None:
@@ -108,6 +110,7 @@ def test_every_field_is_described_and_every_quantity_has_its_unit() -> None:
         if '"number"' in str(field).replace("'", '"')
     }
     # The torque constant's unit depends on the drive, an effect's on its parameter: in words.
-    in_words = {"DirectDriveModel.torque_constant", "LeveredDriveModel.torque_constant", "JointModel.effects"}
+    constants = {"DirectDriveModel.torque_constant", "LeveredDriveModel.torque_constant"}
+    in_words = constants | {"JointModel.effects", "ArmModel.effects"}
     without = {name for name in quantities if "[" not in fields[name]}
     assert without == in_words

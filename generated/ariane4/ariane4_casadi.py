@@ -356,16 +356,16 @@ def _bias(name: str) -> ca.Function:
     t40 = -0.28217402066925895 * t37 + 0.9593632378089879 * t36
     t41 = -0.06434139546481742 * t39 / t40
     t42 = -1.0 / t39
-    t43 = -3885.523436256565 * t38 + -72.7913960548305 * (t42 * t42) * (t40 * t40)
-    t44 = dq[0] * dq[0]
-    t45 = t40 * (3885.523436256565 * t42) * dq[0]
-    t46 = ca.sign(t45)
-    IA1 = parameters[17]  # J s^2/unit^2
+    t43 = t40 * (3885.523436256565 * t42) * dq[0]
+    t44 = ca.sign(t43)
+    t45 = -3885.523436256565 * t38 + -72.7913960548305 * (t42 * t42) * (t40 * t40)
+    t46 = dq[0] * dq[0]
     FV1 = parameters[15]  # J s/unit^2
     FC1 = parameters[16]  # J/unit
-    t47 = IA1 * (t42 * t43 * t44) + (FV1 * t45 + FC1 * t46)
+    IA1 = parameters[17]  # J s^2/unit^2
+    t47 = FV1 * t43 + FC1 * t44 + IA1 * (t42 * t45 * t46)
     out[0] = -250.0 * t47 + t41 * t35
-    t48 = 0.116 * t44
+    t48 = 0.116 * t46
     t49 = t3 * t48 + -9.81 * t0
     t50 = t49 + 0.443 * (t28 + t27)
     t51 = t0 * t48 + 9.81 * t3
@@ -379,27 +379,27 @@ def _bias(name: str) -> ca.Function:
     t59 = -0.8305958991958126 * t0 + -0.5568756164881881 * t3
     t60 = -0.03137188092799786 * t58 / t59
     t61 = 1.0 / t58
-    t62 = 2656.3065671641784 * t57 + -104.12987373940295 * (t61 * t61) * (t59 * t59)
-    t63 = t59 * (2656.3065671641784 * t61) * dq[1]
-    t64 = ca.sign(t63)
+    t62 = t59 * (2656.3065671641784 * t61) * dq[1]
+    t63 = ca.sign(t62)
+    t64 = 2656.3065671641784 * t57 + -104.12987373940295 * (t61 * t61) * (t59 * t59)
     IA2 = parameters[20]  # J s^2/unit^2
     FV2 = parameters[18]  # J s/unit^2
     FC2 = parameters[19]  # J/unit
-    t65 = IA2 * (t61 * t62 * t28) - (FV2 * t63 + FC2 * t64)
+    t65 = IA2 * (t61 * t64 * t28) - (FV2 * t62 + FC2 * t63)
     t66 = 83.33333333333333 * t65 + t60 * (t56 + (t54 + 0.443 * t55))
     out[1] = t66
-    t67 = 0.06366143813161289 * t5 - 0.9979715533496006 * t2
-    t68 = ca.sqrt(0.052812 * t67 + 0.242037)
-    t69 = -1.0 / t68
-    t70 = -0.06366143813161289 * t2 + -0.9979715533496006 * t5
-    t71 = -7124.375926654358 * t67 + -188.12627071923498 * (t69 * t69) * (t70 * t70)
-    t72 = t70 * (7124.375926654358 * t69) * dq[2]
-    t73 = ca.sign(t72)
-    IA3 = parameters[23]  # J s^2/unit^2
+    t67 = -0.06366143813161289 * t2 + -0.9979715533496006 * t5
+    t68 = 0.06366143813161289 * t5 - 0.9979715533496006 * t2
+    t69 = ca.sqrt(0.052812 * t68 + 0.242037)
+    t70 = -1.0 / t69
+    t71 = t67 * (7124.375926654358 * t70) * dq[2]
+    t72 = ca.sign(t71)
+    t73 = -7124.375926654358 * t68 + -188.12627071923498 * (t70 * t70) * (t67 * t67)
     FV3 = parameters[21]  # J s/unit^2
     FC3 = parameters[22]  # J/unit
-    t74 = IA3 * (t69 * t71 * (dq[2] * dq[2])) + (FV3 * t72 + FC3 * t73)
-    t75 = -0.046787723832235825 * t68 / t70
+    IA3 = parameters[23]  # J s^2/unit^2
+    t74 = FV3 * t71 + FC3 * t72 + IA3 * (t70 * t73 * (dq[2] * dq[2]))
+    t75 = -0.046787723832235825 * t69 / t67
     out[2] = -333.3333333333333 * t74 - t75 * t54
     outputs = [_vector(out)]
     names_in = ["q", "dq", "parameters"]
@@ -495,7 +495,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [24]             base parameters; norm at most 1e+09
     out  ddq         [3]   [rad/s^2]  joint accelerations
 
-    Operations: 321 (201 mul, 120 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other.
+    Operations: 315 (195 mul, 120 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other.
     """
     inputs = [ca.SX.sym("q", 3), ca.SX.sym("dq", 3), ca.SX.sym("input", 3), ca.SX.sym("parameters", 24)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -600,13 +600,13 @@ def _forward_dynamics(name: str) -> ca.Function:
     t79 = dq[0] * dq[0]
     FV1 = parameters[15]  # J s/unit^2
     FC1 = parameters[16]  # J/unit
-    t80 = t34 * (FV1 * t76) + t34 * (FC1 * t77) + t34 * (IA1 * (t33 * t78 * t79))
+    t80 = FV1 * t76 + FC1 * t77 + IA1 * (t33 * t78 * t79)
     t81 = t6 * dq[2]
     t82 = ca.sign(t81)
     t83 = 7124.375926654358 * t3 + 188.12627071923498 * (t5 * t5) * (t2 * t2)
     FV3 = parameters[21]  # J s/unit^2
     FC3 = parameters[22]  # J/unit
-    t84 = t6 * (FV3 * t81) + t6 * (FC3 * t82) + t6 * (IA3 * (t5 * t83 * (dq[2] * dq[2])))
+    t84 = FV3 * t81 + FC3 * t82 + IA3 * (t5 * t83 * (dq[2] * dq[2]))
     t85 = 0.116 * t79
     t86 = t9 * t85 - 9.81 * t8
     t87 = t86 + 0.443 * (t68 + t67)
@@ -614,8 +614,8 @@ def _forward_dynamics(name: str) -> ca.Function:
     t89 = t88 + 0.443 * t65
     t90 = MX3R * (t0 * t87 + t1 * t89) + MY3R * (t1 * t87 - t0 * t89)
     t91 = XX3R * t52 + XY3R * (t61 - t54) + t90
-    t92 = input[2] * (0.003 * t6) + (t84 + t91)
-    t93 = input[0] * (-0.004 * t34) + (t75 - t80) - t92 * t39
+    t92 = input[2] * (0.003 * t6) + (t6 * t84 + t91)
+    t93 = input[0] * (-0.004 * t34) + (t75 - t34 * t80) - t92 * t39
     t94 = t0 * (MX3R * (t54 + t55) + MY3R * t52) + t1 * (MX3R * t52 + MY3R * (t61 + t55))
     t95 = XX2R * t65 - XY2 * (t73 - t67) - (MX2R * t88 + MY2 * t86)
     t96 = t14 * dq[1]
@@ -623,8 +623,8 @@ def _forward_dynamics(name: str) -> ca.Function:
     t98 = -2656.3065671641784 * t11 - 104.12987373940295 * (t13 * t13) * (t10 * t10)
     FV2 = parameters[18]  # J s/unit^2
     FC2 = parameters[19]  # J/unit
-    t99 = t14 * (FV2 * t96) + t14 * (FC2 * t97) + t14 * (IA2 * (t13 * t98 * t68))
-    t100 = input[1] * (0.012 * t14) - (t99 - (t95 - (t91 - 0.443 * t94)))
+    t99 = FV2 * t96 + FC2 * t97 + IA2 * (t13 * t98 * t68)
+    t100 = input[1] * (0.012 * t14) - (t14 * t99 - (t95 - (t91 - 0.443 * t94)))
     t101 = t100 + t92 * t19
     t102 = 1.0 / t43
     t103 = (t93 + t101 * t42) * t102
@@ -1825,13 +1825,13 @@ def _bias_standard(name: str) -> ca.Function:
     t66 = -0.28217402066925895 * t63 + 0.9593632378089879 * t62
     t67 = -0.06434139546481742 * t65 / t66
     t68 = -1.0 / t65
-    t69 = -3885.523436256565 * t64 + -72.7913960548305 * (t68 * t68) * (t66 * t66)
-    t70 = t66 * (3885.523436256565 * t68) * dq[0]
-    t71 = ca.sign(t70)
-    IA1 = parameters[42]  # J s^2/unit^2
+    t69 = t66 * (3885.523436256565 * t68) * dq[0]
+    t70 = ca.sign(t69)
+    t71 = -3885.523436256565 * t64 + -72.7913960548305 * (t68 * t68) * (t66 * t66)
     FV1 = parameters[40]  # J s/unit^2
     FC1 = parameters[41]  # J/unit
-    t72 = t68 * t69 * t17 * IA1 + (t70 * FV1 + t71 * FC1)
+    IA1 = parameters[42]  # J s^2/unit^2
+    t72 = t69 * FV1 + t70 * FC1 + t68 * t71 * t17 * IA1
     t73 = -250.0 * t72 + t67 * (t60 + 0.116 * (t61 + t54))
     out[0] = t73
     t74 = t30 - t14
@@ -1849,26 +1849,26 @@ def _bias_standard(name: str) -> ca.Function:
     t86 = -0.8305958991958126 * t0 + -0.5568756164881881 * t3
     t87 = -0.03137188092799786 * t85 / t86
     t88 = 1.0 / t85
-    t89 = 2656.3065671641784 * t84 + -104.12987373940295 * (t88 * t88) * (t86 * t86)
-    t90 = t86 * (2656.3065671641784 * t88) * dq[1]
-    t91 = ca.sign(t90)
+    t89 = t86 * (2656.3065671641784 * t88) * dq[1]
+    t90 = ca.sign(t89)
+    t91 = 2656.3065671641784 * t84 + -104.12987373940295 * (t88 * t88) * (t86 * t86)
     IA2 = parameters[45]  # J s^2/unit^2
     FV2 = parameters[43]  # J s/unit^2
     FC2 = parameters[44]  # J/unit
-    t92 = t88 * t89 * t21 * IA2 - (t90 * FV2 + t91 * FC2)
+    t92 = t88 * t91 * t21 * IA2 - (t89 * FV2 + t90 * FC2)
     out[1] = 83.33333333333333 * t92 + t87 * t83
     t93 = 0.06366143813161289 * t5 - 0.9979715533496006 * t2
     t94 = ca.sqrt(0.052812 * t93 + 0.242037)
     t95 = -0.06366143813161289 * t2 + -0.9979715533496006 * t5
     t96 = -0.046787723832235825 * t94 / t95
     t97 = -1.0 / t94
-    t98 = -7124.375926654358 * t93 + -188.12627071923498 * (t97 * t97) * (t95 * t95)
-    t99 = t95 * (7124.375926654358 * t97) * dq[2]
-    t100 = ca.sign(t99)
-    IA3 = parameters[48]  # J s^2/unit^2
+    t98 = t95 * (7124.375926654358 * t97) * dq[2]
+    t99 = ca.sign(t98)
+    t100 = -7124.375926654358 * t93 + -188.12627071923498 * (t97 * t97) * (t95 * t95)
     FV3 = parameters[46]  # J s/unit^2
     FC3 = parameters[47]  # J/unit
-    t101 = t97 * t98 * (dq[2] * dq[2]) * IA3 + (t99 * FV3 + t100 * FC3)
+    IA3 = parameters[48]  # J s^2/unit^2
+    t101 = t98 * FV3 + t99 * FC3 + t97 * t100 * (dq[2] * dq[2]) * IA3
     out[2] = -333.3333333333333 * t101 - t96 * t79
     outputs = [_vector(out)]
     names_in = ["q", "dq", "parameters"]
@@ -1941,7 +1941,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t30 = (0.28217402066925895 * t26 + -0.9593632378089879 * t27) * (3885.523436256565 * t29)
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # J s^2/unit^2
-    out[0] = ZZ1 + t25 + IA1 * (t30 * t30)
+    out[0] = ZZ1 + t25 + t30 * t30 * IA1
     XZ3 = parameters[22]  # kg m^2
     MY4 = parameters[37]  # kg m
     XY4 = parameters[31]  # kg m^2
@@ -1967,7 +1967,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t40 = ZZ3 + (YY4 + (t4 + t1))
     ZZ2 = parameters[15]  # kg m^2
     IA2 = parameters[45]  # J s^2/unit^2
-    out[4] = ZZ2 + (t40 + t18) + IA2 * (t39 * t39)
+    out[4] = ZZ2 + (t40 + t18) + t39 * t39 * IA2
     t41 = t40 + 0.443 * t15
     out[5] = t41
     out[6] = t36
@@ -1976,7 +1976,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t43 = 1.0 / t42
     t44 = (0.06366143813161289 * t9 + 0.9979715533496006 * t6) * (7124.375926654358 * t43)
     IA3 = parameters[48]  # J s^2/unit^2
-    out[8] = t40 + IA3 * (t44 * t44)
+    out[8] = t40 + t44 * t44 * IA3
     outputs = [_matrix(out, 3, 3)]
     names_in = ["q", "parameters"]
     names_out = ["mass"]
@@ -1994,7 +1994,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [49]             standard parameters; norm at most 1e+09
     out  ddq         [3]   [rad/s^2]  joint accelerations
 
-    Operations: 473 (265 mul, 208 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other.
+    Operations: 467 (259 mul, 208 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other.
     """
     inputs = [ca.SX.sym("q", 3), ca.SX.sym("dq", 3), ca.SX.sym("input", 3), ca.SX.sym("parameters", 49)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -2017,7 +2017,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     YY4 = parameters[33]  # kg m^2
     t11 = ZZ3 + (YY4 + (t8 + t10))
     IA3 = parameters[48]  # J s^2/unit^2
-    t12 = t11 + IA3 * (t6 * t6)
+    t12 = t11 + t6 * t6 * IA3
     t13 = ca.sin(q[1])
     t14 = ca.cos(q[1])
     t15 = 0.8305958991958126 * t13 + 0.5568756164881881 * t14
@@ -2040,7 +2040,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t29 = t28 * t27
     ZZ2 = parameters[15]  # kg m^2
     IA2 = parameters[45]  # J s^2/unit^2
-    t30 = ZZ2 + (t11 + t26) + IA2 * (t19 * t19) + t28 * t29
+    t30 = ZZ2 + (t11 + t26) + t19 * t19 * IA2 + t28 * t29
     XX3 = parameters[20]  # kg m^2
     XX4 = parameters[30]  # kg m^2
     t31 = XX3 + (XX4 + t10)
@@ -2084,7 +2084,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t54 = t53 * t27
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # J s^2/unit^2
-    t55 = ZZ1 + t41 + IA1 * (t48 * t48) + t53 * t54
+    t55 = ZZ1 + t41 + t48 * t48 * IA1 + t53 * t54
     t56 = 1.0 / t30
     MZ3 = parameters[28]  # kg m
     XZ2 = parameters[12]  # kg m^2
@@ -2157,8 +2157,8 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t121 = -3885.523436256565 * t45 + -72.7913960548305 * (t47 * t47) * (t44 * t44)
     FV1 = parameters[40]  # J s/unit^2
     FC1 = parameters[41]  # J/unit
-    t122 = t48 * (t119 * FV1) + t48 * (t120 * FC1) + t48 * (t47 * t121 * t74 * IA1)
-    t123 = input[0] * (-0.004 * t48) + (t117 + 0.116 * (t118 + t111) - t122)
+    t122 = t119 * FV1 + t120 * FC1 + t47 * t121 * t74 * IA1
+    t123 = input[0] * (-0.004 * t48) + (t117 + 0.116 * (t118 + t111) - t48 * t122)
     t124 = t87 - t71
     t125 = t70 * (XX4 - ZZ4) + XZ4 * t124 + (MZ4 * t102 - MX4 * t89)
     t126 = M4 * t89 + (MX4 * t70 + MZ4 * t88)
@@ -2170,8 +2170,8 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t132 = 7124.375926654358 * t3 + 188.12627071923498 * (t5 * t5) * (t2 * t2)
     FV3 = parameters[46]  # J s/unit^2
     FC3 = parameters[47]  # J/unit
-    t133 = t6 * (t130 * FV3) + t6 * (t131 * FC3) + t6 * (t5 * t132 * (dq[2] * dq[2]) * IA3)
-    t134 = input[2] * (0.003 * t6) + (t133 + t129)
+    t133 = t130 * FV3 + t131 * FC3 + t5 * t132 * (dq[2] * dq[2]) * IA3
+    t134 = input[2] * (0.003 * t6) + (t6 * t133 + t129)
     t135 = M3 * t99 + (MX3 * t101 + MY3 * t70) + t127
     t136 = M3 * t83 + (MX3 * t70 + MY3 * t88) + t126
     t137 = t81 * (XX2 - YY2) - (t114 - t77) * XY2 + (t80 * MX2 + t76 * MY2)
@@ -2181,8 +2181,8 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t141 = -2656.3065671641784 * t16 - 104.12987373940295 * (t18 * t18) * (t15 * t15)
     FV2 = parameters[43]  # J s/unit^2
     FC2 = parameters[44]  # J/unit
-    t142 = t19 * (t139 * FV2) + t19 * (t140 * FC2) + t19 * (t18 * t141 * t78 * IA2)
-    t143 = 0.012 * t19 * input[1] - (t142 - t138) + t134 * t29
+    t142 = t139 * FV2 + t140 * FC2 + t18 * t141 * t78 * IA2
+    t143 = 0.012 * t19 * input[1] - (t19 * t142 - t138) + t134 * t29
     t144 = 1.0 / t60
     t145 = (t123 + t134 * t54 + t143 * t59) * t144
     out[0] = t145
@@ -2282,17 +2282,17 @@ def _energy_standard(name: str) -> ca.Function:
     t37 = 1.0 / t36
     t38 = (0.28217402066925895 * t34 + -0.9593632378089879 * t35) * (3885.523436256565 * t37)
     IA1 = parameters[42]  # J s^2/unit^2
-    t39 = t33 + 0.5 * (dq[0] * dq[0] * (IA1 * (t38 * t38)))
+    t39 = t33 + 0.5 * (dq[0] * dq[0] * (t38 * t38 * IA1))
     t40 = ca.sqrt(0.078402 * (-0.8305958991958126 * t3 + 0.5568756164881881 * t0) + 0.293698)
     t41 = 1.0 / t40
     t42 = (0.8305958991958126 * t0 + 0.5568756164881881 * t3) * (2656.3065671641784 * t41)
     IA2 = parameters[45]  # J s^2/unit^2
-    t43 = t39 + 0.5 * (dq[1] * dq[1] * (IA2 * (t42 * t42)))
+    t43 = t39 + 0.5 * (dq[1] * dq[1] * (t42 * t42 * IA2))
     t44 = ca.sqrt(0.052812 * (0.06366143813161289 * t2 + -0.9979715533496006 * t5) + 0.242037)
     t45 = 1.0 / t44
     t46 = (0.06366143813161289 * t5 + 0.9979715533496006 * t2) * (7124.375926654358 * t45)
     IA3 = parameters[48]  # J s^2/unit^2
-    t47 = t43 + 0.5 * (dq[2] * dq[2] * (IA3 * (t46 * t46)))
+    t47 = t43 + 0.5 * (dq[2] * dq[2] * (t46 * t46 * IA3))
     out_kinetic[0] = t47
     t48 = 9.81 * t0
     t49 = 9.81 * t3

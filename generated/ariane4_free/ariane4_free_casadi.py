@@ -479,13 +479,13 @@ def _bias(name: str) -> ca.Function:
     t80 = -0.28217402066925895 * t77 + 0.9593632378089879 * t76
     t81 = -0.06434139546481742 * t79 / t80
     t82 = -1.0 / t79
-    t83 = -3885.523436256565 * t78 + -72.7913960548305 * (t82 * t82) * (t80 * t80)
-    t84 = t80 * (3885.523436256565 * t82) * dq[0]
-    t85 = ca.sign(t84)
-    IA1 = parameters[24]  # J s^2/unit^2
+    t83 = t80 * (3885.523436256565 * t82) * dq[0]
+    t84 = ca.sign(t83)
+    t85 = -3885.523436256565 * t78 + -72.7913960548305 * (t82 * t82) * (t80 * t80)
     FV1 = parameters[22]  # J s/unit^2
     FC1 = parameters[23]  # J/unit
-    t86 = IA1 * (t82 * t83 * t29) + (FV1 * t84 + FC1 * t85)
+    IA1 = parameters[24]  # J s^2/unit^2
+    t86 = FV1 * t83 + FC1 * t84 + IA1 * (t82 * t85 * t29)
     out[0] = -250.0 * t86 + t81 * t75
     t87 = MX4 * t22 + MY4 * t41
     t88 = XY3R * (t64 - t48) - XX3R * t8 + (MY3R * t54 - MX3R * t38)
@@ -499,26 +499,26 @@ def _bias(name: str) -> ca.Function:
     t96 = -0.03137188092799786 * t94 / t95
     t97 = t96 * (t92 + (t89 + 0.443 * (t5 * t90 + t91)))
     t98 = 1.0 / t94
-    t99 = 2656.3065671641784 * t93 + -104.12987373940295 * (t98 * t98) * (t95 * t95)
-    t100 = t95 * (2656.3065671641784 * t98) * dq[1]
-    t101 = ca.sign(t100)
+    t99 = t95 * (2656.3065671641784 * t98) * dq[1]
+    t100 = ca.sign(t99)
+    t101 = 2656.3065671641784 * t93 + -104.12987373940295 * (t98 * t98) * (t95 * t95)
     IA2 = parameters[27]  # J s^2/unit^2
     FV2 = parameters[25]  # J s/unit^2
     FC2 = parameters[26]  # J/unit
-    t102 = IA2 * (t98 * t99 * t33) - (FV2 * t100 + FC2 * t101)
+    t102 = IA2 * (t98 * t101 * t33) - (FV2 * t99 + FC2 * t100)
     out[1] = 83.33333333333333 * t102 + t97
     t103 = 0.06366143813161289 * t2 - 0.9979715533496006 * t5
     t104 = ca.sqrt(0.052812 * t103 + 0.242037)
     t105 = -0.06366143813161289 * t5 + -0.9979715533496006 * t2
     t106 = -0.046787723832235825 * t104 / t105
     t107 = -1.0 / t104
-    t108 = -7124.375926654358 * t103 + -188.12627071923498 * (t107 * t107) * (t105 * t105)
-    t109 = t105 * (7124.375926654358 * t107) * dq[2]
-    t110 = ca.sign(t109)
-    IA3 = parameters[30]  # J s^2/unit^2
+    t108 = t105 * (7124.375926654358 * t107) * dq[2]
+    t109 = ca.sign(t108)
+    t110 = -7124.375926654358 * t103 + -188.12627071923498 * (t107 * t107) * (t105 * t105)
     FV3 = parameters[28]  # J s/unit^2
     FC3 = parameters[29]  # J/unit
-    t111 = IA3 * (t107 * t108 * (dq[2] * dq[2])) + (FV3 * t109 + FC3 * t110)
+    IA3 = parameters[30]  # J s^2/unit^2
+    t111 = FV3 * t108 + FC3 * t109 + IA3 * (t107 * t110 * (dq[2] * dq[2]))
     out[2] = -333.3333333333333 * t111 - t106 * t89
     t112 = ca.sign(dq[3])
     FV4 = parameters[31]  # N m s/rad
@@ -654,7 +654,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [34]             base parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2]  joint accelerations
 
-    Operations: 520 (306 mul, 214 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+    Operations: 513 (299 mul, 214 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 34)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -831,13 +831,13 @@ def _forward_dynamics(name: str) -> ca.Function:
     t143 = -3885.523436256565 * t51 + -72.7913960548305 * (t53 * t53) * (t50 * t50)
     FV1 = parameters[22]  # J s/unit^2
     FC1 = parameters[23]  # J/unit
-    t144 = t54 * (FV1 * t141) + t54 * (FC1 * t142) + t54 * (IA1 * (t53 * t143 * t94))
+    t144 = FV1 * t141 + FC1 * t142 + IA1 * (t53 * t143 * t94)
     t145 = ca.sign(dq[3])
     FV4 = parameters[31]  # N m s/rad
     FC4 = parameters[32]  # N m
-    t146 = 100.0 * (FV4 * (100.0 * dq[3])) + 100.0 * (FC4 * t145)
-    t147 = 5.0 * input[3] - (t146 - t124)
-    t148 = input[0] * (-0.004 * t54) + (t140 - t144) - t147 * t59
+    t146 = 100.0 * (FV4 * (100.0 * dq[3]) + FC4 * t145) - t124
+    t147 = 5.0 * input[3] - t146
+    t148 = input[0] * (-0.004 * t54) + (t140 - t54 * t144) - t147 * t59
     t149 = MX4 * t87 + MY4 * t106
     t150 = XY3R * (t129 - t113) - XX3R * t75 + (MY3R * t119 - MX3R * t103)
     t151 = t150 + (t9 * t105 - t8 * t110 - 0.1 * t149)
@@ -846,8 +846,8 @@ def _forward_dynamics(name: str) -> ca.Function:
     t154 = 7124.375926654358 * t4 + 188.12627071923498 * (t6 * t6) * (t3 * t3)
     FV3 = parameters[28]  # J s/unit^2
     FC3 = parameters[29]  # J/unit
-    t155 = t7 * (FV3 * t152) + t7 * (FC3 * t153) + t7 * (IA3 * (t6 * t154 * (dq[2] * dq[2])))
-    t156 = input[2] * (0.003 * t7) + (t155 + t151) + t147 * t17
+    t155 = FV3 * t152 + FC3 * t153 + IA3 * (t6 * t154 * (dq[2] * dq[2]))
+    t156 = input[2] * (0.003 * t7) + (t7 * t155 + t151) + t147 * t17
     t157 = MX3R * t120 - MY3R * t75 + (t8 * t125 - t9 * t126)
     t158 = t2 * (MY3R * (t129 + t114) - MX3R * t75 - t149)
     t159 = XX2R * t101 - XY2 * (t138 - t97) + (MX2R * t100 + MY2 * t96)
@@ -856,8 +856,8 @@ def _forward_dynamics(name: str) -> ca.Function:
     t162 = -2656.3065671641784 * t22 - 104.12987373940295 * (t24 * t24) * (t21 * t21)
     FV2 = parameters[25]  # J s/unit^2
     FC2 = parameters[26]  # J/unit
-    t163 = t25 * (FV2 * t160) + t25 * (FC2 * t161) + t25 * (IA2 * (t24 * t162 * t98))
-    t164 = t163 - (t159 - (t151 - 0.443 * (t1 * t157 + t158)))
+    t163 = FV2 * t160 + FC2 * t161 + IA2 * (t24 * t162 * t98)
+    t164 = t25 * t163 - (t159 - (t151 - 0.443 * (t1 * t157 + t158)))
     t165 = input[1] * (0.012 * t25) - t164 + t147 * t31 + t156 * t35
     t166 = 1.0 / t70
     t167 = (t148 - t156 * t65 + t165 * t69) * t166
@@ -2478,13 +2478,13 @@ def _bias_standard(name: str) -> ca.Function:
     t90 = -0.28217402066925895 * t87 + 0.9593632378089879 * t86
     t91 = -0.06434139546481742 * t89 / t90
     t92 = -1.0 / t89
-    t93 = -3885.523436256565 * t88 + -72.7913960548305 * (t92 * t92) * (t90 * t90)
-    t94 = t90 * (3885.523436256565 * t92) * dq[0]
-    t95 = ca.sign(t94)
-    IA1 = parameters[42]  # J s^2/unit^2
+    t93 = t90 * (3885.523436256565 * t92) * dq[0]
+    t94 = ca.sign(t93)
+    t95 = -3885.523436256565 * t88 + -72.7913960548305 * (t92 * t92) * (t90 * t90)
     FV1 = parameters[40]  # J s/unit^2
     FC1 = parameters[41]  # J/unit
-    t96 = t92 * t93 * t0 * IA1 + (t94 * FV1 + t95 * FC1)
+    IA1 = parameters[42]  # J s^2/unit^2
+    t96 = t93 * FV1 + t94 * FC1 + t92 * t95 * t0 * IA1
     t97 = -250.0 * t96 + t91 * (t84 + 0.116 * (t85 + t78))
     out[0] = t97
     t98 = MX4 * t46 + MY4 * t54 - MZ4 * (t57 + t50)
@@ -2502,26 +2502,26 @@ def _bias_standard(name: str) -> ca.Function:
     t110 = -0.8305958991958126 * t3 + -0.5568756164881881 * t2
     t111 = -0.03137188092799786 * t109 / t110
     t112 = 1.0 / t109
-    t113 = 2656.3065671641784 * t108 + -104.12987373940295 * (t112 * t112) * (t110 * t110)
-    t114 = t110 * (2656.3065671641784 * t112) * dq[1]
-    t115 = ca.sign(t114)
+    t113 = t110 * (2656.3065671641784 * t112) * dq[1]
+    t114 = ca.sign(t113)
+    t115 = 2656.3065671641784 * t108 + -104.12987373940295 * (t112 * t112) * (t110 * t110)
     IA2 = parameters[45]  # J s^2/unit^2
     FV2 = parameters[43]  # J s/unit^2
     FC2 = parameters[44]  # J/unit
-    t116 = t112 * t113 * t7 * IA2 - (t114 * FV2 + t115 * FC2)
+    t116 = t112 * t115 * t7 * IA2 - (t113 * FV2 + t114 * FC2)
     out[1] = 83.33333333333333 * t116 + t111 * t107
     t117 = 0.06366143813161289 * t14 - 0.9979715533496006 * t9
     t118 = ca.sqrt(0.052812 * t117 + 0.242037)
     t119 = -0.06366143813161289 * t9 + -0.9979715533496006 * t14
     t120 = -0.046787723832235825 * t118 / t119
     t121 = -1.0 / t118
-    t122 = -7124.375926654358 * t117 + -188.12627071923498 * (t121 * t121) * (t119 * t119)
-    t123 = t119 * (7124.375926654358 * t121) * dq[2]
-    t124 = ca.sign(t123)
-    IA3 = parameters[48]  # J s^2/unit^2
+    t122 = t119 * (7124.375926654358 * t121) * dq[2]
+    t123 = ca.sign(t122)
+    t124 = -7124.375926654358 * t117 + -188.12627071923498 * (t121 * t121) * (t119 * t119)
     FV3 = parameters[46]  # J s/unit^2
     FC3 = parameters[47]  # J/unit
-    t125 = t121 * t122 * (dq[2] * dq[2]) * IA3 + (t123 * FV3 + t124 * FC3)
+    IA3 = parameters[48]  # J s^2/unit^2
+    t125 = t122 * FV3 + t123 * FC3 + t121 * t124 * (dq[2] * dq[2]) * IA3
     out[2] = -333.3333333333333 * t125 - t120 * t103
     t126 = ca.sign(dq[3])
     FV4 = parameters[49]  # N m s/rad
@@ -2609,7 +2609,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t36 = (0.28217402066925895 * t32 + -0.9593632378089879 * t33) * (3885.523436256565 * t35)
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # J s^2/unit^2
-    out[0] = ZZ1 + t31 + IA1 * (t36 * t36)
+    out[0] = ZZ1 + t31 + t36 * t36 * IA1
     t37 = t0 * MY4 + t1 * MX4
     XZ3 = parameters[22]  # kg m^2
     t38 = XZ3 + (t1 * t2 - XY4 + -0.1 * t37)
@@ -2638,7 +2638,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t52 = ZZ3 + (XX4 + t3 + (t9 + t5))
     ZZ2 = parameters[15]  # kg m^2
     IA2 = parameters[45]  # J s^2/unit^2
-    out[5] = ZZ2 + (t52 + t24) + IA2 * (t51 * t51)
+    out[5] = ZZ2 + (t52 + t24) + t51 * t51 * IA2
     t53 = t52 + 0.443 * t21
     out[6] = t53
     t54 = t39 + -0.443 * (t15 * t37)
@@ -2649,7 +2649,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t56 = 1.0 / t55
     t57 = (0.06366143813161289 * t15 + 0.9979715533496006 * t11) * (7124.375926654358 * t56)
     IA3 = parameters[48]  # J s^2/unit^2
-    out[10] = t52 + IA3 * (t57 * t57)
+    out[10] = t52 + t57 * t57 * IA3
     out[11] = t39
     out[12] = t48
     out[13] = t54
@@ -2673,7 +2673,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [52]             standard parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2]  joint accelerations
 
-    Operations: 612 (344 mul, 268 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+    Operations: 605 (337 mul, 268 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -2714,7 +2714,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t21 = -1.0 / t0
     t22 = t20 * t21
     IA3 = parameters[48]  # J s^2/unit^2
-    t23 = t18 + IA3 * (t7 * t7) + t20 * t22
+    t23 = t18 + t7 * t7 * IA3 + t20 * t22
     t24 = ca.sin(q[1])
     t25 = ca.cos(q[1])
     t26 = 0.8305958991958126 * t24 + 0.5568756164881881 * t25
@@ -2736,7 +2736,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t39 = t38 * t21
     ZZ2 = parameters[15]  # kg m^2
     IA2 = parameters[45]  # J s^2/unit^2
-    t40 = ZZ2 + (t18 + t37) + IA2 * (t30 * t30) + t38 * t39
+    t40 = ZZ2 + (t18 + t37) + t30 * t30 * IA2 + t38 * t39
     t41 = -1.0 / t23
     t42 = -0.443 * t34 - t18 - t38 * t22
     t43 = t42 * t41
@@ -2776,7 +2776,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t68 = t67 * t21
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # J s^2/unit^2
-    t69 = ZZ1 + t56 + IA1 * (t63 * t63) + t67 * t68
+    t69 = ZZ1 + t56 + t63 * t63 * IA1 + t67 * t68
     XZ3 = parameters[22]  # kg m^2
     t70 = XY4 + t8 * t16 + 0.1 * t19 - XZ3
     YZ3 = parameters[24]  # kg m^2
@@ -2879,13 +2879,13 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t163 = -3885.523436256565 * t60 + -72.7913960548305 * (t62 * t62) * (t59 * t59)
     FV1 = parameters[40]  # J s/unit^2
     FC1 = parameters[41]  # J/unit
-    t164 = t63 * (t161 * FV1) + t63 * (t162 * FC1) + t63 * (t62 * t163 * t81 * IA1)
-    t165 = input[0] * (-0.004 * t63) + (t159 + 0.116 * (t160 + t153) - t164)
+    t164 = t161 * FV1 + t162 * FC1 + t62 * t163 * t81 * IA1
+    t165 = input[0] * (-0.004 * t63) + (t159 + 0.116 * (t160 + t153) - t63 * t164)
     t166 = ca.sign(dq[3])
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
-    t167 = 100.0 * (100.0 * dq[3] * FV4) + 100.0 * (t166 * FC4)
-    t168 = 5.0 * input[3] - (t167 - t144)
+    t167 = 100.0 * (100.0 * dq[3] * FV4 + t166 * FC4) - t144
+    t168 = 5.0 * input[3] - t167
     t169 = MZ4 * (t132 + t125) - (MX4 * t121 + MY4 * t129)
     t170 = M4 * t100 + t169
     t171 = t9 * t135 - t8 * t137
@@ -2897,8 +2897,8 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t177 = 7124.375926654358 * t4 + 188.12627071923498 * (t6 * t6) * (t3 * t3)
     FV3 = parameters[46]  # J s/unit^2
     FC3 = parameters[47]  # J/unit
-    t178 = t7 * (t175 * FV3) + t7 * (t176 * FC3) + t7 * (t6 * t177 * (dq[2] * dq[2]) * IA3)
-    t179 = input[2] * (0.003 * t7) + (t178 + t174) - t168 * t22
+    t178 = t175 * FV3 + t176 * FC3 + t6 * t177 * (dq[2] * dq[2]) * IA3
+    t179 = input[2] * (0.003 * t7) + (t7 * t178 + t174) - t168 * t22
     t180 = M3 * t101 + (MX3 * t103 - MY3 * t95) + t171
     t181 = M3 * t92 + (MY3 * t99 - MX3 * t95) + t170
     t182 = t90 * (XX2 - YY2) - (t156 - t85) * XY2 + (t88 * MX2 + t83 * MY2)
@@ -2908,8 +2908,8 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t186 = -2656.3065671641784 * t27 - 104.12987373940295 * (t29 * t29) * (t26 * t26)
     FV2 = parameters[43]  # J s/unit^2
     FC2 = parameters[44]  # J/unit
-    t187 = t30 * (t184 * FV2) + t30 * (t185 * FC2) + t30 * (t29 * t186 * t86 * IA2)
-    t188 = 0.012 * t30 * input[1] - (t187 - t183) + t168 * t39
+    t187 = t184 * FV2 + t185 * FC2 + t29 * t186 * t86 * IA2
+    t188 = 0.012 * t30 * input[1] - (t30 * t187 - t183) + t168 * t39
     t189 = t188 + t179 * t43
     t190 = t165 - t168 * t68 + t179 * t75 + t189 * t79
     t191 = 1.0 / t80
@@ -3021,17 +3021,17 @@ def _energy_standard(name: str) -> ca.Function:
     t44 = 1.0 / t43
     t45 = (0.28217402066925895 * t41 + -0.9593632378089879 * t42) * (3885.523436256565 * t44)
     IA1 = parameters[42]  # J s^2/unit^2
-    t46 = t40 + 0.5 * (dq[0] * dq[0] * (IA1 * (t45 * t45)))
+    t46 = t40 + 0.5 * (dq[0] * dq[0] * (t45 * t45 * IA1))
     t47 = ca.sqrt(0.078402 * (-0.8305958991958126 * t3 + 0.5568756164881881 * t0) + 0.293698)
     t48 = 1.0 / t47
     t49 = (0.8305958991958126 * t0 + 0.5568756164881881 * t3) * (2656.3065671641784 * t48)
     IA2 = parameters[45]  # J s^2/unit^2
-    t50 = t46 + 0.5 * (dq[1] * dq[1] * (IA2 * (t49 * t49)))
+    t50 = t46 + 0.5 * (dq[1] * dq[1] * (t49 * t49 * IA2))
     t51 = ca.sqrt(0.052812 * (0.06366143813161289 * t2 + -0.9979715533496006 * t5) + 0.242037)
     t52 = 1.0 / t51
     t53 = (0.06366143813161289 * t5 + 0.9979715533496006 * t2) * (7124.375926654358 * t52)
     IA3 = parameters[48]  # J s^2/unit^2
-    t54 = t50 + 0.5 * (dq[2] * dq[2] * (IA3 * (t53 * t53)))
+    t54 = t50 + 0.5 * (dq[2] * dq[2] * (t53 * t53 * IA3))
     IA4 = parameters[51]  # N m s^2/rad
     out_kinetic[0] = t54 + 0.5 * (dq[3] * dq[3] * (10000.0 * IA4))
     t55 = 9.81 * t0

@@ -853,7 +853,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [52]             base parameters; norm at most 1e+09
     out  ddq         [6]   [rad/s^2]  joint accelerations
 
-    Operations: 860 (472 mul, 388 add, 0 neg), 6 div, 10 trig, 6 other.
+    Operations: 854 (466 mul, 388 add, 0 neg), 6 div, 10 trig, 6 other.
     """
     inputs = [ca.SX.sym("q", 6), ca.SX.sym("dq", 6), ca.SX.sym("input", 6), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1139,31 +1139,31 @@ def _forward_dynamics(name: str) -> ca.Function:
     t240 = ca.sign(dq[0])
     FV1 = parameters[36]  # N m s/rad
     FC1 = parameters[37]  # N m
-    t241 = 100.0 * (FV1 * (-100.0 * dq[0])) + -100.0 * (FC1 * t240)
+    t241 = 100.0 * (FV1 * (-100.0 * dq[0]) - FC1 * t240) + t239
     t242 = ca.sign(dq[5])
     FV6 = parameters[49]  # N m s/rad
     FC6 = parameters[50]  # N m
-    t243 = 30.0 * (FV6 * (30.0 * dq[5])) + 30.0 * (FC6 * t242)
-    t244 = 6.0 * input[5] - (t243 + t200)
+    t243 = 30.0 * (FV6 * (30.0 * dq[5]) + FC6 * t242) + t200
+    t244 = 6.0 * input[5] - t243
     t245 = ca.sign(dq[4])
     FV5 = parameters[46]  # N m s/rad
     FC5 = parameters[47]  # N m
-    t246 = 50.0 * (FV5 * (50.0 * dq[4])) + 50.0 * (FC5 * t245)
-    t247 = 10.0 * input[4] - (t246 - t212) - t244 * t5
-    t248 = 30.0 * input[0] + (t241 + t239) - t244 * t95 + t247 * t100
+    t246 = 50.0 * (FV5 * (50.0 * dq[4]) + FC5 * t245) - t212
+    t247 = 10.0 * input[4] - t246 - t244 * t5
+    t248 = 30.0 * input[0] + t241 - t244 * t95 + t247 * t100
     t249 = ca.sign(dq[3])
     FV4 = parameters[43]  # N m s/rad
     FC4 = parameters[44]  # N m
-    t250 = 50.0 * (FV4 * (50.0 * dq[3])) + 50.0 * (FC4 * t249)
-    t251 = 10.0 * input[3] - (t250 - t230) + t244 * t25 - t247 * t19
+    t250 = 50.0 * (FV4 * (50.0 * dq[3]) + FC4 * t249) - t230
+    t251 = 10.0 * input[3] - t250 + t244 * t25 - t247 * t19
     t252 = t30 * t220 - t28 * t222
     t253 = XY3 * (t179 - t226) - XX3R * t122 - (MX3 * t178 - MY3R * t172)
     t254 = t253 + (t28 * t209 - t30 * t215 + 0.45 * t252)
     t255 = ca.sign(dq[2])
     FV3 = parameters[40]  # N m s/rad
     FC3 = parameters[41]  # N m
-    t256 = 100.0 * (FV3 * (100.0 * dq[2])) + 100.0 * (FC3 * t255)
-    t257 = 30.0 * input[2] - (t256 + t254) - t244 * t52 - t247 * t59
+    t256 = 100.0 * (FV3 * (100.0 * dq[2]) + FC3 * t255) + t254
+    t257 = 30.0 * input[2] - t256 - t244 * t52 - t247 * t59
     t258 = t257 + t251 * t51
     t259 = t62 * (MX3 * (t226 + t180) - MY3R * t122 + t252)
     t260 = MX4 * t204 + MY4R * t139 - (t11 * t218 - t13 * t219)
@@ -1174,25 +1174,24 @@ def _forward_dynamics(name: str) -> ca.Function:
     t263 = ca.sign(dq[1])
     FV2 = parameters[38]  # N m s/rad
     FC2 = parameters[39]  # N m
-    t264 = 100.0 * (FV2 * (100.0 * dq[1])) + 100.0 * (FC2 * t263)
-    t265 = 30.0 * input[1] - (t264 - (t262 - (t254 - 0.45 * t261)))
-    t266 = t265 - t244 * t77 + t247 * t76 + t251 * t75
-    t267 = t266 + t258 * t74
-    t268 = t248 - t251 * t104 + t258 * t111 + t267 * t116
-    t269 = 1.0 / t117
-    t270 = t268 * t269
-    out[0] = t270
-    t271 = t267 * t115 + t116 * t270
-    out[1] = t271
-    t272 = t258 * t73 + t111 * t270 + t74 * t271
-    out[2] = t272
-    t273 = t75 * t271 - (t251 * t50 + t104 * t270) + t51 * t272
-    out[3] = t273
-    t274 = t247 * t18 + t100 * t270 + t76 * t271 - t59 * t272
-    t275 = t274 - t19 * t273
-    out[4] = t275
-    t276 = t244 * t4 + t95 * t270 + t77 * t271 + t52 * t272
-    out[5] = t25 * t273 - t276 - t5 * t275
+    t264 = 100.0 * (FV2 * (100.0 * dq[1]) + FC2 * t263) - (t262 - (t254 - 0.45 * t261))
+    t265 = 30.0 * input[1] - t264 - t244 * t77 + t247 * t76
+    t266 = t265 + t251 * t75 + t258 * t74
+    t267 = t248 - t251 * t104 + t258 * t111 + t266 * t116
+    t268 = 1.0 / t117
+    t269 = t267 * t268
+    out[0] = t269
+    t270 = t266 * t115 + t116 * t269
+    out[1] = t270
+    t271 = t258 * t73 + t111 * t269 + t74 * t270
+    out[2] = t271
+    t272 = t75 * t270 - (t251 * t50 + t104 * t269) + t51 * t271
+    out[3] = t272
+    t273 = t247 * t18 + t100 * t269 + t76 * t270 - t59 * t271
+    t274 = t273 - t19 * t272
+    out[4] = t274
+    t275 = t244 * t4 + t95 * t269 + t77 * t270 + t52 * t271
+    out[5] = t25 * t272 - t275 - t5 * t274
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]
@@ -3911,7 +3910,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [78]             standard parameters; norm at most 1e+09
     out  ddq         [6]   [rad/s^2]  joint accelerations
 
-    Operations: 972 (516 mul, 456 add, 0 neg), 6 div, 10 trig, 6 other.
+    Operations: 966 (510 mul, 456 add, 0 neg), 6 div, 10 trig, 6 other.
     """
     inputs = [ca.SX.sym("q", 6), ca.SX.sym("dq", 6), ca.SX.sym("input", 6), ca.SX.sym("parameters", 78)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -4239,31 +4238,31 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t266 = ca.sign(dq[0])
     FV1 = parameters[60]  # N m s/rad
     FC1 = parameters[61]  # N m
-    t267 = 100.0 * (-100.0 * dq[0] * FV1) + -100.0 * (t266 * FC1)
+    t267 = 100.0 * (-100.0 * dq[0] * FV1 - t266 * FC1) + t265
     t268 = ca.sign(dq[5])
     FV6 = parameters[75]  # N m s/rad
     FC6 = parameters[76]  # N m
-    t269 = 30.0 * (30.0 * dq[5] * FV6) + 30.0 * (t268 * FC6)
-    t270 = 6.0 * input[5] - (t269 + t211)
+    t269 = 30.0 * (30.0 * dq[5] * FV6 + t268 * FC6) + t211
+    t270 = 6.0 * input[5] - t269
     t271 = ca.sign(dq[4])
     FV5 = parameters[72]  # N m s/rad
     FC5 = parameters[73]  # N m
-    t272 = 50.0 * (50.0 * dq[4] * FV5) + 50.0 * (t271 * FC5)
-    t273 = 10.0 * input[4] - (t272 - t225) - t270 * t5
-    t274 = 30.0 * input[0] + (t267 + t265) - t270 * t102 + t273 * t108
+    t272 = 50.0 * (50.0 * dq[4] * FV5 + t271 * FC5) - t225
+    t273 = 10.0 * input[4] - t272 - t270 * t5
+    t274 = 30.0 * input[0] + t267 - t270 * t102 + t273 * t108
     t275 = ca.sign(dq[3])
     FV4 = parameters[69]  # N m s/rad
     FC4 = parameters[70]  # N m
-    t276 = 50.0 * (50.0 * dq[3] * FV4) + 50.0 * (t275 * FC4)
-    t277 = 10.0 * input[3] - (t276 - t253) + t270 * t27 - t273 * t20
+    t276 = 50.0 * (50.0 * dq[3] * FV4 + t275 * FC4) - t253
+    t277 = 10.0 * input[3] - t276 + t270 * t27 - t273 * t20
     t278 = t30 * t244 - t32 * t240
     t279 = XY3 * (t188 - t248) - t130 * (XX3 - YY3) - (MX3 * t187 - MY3 * t181)
     t280 = t279 + (t30 * t222 - t32 * t229 - 0.45 * t278)
     t281 = ca.sign(dq[2])
     FV3 = parameters[66]  # N m s/rad
     FC3 = parameters[67]  # N m
-    t282 = 100.0 * (100.0 * dq[2] * FV3) + 100.0 * (t281 * FC3)
-    t283 = 30.0 * input[2] - (t282 + t280) - t270 * t54 - t273 * t65
+    t282 = 100.0 * (100.0 * dq[2] * FV3 + t281 * FC3) + t280
+    t283 = 30.0 * input[2] - t282 - t270 * t54 - t273 * t65
     t284 = t283 + t277 * t53
     t285 = M3 * t181 + (MX3 * (t189 + t248) - MY3 * t130)
     t286 = MZ4 * (t227 + t219) - (MX4 * t216 + MY4 * t147)
@@ -4276,9 +4275,9 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t291 = ca.sign(dq[1])
     FV2 = parameters[63]  # N m s/rad
     FC2 = parameters[64]  # N m
-    t292 = 100.0 * (100.0 * dq[1] * FV2) + 100.0 * (t291 * FC2)
-    t293 = 30.0 * input[1] - (t292 - (t290 - t289)) - t270 * t83
-    t294 = t293 + t273 * t82 + t277 * t81 + t284 * t80
+    t292 = 100.0 * (100.0 * dq[1] * FV2 + t291 * FC2) - (t290 - t289)
+    t293 = 30.0 * input[1] - t292 - t270 * t83 + t273 * t82
+    t294 = t293 + t277 * t81 + t284 * t80
     t295 = t274 - t277 * t111 + t284 * t118 + t294 * t124
     t296 = 1.0 / t125
     t297 = t295 * t296

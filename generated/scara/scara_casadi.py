@@ -325,7 +325,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [19]                                      base parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
 
-    Operations: 149 (91 mul, 58 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 145 (87 mul, 58 add, 0 neg), 4 div, 4 trig, 4 other.
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 19)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -381,29 +381,29 @@ def _forward_dynamics(name: str) -> ca.Function:
     t37 = ca.sign(dq[0])
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
-    t38 = 80.0 * (FV1 * (-80.0 * dq[0])) + -80.0 * (FC1 * t37)
+    t38 = 80.0 * (FV1 * (-80.0 * dq[0]) - FC1 * t37) + (t34 + t36)
     t39 = ca.sign(dq[3])
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
-    t40 = 20.0 * (FV4 * (-20.0 * dq[3])) + -20.0 * (FC4 * t39)
-    t41 = 2.0 * input[3] + (t40 - t28)
-    t42 = 16.0 * input[0] + (t38 + (t34 + t36)) + t41 * t19
-    t43 = ca.sign(dq[1])
+    t40 = 20.0 * (FV4 * (-20.0 * dq[3]) - FC4 * t39) - t28
+    t41 = 2.0 * input[3] + t40
+    t42 = ca.sign(dq[1])
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
-    t44 = 50.0 * (FV2 * (50.0 * dq[1])) + 50.0 * (FC2 * t43)
-    t45 = 10.0 * input[1] - (t44 - t34) + t41 * t7
+    t43 = 50.0 * (FV2 * (50.0 * dq[1]) + FC2 * t42) - t34
+    t44 = 10.0 * input[1] - t43 + t41 * t7
+    t45 = 16.0 * input[0] + t38 + t41 * t19 + t44 * t18
     t46 = 1.0 / t21
-    t47 = (t42 + t45 * t18) * t46
+    t47 = t45 * t46
     out[0] = t47
-    t48 = t45 * t17 + t18 * t47
+    t48 = t44 * t17 + t18 * t47
     out[1] = t48
     t49 = ca.sign(dq[2])
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
-    t50 = 314.1592653589793 * (FV3 * (-314.1592653589793 * dq[2])) + -314.1592653589793 * (FC3 * t49)
+    t50 = 314.1592653589793 * (FV3 * (-314.1592653589793 * dq[2]) - FC3 * t49) + 9.81 * M3R
     t51 = 1.0 / t0
-    out[2] = (31.415926535897935 * input[2] + (t50 + 9.81 * M3R)) * t51
+    out[2] = (31.415926535897935 * input[2] + t50) * t51
     out[3] = t41 * t6 + t19 * t47 + t7 * t48
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
@@ -1088,7 +1088,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [52]                                      standard parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
 
-    Operations: 174 (101 mul, 73 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 170 (97 mul, 73 add, 0 neg), 4 div, 4 trig, 4 other.
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1155,30 +1155,29 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t42 = ca.sign(dq[0])
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
-    t43 = 80.0 * (-80.0 * dq[0] * FV1) + -80.0 * (t42 * FC1)
+    t43 = 80.0 * (-80.0 * dq[0] * FV1 - t42 * FC1) + (t41 + 0.325 * t38)
     t44 = ca.sign(dq[3])
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
-    t45 = 20.0 * (-20.0 * dq[3] * FV4) + -20.0 * (t44 * FC4)
-    t46 = 2.0 * input[3] + (t45 - t39)
-    t47 = 16.0 * input[0] + (t43 + (t41 + 0.325 * t38)) + t46 * t21
-    t48 = ca.sign(dq[1])
+    t45 = 20.0 * (-20.0 * dq[3] * FV4 - t44 * FC4) - t39
+    t46 = 2.0 * input[3] + t45
+    t47 = ca.sign(dq[1])
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
-    t49 = 50.0 * (50.0 * dq[1] * FV2) + 50.0 * (t48 * FC2)
-    t50 = 10.0 * input[1] - (t49 - t41) + t46 * t8
+    t48 = 50.0 * (50.0 * dq[1] * FV2 + t47 * FC2) - t41
+    t49 = 10.0 * input[1] - t48 + t46 * t8
+    t50 = 16.0 * input[0] + t43 + t46 * t21 + t49 * t20
     t51 = 1.0 / t23
-    t52 = (t47 + t50 * t20) * t51
+    t52 = t50 * t51
     out[0] = t52
-    t53 = t50 * t19 + t20 * t52
+    t53 = t49 * t19 + t20 * t52
     out[1] = t53
     t54 = ca.sign(dq[2])
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
-    t55 = 314.1592653589793 * (-314.1592653589793 * dq[2] * FV3) + -314.1592653589793 * (t54 * FC3)
-    t56 = 31.415926535897935 * input[2] + (t55 + (9.81 * M3 + 9.81 * M4))
-    t57 = 1.0 / t1
-    out[2] = t56 * t57
+    t55 = 314.1592653589793 * (-314.1592653589793 * dq[2] * FV3 - t54 * FC3) + (9.81 * M3 + 9.81 * M4)
+    t56 = 1.0 / t1
+    out[2] = (31.415926535897935 * input[2] + t55) * t56
     out[3] = t46 * t7 + t21 * t52 + t8 * t53
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]

@@ -178,7 +178,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [3]           base parameters; norm at most 1e+09
     out  ddq         [1]  [m/s^2]  joint accelerations
 
-    Operations: 9 (7 mul, 2 add, 0 neg), 1 div, 1 other.
+    Operations: 8 (6 mul, 2 add, 0 neg), 1 div, 1 other.
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 3)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -187,9 +187,9 @@ def _forward_dynamics(name: str) -> ca.Function:
     t0 = ca.sign(dq[0])
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
-    t1 = 1256.6370614359173 * (FV1 * (-1256.6370614359173 * dq[0])) + -1256.6370614359173 * (FC1 * t0)
+    t1 = 1256.6370614359173 * (FV1 * (-1256.6370614359173 * dq[0]) - FC1 * t0) + 37.69911184307752 * input[0]
     t2 = 1.0 / M1R
-    out[0] = (t1 + 37.69911184307752 * input[0]) * t2
+    out[0] = t1 * t2
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]
@@ -449,7 +449,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [13]           standard parameters; norm at most 1e+09
     out  ddq         [1]   [m/s^2]  joint accelerations
 
-    Operations: 11 (8 mul, 3 add, 0 neg), 1 div, 1 other.
+    Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other.
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 13)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -460,9 +460,9 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t1 = ca.sign(dq[0])
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
-    t2 = 1256.6370614359173 * (-1256.6370614359173 * dq[0] * FV1) + -1256.6370614359173 * (t1 * FC1)
+    t2 = 1256.6370614359173 * (-1256.6370614359173 * dq[0] * FV1 - t1 * FC1) + 37.69911184307752 * input[0]
     t3 = 1.0 / t0
-    out[0] = (t2 + 37.69911184307752 * input[0]) * t3
+    out[0] = t2 * t3
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]

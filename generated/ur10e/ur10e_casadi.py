@@ -871,7 +871,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [52]             base parameters; norm at most 1e+09
     out  ddq         [6]   [rad/s^2]  joint accelerations
 
-    Operations: 894 (492 mul, 402 add, 0 neg), 6 div, 10 trig, 6 other.
+    Operations: 888 (486 mul, 402 add, 0 neg), 6 div, 10 trig, 6 other.
     """
     inputs = [ca.SX.sym("q", 6), ca.SX.sym("dq", 6), ca.SX.sym("input", 6), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1166,32 +1166,32 @@ def _forward_dynamics(name: str) -> ca.Function:
     t249 = ca.sign(dq[0])
     FV1 = parameters[36]  # N m s/rad
     FC1 = parameters[37]  # N m
-    t250 = 101.0 * (FV1 * (-101.0 * dq[0])) + -101.0 * (FC1 * t249)
+    t250 = 101.0 * (FV1 * (-101.0 * dq[0]) - FC1 * t249) + t248
     t251 = ca.sign(dq[5])
     FV6 = parameters[49]  # N m s/rad
     FC6 = parameters[50]  # N m
-    t252 = 101.0 * (FV6 * (101.0 * dq[5])) + 101.0 * (FC6 * t251)
-    t253 = 9.09 * input[5] - (t252 + t189)
+    t252 = 101.0 * (FV6 * (101.0 * dq[5]) + FC6 * t251) + t189
+    t253 = 9.09 * input[5] - t252
     t254 = ca.sign(dq[4])
     FV5 = parameters[46]  # N m s/rad
     FC5 = parameters[47]  # N m
-    t255 = 101.0 * (FV5 * (101.0 * dq[4])) + 101.0 * (FC5 * t254)
-    t256 = 9.09 * input[4] - (t255 - t224) - t253 * t5
-    t257 = 12.12 * input[0] + (t250 + t248) + t253 * t84 + t256 * t103
+    t255 = 101.0 * (FV5 * (101.0 * dq[4]) + FC5 * t254) - t224
+    t256 = 9.09 * input[4] - t255 - t253 * t5
+    t257 = 12.12 * input[0] + t250 + t253 * t84 + t256 * t103
     t258 = XY4 * (t184 - t220) - XX4R * t133 - (MY4R * t174 - MX4 * t183)
     t259 = t258 + (t13 * t193 - t11 * t212 - -0.11985 * t227)
     t260 = ca.sign(dq[3])
     FV4 = parameters[43]  # N m s/rad
     FC4 = parameters[44]  # N m
-    t261 = 101.0 * (FV4 * (101.0 * dq[3])) + 101.0 * (FC4 * t260)
-    t262 = 9.09 * input[3] - (t261 + t259) - t253 * t25 - t256 * t24
+    t261 = 101.0 * (FV4 * (101.0 * dq[3]) + FC4 * t260) + t259
+    t262 = 9.09 * input[3] - t261 - t253 * t25 - t256 * t24
     t263 = XX3R * t172 + XY3 * (t176 - t167) + (MX3R * t171 + MY3 * t166)
     t264 = t263 + (t259 + -0.57155 * t231)
     t265 = ca.sign(dq[2])
     FV3 = parameters[40]  # N m s/rad
     FC3 = parameters[41]  # N m
-    t266 = 101.0 * (FV3 * (101.0 * dq[2])) + 101.0 * (FC3 * t265)
-    t267 = 10.100000000000001 * input[2] - (t266 + t264) + t253 * t48 + t256 * t51
+    t266 = 101.0 * (FV3 * (101.0 * dq[2]) + FC3 * t265) + t264
+    t267 = 10.100000000000001 * input[2] - t266 + t253 * t48 + t256 * t51
     t268 = t267 - t262 * t47
     t269 = t56 * (MX3R * t172 + MY3 * (t176 + t168) - t231)
     t270 = t55 * (MX3R * t169 + MY3 * t172 + t236) + t269
@@ -1201,25 +1201,24 @@ def _forward_dynamics(name: str) -> ca.Function:
     t272 = ca.sign(dq[1])
     FV2 = parameters[38]  # N m s/rad
     FC2 = parameters[39]  # N m
-    t273 = 101.0 * (FV2 * (101.0 * dq[1])) + 101.0 * (FC2 * t272)
-    t274 = 12.12 * input[1] - (t273 - (t271 - (t264 + 0.6127 * t270)))
-    t275 = t274 + t253 * t58 + t256 * t66 - t262 * t70
-    t276 = t275 + t268 * t74
-    t277 = t257 + t262 * t113 + t268 * t120 + t276 * t125
-    t278 = 1.0 / t126
-    t279 = t277 * t278
-    out[0] = t279
-    t280 = t276 * t124 + t125 * t279
-    out[1] = t280
-    t281 = t268 * t73 + t120 * t279 + t74 * t280
-    out[2] = t281
-    t282 = t113 * t279 - t262 * t46 - t70 * t280 - t47 * t281
-    out[3] = t282
-    t283 = t103 * t279 - t256 * t23 + t66 * t280 + t51 * t281
-    t284 = t283 - t24 * t282
-    out[4] = t284
-    t285 = t84 * t279 - t253 * t4 + t58 * t280 + t48 * t281
-    out[5] = t285 - t25 * t282 - t5 * t284
+    t273 = 101.0 * (FV2 * (101.0 * dq[1]) + FC2 * t272) - (t271 - (t264 + 0.6127 * t270))
+    t274 = 12.12 * input[1] - t273 + t253 * t58 + t256 * t66
+    t275 = t274 - t262 * t70 + t268 * t74
+    t276 = t257 + t262 * t113 + t268 * t120 + t275 * t125
+    t277 = 1.0 / t126
+    t278 = t276 * t277
+    out[0] = t278
+    t279 = t275 * t124 + t125 * t278
+    out[1] = t279
+    t280 = t268 * t73 + t120 * t278 + t74 * t279
+    out[2] = t280
+    t281 = t113 * t278 - t262 * t46 - t70 * t279 - t47 * t280
+    out[3] = t281
+    t282 = t103 * t278 - t256 * t23 + t66 * t279 + t51 * t280
+    t283 = t282 - t24 * t281
+    out[4] = t283
+    t284 = t84 * t278 - t253 * t4 + t58 * t279 + t48 * t280
+    out[5] = t284 - t25 * t281 - t5 * t283
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]
@@ -3949,7 +3948,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [78]             standard parameters; norm at most 1e+09
     out  ddq         [6]   [rad/s^2]  joint accelerations
 
-    Operations: 1030 (548 mul, 482 add, 0 neg), 6 div, 10 trig, 6 other.
+    Operations: 1024 (542 mul, 482 add, 0 neg), 6 div, 10 trig, 6 other.
     """
     inputs = [ca.SX.sym("q", 6), ca.SX.sym("dq", 6), ca.SX.sym("input", 6), ca.SX.sym("parameters", 78)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -4298,32 +4297,32 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t287 = ca.sign(dq[0])
     FV1 = parameters[60]  # N m s/rad
     FC1 = parameters[61]  # N m
-    t288 = 101.0 * (-101.0 * dq[0] * FV1) + -101.0 * (t287 * FC1)
+    t288 = 101.0 * (-101.0 * dq[0] * FV1 - t287 * FC1) + t286
     t289 = ca.sign(dq[5])
     FV6 = parameters[75]  # N m s/rad
     FC6 = parameters[76]  # N m
-    t290 = 101.0 * (101.0 * dq[5] * FV6) + 101.0 * (t289 * FC6)
-    t291 = 9.09 * input[5] - (t290 + t237)
+    t290 = 101.0 * (101.0 * dq[5] * FV6 + t289 * FC6) + t237
+    t291 = 9.09 * input[5] - t290
     t292 = ca.sign(dq[4])
     FV5 = parameters[72]  # N m s/rad
     FC5 = parameters[73]  # N m
-    t293 = 101.0 * (101.0 * dq[4] * FV5) + 101.0 * (t292 * FC5)
-    t294 = 9.09 * input[4] - (t293 - t255) + t291 * t6
-    t295 = 12.12 * input[0] + (t288 + t286) + t291 * t112 + t294 * t118
+    t293 = 101.0 * (101.0 * dq[4] * FV5 + t292 * FC5) - t255
+    t294 = 9.09 * input[4] - t293 + t291 * t6
+    t295 = 12.12 * input[0] + t288 + t291 * t112 + t294 * t118
     t296 = t147 * (XX4 - YY4) + XY4 * (t210 - t250) - (MY4 * t195 - MX4 * t209)
     t297 = t296 + (t16 * t240 - t20 * t235 + 0.11985 * t259)
     t298 = ca.sign(dq[3])
     FV4 = parameters[69]  # N m s/rad
     FC4 = parameters[70]  # N m
-    t299 = 101.0 * (101.0 * dq[3] * FV4) + 101.0 * (t298 * FC4)
-    t300 = 9.09 * input[3] - (t299 + t297) - t291 * t30 - t294 * t39
+    t299 = 101.0 * (101.0 * dq[3] * FV4 + t298 * FC4) + t297
+    t300 = 9.09 * input[3] - t299 - t291 * t30 - t294 * t39
     t301 = t193 * (XX3 - YY3) + XY3 * (t197 - t188) - (MY3 * t187 - MX3 * t192)
     t302 = t301 + (t297 - 0.57155 * t264)
     t303 = ca.sign(dq[2])
     FV3 = parameters[66]  # N m s/rad
     FC3 = parameters[67]  # N m
-    t304 = 101.0 * (101.0 * dq[2] * FV3) + 101.0 * (t303 * FC3)
-    t305 = 10.100000000000001 * input[2] - (t304 + t302) + t291 * t56 + t294 * t61
+    t304 = 101.0 * (101.0 * dq[2] * FV3 + t303 * FC3) + t302
+    t305 = 10.100000000000001 * input[2] - t304 + t291 * t56 + t294 * t61
     t306 = t305 - t300 * t55
     t307 = M3 * t187 - (MX3 * t190 + MY3 * t193) + t270
     t308 = MX3 * t193 + MY3 * (t189 + t197) - M3 * t192
@@ -4334,9 +4333,9 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t311 = ca.sign(dq[1])
     FV2 = parameters[63]  # N m s/rad
     FC2 = parameters[64]  # N m
-    t312 = 101.0 * (101.0 * dq[1] * FV2) + 101.0 * (t311 * FC2)
-    t313 = 12.12 * input[1] - (t312 - (t310 - t309)) + t291 * t82
-    t314 = t313 + t294 * t85 - t300 * t81 + t306 * t80
+    t312 = 101.0 * (101.0 * dq[1] * FV2 + t311 * FC2) - (t310 - t309)
+    t313 = 12.12 * input[1] - t312 + t291 * t82 + t294 * t85
+    t314 = t313 - t300 * t81 + t306 * t80
     t315 = t295 + t300 * t126 + t306 * t133 + t314 * t139
     t316 = 1.0 / t140
     t317 = t315 * t316

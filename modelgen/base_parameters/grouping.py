@@ -21,6 +21,7 @@ from modelgen.base_parameters.oracle import rank, regressor_values
 from modelgen.base_parameters.printing import printed
 from modelgen.description.objects import Arm, LeveredDrive, Scalar, geometry_symbol
 from modelgen.graph import Expr
+from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
 from modelgen.model.regressor import Plan, Regressor
@@ -39,7 +40,8 @@ def standard_columns(equations: Equations) -> Columns:
     table = regressor.columns([Plan()] * len(equations.arm.joints))
     gains = [drive.k1 * drive.transmission.torque_constant for drive in equations.drives]
     columns: Columns = [column for link in table for column in link]
-    columns += [{n: e * gains[n]} for n, e in equations.effect_columns(rates)]
+    effects = EffectForces(equations, rates).columns()
+    columns += [{n: e * gains[n] for n, e in column.items()} for column in effects]
     return columns
 
 

@@ -12,7 +12,8 @@ class BaseParameter:
     """One base parameter: the sum of `terms`, pairs of (index of a standard parameter, factor).
 
     The first term is the representative, with factor 1: the column of the regressor that belongs to
-    the base parameter is the representative's. `expression` is the sum in print.
+    the base parameter is the representative's, of a last link in its frame moved to the foot of the
+    common normal (`analytic.slid`). `expression` is the sum in print.
     """
 
     name: str
@@ -22,7 +23,7 @@ class BaseParameter:
 
     @property
     def representative(self) -> int:
-        """Index of the standard parameter whose regressor column this parameter takes."""
+        """Index of the standard parameter whose column, in the frames of `slid`, this parameter takes."""
         return self.terms[0][0]
 
 

@@ -42,6 +42,9 @@ def random_states(equations: Equations, samples: int, seed: int = SEED) -> dict[
         "dq": _speeds(generator, samples, n),
         "ddq": generator.uniform(-5.0, 5.0, (samples, n)),
         "state": generator.uniform(-1.0, 1.0, (samples, max(1, len(equations.state_names())))),
+        "time": generator.uniform(0.0, 60.0, (samples, 1)),
+        "load": generator.uniform(-1.0, 1.0, (samples, n)),
+        "free": np.ones((samples, max(1, len(equations.free)))),
         "sin_q": np.sin(inside),
         "cos_q": np.cos(inside),
     }

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from modelgen.cli.output import print_json, print_table
-from modelgen.effects import CATALOGUE, Effect, Parameter
+from modelgen.effects import CATALOGUE, Definition, Parameter
 
 
 def run(*, as_json: bool) -> None:
@@ -40,13 +40,16 @@ def _bounds(parameter: Parameter) -> str:
     return f"{low:g} to {high:g}" if math.isfinite(low) else f"<= {high:g}"
 
 
-def _data(effect: type[Effect]) -> dict[str, Any]:
+def _data(effect: type[Definition]) -> dict[str, Any]:
     linear = {p.name for p in effect.linear}
     return {
         "name": effect.name,
         "text": effect.text,
         "reference": effect.reference,
+        "scope": effect.scope,
         "side": effect.side,
+        "confused_with": list(effect.confused_with),
+        "experiment": effect.experiment,
         "states": list(effect.states),
         "parameters": [
             {

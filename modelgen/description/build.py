@@ -7,7 +7,7 @@ from types import MappingProxyType
 from modelgen.description.context import Context
 from modelgen.description.document import Node
 from modelgen.description.inertials import read_inertial
-from modelgen.description.joints import KnownEffects, coordinate_kind, read_joint
+from modelgen.description.joints import KnownEffects, coordinate_kind, read_effects, read_joint
 from modelgen.description.messages import describe, suggest
 from modelgen.description.names import arm_name_problem, symbol_name_problem
 from modelgen.description.objects import Arm, Inertial
@@ -58,6 +58,7 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
         source=model.source,
         symbols=MappingProxyType(dict(context.symbols)),
         notes=tuple(context.notes),
+        effects=read_effects(context, model.effects, known_effects, ["effects"], "arm"),
         where=context.where([], key=True),
     )
 

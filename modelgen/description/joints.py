@@ -11,7 +11,7 @@ from modelgen.description.document import Steps
 from modelgen.description.drives import read_drive, stroke_range, within_stroke
 from modelgen.description.messages import describe, suggest
 from modelgen.description.objects import Drive, EffectUse, Joint, Limits, NoDrive
-from modelgen.description.schema import JointModel, LeveredDriveModel
+from modelgen.description.schema import EffectEntry, JointModel, LeveredDriveModel
 
 DEFAULT_EFFECTS = ("viscous_friction", "coulomb_friction", "drive_inertia")
 
@@ -105,8 +105,19 @@ def _effects(
     at = [*joint_at, "effects"]
     if model.type == "fixed" and model.effects:
         raise context.error("found effects on a fixed joint, expected none", at, key=True)
+    return read_effects(context, model.effects, known_effects, at, "joint")
+
+
+def read_effects(
+    context: Context,
+    entries: list[EffectEntry],
+    known_effects: KnownEffects | None,
+    at: Steps,
+    owner: str,
+) -> tuple[EffectUse, ...]:
+    """The list of effects at `at`, of a "joint" or of the "arm". Raises InputError."""
     uses: list[EffectUse] = []
-    for k, entry in enumerate(model.effects):
+    for k, entry in enumerate(entries):
         named = isinstance(entry, str)
         name, raw = (entry, {}) if isinstance(entry, str) else next(iter(entry.items()))
         place: list[str | int] = [*at, k] if named else [*at, k, name]
@@ -114,7 +125,9 @@ def _effects(
             message = f"there is no effect {describe(name)}{suggest(name, known_effects)}"
             raise context.error(message, place, key=True)
         if any(use.name == name for use in uses):
-            raise context.error(f"the effect {describe(name)} is listed twice on this joint", place, key=True)
+            raise context.error(
+                f"the effect {describe(name)} is listed twice on this {owner}", place, key=True
+            )
         values: dict[str, float] = {}
         for parameter, value in raw.items():
             if known_effects is not None and parameter not in known_effects[name]:

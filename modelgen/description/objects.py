@@ -81,7 +81,7 @@ Drive: TypeAlias = NoDrive | DirectDrive | LeveredDrive
 
 @dataclass(frozen=True)
 class EffectUse:
-    """One entry of a joint's `effects`: the effect's name and nominal values of its parameters."""
+    """One entry of a list `effects`: the effect's name and nominal values of its parameters."""
 
     name: str
     values: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -136,6 +136,7 @@ class Arm:
     """One arm: joints in YAML order; an antecedent may stand later in the file, without cycles.
 
     `links[i]` belongs to `joints[i]`. `symbols` maps the names of geometry symbols to their values.
+    `effects` are those of the whole arm.
     `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
     """
 
@@ -147,6 +148,7 @@ class Arm:
     source: str = ""
     symbols: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     notes: tuple[str, ...] = ()
+    effects: tuple[EffectUse, ...] = ()
     where: Location | None = field(default=None, compare=False)
 
     @property

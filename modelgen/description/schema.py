@@ -196,6 +196,9 @@ class ArmModel(Model):
         default={}, description="Joints held in place: name to coordinate [rad or m]; they leave the model."
     )
     joints: Annotated[list[JointModel], Field(min_length=1)] = Field(description="The joints, base first.")
+    effects: list[EffectEntry] = Field(
+        default=[], description="Effects of the whole arm: base_tilt, fluid_drag, time_delay and others."
+    )
     links: dict[str, LinkModel] = Field(
         default={}, description="Nominal inertials by the name of the link's joint."
     )
@@ -252,6 +255,7 @@ def json_schema(known_effects: Mapping[str, Collection[str]] | None = None) -> d
         for option in effects["anyOf"]:
             if option.get("type") == "array":
                 option["items"] = entry
+        schema["$defs"]["ArmModel"]["properties"]["effects"]["items"] = entry
     _close(schema)
     return head | {key: value for key, value in schema.items() if key != "title"}
 

@@ -1,21 +1,36 @@
 """Effects: each is one definition in SymPy."""
 
-from modelgen.effects.base import Effect, Parameter, Variables
-from modelgen.effects.catalogue import (
-    CATALOGUE,
-    TIME_STEP,
-    AppliedEffect,
-    applied_effects,
-    known_effects,
+from modelgen.effects.applied import TIME_STEP, AppliedEffect, Part, applied_effects, free_symbol
+from modelgen.effects.base import (
+    Definition,
+    DescriptionEffect,
+    Effect,
+    InputEffect,
+    LinkEffect,
+    Parameter,
+    Values,
 )
+from modelgen.effects.catalogue import CATALOGUE, known_effects
+from modelgen.effects.describing import described
+from modelgen.effects.variables import InputVariables, LinkVariables, Variables
 
 __all__ = [
     "CATALOGUE",
     "TIME_STEP",
     "AppliedEffect",
+    "Definition",
+    "DescriptionEffect",
     "Effect",
+    "InputEffect",
+    "InputVariables",
+    "LinkEffect",
+    "LinkVariables",
     "Parameter",
+    "Part",
+    "Values",
     "Variables",
     "applied_effects",
+    "described",
+    "free_symbol",
     "known_effects",
 ]

@@ -1,8 +1,10 @@
-"""What an effect is: one law in SymPy, from which everything else is derived.
+"""What an effect is: one definition in SymPy, from which everything else is derived.
 
-The law is a generalised force (positive where it opposes the input) over the variables of its
-coordinate. It is linear in its linear parameters: their columns of the regressor are its derivatives.
-Nonlinear parameters are fixed by the description; states advance by `step`.
+There are four kinds. An `Effect` is one generalised force over one coordinate, a `LinkEffect` a wrench
+on a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
+input and the effort that comes of it. Forces are positive where they oppose the input. They are linear
+in their linear parameters, whose columns of the regressor are derivatives; all other parameters are
+fixed by the description. States advance by `step`.
 """
 
 from __future__ import annotations
@@ -14,20 +16,12 @@ from typing import ClassVar
 
 import sympy as sp
 
+from modelgen.description.objects import Arm
+from modelgen.effects.variables import InputVariables, LinkVariables, Variables
 
-@dataclass(frozen=True)
-class Variables:
-    """What a law may depend on, in the coordinate that the effect belongs to.
-
-    position, velocity, acceleration: of the motor coordinate q_m for an effect on the motor side, of
-    the joint coordinate q on the joint side. time [s]; state: the effect's own states.
-    """
-
-    position: sp.Symbol
-    velocity: sp.Symbol
-    acceleration: sp.Symbol
-    time: sp.Symbol
-    state: Mapping[str, sp.Symbol]
+Values = Mapping[str, sp.Expr]  # of an effect's parameters, by name
+ANY = (-float("inf"), float("inf"))
+POSITIVE = (1e-12, float("inf"))
 
 
 @dataclass(frozen=True)
@@ -47,28 +41,23 @@ class Parameter:
     bounds: tuple[float, float] = (0.0, float("inf"))
 
 
-class Effect(ABC):
-    """One effect of the catalogue. A subclass is a law and its description, nothing else."""
+class Definition(ABC):
+    """One entry of the catalogue: what every kind of effect has.
+
+    scope: whether it stands at a "joint", at the "arm", or at "either". confused_with: effects that
+    look alike in many records; experiment: what tells them apart.
+    """
 
     name: ClassVar[str]
     text: ClassVar[str]
     reference: ClassVar[str]
-    side: ClassVar[str] = "motor"  # or "joint"
-    linear: ClassVar[tuple[Parameter, ...]]
+    scope: ClassVar[str] = "joint"
+    side: ClassVar[str] = "joint"  # whose coordinate {x} and {f} are units of: "joint" or "motor"
+    linear: ClassVar[tuple[Parameter, ...]] = ()
     nonlinear: ClassVar[tuple[Parameter, ...]] = ()
     states: ClassVar[tuple[str, ...]] = ()
-
-    @abstractmethod
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
-        """Generalised force for the parameters `p`, by name."""
-
-    def step(self, x: Variables, p: Mapping[str, sp.Expr], dt: sp.Symbol) -> Mapping[str, sp.Expr]:
-        """The states after dt [s] at constant velocity; every name of `states`."""
-        return {}
-
-    def potential(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
-        """Energy stored [J], up to a constant; zero for what is not conservative."""
-        return sp.Integer(0)
+    confused_with: ClassVar[tuple[str, ...]] = ()
+    experiment: ClassVar[str] = ""
 
     def values(self, given: Mapping[str, float]) -> dict[str, float]:
         """Nominal values of the linear parameters from the description's, where it gives them."""
@@ -79,3 +68,72 @@ class Effect(ABC):
     def accepted(cls) -> tuple[Parameter, ...]:
         """The parameters that a description may set."""
         return (*cls.linear, *cls.nonlinear)
+
+
+class Effect(Definition):
+    """A generalised force over one coordinate: a law and its description, nothing else.
+
+    place: "motor" or "joint", the coordinate of the drive or of the joint; "pair", the joint's coordinate
+    and `ratio` times that of the joint `other`, both of them parameters; "transmission", where the law is
+    the acceleration by which the link stays behind its drive, per coordinate [rad/s^2, m/s^2].
+    """
+
+    place: ClassVar[str] = "motor"
+    side: ClassVar[str] = "motor"
+
+    @abstractmethod
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """Generalised force for the parameters `p`, by name."""
+
+    def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """The states after dt [s] at constant velocity; every name of `states`."""
+        return {}
+
+    def potential(self, x: Variables, p: Values) -> sp.Expr:
+        """Energy stored [J], up to a constant; zero for what is not conservative."""
+        return sp.Integer(0)
+
+    def __init_subclass__(cls) -> None:
+        """`side` alone may be given: the place is then that coordinate."""
+        if "side" in cls.__dict__ and "place" not in cls.__dict__:
+            cls.place = cls.side
+        elif "place" in cls.__dict__ and "side" not in cls.__dict__:
+            cls.side = "motor" if cls.place == "motor" else "joint"
+
+
+class LinkEffect(Definition):
+    """A force and a moment on a link, at the origin of its frame and in its axes."""
+
+    scope: ClassVar[str] = "either"
+
+    @abstractmethod
+    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
+        """Force [N] and moment [N m] that it takes to move the link against the effect, 3 x 1 each."""
+
+    def links(self, arm: Arm, joint: int | None) -> list[int]:
+        """Indices of the links it acts on: the joint's own, all of them for the whole arm."""
+        return [joint] if joint is not None else list(range(len(arm.joints)))
+
+
+class DescriptionEffect(Definition):
+    """A departure of the arm from its description: the model is that of the changed description."""
+
+    @abstractmethod
+    def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
+        """The arm as it is; `joint` is an index into `arm.joints`. Raises ValueError with the reason."""
+
+
+class InputEffect(Definition):
+    """What the drive makes of its input, coordinate by coordinate, in the unit of the input."""
+
+    @abstractmethod
+    def effective(self, x: InputVariables, p: Values) -> sp.Expr:
+        """The input of an ideal drive with the same effort as this one's at x.input."""
+
+    @abstractmethod
+    def required(self, x: InputVariables, p: Values) -> sp.Expr:
+        """The input that gives the effort of an ideal drive's x.input."""
+
+    def step(self, x: InputVariables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """The states after dt [s] at constant input."""
+        return {}

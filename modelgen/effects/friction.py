@@ -1,19 +1,17 @@
-"""Friction laws without states."""
+"""Friction over speed alone."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import sympy as sp
 
-from modelgen.effects.base import Effect, Parameter, Variables
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.variables import Variables
 
 SMOOTHING = Parameter(
     "smoothing",
     "{x}/s",
     "velocity over which the sign is smoothed by tanh; 0 keeps the sign",
     default=0.0,
-    bounds=(0.0, float("inf")),
 )
 
 
@@ -29,8 +27,10 @@ class ViscousFriction(Effect):
     text = "friction in proportion to speed"
     reference = "Armstrong-Helouvry, Dupont and Canudas de Wit 1994"
     linear = (Parameter("coefficient", "{f} s/{x}", "viscous friction coefficient", "FV"),)
+    confused_with = ("nonlinear_viscous_friction", "fluid_drag")
+    experiment = "a sweep of constant speeds"
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def law(self, x: Variables, p: Values) -> sp.Expr:
         """FV v."""
         return p["coefficient"] * x.velocity
 
@@ -42,9 +42,11 @@ class CoulombFriction(Effect):
     text = "dry friction of constant magnitude against the motion"
     reference = "Armstrong-Helouvry, Dupont and Canudas de Wit 1994"
     linear = (Parameter("magnitude", "{f}", "Coulomb friction", "FC"),)
+    confused_with = ("friction_offset", "presliding", "backlash")
+    experiment = "slow reversals"
     nonlinear = (SMOOTHING,)
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def law(self, x: Variables, p: Values) -> sp.Expr:
         """FC sign(v)."""
         return p["magnitude"] * direction(x.velocity, p["smoothing"])
 
@@ -55,32 +57,51 @@ class FrictionOffset(Effect):
     name = "friction_offset"
     text = "constant force while moving: asymmetric Coulomb friction or an offset of the current"
     reference = "Khalil and Dombre 2002"
-    linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=(-float("inf"), float("inf"))),)
+    confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")
+    experiment = "the current with the motor switched off, and constant speeds in both directions"
+    linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=ANY),)
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def law(self, x: Variables, p: Values) -> sp.Expr:
         """FO."""
         return p["offset"]
 
-    def potential(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def potential(self, x: Variables, p: Values) -> sp.Expr:
         """FO x: a constant force is conservative, and cannot be told from a spring's preload."""
         return p["offset"] * x.position
 
 
-class StribeckFriction(Effect):
-    """Dry friction that falls from its value near rest to the Coulomb level."""
+class AsymmetricViscousFriction(Effect):
+    """Viscous friction that differs between the directions."""
 
-    name = "stribeck_friction"
-    text = "dry friction in excess of Coulomb's at low speed"
-    reference = "Stribeck 1902; Bo and Pavelescu 1982"
-    linear = (Parameter("magnitude", "{f}", "excess of static over Coulomb friction", "FS"),)
+    name = "asymmetric_viscous_friction"
+    text = "viscous friction of different size in the two directions"
+    reference = "Elhami and Brookfield 1996"
+    linear = (Parameter("coefficient", "{f} s/{x}", "half the difference of the two", "FA", bounds=ANY),)
+    confused_with = ("friction_offset",)
+    experiment = "constant speeds, several in each direction"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """FA |v|."""
+        return p["coefficient"] * sp.Abs(x.velocity)
+
+
+class NonlinearViscousFriction(Effect):
+    """Viscous friction that is not in proportion to speed."""
+
+    name = "nonlinear_viscous_friction"
+    text = "friction in proportion to a power of the speed, besides the viscous one"
+    reference = "Grotjahn, Daemi and Heimann 2001; Wolf and Iskandar 2018"
+    linear = (Parameter("coefficient", "{f}", "friction at the speed `scale`", "FN", bounds=ANY),)
     nonlinear = (
-        Parameter("velocity", "{x}/s", "Stribeck velocity", bounds=(1e-12, float("inf"))),
-        Parameter("exponent", "1", "shape of the fall", default=2.0, bounds=(0.5, 4.0)),
-        SMOOTHING,
+        Parameter("exponent", "1", "power of the speed", default=2.0, bounds=(0.1, 4.0)),
+        Parameter("scale", "{x}/s", "speed to which the power is referred", default=1.0, bounds=POSITIVE),
     )
+    confused_with = ("stribeck_friction", "fluid_drag", "torque_constant_saturation")
+    experiment = "constant speeds up to the highest"
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
-        """FS exp(-|v / v_s|^exponent) sign(v)."""
-        ratio = x.velocity / p["velocity"]
-        power = ratio**2 if p["exponent"] == 2 else sp.Abs(ratio) ** p["exponent"]
-        return p["magnitude"] * sp.exp(-power) * direction(x.velocity, p["smoothing"])
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """FN |v / scale|^exponent sign(v)."""
+        ratio = x.velocity / p["scale"]
+        if p["exponent"] == 2:
+            return p["coefficient"] * sp.Abs(ratio) * ratio
+        return p["coefficient"] * sp.Abs(ratio) ** p["exponent"] * sp.sign(x.velocity)

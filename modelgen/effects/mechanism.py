@@ -1,12 +1,15 @@
-"""Inertia of the drive and stiffness at the joint."""
+"""Inertia and stiffness of the mechanism, ripple, and coupling between joints."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import Effect, Parameter, Variables
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.variables import Variables
+from modelgen.transmission import Levered, Transmission
 
 
 class DriveInertia(Effect):
@@ -19,8 +22,10 @@ class DriveInertia(Effect):
     text = "inertia of motor, gears and screw, at the motor coordinate"
     reference = "Leborne, Creuze, Chemori and Brignone 2018, (16)"
     linear = (Parameter("inertia", "{f} s^2/{x}", "inertia of the drive", "IA"),)
+    confused_with = ("actuator_mass",)
+    experiment = "fast and slow runs of the same path"
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def law(self, x: Variables, p: Values) -> sp.Expr:
         """IA a."""
         return p["inertia"] * x.acceleration
 
@@ -34,21 +39,17 @@ class Spring(Effect):
     side = "joint"
     linear = (
         Parameter("stiffness", "{f}/{x}", "stiffness", "KS"),
-        Parameter(
-            "preload",
-            "{f}",
-            "force at q = 0, that is -stiffness times rest",
-            "KO",
-            bounds=(-float("inf"), float("inf")),
-        ),
+        Parameter("preload", "{f}", "force at q = 0, that is -stiffness times rest", "KO", bounds=ANY),
     )
-    rest = Parameter("rest", "{x}", "coordinate at rest", bounds=(-float("inf"), float("inf")))
+    rest = Parameter("rest", "{x}", "coordinate at rest", bounds=ANY)
+    confused_with = ("friction_offset", "base_tilt", "encoder_offset")
+    experiment = "static holds over the whole range"
 
-    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def law(self, x: Variables, p: Values) -> sp.Expr:
         """KS q + KO."""
         return p["stiffness"] * x.position + p["preload"]
 
-    def potential(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+    def potential(self, x: Variables, p: Values) -> sp.Expr:
         """KS q^2 / 2 + KO q."""
         return p["stiffness"] * x.position**2 / 2 + p["preload"] * x.position
 
@@ -63,3 +64,112 @@ class Spring(Effect):
     def accepted(cls) -> tuple[Parameter, ...]:
         """Also `rest`."""
         return (*super().accepted(), cls.rest)
+
+
+class TorqueRipple(Effect):
+    """A force periodic in the motor's angle: cogging, an eccentric screw, a kinematic error."""
+
+    name = "torque_ripple"
+    text = "force that repeats with the motor's angle: cogging, an eccentric screw"
+    reference = "Tuttle and Seering 1996; Gandhi, Ghorbel and Dabney 2002"
+    linear = (
+        Parameter("sine", "{f}", "amplitude of the sine", "RS", bounds=ANY),
+        Parameter("cosine", "{f}", "amplitude of the cosine", "RC", bounds=ANY),
+    )
+    nonlinear = (
+        Parameter("harmonic", "1", "waves in a revolution", bounds=POSITIVE),
+        Parameter("revolution", "{x}", "a revolution [2 pi rad]", default=2 * math.pi, bounds=POSITIVE),
+    )
+    confused_with = ("position_dependent_friction", "lever_geometry")
+    experiment = "slow constant speed, and the spectrum over the motor's angle"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """RS sin(phase) + RC cos(phase), phase = 2 pi harmonic x / revolution."""
+        phase = (2 * math.pi) * p["harmonic"] / p["revolution"] * x.position
+        return p["sine"] * sp.sin(phase) + p["cosine"] * sp.cos(phase)
+
+    def potential(self, x: Variables, p: Values) -> sp.Expr:
+        """Its integral over x: what repeats with the angle stores energy."""
+        wave = (2 * math.pi) * p["harmonic"] / p["revolution"]
+        phase = wave * x.position
+        return (p["cosine"] * sp.sin(phase) - p["sine"] * sp.cos(phase)) / wave
+
+
+class TransmissionCoupling(Effect):
+    """A rotor or gear that turns with two joints: a differential wrist, a belt past an elbow.
+
+    Its coordinate is q + ratio q_other; by virtual work its force acts on both joints.
+    """
+
+    name = "transmission_coupling"
+    text = "inertia and friction of a part that turns with this joint and with another"
+    reference = "Gautier and Janot 2013; Khalil and Dombre 2002, chapter 9"
+    place = "pair"
+    linear = (
+        Parameter("inertia", "{f} s^2/{x}", "inertia of the coupling", "IC"),
+        Parameter("viscous", "{f} s/{x}", "its viscous friction", "FVC"),
+        Parameter("dry", "{f}", "its Coulomb friction", "FCC"),
+    )
+    nonlinear = (
+        Parameter("other", "1", "number of the other joint's coordinate", bounds=(1.0, 1000.0)),
+        Parameter("ratio", "1", "turns per turn of the other joint", default=1.0, bounds=ANY),
+    )
+    confused_with = ("fluid_drag",)
+    experiment = "the two joints moved one at a time, then together"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """IC a + FVC v + FCC sign(v) at the coordinate of the coupling."""
+        return p["inertia"] * x.acceleration + p["viscous"] * x.velocity + p["dry"] * sp.sign(x.velocity)
+
+
+class ActuatorMass(Effect):
+    """The mass of a linear actuator that swings about its base as it pushes the lever.
+
+    Its own swing relative to the link before is what counts here; where that link turns as well, what
+    it does to the actuator as to a rigid load is a part of that link's inertia.
+    """
+
+    name = "actuator_mass"
+    text = "swing and weight of a linear actuator about its base"
+    reference = "Khalil and Dombre 2002, chapter 10; Leborne, Creuze, Chemori and Brignone 2018"
+    side = "joint"
+    linear = (
+        Parameter("inertia", "kg m^2", "inertia of the actuator about its base", "JS"),
+        Parameter("moment_x", "kg m", "its first moment along the actuator", "SX", bounds=ANY),
+        Parameter("moment_y", "kg m", "the same across the actuator", "SY", bounds=ANY),
+    )
+    confused_with = ("lever_geometry", "drive_inertia", "spring")
+    experiment = "static holds over the stroke, then fast and slow runs"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """JS (b'^2 a + b' b'' v^2) + dU/dq with b the angle of the actuator against the lever's base."""
+        turn, bend = _swing(x.transmission, x.q)
+        inertial = p["inertia"] * (turn**2 * x.acceleration + turn * bend * x.square)
+        return inertial + sp.diff(self.potential(x, p), x.q)
+
+    def potential(self, x: Variables, p: Values) -> sp.Expr:
+        """-g (first moment), in the plane of the lever, from the lever's own base line."""
+        cosine, sine = _direction(x.transmission, x.q)
+        gx, gy, _ = x.gravity
+        along, across = gx * cosine + gy * sine, gy * cosine - gx * sine
+        return -(p["moment_x"] * along + p["moment_y"] * across)
+
+
+def _direction(drive: Transmission, q: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Cosine and sine of the actuator's angle against the line from its base to the joint's axis, less pi."""
+    if not isinstance(drive, Levered):
+        raise ValueError("found on a joint without a lever, expected a levered drive")
+    l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
+    angle = q - drive.drive.offset
+    length = sp.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle))
+    return (l2 * sp.cos(angle) - l1) / length, l2 * sp.sin(angle) / length
+
+
+def _swing(drive: Transmission, q: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """First and second derivative of the actuator's angle by q."""
+    if not isinstance(drive, Levered):
+        raise ValueError("found on a joint without a lever, expected a levered drive")
+    l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
+    angle = q - drive.drive.offset
+    turn = (l2**2 - l1 * l2 * sp.cos(angle)) / (l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle))
+    return turn, sp.diff(turn, q)

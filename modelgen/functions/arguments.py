@@ -66,6 +66,10 @@ def arguments(equations: Equations, parameters: Sequence[tuple[str, int, str]]) 
         Argument(
             "state", len(equations.state_names()), "see the list of states", "states of the effects", 1e9
         ),
+        Argument("time", 1, "s", "time since the start of the motion", 1e6),
+        Argument(
+            "load", n, "force at the motor coordinate", "loads of the drives, from the function load", 1e9
+        ),
         Argument("geometry", len(arm.symbols), "m, rad", "geometry, in the order of the list", 1e6),
     ]
     listed += [

@@ -84,8 +84,9 @@ class Assembly:
                 names += ["sin_q", "cos_q"]
         if self.options.runtime_geometry and self.real.arm.symbols:
             names.append("geometry")
-        if "state" not in names and any(_reads(s.term, "state") for s in program.statements):
-            names.append("state")
+        for extra in ("state", "time", "load", "ddq", "input"):
+            if extra not in names and any(_reads(s.term, extra) for s in program.statements):
+                names.append(extra)
         found = []
         for name in names:
             if name == "standard_parameters":  # the same place in every signature

@@ -11,9 +11,11 @@ from modelgen.graph.live import cost
 from modelgen.model.composite import mass_matrix as links_mass_matrix
 from modelgen.model.composite import solve
 from modelgen.model.dynamics import joint_efforts
+from modelgen.model.effect_forces import EffectForces
 from modelgen.model.energy import link_energies
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, link_motions
+from modelgen.model.ports import Surroundings
 
 
 @dataclass(frozen=True)
@@ -33,44 +35,62 @@ class Dynamics:
         """Input by coordinate."""
         e = self.equations
         rates = Rates(dq, ddq)
-        added = e.effect_inputs(rates, self.values)
+        effects = EffectForces(e, rates, self.values)
+        added = effects.inputs()
 
         def form(frames: Frames) -> list[Expr]:
             efforts = joint_efforts(frames, link_motions(frames, rates), e.link_values(self.values))
-            return [
-                effort * drive.inverse_gain + extra
-                for effort, drive, extra in zip(efforts, e.drives, added, strict=True)
-            ]
+            return effects.required(
+                [
+                    effort * drive.inverse_gain + extra
+                    for effort, drive, extra in zip(efforts, e.drives, added, strict=True)
+                ]
+            )
 
         return self.cheapest(form)
 
-    def mass_matrix(self) -> list[list[Expr]]:
-        """n x n, drives included [kg m^2, kg m, kg]."""
+    def mass_matrix(self, dq: Sequence[Expr] | None = None) -> list[list[Expr]]:
+        """n x n, drives included [kg m^2, kg m, kg], at the speeds `dq`, at rest by default."""
         e = self.equations
-        matrix = links_mass_matrix(e.frames, e.link_values(self.values))
-        for n, mass in enumerate(e.effect_masses(self.values)):
-            matrix[n][n] = matrix[n][n] + mass
-        return matrix
+        links = links_mass_matrix(e.frames, e.link_values(self.values))
+        effects = EffectForces(e, Rates(dq or e.zeros(), e.zeros()), self.values).masses()
+        return [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(links, effects, strict=True)]
 
     def forward_dynamics(self, dq: Sequence[Expr], given: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
         """Joint accelerations for the inputs `given`, and the pivots that must be positive."""
         e = self.equations
         rates = Rates(dq, e.zeros())
-        added = e.effect_efforts(rates, self.values)
-        matrix = self.mass_matrix()
+        effects = EffectForces(e, rates, self.values)
+        added = effects.efforts()
+        ideal = effects.effective(given)
+        matrix = self.mass_matrix(dq)
         pivots: list[list[Expr]] = []
 
         def form(frames: Frames) -> list[Expr]:
             efforts = joint_efforts(frames, link_motions(frames, rates), e.link_values(self.values))
             right = [
                 i * gain - (effort + extra)
-                for i, gain, effort, extra in zip(given, self.gains(), efforts, added, strict=True)
+                for i, gain, effort, extra in zip(ideal, self.gains(), efforts, added, strict=True)
             ]
             accelerations, found = solve(matrix, right)
             pivots.append(found)
             return accelerations
 
         return self.cheapest(form), pivots[0]
+
+    def loads(self) -> list[Expr]:
+        """Forces at the motor coordinates that the links' weight takes."""
+        e = self.equations
+        around = Surroundings(e.frames, Rates(e.zeros(), e.zeros()), e.link_values(self.values))
+        weights = [around.weight(n) or e.graph.zero for n in range(e.n)]
+        return [
+            weight * (drive.inverse_gain * drive.transmission.torque_constant)
+            for weight, drive in zip(weights, e.drives, strict=True)
+        ]
+
+    def effects_step(self, dq: Sequence[Expr], ddq: Sequence[Expr], dt: Expr) -> list[Expr]:
+        """States of the effects after dt."""
+        return EffectForces(self.equations, Rates(dq, ddq), self.values).steps(dt)
 
     def gains(self) -> list[Expr]:
         """K, joint effort per input, by coordinate."""
@@ -81,6 +101,9 @@ class Dynamics:
         e = self.equations
         rates = Rates(dq, e.zeros())
         kinetic, potential = link_energies(e.frames, rates, e.link_values(self.values))
-        for speed, mass in zip(dq, e.effect_masses(self.values), strict=True):
-            kinetic = kinetic + mass * (speed * speed) * 0.5
-        return kinetic, potential + e.effect_potential(self.values)
+        effects = EffectForces(e, Rates(e.zeros(), e.zeros()), self.values)
+        for n, row in enumerate(effects.masses(stored=True)):
+            for m, mass in enumerate(row[: n + 1]):
+                half = 0.5 if m == n else 1.0
+                kinetic = kinetic + mass * (dq[n] * dq[m]) * half
+        return kinetic, potential + effects.potential()

@@ -1,10 +1,9 @@
-"""Functions of geometry alone: poses, Jacobian, motor coordinates, drive gains, states of effects."""
+"""Functions without parameters: poses, Jacobian, motor coordinates, drive gains, ideal inputs."""
 
 from __future__ import annotations
 
 import sympy as sp
 
-from modelgen.effects import TIME_STEP
 from modelgen.errors import InputError
 from modelgen.functions.arguments import effort_units, input_units, joint_units, motor_units
 from modelgen.functions.assembly import Assembly, vector
@@ -12,20 +11,21 @@ from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.objects import Function, Output
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
+from modelgen.model.effect_forces import EffectForces
 from modelgen.model.kinematics import jacobian, link_poses, transform
 from modelgen.model.motion import Rates
 
 
 def kinematic_functions(a: Assembly) -> list[Function]:
     """Everything that needs neither parameters nor a regressor."""
-    functions = [
+    return [
         _forward_kinematics(a),
         _jacobian(a),
         _motor_from_joint(a),
         _joint_from_motor(a),
         _drive_gain(a),
+        *_effective_input(a),
     ]
-    return functions + ([_effects_step(a)] if a.real.state_names() else [])
 
 
 def _forward_kinematics(a: Assembly) -> Function:
@@ -98,17 +98,13 @@ def _drive_gain(a: Assembly) -> Function:
     )
 
 
-def _effects_step(a: Assembly) -> Function:
+def _effective_input(a: Assembly) -> list[Function]:
+    """Only where an effect stands between input and effort."""
     e = a.real
-    values = [e.graph.input("parameters", k) for k in range(len(e.standard))]
-    parameters = e.parameter_bindings(values)
-    rates = Rates(e.vector("dq"), e.zeros())
-    states: list[Expr] = []
-    for effect in e.effects:
-        bound = {**e.bindings(effect, rates), **parameters, TIME_STEP: e.graph.input("dt", 0)}
-        states += [from_sympy(e.graph, effect.steps[name], bound) for name in effect.variables.state]
-    output = vector("state_next", len(states), "see the list of states", "states after dt")
-    inputs = ["q", "dq", "dt", "standard_parameters", "state"]
-    return a.function(
-        "effects_step", "States of the effects after dt at constant velocity.", inputs, [(output, states)]
-    )
+    if not any(part.place == "input" for effect in e.effects for part in effect.parts):
+        return []
+    given = e.vector("input")
+    ideal = EffectForces(e, Rates(e.zeros(), e.zeros())).effective(given)
+    output = vector("ideal", a.n, input_units(e), "inputs of ideal drives")
+    text = "Inputs of ideal drives with the efforts that these ones give at `input`."
+    return [a.function("effective_input", text, ["input"], [(output, ideal)], drives=False)]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from modelgen.description.objects import Arm, NoDrive
+from modelgen.effects import described
 from modelgen.transmission import with_lever_symbols
 
 GAINS = ("known", "estimated", "row_wise")
@@ -37,5 +38,6 @@ def prepared(arm: Arm, options: Options) -> Arm:
         joints = tuple(replace(joint, drive=NoDrive()) for joint in joints)
     if "effects" in options.without:
         joints = tuple(replace(joint, effects=()) for joint in joints)
-    arm = replace(arm, joints=joints)
+        arm = replace(arm, effects=())
+    arm = described(replace(arm, joints=joints))
     return with_lever_symbols(arm) if options.runtime_geometry else arm

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from modelgen.base_parameters import Grouping
+from modelgen.errors import InputError
 from modelgen.functions.arguments import input_units, joint_units
 from modelgen.functions.assembly import Assembly, vector
 from modelgen.functions.dynamics import Dynamics
@@ -53,7 +54,7 @@ def parametric_functions(
     matrix = dynamics.mass_matrix()
     accelerations, pivots = dynamics.forward_dynamics(dq, e.vector("input"))
     kinetic, potential = dynamics.energy(dq)
-    return [
+    functions = [
         a.function(
             f"inverse_dynamics{suffix}",
             f"Inputs that give the accelerations ddq in the state q, dq; {with_what}.",
@@ -95,6 +96,26 @@ def parametric_functions(
             ],
         ),
     ]
+    return functions + _of_effects(a, dynamics, suffix, parameters, with_what)
+
+
+def _of_effects(
+    a: Assembly, dynamics: Dynamics, suffix: str, parameters: Sequence[str], with_what: str
+) -> list[Function]:
+    """States and loads, where an effect has or needs them."""
+    e = dynamics.equations
+    functions = []
+    if any(effect.depends_on("load") for effect in e.effects):
+        text = f"Forces at the motor coordinates that the links' weight takes; {with_what}."
+        output = vector("load", a.n, "force at the motor coordinate", "loads of the drives")
+        functions.append(a.function(f"load{suffix}", text, ["q", *parameters], [(output, dynamics.loads())]))
+    if e.state_names():
+        states = dynamics.effects_step(e.vector("dq"), e.vector("ddq"), e.graph.input("dt", 0))
+        output = vector("state_next", len(states), "see the list of states", "states after dt")
+        text = f"States of the effects after dt at constant velocity; {with_what}."
+        inputs = ["q", "dq", "dt", *parameters, "state"]
+        functions.append(a.function(f"effects_step{suffix}", text, inputs, [(output, states)]))
+    return functions
 
 
 def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
@@ -103,6 +124,12 @@ def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
     Mass matrix, forward dynamics and energy need one scale for all rows and do not exist here.
     """
     e = a.base
+    for effect in e.effects:
+        if any(part.place == "transmission" for part in effect.parts):
+            raise InputError(
+                f"{effect.effect.name} needs the mass matrix, which row-wise gains do not have",
+                e.arm.where,
+            )
     effort = vector("input", a.n, input_units(e), "inputs: motor currents, efforts where undriven")
     firsts = [sum(len(g.base) for g in rows[:k]) for k in range(len(rows))]
     by_row = [Dynamics(e, base_values(e, g, first)) for g, first in zip(rows, firsts, strict=True)]

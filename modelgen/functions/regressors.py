@@ -9,6 +9,7 @@ from modelgen.functions.assembly import Assembly
 from modelgen.functions.objects import Function, Output, SparsityTable
 from modelgen.functions.search import Choice, LinkColumns
 from modelgen.graph import Expr
+from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates
 
@@ -26,15 +27,8 @@ def input_columns(
     link_columns = LinkColumns(e, rates, [k for k in needed if k < links])
     choice = choice or link_columns.cheapest()
     bodies = link_columns.columns(choice)
-    effects = e.effect_columns(rates)
-    columns: Columns = []
-    for k in needed:
-        if k < links:
-            columns.append(bodies[k])
-        else:
-            n, x = effects[k - links]
-            columns.append({n: x})
-    return columns, choice
+    effects = EffectForces(e, rates).columns()
+    return [bodies[k] if k < links else effects[k - links] for k in needed], choice
 
 
 def regressor_functions(a: Assembly, rows: Sequence[Sequence[int]]) -> tuple[list[Function], SparsityTable]:

@@ -38,5 +38,8 @@ def _plain(value: Any) -> Any:
     if is_dataclass(value):
         # The class tells a direct drive from a levered one.
         content = {f.name: _plain(getattr(value, f.name)) for f in fields(value) if f.compare}
+        if isinstance(value, Arm) and not value.effects:
+            # No effects of the whole arm: nothing is said of them, and hashes of before they existed stay.
+            del content["effects"]
         return {"is": type(value).__name__, **content}
     raise TypeError(f"{type(value).__name__} has no canonical form")

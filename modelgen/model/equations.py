@@ -7,16 +7,18 @@ Row by row, with K = torque_constant k1 and the drive's own terms at the motor c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects import AppliedEffect, applied_effects
+from modelgen.effects import AppliedEffect, applied_effects, free_symbol
+from modelgen.errors import InputError
 from modelgen.geometry import Frames, Scalars, Trigonometry
 from modelgen.graph import Expr, Graph
 from modelgen.graph.from_sympy import from_sympy
+from modelgen.graph.vectors import Vector
 from modelgen.model.motion import Rates
 from modelgen.model.parameters import StandardParameter, effect_parameters, link_parameters
 from modelgen.transmission import Transmission, of_joint
@@ -37,10 +39,13 @@ class Equations:
     """Graph, frames, drives, effects and standard parameters of one arm.
 
     `runtime` keeps the arm's geometry symbols as inputs `geometry`; `sincos` takes sine and cosine
-    of the joint angles as inputs.
+    of the joint angles as inputs; `free` names parameters of effects, otherwise fixed, that are the
+    input `free`.
     """
 
-    def __init__(self, arm: Arm, runtime: bool = False, sincos: bool = False) -> None:
+    def __init__(
+        self, arm: Arm, runtime: bool = False, sincos: bool = False, free: Sequence[str] = ()
+    ) -> None:
         self.arm = arm
         self.graph = Graph()
         self.scalars = Scalars(self.graph, arm, runtime)
@@ -48,7 +53,8 @@ class Equations:
         self.frames = Frames(arm, self.scalars, self.trigonometry)
         self.frames_factored = Frames(arm, self.scalars, self.trigonometry, factored=True)
         self.n = len(arm.coordinates)
-        self.effects = applied_effects(arm)
+        self.effects = applied_effects(arm, free)
+        self.free = {free_symbol(name): self.graph.input("free", k) for k, name in enumerate(free)}
         self.drives = [self._drive(n, index) for n, index in enumerate(arm.coordinates)]
         self.standard = standard_parameters(arm, self.effects)
         self.per_link = 14 if arm.fluid_density else 10
@@ -98,114 +104,32 @@ class Equations:
         other = dq if rates.reference is None else rates.reference[n]
         return drive.k1 * dq, drive.k1 * rates.ddq[n] + drive.slope * (dq * other)
 
-    # -- effects --------------------------------------------------------------------------
-
-    def bindings(self, effect: AppliedEffect, rates: Rates) -> dict[sp.Symbol, Expr]:
-        """The variables of an effect's law in the graph."""
-        n, x = effect.coordinate, effect.variables
-        if effect.side == "motor":
-            velocity, acceleration = self.motor_rates(n, rates)
-            position = self.drives[n].motor
-        else:
-            position, velocity, acceleration = self.graph.input("q", n), rates.dq[n], rates.ddq[n]
-        states = self.state_names()
-        bound = {x.position: position, x.velocity: velocity, x.acceleration: acceleration}
-        for name, symbol in x.state.items():
-            bound[symbol] = self.graph.input("state", states.index(state_name(effect, name)))
-        return bound
-
     def state_names(self) -> list[str]:
         """Names of all states of the effects, in the order of the input `state`."""
-        return [state_name(effect, name) for effect in self.effects for name in effect.variables.state]
+        return [symbol.name for effect in self.effects for symbol in effect.states.values()]
 
-    def parameter_bindings(self, values: Sequence[Expr]) -> dict[sp.Symbol, Expr]:
-        """Symbols of the effects' linear parameters to elements of a standard vector."""
-        index = {parameter.name: i for i, parameter in enumerate(self.standard)}
-        return {
-            symbol: values[index[symbol.name]] for effect in self.effects for _, symbol in effect.parameters
-        }
+    def link_end(self, index: int) -> Vector:
+        """Where a link ends, in its frame [m]: at the next link's origin, at the tip given for the last."""
+        ends = [frame.origin for frame in self.frames.frames if frame.antecedent == index]
+        return ends[0] if ends else self._tip(index)
 
-    def in_graph(self, effect: AppliedEffect, law: sp.Expr, bound: Mapping[sp.Symbol, Expr]) -> Expr:
-        """An expression over an effect's variables and parameters as a value of the graph."""
-        return from_sympy(self.graph, law, bound)
-
-    def effect_columns(self, rates: Rates) -> list[tuple[int, Expr]]:
-        """(coordinate, input per unit) of every effect parameter, in the order of the standard vector."""
-        columns = []
+    def _tip(self, index: int) -> Vector:
+        """Of a link that carries no other: given with the effect, or twice as far as its centre of mass."""
+        joint = self.arm.joints[index]
         for effect in self.effects:
-            bound = self.bindings(effect, rates)
-            for _, symbol in effect.parameters:
-                column = self.in_graph(effect, sp.diff(effect.law, symbol), bound)
-                columns.append((effect.coordinate, self.to_input(effect, column)))
-        return columns
-
-    def to_input(self, effect: AppliedEffect, force: Expr) -> Expr:
-        """A force at the effect's coordinate as a part of the input [A, or N m or N]."""
-        drive = self.drives[effect.coordinate]
-        if effect.side == "joint":
-            return force * drive.inverse_gain
-        return force / self.graph.const(drive.transmission.torque_constant)
-
-    def effect_inputs(self, rates: Rates, values: Sequence[Expr]) -> list[Expr]:
-        """What the effects add to the input, by coordinate."""
-        total = self.zeros()
-        parameters = self.parameter_bindings(values)
-        for side in ("motor", "joint"):
-            forces = self.zeros()
-            for effect in self.effects:
-                if effect.side == side:
-                    bound = {**self.bindings(effect, rates), **parameters}
-                    n = effect.coordinate
-                    forces[n] = forces[n] + self.in_graph(effect, effect.law, bound)
-            for n, drive in enumerate(self.drives):
-                if side == "joint":
-                    total[n] = total[n] + forces[n] * drive.inverse_gain
-                else:
-                    constant = self.graph.const(drive.transmission.torque_constant)
-                    total[n] = total[n] + forces[n] / constant
-        return total
-
-    def effect_efforts(self, rates: Rates, values: Sequence[Expr]) -> list[Expr]:
-        """The effects as efforts at the joints [N m or N], by coordinate."""
-        total = self.zeros()
-        parameters = self.parameter_bindings(values)
-        for effect in self.effects:
-            bound = {**self.bindings(effect, rates), **parameters}
-            force = self.in_graph(effect, effect.law, bound)
-            n = effect.coordinate
-            total[n] = total[n] + (force * self.drives[n].k1 if effect.side == "motor" else force)
-        return total
-
-    def effect_masses(self, values: Sequence[Expr]) -> list[Expr]:
-        """Inertia that the effects add to the diagonal of the mass matrix, by coordinate."""
-        total = self.zeros()
-        parameters = self.parameter_bindings(values)
-        still = Rates(self.zeros(), self.zeros())
-        for effect in self.effects:
-            law = sp.diff(effect.law, effect.variables.acceleration)
-            if law == 0:
-                continue
-            n = effect.coordinate
-            mass = self.in_graph(effect, law, {**self.bindings(effect, still), **parameters})
-            k1 = self.drives[n].k1
-            total[n] = total[n] + (mass * (k1 * k1) if effect.side == "motor" else mass)
-        return total
-
-    def effect_potential(self, values: Sequence[Expr]) -> Expr:
-        """Energy stored in the effects [J], up to a constant."""
-        total = self.graph.zero
-        parameters = self.parameter_bindings(values)
-        still = Rates(self.zeros(), self.zeros())
-        for effect in self.effects:
-            if effect.potential != 0:
-                bound = {**self.bindings(effect, still), **parameters}
-                total = total + self.in_graph(effect, effect.potential, bound)
-        return total
-
-
-def state_name(effect: AppliedEffect, name: str) -> str:
-    """A state's name in the arm: effect, state and joint number."""
-    return f"{effect.effect.name}_{name}_{effect.joint + 1}"
+            if effect.joint in (None, index) and "tip_x" in effect.values:
+                given = [float(effect.values[f"tip_{axis}"]) for axis in "xyz"]
+                link = self.arm.links[index]
+                if not any(given) and link is not None:
+                    given = [2 * x for x in link.com]
+                if any(given):
+                    return self.graph.const(given[0]), self.graph.const(given[1]), self.graph.const(given[2])
+                raise InputError(
+                    f"{effect.effect.name} needs the end of link {joint.name}, which carries no other: "
+                    "tip_x, tip_y, tip_z [m] in its frame, or its nominal inertials",
+                    self.arm.where,
+                )
+        return self.graph.zero, self.graph.zero, self.graph.zero
 
 
 def standard_parameters(arm: Arm, effects: Sequence[AppliedEffect]) -> tuple[StandardParameter, ...]:

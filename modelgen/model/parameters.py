@@ -17,12 +17,13 @@ _UNITS = {"M": "kg", "V": "m^3"}
 class StandardParameter:
     """One standard parameter.
 
-    `joint` is the index of its link or joint in `arm.joints`; `name` carries that number from 1.
+    `joint` is the index of its link or joint in `arm.joints`, None for the whole arm; `name` carries that
+    number from 1.
     """
 
     name: str
     unit: str
-    joint: int
+    joint: int | None
     text: str
 
 
@@ -53,14 +54,14 @@ _TEXT = {
 
 
 def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter]:
-    """The linear parameters of one effect, named by the number of its joint."""
-    joint = arm.joints[effect.joint]
+    """The linear parameters of one effect, named by the number of its joint if it stands at one."""
+    whose = "the arm" if effect.joint is None else f"joint {arm.joints[effect.joint].name}"
     return [
         StandardParameter(
             symbol.name,
             unit_of(parameter.unit, coordinate_unit(arm, effect)),
             effect.joint,
-            f"{parameter.text} ({effect.effect.name}) of joint {joint.name}",
+            f"{parameter.text} ({effect.effect.name}) of {whose}",
         )
         for parameter, symbol in effect.parameters
     ]
@@ -68,6 +69,8 @@ def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter
 
 def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:
     """Unit of the coordinate that the effect belongs to: rad, m, or the motor's unit."""
+    if effect.joint is None:
+        return "m"
     joint = arm.joints[effect.joint]
     transmission = of_joint(arm, joint)
     if effect.side == "motor" and transmission.driven:

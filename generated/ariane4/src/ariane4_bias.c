@@ -48,7 +48,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xB921FA20UL
+#if ARIANE4_GENERATION != 0x6EDD9A6BUL
 #error "ariane4.h and ariane4_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -126,15 +126,15 @@ int ariane4_bias(
     const ariane4_real_t t40 = ARIANE4_C(-0.28217402066925895) * t37 + ARIANE4_C(0.9593632378089879) * t36;
     const ariane4_real_t t41 = ARIANE4_C(-0.06434139546481742) * t39 / t40;
     const ariane4_real_t t42 = ARIANE4_C(-1.0) / t39;
-    const ariane4_real_t t43 = ARIANE4_C(-3885.523436256565) * t38
+    const ariane4_real_t t43 = t40 * (ARIANE4_C(3885.523436256565) * t42) * dq[0];
+    const ariane4_real_t t44 = ariane4_sign(t43);
+    const ariane4_real_t t45 = ARIANE4_C(-3885.523436256565) * t38
         + ARIANE4_C(-72.7913960548305) * (t42 * t42) * (t40 * t40);
-    const ariane4_real_t t44 = dq[0] * dq[0];
-    const ariane4_real_t t45 = t40 * (ARIANE4_C(3885.523436256565) * t42) * dq[0];
-    const ariane4_real_t t46 = ariane4_sign(t45);
-    const ariane4_real_t t47 = parameters[IA1] * (t42 * t43 * t44) + (parameters[FV1] * t45
-        + parameters[FC1] * t46);
+    const ariane4_real_t t46 = dq[0] * dq[0];
+    const ariane4_real_t t47 = parameters[FV1] * t43 + parameters[FC1] * t44
+        + parameters[IA1] * (t42 * t45 * t46);
     out[0] = ARIANE4_C(-250.0) * t47 + t41 * t35;
-    const ariane4_real_t t48 = ARIANE4_C(0.116) * t44;
+    const ariane4_real_t t48 = ARIANE4_C(0.116) * t46;
     const ariane4_real_t t49 = t3 * t48 + ARIANE4_C(-9.81) * t0;
     const ariane4_real_t t50 = t49 + ARIANE4_C(0.443) * (t28 + t27);
     const ariane4_real_t t51 = t0 * t48 + ARIANE4_C(9.81) * t3;
@@ -151,26 +151,26 @@ int ariane4_bias(
     const ariane4_real_t t59 = ARIANE4_C(-0.8305958991958126) * t0 + ARIANE4_C(-0.5568756164881881) * t3;
     const ariane4_real_t t60 = ARIANE4_C(-0.03137188092799786) * t58 / t59;
     const ariane4_real_t t61 = ARIANE4_C(1.0) / t58;
-    const ariane4_real_t t62 = ARIANE4_C(2656.3065671641784) * t57
+    const ariane4_real_t t62 = t59 * (ARIANE4_C(2656.3065671641784) * t61) * dq[1];
+    const ariane4_real_t t63 = ariane4_sign(t62);
+    const ariane4_real_t t64 = ARIANE4_C(2656.3065671641784) * t57
         + ARIANE4_C(-104.12987373940295) * (t61 * t61) * (t59 * t59);
-    const ariane4_real_t t63 = t59 * (ARIANE4_C(2656.3065671641784) * t61) * dq[1];
-    const ariane4_real_t t64 = ariane4_sign(t63);
-    const ariane4_real_t t65 = parameters[IA2] * (t61 * t62 * t28) - (parameters[FV2] * t63
-        + parameters[FC2] * t64);
+    const ariane4_real_t t65 = parameters[IA2] * (t61 * t64 * t28) - (parameters[FV2] * t62
+        + parameters[FC2] * t63);
     const ariane4_real_t t66 = ARIANE4_C(83.33333333333333) * t65 + t60 * (t56 + (t54
         + ARIANE4_C(0.443) * t55));
     out[1] = t66;
-    const ariane4_real_t t67 = ARIANE4_C(0.06366143813161289) * t5 - ARIANE4_C(0.9979715533496006) * t2;
-    const ariane4_real_t t68 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t67 + ARIANE4_C(0.242037));
-    const ariane4_real_t t69 = ARIANE4_C(-1.0) / t68;
-    const ariane4_real_t t70 = ARIANE4_C(-0.06366143813161289) * t2 + ARIANE4_C(-0.9979715533496006) * t5;
-    const ariane4_real_t t71 = ARIANE4_C(-7124.375926654358) * t67
-        + ARIANE4_C(-188.12627071923498) * (t69 * t69) * (t70 * t70);
-    const ariane4_real_t t72 = t70 * (ARIANE4_C(7124.375926654358) * t69) * dq[2];
-    const ariane4_real_t t73 = ariane4_sign(t72);
-    const ariane4_real_t t74 = parameters[IA3] * (t69 * t71 * (dq[2] * dq[2])) + (parameters[FV3] * t72
-        + parameters[FC3] * t73);
-    const ariane4_real_t t75 = ARIANE4_C(-0.046787723832235825) * t68 / t70;
+    const ariane4_real_t t67 = ARIANE4_C(-0.06366143813161289) * t2 + ARIANE4_C(-0.9979715533496006) * t5;
+    const ariane4_real_t t68 = ARIANE4_C(0.06366143813161289) * t5 - ARIANE4_C(0.9979715533496006) * t2;
+    const ariane4_real_t t69 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t68 + ARIANE4_C(0.242037));
+    const ariane4_real_t t70 = ARIANE4_C(-1.0) / t69;
+    const ariane4_real_t t71 = t67 * (ARIANE4_C(7124.375926654358) * t70) * dq[2];
+    const ariane4_real_t t72 = ariane4_sign(t71);
+    const ariane4_real_t t73 = ARIANE4_C(-7124.375926654358) * t68
+        + ARIANE4_C(-188.12627071923498) * (t70 * t70) * (t67 * t67);
+    const ariane4_real_t t74 = parameters[FV3] * t71 + parameters[FC3] * t72
+        + parameters[IA3] * (t70 * t73 * (dq[2] * dq[2]));
+    const ariane4_real_t t75 = ARIANE4_C(-0.046787723832235825) * t69 / t67;
     out[2] = ARIANE4_C(-333.3333333333333) * t74 - t75 * t54;
     return ARIANE4_STATUS_OK;
 }

@@ -72,7 +72,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xB921FA20UL
+#if ARIANE4_GENERATION != 0x6EDD9A6BUL
 #error "ariane4.h and ariane4_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -185,12 +185,12 @@ int ariane4_bias_standard(
     const ariane4_real_t t66 = ARIANE4_C(-0.28217402066925895) * t63 + ARIANE4_C(0.9593632378089879) * t62;
     const ariane4_real_t t67 = ARIANE4_C(-0.06434139546481742) * t65 / t66;
     const ariane4_real_t t68 = ARIANE4_C(-1.0) / t65;
-    const ariane4_real_t t69 = ARIANE4_C(-3885.523436256565) * t64
+    const ariane4_real_t t69 = t66 * (ARIANE4_C(3885.523436256565) * t68) * dq[0];
+    const ariane4_real_t t70 = ariane4_sign(t69);
+    const ariane4_real_t t71 = ARIANE4_C(-3885.523436256565) * t64
         + ARIANE4_C(-72.7913960548305) * (t68 * t68) * (t66 * t66);
-    const ariane4_real_t t70 = t66 * (ARIANE4_C(3885.523436256565) * t68) * dq[0];
-    const ariane4_real_t t71 = ariane4_sign(t70);
-    const ariane4_real_t t72 = t68 * t69 * t17 * parameters[IA1] + (t70 * parameters[FV1]
-        + t71 * parameters[FC1]);
+    const ariane4_real_t t72 = t69 * parameters[FV1] + t70 * parameters[FC1]
+        + t68 * t71 * t17 * parameters[IA1];
     const ariane4_real_t t73 = ARIANE4_C(-250.0) * t72 + t67 * (t60 + ARIANE4_C(0.116) * (t61 + t54));
     out[0] = t73;
     const ariane4_real_t t74 = t30 - t14;
@@ -211,24 +211,24 @@ int ariane4_bias_standard(
     const ariane4_real_t t86 = ARIANE4_C(-0.8305958991958126) * t0 + ARIANE4_C(-0.5568756164881881) * t3;
     const ariane4_real_t t87 = ARIANE4_C(-0.03137188092799786) * t85 / t86;
     const ariane4_real_t t88 = ARIANE4_C(1.0) / t85;
-    const ariane4_real_t t89 = ARIANE4_C(2656.3065671641784) * t84
+    const ariane4_real_t t89 = t86 * (ARIANE4_C(2656.3065671641784) * t88) * dq[1];
+    const ariane4_real_t t90 = ariane4_sign(t89);
+    const ariane4_real_t t91 = ARIANE4_C(2656.3065671641784) * t84
         + ARIANE4_C(-104.12987373940295) * (t88 * t88) * (t86 * t86);
-    const ariane4_real_t t90 = t86 * (ARIANE4_C(2656.3065671641784) * t88) * dq[1];
-    const ariane4_real_t t91 = ariane4_sign(t90);
-    const ariane4_real_t t92 = t88 * t89 * t21 * parameters[IA2] - (t90 * parameters[FV2]
-        + t91 * parameters[FC2]);
+    const ariane4_real_t t92 = t88 * t91 * t21 * parameters[IA2] - (t89 * parameters[FV2]
+        + t90 * parameters[FC2]);
     out[1] = ARIANE4_C(83.33333333333333) * t92 + t87 * t83;
     const ariane4_real_t t93 = ARIANE4_C(0.06366143813161289) * t5 - ARIANE4_C(0.9979715533496006) * t2;
     const ariane4_real_t t94 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t93 + ARIANE4_C(0.242037));
     const ariane4_real_t t95 = ARIANE4_C(-0.06366143813161289) * t2 + ARIANE4_C(-0.9979715533496006) * t5;
     const ariane4_real_t t96 = ARIANE4_C(-0.046787723832235825) * t94 / t95;
     const ariane4_real_t t97 = ARIANE4_C(-1.0) / t94;
-    const ariane4_real_t t98 = ARIANE4_C(-7124.375926654358) * t93
+    const ariane4_real_t t98 = t95 * (ARIANE4_C(7124.375926654358) * t97) * dq[2];
+    const ariane4_real_t t99 = ariane4_sign(t98);
+    const ariane4_real_t t100 = ARIANE4_C(-7124.375926654358) * t93
         + ARIANE4_C(-188.12627071923498) * (t97 * t97) * (t95 * t95);
-    const ariane4_real_t t99 = t95 * (ARIANE4_C(7124.375926654358) * t97) * dq[2];
-    const ariane4_real_t t100 = ariane4_sign(t99);
-    const ariane4_real_t t101 = t97 * t98 * (dq[2] * dq[2]) * parameters[IA3] + (t99 * parameters[FV3]
-        + t100 * parameters[FC3]);
+    const ariane4_real_t t101 = t98 * parameters[FV3] + t99 * parameters[FC3]
+        + t97 * t100 * (dq[2] * dq[2]) * parameters[IA3];
     out[2] = ARIANE4_C(-333.3333333333333) * t101 - t96 * t79;
     return ARIANE4_STATUS_OK;
 }

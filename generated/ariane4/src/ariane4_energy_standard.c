@@ -73,7 +73,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xB921FA20UL
+#if ARIANE4_GENERATION != 0x6EDD9A6BUL
 #error "ariane4.h and ariane4_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -152,19 +152,19 @@ int ariane4_energy_standard(
     const ariane4_real_t t37 = ARIANE4_C(1.0) / t36;
     const ariane4_real_t t38 = (ARIANE4_C(0.28217402066925895) * t34
         + ARIANE4_C(-0.9593632378089879) * t35) * (ARIANE4_C(3885.523436256565) * t37);
-    const ariane4_real_t t39 = t33 + ARIANE4_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t38 * t38)));
+    const ariane4_real_t t39 = t33 + ARIANE4_C(0.5) * (dq[0] * dq[0] * (t38 * t38 * parameters[IA1]));
     const ariane4_real_t t40 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t3
         + ARIANE4_C(0.5568756164881881) * t0) + ARIANE4_C(0.293698));
     const ariane4_real_t t41 = ARIANE4_C(1.0) / t40;
     const ariane4_real_t t42 = (ARIANE4_C(0.8305958991958126) * t0
         + ARIANE4_C(0.5568756164881881) * t3) * (ARIANE4_C(2656.3065671641784) * t41);
-    const ariane4_real_t t43 = t39 + ARIANE4_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t42 * t42)));
+    const ariane4_real_t t43 = t39 + ARIANE4_C(0.5) * (dq[1] * dq[1] * (t42 * t42 * parameters[IA2]));
     const ariane4_real_t t44 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t2
         + ARIANE4_C(-0.9979715533496006) * t5) + ARIANE4_C(0.242037));
     const ariane4_real_t t45 = ARIANE4_C(1.0) / t44;
     const ariane4_real_t t46 = (ARIANE4_C(0.06366143813161289) * t5
         + ARIANE4_C(0.9979715533496006) * t2) * (ARIANE4_C(7124.375926654358) * t45);
-    const ariane4_real_t t47 = t43 + ARIANE4_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t46 * t46)));
+    const ariane4_real_t t47 = t43 + ARIANE4_C(0.5) * (dq[2] * dq[2] * (t46 * t46 * parameters[IA3]));
     kinetic[0] = t47;
     const ariane4_real_t t48 = ARIANE4_C(9.81) * t0;
     const ariane4_real_t t49 = ARIANE4_C(9.81) * t3;

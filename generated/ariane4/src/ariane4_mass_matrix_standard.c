@@ -71,7 +71,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xB921FA20UL
+#if ARIANE4_GENERATION != 0x6EDD9A6BUL
 #error "ariane4.h and ariane4_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,7 +135,7 @@ int ariane4_mass_matrix_standard(
     const ariane4_real_t t29 = ARIANE4_C(1.0) / t28;
     const ariane4_real_t t30 = (ARIANE4_C(0.28217402066925895) * t26
         + ARIANE4_C(-0.9593632378089879) * t27) * (ARIANE4_C(3885.523436256565) * t29);
-    out[0] = parameters[ZZ1] + t25 + parameters[IA1] * (t30 * t30);
+    out[0] = parameters[ZZ1] + t25 + t30 * t30 * parameters[IA1];
     const ariane4_real_t t31 = parameters[XZ3] + (ARIANE4_C(-0.1) * parameters[MY4] - parameters[XY4]);
     const ariane4_real_t t32 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
     const ariane4_real_t t33 = t6 * t31 - t9 * t32;
@@ -152,7 +152,7 @@ int ariane4_mass_matrix_standard(
     const ariane4_real_t t39 = (ARIANE4_C(0.8305958991958126) * t21
         + ARIANE4_C(0.5568756164881881) * t19) * (ARIANE4_C(2656.3065671641784) * t38);
     const ariane4_real_t t40 = parameters[ZZ3] + (parameters[YY4] + (t4 + t1));
-    out[4] = parameters[ZZ2] + (t40 + t18) + parameters[IA2] * (t39 * t39);
+    out[4] = parameters[ZZ2] + (t40 + t18) + t39 * t39 * parameters[IA2];
     const ariane4_real_t t41 = t40 + ARIANE4_C(0.443) * t15;
     out[5] = t41;
     out[6] = t36;
@@ -162,6 +162,6 @@ int ariane4_mass_matrix_standard(
     const ariane4_real_t t43 = ARIANE4_C(1.0) / t42;
     const ariane4_real_t t44 = (ARIANE4_C(0.06366143813161289) * t9
         + ARIANE4_C(0.9979715533496006) * t6) * (ARIANE4_C(7124.375926654358) * t43);
-    out[8] = t40 + parameters[IA3] * (t44 * t44);
+    out[8] = t40 + t44 * t44 * parameters[IA3];
     return ARIANE4_STATUS_OK;
 }

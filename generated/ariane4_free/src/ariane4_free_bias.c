@@ -58,7 +58,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
+#if ARIANE4_FREE_GENERATION != 0x0A7D8746UL
 #error "ariane4_free.h and ariane4_free_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -185,12 +185,12 @@ int ariane4_free_bias(
         + ARIANE4_FREE_C(0.9593632378089879) * t76;
     const ariane4_free_real_t t81 = ARIANE4_FREE_C(-0.06434139546481742) * t79 / t80;
     const ariane4_free_real_t t82 = ARIANE4_FREE_C(-1.0) / t79;
-    const ariane4_free_real_t t83 = ARIANE4_FREE_C(-3885.523436256565) * t78
+    const ariane4_free_real_t t83 = t80 * (ARIANE4_FREE_C(3885.523436256565) * t82) * dq[0];
+    const ariane4_free_real_t t84 = ariane4_free_sign(t83);
+    const ariane4_free_real_t t85 = ARIANE4_FREE_C(-3885.523436256565) * t78
         + ARIANE4_FREE_C(-72.7913960548305) * (t82 * t82) * (t80 * t80);
-    const ariane4_free_real_t t84 = t80 * (ARIANE4_FREE_C(3885.523436256565) * t82) * dq[0];
-    const ariane4_free_real_t t85 = ariane4_free_sign(t84);
-    const ariane4_free_real_t t86 = parameters[IA1] * (t82 * t83 * t29) + (parameters[FV1] * t84
-        + parameters[FC1] * t85);
+    const ariane4_free_real_t t86 = parameters[FV1] * t83 + parameters[FC1] * t84
+        + parameters[IA1] * (t82 * t85 * t29);
     out[0] = ARIANE4_FREE_C(-250.0) * t86 + t81 * t75;
     const ariane4_free_real_t t87 = parameters[MX4] * t22 + parameters[MY4] * t41;
     const ariane4_free_real_t t88 = parameters[XY3R] * (t64 - t48) - parameters[XX3R] * t8
@@ -209,12 +209,12 @@ int ariane4_free_bias(
     const ariane4_free_real_t t96 = ARIANE4_FREE_C(-0.03137188092799786) * t94 / t95;
     const ariane4_free_real_t t97 = t96 * (t92 + (t89 + ARIANE4_FREE_C(0.443) * (t5 * t90 + t91)));
     const ariane4_free_real_t t98 = ARIANE4_FREE_C(1.0) / t94;
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(2656.3065671641784) * t93
+    const ariane4_free_real_t t99 = t95 * (ARIANE4_FREE_C(2656.3065671641784) * t98) * dq[1];
+    const ariane4_free_real_t t100 = ariane4_free_sign(t99);
+    const ariane4_free_real_t t101 = ARIANE4_FREE_C(2656.3065671641784) * t93
         + ARIANE4_FREE_C(-104.12987373940295) * (t98 * t98) * (t95 * t95);
-    const ariane4_free_real_t t100 = t95 * (ARIANE4_FREE_C(2656.3065671641784) * t98) * dq[1];
-    const ariane4_free_real_t t101 = ariane4_free_sign(t100);
-    const ariane4_free_real_t t102 = parameters[IA2] * (t98 * t99 * t33) - (parameters[FV2] * t100
-        + parameters[FC2] * t101);
+    const ariane4_free_real_t t102 = parameters[IA2] * (t98 * t101 * t33) - (parameters[FV2] * t99
+        + parameters[FC2] * t100);
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t102 + t97;
     const ariane4_free_real_t t103 = ARIANE4_FREE_C(0.06366143813161289) * t2
         - ARIANE4_FREE_C(0.9979715533496006) * t5;
@@ -224,12 +224,12 @@ int ariane4_free_bias(
         + ARIANE4_FREE_C(-0.9979715533496006) * t2;
     const ariane4_free_real_t t106 = ARIANE4_FREE_C(-0.046787723832235825) * t104 / t105;
     const ariane4_free_real_t t107 = ARIANE4_FREE_C(-1.0) / t104;
-    const ariane4_free_real_t t108 = ARIANE4_FREE_C(-7124.375926654358) * t103
+    const ariane4_free_real_t t108 = t105 * (ARIANE4_FREE_C(7124.375926654358) * t107) * dq[2];
+    const ariane4_free_real_t t109 = ariane4_free_sign(t108);
+    const ariane4_free_real_t t110 = ARIANE4_FREE_C(-7124.375926654358) * t103
         + ARIANE4_FREE_C(-188.12627071923498) * (t107 * t107) * (t105 * t105);
-    const ariane4_free_real_t t109 = t105 * (ARIANE4_FREE_C(7124.375926654358) * t107) * dq[2];
-    const ariane4_free_real_t t110 = ariane4_free_sign(t109);
-    const ariane4_free_real_t t111 = parameters[IA3] * (t107 * t108 * (dq[2] * dq[2]))
-        + (parameters[FV3] * t109 + parameters[FC3] * t110);
+    const ariane4_free_real_t t111 = parameters[FV3] * t108 + parameters[FC3] * t109
+        + parameters[IA3] * (t107 * t110 * (dq[2] * dq[2]));
     out[2] = ARIANE4_FREE_C(-333.3333333333333) * t111 - t106 * t89;
     const ariane4_free_real_t t112 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t113 = ARIANE4_FREE_C(20.0) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])

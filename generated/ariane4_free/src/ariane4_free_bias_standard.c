@@ -76,7 +76,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
+#if ARIANE4_FREE_GENERATION != 0x0A7D8746UL
 #error "ariane4_free.h and ariane4_free_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -220,12 +220,12 @@ int ariane4_free_bias_standard(
         + ARIANE4_FREE_C(0.9593632378089879) * t86;
     const ariane4_free_real_t t91 = ARIANE4_FREE_C(-0.06434139546481742) * t89 / t90;
     const ariane4_free_real_t t92 = ARIANE4_FREE_C(-1.0) / t89;
-    const ariane4_free_real_t t93 = ARIANE4_FREE_C(-3885.523436256565) * t88
+    const ariane4_free_real_t t93 = t90 * (ARIANE4_FREE_C(3885.523436256565) * t92) * dq[0];
+    const ariane4_free_real_t t94 = ariane4_free_sign(t93);
+    const ariane4_free_real_t t95 = ARIANE4_FREE_C(-3885.523436256565) * t88
         + ARIANE4_FREE_C(-72.7913960548305) * (t92 * t92) * (t90 * t90);
-    const ariane4_free_real_t t94 = t90 * (ARIANE4_FREE_C(3885.523436256565) * t92) * dq[0];
-    const ariane4_free_real_t t95 = ariane4_free_sign(t94);
-    const ariane4_free_real_t t96 = t92 * t93 * t0 * parameters[IA1] + (t94 * parameters[FV1]
-        + t95 * parameters[FC1]);
+    const ariane4_free_real_t t96 = t93 * parameters[FV1] + t94 * parameters[FC1]
+        + t92 * t95 * t0 * parameters[IA1];
     const ariane4_free_real_t t97 = ARIANE4_FREE_C(-250.0) * t96 + t91 * (t84 + ARIANE4_FREE_C(0.116) * (t85
         + t78));
     out[0] = t97;
@@ -253,12 +253,12 @@ int ariane4_free_bias_standard(
         + ARIANE4_FREE_C(-0.5568756164881881) * t2;
     const ariane4_free_real_t t111 = ARIANE4_FREE_C(-0.03137188092799786) * t109 / t110;
     const ariane4_free_real_t t112 = ARIANE4_FREE_C(1.0) / t109;
-    const ariane4_free_real_t t113 = ARIANE4_FREE_C(2656.3065671641784) * t108
+    const ariane4_free_real_t t113 = t110 * (ARIANE4_FREE_C(2656.3065671641784) * t112) * dq[1];
+    const ariane4_free_real_t t114 = ariane4_free_sign(t113);
+    const ariane4_free_real_t t115 = ARIANE4_FREE_C(2656.3065671641784) * t108
         + ARIANE4_FREE_C(-104.12987373940295) * (t112 * t112) * (t110 * t110);
-    const ariane4_free_real_t t114 = t110 * (ARIANE4_FREE_C(2656.3065671641784) * t112) * dq[1];
-    const ariane4_free_real_t t115 = ariane4_free_sign(t114);
-    const ariane4_free_real_t t116 = t112 * t113 * t7 * parameters[IA2] - (t114 * parameters[FV2]
-        + t115 * parameters[FC2]);
+    const ariane4_free_real_t t116 = t112 * t115 * t7 * parameters[IA2] - (t113 * parameters[FV2]
+        + t114 * parameters[FC2]);
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t116 + t111 * t107;
     const ariane4_free_real_t t117 = ARIANE4_FREE_C(0.06366143813161289) * t14
         - ARIANE4_FREE_C(0.9979715533496006) * t9;
@@ -268,12 +268,12 @@ int ariane4_free_bias_standard(
         + ARIANE4_FREE_C(-0.9979715533496006) * t14;
     const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.046787723832235825) * t118 / t119;
     const ariane4_free_real_t t121 = ARIANE4_FREE_C(-1.0) / t118;
-    const ariane4_free_real_t t122 = ARIANE4_FREE_C(-7124.375926654358) * t117
+    const ariane4_free_real_t t122 = t119 * (ARIANE4_FREE_C(7124.375926654358) * t121) * dq[2];
+    const ariane4_free_real_t t123 = ariane4_free_sign(t122);
+    const ariane4_free_real_t t124 = ARIANE4_FREE_C(-7124.375926654358) * t117
         + ARIANE4_FREE_C(-188.12627071923498) * (t121 * t121) * (t119 * t119);
-    const ariane4_free_real_t t123 = t119 * (ARIANE4_FREE_C(7124.375926654358) * t121) * dq[2];
-    const ariane4_free_real_t t124 = ariane4_free_sign(t123);
-    const ariane4_free_real_t t125 = t121 * t122 * (dq[2] * dq[2]) * parameters[IA3] + (t123 * parameters[FV3]
-        + t124 * parameters[FC3]);
+    const ariane4_free_real_t t125 = t122 * parameters[FV3] + t123 * parameters[FC3]
+        + t121 * t124 * (dq[2] * dq[2]) * parameters[IA3];
     out[2] = ARIANE4_FREE_C(-333.3333333333333) * t125 - t120 * t103;
     const ariane4_free_real_t t126 = ariane4_free_sign(dq[3]);
     const ariane4_free_real_t t127 = ARIANE4_FREE_C(20.0) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]

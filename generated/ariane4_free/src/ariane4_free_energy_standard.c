@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
+#if ARIANE4_FREE_GENERATION != 0x0A7D8746UL
 #error "ariane4_free.h and ariane4_free_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -170,7 +170,7 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t45 = (ARIANE4_FREE_C(0.28217402066925895) * t41
         + ARIANE4_FREE_C(-0.9593632378089879) * t42) * (ARIANE4_FREE_C(3885.523436256565) * t44);
     const ariane4_free_real_t t46 = t40
-        + ARIANE4_FREE_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t45 * t45)));
+        + ARIANE4_FREE_C(0.5) * (dq[0] * dq[0] * (t45 * t45 * parameters[IA1]));
     const ariane4_free_real_t
         t47 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
@@ -178,7 +178,7 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t49 = (ARIANE4_FREE_C(0.8305958991958126) * t0
         + ARIANE4_FREE_C(0.5568756164881881) * t3) * (ARIANE4_FREE_C(2656.3065671641784) * t48);
     const ariane4_free_real_t t50 = t46
-        + ARIANE4_FREE_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t49 * t49)));
+        + ARIANE4_FREE_C(0.5) * (dq[1] * dq[1] * (t49 * t49 * parameters[IA2]));
     const ariane4_free_real_t
         t51 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t2
         + ARIANE4_FREE_C(-0.9979715533496006) * t5) + ARIANE4_FREE_C(0.242037));
@@ -186,7 +186,7 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t53 = (ARIANE4_FREE_C(0.06366143813161289) * t5
         + ARIANE4_FREE_C(0.9979715533496006) * t2) * (ARIANE4_FREE_C(7124.375926654358) * t52);
     const ariane4_free_real_t t54 = t50
-        + ARIANE4_FREE_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t53 * t53)));
+        + ARIANE4_FREE_C(0.5) * (dq[2] * dq[2] * (t53 * t53 * parameters[IA3]));
     kinetic[0] = t54 + ARIANE4_FREE_C(0.5) * (dq[3] * dq[3] * (ARIANE4_FREE_C(1.0e4) * parameters[IA4]));
     const ariane4_free_real_t t55 = ARIANE4_FREE_C(9.81) * t0;
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(9.81) * t3;

@@ -75,7 +75,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0xC97ED926UL
+#if ARIANE4_FREE_GENERATION != 0x0A7D8746UL
 #error "ariane4_free.h and ariane4_free_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -148,7 +148,7 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t35 = ARIANE4_FREE_C(1.0) / t34;
     const ariane4_free_real_t t36 = (ARIANE4_FREE_C(0.28217402066925895) * t32
         + ARIANE4_FREE_C(-0.9593632378089879) * t33) * (ARIANE4_FREE_C(3885.523436256565) * t35);
-    out[0] = parameters[ZZ1] + t31 + parameters[IA1] * (t36 * t36);
+    out[0] = parameters[ZZ1] + t31 + t36 * t36 * parameters[IA1];
     const ariane4_free_real_t t37 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const ariane4_free_real_t t38 = parameters[XZ3] + (t1 * t2 - parameters[XY4]
         + ARIANE4_FREE_C(-0.1) * t37);
@@ -175,7 +175,7 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t51 = (ARIANE4_FREE_C(0.8305958991958126) * t27
         + ARIANE4_FREE_C(0.5568756164881881) * t25) * (ARIANE4_FREE_C(2656.3065671641784) * t50);
     const ariane4_free_real_t t52 = parameters[ZZ3] + (parameters[XX4] + t3 + (t9 + t5));
-    out[5] = parameters[ZZ2] + (t52 + t24) + parameters[IA2] * (t51 * t51);
+    out[5] = parameters[ZZ2] + (t52 + t24) + t51 * t51 * parameters[IA2];
     const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.443) * t21;
     out[6] = t53;
     const ariane4_free_real_t t54 = t39 + ARIANE4_FREE_C(-0.443) * (t15 * t37);
@@ -188,7 +188,7 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(1.0) / t55;
     const ariane4_free_real_t t57 = (ARIANE4_FREE_C(0.06366143813161289) * t15
         + ARIANE4_FREE_C(0.9979715533496006) * t11) * (ARIANE4_FREE_C(7124.375926654358) * t56);
-    out[10] = t52 + parameters[IA3] * (t57 * t57);
+    out[10] = t52 + t57 * t57 * parameters[IA3];
     out[11] = t39;
     out[12] = t48;
     out[13] = t54;

@@ -80,7 +80,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xC9DD674DUL
+#if ARIANE6_GENERATION != 0x3B3EC5F5UL
 #error "ariane6.h and ariane6_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -279,12 +279,12 @@ int ariane6_bias(
     const ariane6_real_t t139 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t138 + ARIANE6_C(0.10828541));
     const ariane6_real_t t141 = ARIANE6_C(0.061525739908548135) * t139 / t140;
     const ariane6_real_t t142 = ARIANE6_C(-1.0) / t139;
-    const ariane6_real_t t143 = ARIANE6_C(-4063.3400000000006) * t138
+    const ariane6_real_t t143 = t140 * (ARIANE6_C(-4063.3400000000006) * t142) * dq[0];
+    const ariane6_real_t t144 = ariane6_sign(t143);
+    const ariane6_real_t t145 = ARIANE6_C(-4063.3400000000006) * t138
         + ARIANE6_C(-82.55365977800001) * (t142 * t142) * (t140 * t140);
-    const ariane6_real_t t144 = t140 * (ARIANE6_C(-4063.3400000000006) * t142) * dq[0];
-    const ariane6_real_t t145 = ariane6_sign(t144);
-    const ariane6_real_t t146 = parameters[FV1] * t144 + parameters[FC1] * t145
-        - parameters[IA1] * (t142 * t143 * t57);
+    const ariane6_real_t t146 = parameters[FV1] * t143 + parameters[FC1] * t144
+        - parameters[IA1] * (t142 * t145 * t57);
     out[0] = ARIANE6_C(250.0) * t146 + t141 * t137;
     const ariane6_real_t t147 = t9 * t116 + t13 * t118;
     const ariane6_real_t t148 = parameters[MX4] * t100 - parameters[MY4R] * t30 + (t20 * t114 + t19 * t115);
@@ -301,12 +301,12 @@ int ariane6_bias(
     const ariane6_real_t t156 = ARIANE6_C(-0.766044443118978) * t0 + ARIANE6_C(-0.6427876096865393) * t3;
     const ariane6_real_t t157 = ARIANE6_C(-0.019697757607273984) * t155 / t156;
     const ariane6_real_t t158 = ARIANE6_C(1.0) / t155;
-    const ariane6_real_t t159 = ARIANE6_C(12691.800000000003) * t154
+    const ariane6_real_t t159 = t156 * (ARIANE6_C(12691.800000000003) * t158) * dq[1];
+    const ariane6_real_t t160 = ariane6_sign(t159);
+    const ariane6_real_t t161 = ARIANE6_C(12691.800000000003) * t154
         + ARIANE6_C(-805.4089362000002) * (t158 * t158) * (t156 * t156);
-    const ariane6_real_t t160 = t156 * (ARIANE6_C(12691.800000000003) * t158) * dq[1];
-    const ariane6_real_t t161 = ariane6_sign(t160);
-    const ariane6_real_t t162 = parameters[IA2] * (t158 * t159 * t61) - (parameters[FV2] * t160
-        + parameters[FC2] * t161);
+    const ariane6_real_t t162 = parameters[IA2] * (t158 * t161 * t61) - (parameters[FV2] * t159
+        + parameters[FC2] * t160);
     const ariane6_real_t t163 = ARIANE6_C(250.0) * t162 + t157 * (t153 + (t151 + ARIANE6_C(0.685) * t152));
     out[1] = t163;
     const ariane6_real_t t164 = ARIANE6_C(0.052335956242943966) * t2 + ARIANE6_C(0.9986295347545738) * t5;
@@ -314,12 +314,12 @@ int ariane6_bias(
     const ariane6_real_t t166 = ARIANE6_C(0.052335956242943966) * t5 - ARIANE6_C(0.9986295347545738) * t2;
     const ariane6_real_t t167 = ARIANE6_C(0.029841482047364396) * t165 / t166;
     const ariane6_real_t t168 = ARIANE6_C(1.0) / t165;
-    const ariane6_real_t t169 = ARIANE6_C(8377.600000000002) * t164
+    const ariane6_real_t t169 = t166 * (ARIANE6_C(8377.600000000002) * t168) * dq[2];
+    const ariane6_real_t t170 = ariane6_sign(t169);
+    const ariane6_real_t t171 = ARIANE6_C(8377.600000000002) * t164
         + ARIANE6_C(-350.9209088000001) * (t168 * t168) * (t166 * t166);
-    const ariane6_real_t t170 = t166 * (ARIANE6_C(8377.600000000002) * t168) * dq[2];
-    const ariane6_real_t t171 = ariane6_sign(t170);
-    const ariane6_real_t t172 = parameters[IA3] * (t168 * t169 * (dq[2] * dq[2])) + (parameters[FV3] * t170
-        + parameters[FC3] * t171);
+    const ariane6_real_t t172 = parameters[FV3] * t169 + parameters[FC3] * t170
+        + parameters[IA3] * (t168 * t171 * (dq[2] * dq[2]));
     out[2] = ARIANE6_C(250.0) * t172 + t167 * t151;
     const ariane6_real_t t173 = ariane6_sign(dq[3]);
     const ariane6_real_t t174 = ARIANE6_C(20.0) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
@@ -328,12 +328,12 @@ int ariane6_bias(
     const ariane6_real_t t175 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t20 + ARIANE6_C(0.097));
     const ariane6_real_t t176 = ARIANE6_C(0.07043047103899029) * t175 / t19;
     const ariane6_real_t t177 = ARIANE6_C(-1.0) / t175;
-    const ariane6_real_t t178 = ARIANE6_C(-3549.6000000000004) * t20
+    const ariane6_real_t t178 = t19 * (ARIANE6_C(-3549.6000000000004) * t177) * dq[4];
+    const ariane6_real_t t179 = ariane6_sign(t178);
+    const ariane6_real_t t180 = ARIANE6_C(-3549.6000000000004) * t20
         + ARIANE6_C(-62.9983008) * (t177 * t177) * (t19 * t19);
-    const ariane6_real_t t179 = t19 * (ARIANE6_C(-3549.6000000000004) * t177) * dq[4];
-    const ariane6_real_t t180 = ariane6_sign(t179);
-    const ariane6_real_t t181 = parameters[FV5] * t179 + parameters[FC5] * t180
-        - parameters[IA5] * (t177 * t178 * (dq[4] * dq[4]));
+    const ariane6_real_t t181 = parameters[FV5] * t178 + parameters[FC5] * t179
+        - parameters[IA5] * (t177 * t180 * (dq[4] * dq[4]));
     out[4] = ARIANE6_C(250.0) * t181 + t176 * t108;
     const ariane6_real_t t182 = ariane6_sign(dq[5]);
     const ariane6_real_t t183 = ARIANE6_C(20.0) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])

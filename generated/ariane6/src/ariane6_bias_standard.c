@@ -104,7 +104,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xC9DD674DUL
+#if ARIANE6_GENERATION != 0x3B3EC5F5UL
 #error "ariane6.h and ariane6_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -336,12 +336,12 @@ int ariane6_bias_standard(
     const ariane6_real_t t163 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t162 + ARIANE6_C(0.10828541));
     const ariane6_real_t t165 = ARIANE6_C(0.061525739908548135) * t163 / t164;
     const ariane6_real_t t166 = ARIANE6_C(-1.0) / t163;
-    const ariane6_real_t t167 = ARIANE6_C(-4063.3400000000006) * t162
+    const ariane6_real_t t167 = t164 * (ARIANE6_C(-4063.3400000000006) * t166) * dq[0];
+    const ariane6_real_t t168 = ariane6_sign(t167);
+    const ariane6_real_t t169 = ARIANE6_C(-4063.3400000000006) * t162
         + ARIANE6_C(-82.55365977800001) * (t166 * t166) * (t164 * t164);
-    const ariane6_real_t t168 = t164 * (ARIANE6_C(-4063.3400000000006) * t166) * dq[0];
-    const ariane6_real_t t169 = ariane6_sign(t168);
-    const ariane6_real_t t170 = t168 * parameters[FV1] + t169 * parameters[FC1]
-        - t166 * t167 * t0 * parameters[IA1];
+    const ariane6_real_t t170 = t167 * parameters[FV1] + t168 * parameters[FC1]
+        - t166 * t169 * t0 * parameters[IA1];
     const ariane6_real_t t171 = ARIANE6_C(250.0) * t170 + t165 * (t160 + ARIANE6_C(0.18) * (t161 + t154));
     out[0] = t171;
     const ariane6_real_t t172 = t24 * t134 - t30 * t137;
@@ -364,24 +364,24 @@ int ariane6_bias_standard(
     const ariane6_real_t t184 = ARIANE6_C(-0.766044443118978) * t3 + ARIANE6_C(-0.6427876096865393) * t2;
     const ariane6_real_t t185 = ARIANE6_C(-0.019697757607273984) * t183 / t184;
     const ariane6_real_t t186 = ARIANE6_C(1.0) / t183;
-    const ariane6_real_t t187 = ARIANE6_C(12691.800000000003) * t182
+    const ariane6_real_t t187 = t184 * (ARIANE6_C(12691.800000000003) * t186) * dq[1];
+    const ariane6_real_t t188 = ariane6_sign(t187);
+    const ariane6_real_t t189 = ARIANE6_C(12691.800000000003) * t182
         + ARIANE6_C(-805.4089362000002) * (t186 * t186) * (t184 * t184);
-    const ariane6_real_t t188 = t184 * (ARIANE6_C(12691.800000000003) * t186) * dq[1];
-    const ariane6_real_t t189 = ariane6_sign(t188);
-    const ariane6_real_t t190 = t186 * t187 * t7 * parameters[IA2] - (t188 * parameters[FV2]
-        + t189 * parameters[FC2]);
+    const ariane6_real_t t190 = t186 * t189 * t7 * parameters[IA2] - (t187 * parameters[FV2]
+        + t188 * parameters[FC2]);
     out[1] = ARIANE6_C(250.0) * t190 + t185 * t181;
     const ariane6_real_t t191 = ARIANE6_C(0.052335956242943966) * t9 + ARIANE6_C(0.9986295347545738) * t14;
     const ariane6_real_t t192 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t191 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t193 = ARIANE6_C(0.052335956242943966) * t14 - ARIANE6_C(0.9986295347545738) * t9;
     const ariane6_real_t t194 = ARIANE6_C(0.029841482047364396) * t192 / t193;
     const ariane6_real_t t195 = ARIANE6_C(1.0) / t192;
-    const ariane6_real_t t196 = ARIANE6_C(8377.600000000002) * t191
+    const ariane6_real_t t196 = t193 * (ARIANE6_C(8377.600000000002) * t195) * dq[2];
+    const ariane6_real_t t197 = ariane6_sign(t196);
+    const ariane6_real_t t198 = ARIANE6_C(8377.600000000002) * t191
         + ARIANE6_C(-350.9209088000001) * (t195 * t195) * (t193 * t193);
-    const ariane6_real_t t197 = t193 * (ARIANE6_C(8377.600000000002) * t195) * dq[2];
-    const ariane6_real_t t198 = ariane6_sign(t197);
-    const ariane6_real_t t199 = t195 * t196 * (dq[2] * dq[2]) * parameters[IA3] + (t197 * parameters[FV3]
-        + t198 * parameters[FC3]);
+    const ariane6_real_t t199 = t196 * parameters[FV3] + t197 * parameters[FC3]
+        + t195 * t198 * (dq[2] * dq[2]) * parameters[IA3];
     out[2] = ARIANE6_C(250.0) * t199 + t194 * t177;
     const ariane6_real_t t200 = ariane6_sign(dq[3]);
     const ariane6_real_t t201 = ARIANE6_C(20.0) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
@@ -390,12 +390,12 @@ int ariane6_bias_standard(
     const ariane6_real_t t202 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t32 + ARIANE6_C(0.097));
     const ariane6_real_t t203 = ARIANE6_C(0.07043047103899029) * t202 / t37;
     const ariane6_real_t t204 = ARIANE6_C(-1.0) / t202;
-    const ariane6_real_t t205 = ARIANE6_C(-3549.6000000000004) * t32
+    const ariane6_real_t t205 = t37 * (ARIANE6_C(-3549.6000000000004) * t204) * dq[4];
+    const ariane6_real_t t206 = ariane6_sign(t205);
+    const ariane6_real_t t207 = ARIANE6_C(-3549.6000000000004) * t32
         + ARIANE6_C(-62.9983008) * (t204 * t204) * (t37 * t37);
-    const ariane6_real_t t206 = t37 * (ARIANE6_C(-3549.6000000000004) * t204) * dq[4];
-    const ariane6_real_t t207 = ariane6_sign(t206);
-    const ariane6_real_t t208 = t206 * parameters[FV5] + t207 * parameters[FC5]
-        - t204 * t205 * (dq[4] * dq[4]) * parameters[IA5];
+    const ariane6_real_t t208 = t205 * parameters[FV5] + t206 * parameters[FC5]
+        - t204 * t207 * (dq[4] * dq[4]) * parameters[IA5];
     out[4] = ARIANE6_C(250.0) * t208 + t203 * t123;
     const ariane6_real_t t209 = ariane6_sign(dq[5]);
     const ariane6_real_t t210 = ARIANE6_C(20.0) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]

@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xC9DD674DUL
+#if ARIANE6_GENERATION != 0x3B3EC5F5UL
 #error "ariane6.h and ariane6_energy_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -222,24 +222,24 @@ int ariane6_energy_standard(
     const ariane6_real_t t72 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t71 + ARIANE6_C(0.10828541));
     const ariane6_real_t t73 = ARIANE6_C(1.0) / t72;
     const ariane6_real_t t75 = t74 * (ARIANE6_C(4063.3400000000006) * t73);
-    const ariane6_real_t t76 = t70 + ARIANE6_C(0.5) * (dq[0] * dq[0] * (parameters[IA1] * (t75 * t75)));
+    const ariane6_real_t t76 = t70 + ARIANE6_C(0.5) * (dq[0] * dq[0] * (t75 * t75 * parameters[IA1]));
     const ariane6_real_t t77 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t78 = ARIANE6_C(1.0) / t77;
     const ariane6_real_t t79 = (ARIANE6_C(0.766044443118978) * t0
         + ARIANE6_C(0.6427876096865393) * t3) * (ARIANE6_C(12691.800000000003) * t78);
-    const ariane6_real_t t80 = t76 + ARIANE6_C(0.5) * (dq[1] * dq[1] * (parameters[IA2] * (t79 * t79)));
+    const ariane6_real_t t80 = t76 + ARIANE6_C(0.5) * (dq[1] * dq[1] * (t79 * t79 * parameters[IA2]));
     const ariane6_real_t t81 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
         + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t82 = ARIANE6_C(1.0) / t81;
     const ariane6_real_t t83 = (ARIANE6_C(0.052335956242943966) * t5
         + ARIANE6_C(-0.9986295347545738) * t2) * (ARIANE6_C(8377.600000000002) * t82);
-    const ariane6_real_t t84 = t80 + ARIANE6_C(0.5) * (dq[2] * dq[2] * (parameters[IA3] * (t83 * t83)));
+    const ariane6_real_t t84 = t80 + ARIANE6_C(0.5) * (dq[2] * dq[2] * (t83 * t83 * parameters[IA3]));
     const ariane6_real_t t85 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t43 + ARIANE6_C(0.097));
     const ariane6_real_t t86 = ARIANE6_C(1.0) / t85;
     const ariane6_real_t t87 = t42 * (ARIANE6_C(3549.6000000000004) * t86);
     const ariane6_real_t t88 = t84 + ARIANE6_C(0.5) * (dq[3] * dq[3] * (ARIANE6_C(1.0e4) * parameters[IA4]))
-        + ARIANE6_C(0.5) * (dq[4] * dq[4] * (parameters[IA5] * (t87 * t87)));
+        + ARIANE6_C(0.5) * (dq[4] * dq[4] * (t87 * t87 * parameters[IA5]));
     kinetic[0] = t88 + ARIANE6_C(0.5) * (dq[5] * dq[5] * (ARIANE6_C(1.0e4) * parameters[IA6]));
     const ariane6_real_t t89 = ARIANE6_C(9.81) * t0;
     const ariane6_real_t t90 = ARIANE6_C(9.81) * t3;

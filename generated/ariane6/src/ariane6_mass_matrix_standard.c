@@ -103,7 +103,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xC9DD674DUL
+#if ARIANE6_GENERATION != 0x3B3EC5F5UL
 #error "ariane6.h and ariane6_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -209,7 +209,7 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t69 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t68 + ARIANE6_C(0.10828541));
     const ariane6_real_t t70 = ARIANE6_C(1.0) / t69;
     const ariane6_real_t t72 = t71 * (ARIANE6_C(4063.3400000000006) * t70);
-    out[0] = parameters[ZZ1] + t67 + parameters[IA1] * (t72 * t72);
+    out[0] = parameters[ZZ1] + t67 + t72 * t72 * parameters[IA1];
     const ariane6_real_t t73 = t18 * t37 + t25 * t39;
     const ariane6_real_t t74 = parameters[XZ3] + (t24 + t25 * t26 + ARIANE6_C(-0.17) * t73);
     const ariane6_real_t t75 = t18 * t47 - t25 * t45 + ARIANE6_C(0.488) * t73;
@@ -248,7 +248,7 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t100 = ARIANE6_C(1.0) / t99;
     const ariane6_real_t t101 = (ARIANE6_C(0.766044443118978) * t63
         + ARIANE6_C(0.6427876096865393) * t61) * (ARIANE6_C(12691.800000000003) * t100);
-    out[7] = parameters[ZZ2] + (t98 + t60) + parameters[IA2] * (t101 * t101);
+    out[7] = parameters[ZZ2] + (t98 + t60) + t101 * t101 * parameters[IA2];
     const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t57;
     out[8] = t102;
     const ariane6_real_t t103 = t75 + ARIANE6_C(-0.685) * (t51 * t73);
@@ -269,7 +269,7 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t112 = ARIANE6_C(1.0) / t111;
     const ariane6_real_t t113 = (ARIANE6_C(0.052335956242943966) * t51
         + ARIANE6_C(-0.9986295347545738) * t44) * (ARIANE6_C(8377.600000000002) * t112);
-    out[14] = t98 + parameters[IA3] * (t113 * t113);
+    out[14] = t98 + t113 * t113 * parameters[IA3];
     out[15] = t75;
     out[16] = t105;
     out[17] = t109;
@@ -286,7 +286,7 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t114 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t12 + ARIANE6_C(0.097));
     const ariane6_real_t t115 = ARIANE6_C(1.0) / t114;
     const ariane6_real_t t116 = t8 * (ARIANE6_C(3549.6000000000004) * t115);
-    out[28] = t16 + parameters[IA5] * (t116 * t116);
+    out[28] = t16 + t116 * t116 * parameters[IA5];
     out[29] = t20;
     out[30] = t97;
     out[31] = t110;

@@ -12,7 +12,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0xCED26AECUL
+#if IIWA14_GENERATION != 0xD03B4045UL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 

@@ -11,7 +11,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xBA0A6069UL
+#if PUMA560_GENERATION != 0x83C4AF30UL
 #error "puma560.h and puma560_sincos.c are of different generations: generate the arm again"
 #endif
 

@@ -12,7 +12,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x56F4A270UL
+#if SCARA_GENERATION != 0x1AA87749UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 

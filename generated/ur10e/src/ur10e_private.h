@@ -12,7 +12,7 @@
 
 #include "ur10e.h"
 
-#if UR10E_GENERATION != 0x07143C7AUL
+#if UR10E_GENERATION != 0x509D53D4UL
 #error "ur10e.h and ur10e_private.h are of different generations: generate the arm again"
 #endif
 

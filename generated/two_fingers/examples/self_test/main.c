@@ -128,15 +128,15 @@ int main(void)
         return 12;
     }
     status = two_fingers_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 5, C(127.69423405969974), C(548.8710419459381), either(C(0.0549), C(5.49e-09)))) {
+    if (!agrees(status, 5, C(127.69423405969978), C(548.8710419459381), either(C(0.0549), C(5.49e-09)))) {
         return 13;
     }
     status = two_fingers_forward_dynamics(q_1, dq_1, input_1, parameters, out);
-    if (!agrees(status, 5, C(-269.56021024668985), C(748.798516939491), either(C(0.0749), C(7.49e-09)))) {
+    if (!agrees(status, 5, C(-269.5602102466899), C(748.798516939491), either(C(0.0749), C(7.49e-09)))) {
         return 14;
     }
     status = two_fingers_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 5, C(-78.43631582009982), C(991.1422996057074), either(C(0.0991), C(9.91e-09)))) {
+    if (!agrees(status, 5, C(-78.43631582009994), C(991.1422996057073), either(C(0.0991), C(9.91e-09)))) {
         return 15;
     }
     status = two_fingers_energy(q_0, dq_0, parameters, out, out + 1);
@@ -248,15 +248,15 @@ int main(void)
         return 42;
     }
     status = two_fingers_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 5, C(127.69423405969974), C(548.8710419459381), either(C(0.0549), C(5.49e-09)))) {
+    if (!agrees(status, 5, C(127.69423405969978), C(548.8710419459381), either(C(0.0549), C(5.49e-09)))) {
         return 43;
     }
     status = two_fingers_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
-    if (!agrees(status, 5, C(-269.56021024668985), C(748.798516939491), either(C(0.0749), C(7.49e-09)))) {
+    if (!agrees(status, 5, C(-269.5602102466899), C(748.798516939491), either(C(0.0749), C(7.49e-09)))) {
         return 44;
     }
     status = two_fingers_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 5, C(-78.43631582009982), C(991.1422996057074), either(C(0.0991), C(9.91e-09)))) {
+    if (!agrees(status, 5, C(-78.43631582009994), C(991.1422996057073), either(C(0.0991), C(9.91e-09)))) {
         return 45;
     }
     status = two_fingers_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);

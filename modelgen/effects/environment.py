@@ -1,0 +1,145 @@
+"""What surrounds the arm: fluid, payload, the ground that it stands on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import sympy as sp
+
+from modelgen.description.objects import Arm
+from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Values
+from modelgen.effects.variables import LinkVariables
+
+# Gauss-Legendre quadrature with five points on [0, 1]: (place, weight)
+_NODES = tuple(
+    ((1 + side * root) / 2, weight / 2)
+    for side, root, weight in (
+        (-1, 0.9061798459386640, 0.2369268850561891),
+        (-1, 0.5384693101056831, 0.4786286704993665),
+        (1, 0.0, 0.5688888888888889),
+        (1, 0.5384693101056831, 0.4786286704993665),
+        (1, 0.9061798459386640, 0.2369268850561891),
+    )
+)
+STILL = 1e-12  # [m^2/s^2] added under the root of a speed squared, so that its slope exists at rest
+TIP = tuple(
+    Parameter(
+        f"tip_{axis}", "m", f"{axis} of the end of a link that carries no other", default=0.0, bounds=ANY
+    )
+    for axis in "xyz"
+)
+
+
+def _strips(x: LinkVariables) -> list[tuple[sp.Matrix, sp.Expr]]:
+    """Points along the line of the link and the lengths that they stand for."""
+    length = sp.sqrt(x.end.dot(x.end))
+    return [(x.end * place, length * weight) for place, weight in _NODES]
+
+
+def _across(x: LinkVariables, v: sp.Matrix) -> sp.Matrix:
+    """The part of a vector across the line of the link."""
+    return v - x.end * (v.dot(x.end) / x.end.dot(x.end))
+
+
+class FluidDrag(LinkEffect):
+    """Drag of slender links, strip by strip, quadratic in the speed across the link."""
+
+    name = "fluid_drag"
+    text = "drag of the fluid on slender links, quadratic in the speed across them"
+    reference = "Morison, Johnson and Schaaf 1950; Levesque and Richard 1994"
+    linear = (
+        Parameter("coefficient", "N s^2/m^3", "half density, drag coefficient and width together", "CD"),
+    )
+    nonlinear = TIP
+    confused_with = ("nonlinear_viscous_friction", "added_mass")
+    experiment = "the same motion in air and in the fluid, the arm folded and straight"
+
+    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
+        """Integral of CD |v| v along the link, v the velocity across it."""
+        force, moment = sp.zeros(3, 1), sp.zeros(3, 1)
+        for point, length in _strips(x):
+            v = _across(x, x.velocity_at(point))
+            strip = p["coefficient"] * length * sp.sqrt(v.dot(v) + STILL) * v
+            force, moment = force + strip, moment + point.cross(strip)
+        return force, moment
+
+
+class AddedMass(LinkEffect):
+    """Fluid that is accelerated with a slender link, across it."""
+
+    name = "added_mass"
+    text = "fluid that slender links accelerate with them, across their line"
+    reference = "Morison, Johnson and Schaaf 1950; Fossen 2011"
+    linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
+    nonlinear = TIP
+    confused_with = ("payload_change", "fluid_drag")
+    experiment = "the same motion in air and in the fluid, fast and slow"
+
+    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
+        """Integral of CM a along the link, a the acceleration across it (no gravity: the fluid floats)."""
+        force, moment = sp.zeros(3, 1), sp.zeros(3, 1)
+        for point, length in _strips(x):
+            a = x.acceleration_at(point) + x.gravity
+            strip = p["per_length"] * length * _across(x, a)
+            force, moment = force + strip, moment + point.cross(strip)
+        return force, moment
+
+
+class PayloadChange(LinkEffect):
+    """A mass that is there in some records only, as a point on the last link."""
+
+    name = "payload_change"
+    text = "a payload besides the one that the parameters hold, as a point mass on the link"
+    reference = "Khalil, Gautier and Lemoine 2007"
+    nonlinear = (
+        Parameter("mass", "kg", "mass of the payload", bounds=ANY),
+        Parameter("x", "m", "its place in the link's frame", default=0.0, bounds=ANY),
+        Parameter("y", "m", "its place in the link's frame", default=0.0, bounds=ANY),
+        Parameter("z", "m", "its place in the link's frame", default=0.0, bounds=ANY),
+    )
+    confused_with = ("friction_warm_up", "base_tilt")
+    experiment = "weigh it, or compare records with and without"
+
+    def links(self, arm: Arm, joint: int | None) -> list[int]:
+        """The joint's own, the last one for the whole arm."""
+        return [len(arm.joints) - 1 if joint is None else joint]
+
+    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
+        """mass times acceleration less gravity, at its place."""
+        place = sp.Matrix([p["x"], p["y"], p["z"]])
+        force = p["mass"] * x.acceleration_at(place)
+        return force, place.cross(force)
+
+
+class BaseTilt(DescriptionEffect):
+    """The base stands at an angle to where the description has it."""
+
+    name = "base_tilt"
+    text = "base turned about its x, then its y axis, against the described direction of gravity"
+    reference = "Ayusawa, Venture and Nakamura 2014"
+    scope = "arm"
+    nonlinear = (
+        Parameter("x", "rad", "turn about x of the base", default=0.0, bounds=(-math.pi, math.pi)),
+        Parameter("y", "rad", "turn about y of the base", default=0.0, bounds=(-math.pi, math.pi)),
+        Parameter("z", "rad", "turn about z of the base", default=0.0, bounds=(-math.pi, math.pi)),
+    )
+    confused_with = ("encoder_offset", "friction_offset", "spring")
+    experiment = "an inclinometer, or a second mounting of the base"
+
+    def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
+        """Gravity as the turned base sees it: Rz' Ry' Rx' g."""
+        g = sp.Matrix(arm.gravity)
+        for axis, name in enumerate("xyz"):
+            g = _rotation(axis, -values[name]) * g
+        return replace(arm, gravity=(float(g[0]), float(g[1]), float(g[2])))
+
+
+def _rotation(axis: int, angle: float) -> sp.Matrix:
+    c, s = math.cos(angle), math.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = sp.eye(3)
+    matrix[i, i] = matrix[j, j] = c
+    matrix[i, j], matrix[j, i] = -s, s
+    return matrix

@@ -1,0 +1,113 @@
+"""Dry friction that depends on more than the direction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.friction import SMOOTHING, direction
+from modelgen.effects.variables import Variables
+
+
+class StribeckFriction(Effect):
+    """Dry friction that falls from its value near rest to the Coulomb level."""
+
+    name = "stribeck_friction"
+    text = "dry friction in excess of Coulomb's at low speed"
+    reference = "Stribeck 1902; Bo and Pavelescu 1982"
+    linear = (Parameter("magnitude", "{f}", "excess of static over Coulomb friction", "FS"),)
+    nonlinear = (
+        Parameter("velocity", "{x}/s", "Stribeck velocity", bounds=POSITIVE),
+        Parameter("exponent", "1", "shape of the fall", default=2.0, bounds=(0.5, 4.0)),
+        SMOOTHING,
+    )
+    confused_with = ("presliding", "backlash", "nonlinear_viscous_friction", "time_delay")
+    experiment = "slow constant speeds around the Stribeck velocity, both directions"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """FS exp(-|v / v_s|^exponent) sign(v)."""
+        ratio = x.velocity / p["velocity"]
+        power = ratio**2 if p["exponent"] == 2 else sp.Abs(ratio) ** p["exponent"]
+        return p["magnitude"] * sp.exp(-power) * direction(x.velocity, p["smoothing"])
+
+
+class LoadDependentFriction(Effect):
+    """Dry friction in proportion to the load that the transmission carries."""
+
+    name = "load_dependent_friction"
+    text = "dry friction in proportion to the weight that the transmission carries"
+    reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
+    linear = (Parameter("coefficient", "1", "friction per load", "FL"),)
+    nonlinear = (SMOOTHING,)
+    confused_with = ("position_dependent_friction", "drive_gain_error")
+    experiment = "the same path with two payloads"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """FL |load| sign(v), the load that of gravity alone."""
+        return p["coefficient"] * sp.Abs(x.load) * direction(x.velocity, p["smoothing"])
+
+
+class PositionDependentFriction(Effect):
+    """Dry friction that changes along the joint's range."""
+
+    name = "position_dependent_friction"
+    text = "dry friction that changes with the joint coordinate"
+    reference = "Armstrong 1988; Popovic and Goldenberg 1998"
+    linear = (
+        Parameter("slope", "{f}", "change per rad or m of the joint", "FP", bounds=ANY),
+        Parameter("curvature", "{f}", "the same per square of the joint coordinate", "FQ", bounds=ANY),
+    )
+    nonlinear = (SMOOTHING,)
+    confused_with = ("load_dependent_friction",)
+    experiment = "small reversals at many places of the range, with and without payload"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """(FP q + FQ q^2) sign(v)."""
+        size = p["slope"] * x.q + p["curvature"] * x.q**2
+        return size * direction(x.velocity, p["smoothing"])
+
+
+class FrictionWarmUp(Effect):
+    """Friction in excess of the warm drive's, from a cold start at time 0."""
+
+    name = "friction_warm_up"
+    text = "friction that falls as the drive warms up, from the start of the record"
+    reference = "Bittencourt and Gunnarsson 2012; Simoni, Beschi, Legnani and Visioli 2015"
+    linear = (
+        Parameter("dry", "{f}", "excess of dry friction at the start", "FCW", bounds=ANY),
+        Parameter("viscous", "{f} s/{x}", "excess of viscous friction at the start", "FVW", bounds=ANY),
+    )
+    nonlinear = (Parameter("time", "s", "time constant of the warm-up", bounds=POSITIVE), SMOOTHING)
+    confused_with = ("payload_change",)
+    experiment = "the same motion cold and warm"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """exp(-t / time) (FCW sign(v) + FVW v)."""
+        excess = p["dry"] * direction(x.velocity, p["smoothing"]) + p["viscous"] * x.velocity
+        return sp.exp(-x.time / p["time"]) * excess
+
+
+class Presliding(Effect):
+    """Dry friction that builds up over a distance after each reversal."""
+
+    name = "presliding"
+    text = "dry friction that builds up over a distance after a reversal"
+    reference = "Dahl 1968"
+    linear = (Parameter("magnitude", "{f}", "friction once it has built up", "FD"),)
+    nonlinear = (Parameter("distance", "{x}", "distance over which it builds up", bounds=POSITIVE),)
+    states = ("bend",)
+    confused_with = ("stribeck_friction", "backlash", "time_delay")
+    experiment = "reversals of small amplitude, at several amplitudes and speeds"
+
+    def law(self, x: Variables, p: Values) -> sp.Expr:
+        """FD z, where z is the bend of the bristles, from -1 to 1."""
+        return p["magnitude"] * x.state["bend"]
+
+    def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """Exact solution of dz/dt = (v - |v| z) / distance at constant v."""
+        s = sp.sign(x.velocity)
+        fade = sp.exp(-sp.Abs(x.velocity) * dt / p["distance"])
+        # at rest the bend stays as it is: fade is then 1
+        return {"bend": s + (x.state["bend"] - s) * fade}

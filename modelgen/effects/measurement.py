@@ -1,0 +1,144 @@
+"""Departures of what is measured and commanded from what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import sympy as sp
+
+from modelgen.description.objects import Arm, DirectDrive, LeveredDrive
+from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values
+from modelgen.effects.variables import InputVariables
+
+
+class EncoderOffset(DescriptionEffect):
+    """The joint is not where its encoder says: the true coordinate is the reading plus the offset."""
+
+    name = "encoder_offset"
+    text = "true coordinate of the joint less the reading"
+    reference = "Hollerbach, Khalil and Gautier 2016"
+    nonlinear = (Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY),)
+    confused_with = ("base_tilt", "spring", "friction_offset")
+    experiment = "an index mark or a hard stop"
+
+    def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
+        """Frame and lever turned by the offset."""
+        assert joint is not None
+        old, offset = arm.joints[joint], values["offset"]
+        if old.type == "prismatic":
+            return _with(arm, joint, r=old.r + offset)
+        drive = old.drive
+        if isinstance(drive, LeveredDrive):
+            drive = replace(drive, offset=drive.offset - offset)
+        return _with(arm, joint, theta=old.theta + offset, drive=drive)
+
+
+class LeverGeometry(DescriptionEffect):
+    """Lengths of a lever that differ from the described ones."""
+
+    name = "lever_geometry"
+    text = "true lengths of the lever less the described ones"
+    reference = "Leborne, Creuze, Chemori and Brignone 2018"
+    nonlinear = (
+        Parameter("l1", "m", "true l1 less the described one", default=0.0, bounds=ANY),
+        Parameter("l2", "m", "true l2 less the described one", default=0.0, bounds=ANY),
+        Parameter("length", "m", "true actuator length less the described one", default=0.0, bounds=ANY),
+    )
+    confused_with = ("encoder_offset", "position_dependent_friction", "actuator_mass")
+    experiment = "`modelgen calibrate`, or static holds over the whole stroke"
+
+    def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
+        """The lever with its true lengths."""
+        assert joint is not None
+        drive = arm.joints[joint].drive
+        if not isinstance(drive, LeveredDrive):
+            raise ValueError("found on a joint without a lever, expected a levered drive")
+        low, high = (end + values["length"] for end in drive.length)
+        lengths = (drive.l1 + values["l1"], drive.l2 + values["l2"])
+        lever = replace(drive, l1=lengths[0], l2=lengths[1], length=(low, high))
+        numbers = (*lengths, low, high)
+        if all(isinstance(x, float) for x in numbers):
+            l1, l2 = (float(x) for x in lengths)
+            if min(l1, l2) <= 0 or not abs(l1 - l2) < min(low, high) <= max(low, high) < l1 + l2:
+                raise ValueError("these lengths leave no triangle somewhere on the stroke")
+        return _with(arm, joint, drive=lever)
+
+
+class DriveGainError(DescriptionEffect):
+    """The torque constant of one joint differs from the described one."""
+
+    name = "drive_gain_error"
+    text = "relative error of one joint's torque constant"
+    reference = "Gautier and Briot 2014"
+    nonlinear = (Parameter("error", "1", "true over described torque constant, less 1", bounds=(-0.9, 9.0)),)
+    confused_with = ("load_dependent_friction", "torque_constant_saturation")
+    experiment = "a run with a known payload"
+
+    def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
+        """The drive with its true torque constant."""
+        assert joint is not None
+        drive = arm.joints[joint].drive
+        if not isinstance(drive, DirectDrive | LeveredDrive):
+            raise ValueError("found on a joint without a drive, expected a driven joint")
+        constant = drive.torque_constant * (1 + values["error"])
+        return _with(arm, joint, drive=replace(drive, torque_constant=constant))
+
+
+class TorqueConstantSaturation(InputEffect):
+    """A torque constant that falls at high current."""
+
+    name = "torque_constant_saturation"
+    text = "torque constant that falls with the square of the current"
+    reference = "Gautier and Briot 2014"
+    nonlinear = (
+        Parameter("coefficient", "1/A^2", "fall of the torque constant by current squared", bounds=POSITIVE),
+    )
+    confused_with = ("nonlinear_viscous_friction", "load_dependent_friction", "drive_gain_error")
+    experiment = "a known payload at rest, light and heavy"
+
+    def effective(self, x: InputVariables, p: Values) -> sp.Expr:
+        """i (1 - c i^2), its largest value where i is beyond it."""
+        top = 1 / sp.sqrt(3 * p["coefficient"])
+        i = sp.Max(-top, sp.Min(top, x.input))
+        return i * (1 - p["coefficient"] * i**2)
+
+    def required(self, x: InputVariables, p: Values) -> sp.Expr:
+        """The root of y = i (1 - c i^2) that is 0 at y = 0, by the trigonometric solution of the cubic."""
+        scale = sp.sqrt(3 * p["coefficient"])
+        sine = sp.Max(-1, sp.Min(1, sp.Rational(3, 2) * scale * x.input))
+        return 2 / scale * sp.sin(sp.asin(sine) / 3)
+
+
+class TimeDelay(InputEffect):
+    """Effort that comes after its command, or a clock of the log that says so."""
+
+    name = "time_delay"
+    text = "time by which the effort comes after the logged input"
+    reference = "Swevers, Verdonck and De Schutter 2007"
+    scope = "arm"
+    nonlinear = (Parameter("delay", "s", "time from the logged input to its effort", bounds=(-1.0, 1.0)),)
+    states = ("lagged",)
+    confused_with = ("joint_flexibility", "presliding", "stribeck_friction")
+    experiment = "the cross-correlation of a chirp, or a loop-back of the signal"
+
+    def effective(self, x: InputVariables, p: Values) -> sp.Expr:
+        """The input of a first-order lag that has the delay for its time constant."""
+        return x.state["lagged"] if p["delay"] > 0 else x.input
+
+    def required(self, x: InputVariables, p: Values) -> sp.Expr:
+        """As without it: what has not happened yet cannot be commanded."""
+        return x.input
+
+    def step(self, x: InputVariables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """Exact for a constant input; a negative delay belongs to the log, not to the arm."""
+        if not p["delay"] > 0:
+            return {"lagged": x.input}
+        return {"lagged": x.input + (x.state["lagged"] - x.input) * sp.exp(-dt / p["delay"])}
+
+
+def _with(arm: Arm, joint: int, **changes: object) -> Arm:
+    """The arm with one joint changed."""
+    joints = list(arm.joints)
+    joints[joint] = replace(joints[joint], **changes)  # type: ignore[arg-type]
+    return replace(arm, joints=tuple(joints))

@@ -1,0 +1,275 @@
+"""The effects of an arm in its graph: columns, forces, inertia, stored energy, states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+
+import sympy as sp
+
+from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, LinkVariables, Part, Variables
+from modelgen.geometry.frames import turn_z
+from modelgen.graph import Expr
+from modelgen.graph.from_sympy import from_sympy
+from modelgen.graph.vectors import Vector
+from modelgen.model.equations import Equations
+from modelgen.model.motion import LinkMotion, Rates, link_motions
+from modelgen.model.ports import Port, Surroundings, link_rows, origin_velocities
+
+Lazy = Callable[[], Expr]
+
+
+class EffectForces:
+    """The effects at the motion `rates`, with the standard vector `values` where it is known."""
+
+    def __init__(self, equations: Equations, rates: Rates, values: Sequence[Expr] | None = None) -> None:
+        self.e = equations
+        self.graph = equations.graph
+        self.rates = rates
+        links = None if values is None else equations.link_values(values)
+        self.around = Surroundings(equations.frames, rates, links)
+        self.parameters: dict[sp.Symbol, Expr] = {}
+        if values is not None:
+            index = {parameter.name: i for i, parameter in enumerate(equations.standard)}
+            for effect in equations.effects:
+                self.parameters |= {s: values[index[s.name]] for _, s in effect.parameters}
+
+    # -- sums over the effects --------------------------------------------------------------
+
+    def columns(self) -> list[dict[int, Expr]]:
+        """{coordinate: input per unit} of every effect parameter, in the order of the standard vector."""
+        found = []
+        for effect in self.e.effects:
+            for _, symbol in effect.parameters:
+                column: dict[int, Expr] = {}
+                for part in effect.parts:
+                    slopes = [sp.diff(force, symbol) for force in part.forces]
+                    for n, x in self._inputs(effect, part, slopes).items():
+                        column[n] = column[n] + x if n in column else x
+                found.append(column)
+        return found
+
+    def inputs(self) -> list[Expr]:
+        """What the effects add to the input, by coordinate."""
+        motor, joint = self._forces("motor"), self._forces("others")
+        total = self.e.zeros()
+        for n, drive in enumerate(self.e.drives):
+            constant = self.graph.const(drive.transmission.torque_constant)
+            total[n] = motor[n] / constant + joint[n] * drive.inverse_gain
+        return total
+
+    def efforts(self) -> list[Expr]:
+        """The effects as efforts at the joints [N m or N], by coordinate."""
+        motor, joint = self._forces("motor"), self._forces("others")
+        return [motor[n] * drive.k1 + joint[n] for n, drive in enumerate(self.e.drives)]
+
+    def masses(self, stored: bool = False) -> list[list[Expr]]:
+        """What the effects add to the mass matrix, n x n; `stored`: of what moves with the joints alone."""
+        n = self.e.n
+        total = [[self.graph.zero] * n for _ in range(n)]
+        for effect in self.e.effects:
+            for part in effect.parts:
+                if stored and part.place == "transmission":
+                    continue
+                for row, column, mass in self._masses(effect, part):
+                    total[row][column] = total[row][column] + mass
+        return total
+
+    def potential(self) -> Expr:
+        """Energy stored in the effects [J], up to a constant."""
+        total = self.graph.zero
+        for effect in self.e.effects:
+            if effect.potential != 0:
+                total = total + self._in_graph(effect, effect.parts[0], effect.potential)
+        return total
+
+    def required(self, inputs: Sequence[Expr]) -> list[Expr]:
+        """Inputs that give the efforts which `inputs` give of ideal drives."""
+        return self._passed(inputs, 0)
+
+    def effective(self, inputs: Sequence[Expr]) -> list[Expr]:
+        """Inputs of ideal drives with the efforts of these ones at `inputs`."""
+        return self._passed(inputs, 1)
+
+    def steps(self, dt: Expr) -> list[Expr]:
+        """The states after dt, in their order."""
+        found = []
+        for effect in self.e.effects:
+            for name in effect.states:
+                found.append(self._in_graph(effect, effect.parts[0], effect.steps[name], {TIME_STEP: dt}))
+        return found
+
+    # -- one part of an effect --------------------------------------------------------------
+
+    def _number(self, part: Part) -> int | None:
+        """Coordinate of the part's joint."""
+        coordinates = self.e.arm.coordinates
+        return coordinates.index(part.joint) if part.joint in coordinates else None
+
+    def _forces(self, kind: str) -> list[Expr]:
+        """Sums of the forces at the motor coordinates, or of the efforts of all others."""
+        total = self.e.zeros()
+        for effect in self.e.effects:
+            for part in effect.parts:
+                if part.place == "input" or (part.place == "motor") != (kind == "motor"):
+                    continue
+                for n, x in self._efforts(effect, part, part.forces).items():
+                    total[n] = total[n] + x
+        return total
+
+    def _efforts(self, effect: AppliedEffect, part: Part, forces: Sequence[sp.Expr]) -> dict[int, Expr]:
+        """{coordinate: effort} of forces at the part's port; of the motor's own for place "motor"."""
+        found: dict[int, Expr] = {}
+        port = self._port(effect, part)
+        for row, force in zip(port.rows, forces, strict=True):
+            if force == 0:
+                continue
+            value = self._in_graph(effect, part, force)
+            for n, x in row.items():
+                term = value if part.place == "motor" else x * value
+                found[n] = found[n] + term if n in found else term
+        return found
+
+    def _inputs(self, effect: AppliedEffect, part: Part, forces: Sequence[sp.Expr]) -> dict[int, Expr]:
+        """{coordinate: input} of forces at the part's port."""
+        efforts = self._efforts(effect, part, forces)
+        if part.place != "motor":
+            return {n: x * self.e.drives[n].inverse_gain for n, x in efforts.items()}
+        return {
+            n: x / self.graph.const(self.e.drives[n].transmission.torque_constant) for n, x in efforts.items()
+        }
+
+    def _masses(self, effect: AppliedEffect, part: Part) -> list[tuple[int, int, Expr]]:
+        if part.place == "input":
+            return []
+        port = self._port(effect, part)
+        found = []
+        for row, force in zip(port.rows, part.forces, strict=True):
+            for other, acceleration in zip(port.rows, port.accelerations, strict=True):
+                slope = sp.diff(force, acceleration)
+                if slope == 0:
+                    continue
+                mass = self._in_graph(effect, part, slope)
+                found += [(n, m, mass * (x * y)) for n, x in row.items() for m, y in other.items()]
+        return found
+
+    def _passed(self, inputs: Sequence[Expr], which: int) -> list[Expr]:
+        total = list(inputs)
+        for effect in self.e.effects:
+            for part in effect.parts:
+                if isinstance(part.variables, InputVariables):
+                    n = self._number(part)
+                    assert n is not None
+                    bound = {part.variables.input: total[n]}
+                    total[n] = self._in_graph(effect, part, part.forces[which], bound)
+        return total
+
+    def _in_graph(
+        self,
+        effect: AppliedEffect,
+        part: Part,
+        expression: sp.Expr,
+        more: Mapping[sp.Symbol, Expr] | None = None,
+    ) -> Expr:
+        """An expression over the part's variables as a value of the graph."""
+        known: dict[sp.Symbol, Expr] = {**self.e.scalars.symbols, **self.e.free, **self.parameters}
+        known |= self._states(effect) | dict(more or {})
+        x = part.variables
+        lazy = self._lazy(part)
+        port = {} if isinstance(x, InputVariables) else self._port(effect, part).bound
+        for symbol in sp.sympify(expression).free_symbols - known.keys():
+            known[symbol] = port[symbol] if symbol in port else lazy[symbol]()
+        if not isinstance(x, Variables):
+            return from_sympy(self.graph, expression, known)
+        n = self._number(part)
+        assert n is not None
+        return from_sympy(
+            self.graph, expression, known, lambda angle: self.e.trigonometry.lookup(n, x.q, angle)
+        )
+
+    def _states(self, effect: AppliedEffect) -> dict[sp.Symbol, Expr]:
+        names = self.e.state_names()
+        return {s: self.graph.input("state", names.index(s.name)) for s in effect.states.values()}
+
+    # -- ports ------------------------------------------------------------------------------
+
+    @cached_property
+    def _motions(self) -> list[LinkMotion]:
+        return link_motions(self.e.frames, self.rates)
+
+    @cached_property
+    def _velocities(self) -> list[Vector]:
+        return origin_velocities(self.e.frames, self.rates, self._motions)
+
+    def _port(self, effect: AppliedEffect, part: Part) -> Port:
+        x = part.variables
+        if isinstance(x, LinkVariables):
+            return self._link_port(x, part)
+        assert isinstance(x, Variables)
+        n = self._number(part)
+        assert n is not None
+        q, dq, ddq = self.graph.input("q", n), self.rates.dq[n], self.rates.ddq[n]
+        other = dq if self.rates.reference is None else self.rates.reference[n]
+        drive = self.e.drives[n]
+        row: Mapping[int, Expr] = {n: self.graph.one}
+        if part.place == "motor":
+            velocity, acceleration = self.e.motor_rates(n, self.rates)
+            square = (drive.k1 * drive.k1) * (dq * other)
+            bound = (drive.motor, velocity, acceleration, square)
+            row = {n: drive.k1}
+        elif part.place == "pair":
+            m = int(effect.values["other"]) - 1
+            ratio = from_sympy(self.graph, effect.values["ratio"], self.e.free)
+            row = {n: self.graph.one, m: ratio}
+            velocity = dq + ratio * self.rates.dq[m]
+            reference = self.rates.dq if self.rates.reference is None else self.rates.reference
+            square = velocity * (other + ratio * reference[m])
+            position = q + ratio * self.graph.input("q", m)
+            bound = (position, velocity, ddq + ratio * self.rates.ddq[m], square)
+        else:
+            bound = (q, dq, ddq, dq * other)
+        symbols = (x.position, x.velocity, x.acceleration, x.square)
+        rates: dict[sp.Symbol, Expr] = dict(zip(symbols, bound, strict=True))
+        if part.place != "transmission":
+            return Port((row,), rates, (x.acceleration,))
+        column, transmitted = self.around.inertia(n), self.around.transmitted(n)
+        if column is None or transmitted is None:
+            return Port((), rates, ())
+        rates |= {x.transmitted: transmitted, x.inertia: column[n]}
+        return Port(({k: e for k, e in enumerate(column) if not e.is_zero},), rates, (x.transmitted,))
+
+    def _link_port(self, x: LinkVariables, part: Part) -> Port:
+        motion = self._motions[part.joint]
+        end = self.e.link_end(part.joint)
+        vectors = (motion.velocity, self._velocities[part.joint], motion.axial, motion.acceleration)
+        named = (x.spin, x.velocity, x.spin_rate, x.acceleration, x.gravity, x.end)
+        bound = {
+            symbol: value
+            for symbols, vector in zip(named, (*vectors, motion.gravity, end), strict=True)
+            for symbol, value in zip(symbols, vector, strict=True)
+        }
+        return Port(link_rows(self.e.frames, part.joint), bound, (*x.spin_rate, *x.acceleration))
+
+    def _lazy(self, part: Part) -> dict[sp.Symbol, Lazy]:
+        """Variables that few laws use, made where they are needed."""
+        x, n = part.variables, self._number(part)
+        if isinstance(x, LinkVariables) or n is None:
+            return {}
+        if isinstance(x, InputVariables):
+            return {x.input: lambda: self.graph.input("input", n)}
+
+        def load() -> Expr:
+            weight, drive = self.around.weight(n), self.e.drives[n]
+            if weight is None:
+                return self.graph.input("load", n)
+            return weight * (drive.inverse_gain * drive.transmission.torque_constant)
+
+        def gravity(axis: int) -> Lazy:
+            return lambda: turn_z(self.e.frames[part.joint].theta, self._motions[part.joint].gravity)[axis]
+
+        return {
+            x.q: lambda: self.graph.input("q", n),
+            x.load: load,
+            x.time: lambda: self.graph.input("time", 0),
+            **{symbol: gravity(axis) for axis, symbol in enumerate(x.gravity)},
+        }

@@ -1,0 +1,436 @@
+"""Effects that reach beyond one coordinate, each against the same physics written another way."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+from witness.arms import ARMS, Emitted, build
+from witness.bodies import random_bodies
+from witness.compare import agree
+from witness.levers import Drive
+from witness.mechanism import states
+
+from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive, NoDrive
+from modelgen.effects import CATALOGUE, Effect, LinkEffect, LinkVariables, Parameter, Values, catalogue
+from modelgen.effects.variables import Variables
+from modelgen.errors import InputError
+from modelgen.functions import Options
+
+LIMB = Inertial(2.0, (0.2, 0.0, 0.0), (0.001, 0, 0, 0.03, 0, 0.03))
+PLANAR = Arm(
+    "planar",
+    (
+        Joint("j1", "revolute", drive=DirectDrive(80.0, 0.05)),
+        Joint("j2", "revolute", d=0.45, antecedent=0, drive=DirectDrive(60.0, 0.04)),
+    ),
+    (LIMB, LIMB),
+    (0.0, -9.81, 0.0),
+)
+
+
+def with_arm(arm: Arm, *uses: EffectUse) -> Arm:
+    return replace(arm, effects=uses)
+
+
+def with_joint(arm: Arm, joint: int, *uses: EffectUse) -> Arm:
+    joints = list(arm.joints)
+    joints[joint] = replace(joints[joint], effects=(*joints[joint].effects, *uses))
+    return replace(arm, joints=tuple(joints))
+
+
+def links_vector(emitted: Emitted, seed: int = 3) -> np.ndarray:
+    """Physical links, and 1 for every parameter of an effect."""
+    links = np.concatenate([b.ten for b in random_bodies(emitted.arm, np.random.default_rng(seed))])
+    return np.concatenate([links, np.ones(len(emitted.model.standard) - len(links))])
+
+
+# -- load and time --------------------------------------------------------------------------
+
+
+def test_the_load_is_the_weight_of_the_links_at_the_motor() -> None:
+    emitted = build(with_joint(PLANAR, 1, EffectUse("load_dependent_friction")), Options())
+    bare = build(PLANAR, Options())
+    q, dq, ddq = states(emitted.arm, 9)
+    theta = links_vector(emitted)
+    theta[-1] = 0.15
+    weight = bare("gravity_standard", q, theta[:20]) * bare("drive_gain", q)
+    load = weight / np.array([80.0, 60.0])
+    agree(emitted("load_standard", q, theta), load)
+    agree(emitted("load", q, emitted.base(theta)), load)
+    friction = 0.15 * np.abs(load[:, 1]) * np.sign(60.0 * dq[:, 1]) / 0.04
+    extra = emitted("inverse_dynamics_standard", q, dq, ddq, theta) - bare(
+        "inverse_dynamics_standard", q, dq, ddq, theta[:20]
+    )
+    agree(extra, np.column_stack([0 * friction, friction]))
+    base = emitted.base(theta)
+    given = emitted("inverse_dynamics", q, dq, ddq, base)
+    agree(np.einsum("nij,j->ni", emitted("regressor", q, dq, ddq, load=load), base), given)
+    agree(emitted("forward_dynamics", q, dq, given, base), ddq)
+
+
+def test_warm_up_fades_with_the_time_since_the_start() -> None:
+    emitted = build(with_joint(PLANAR, 0, EffectUse("friction_warm_up", {"time": 12.0})), Options())
+    q, dq, ddq = states(emitted.arm, 4)
+    theta = links_vector(emitted)
+    base = emitted.base(theta)
+    cold, warm, settled = (emitted("inverse_dynamics", q, dq, ddq, base, time=[t]) for t in (0.0, 12.0, 1e4))
+    agree(warm - settled, (cold - settled) * math.exp(-1))
+    w = 80.0 * dq[:, 0]
+    agree((cold - settled)[:, 0], (np.sign(w) + w) / 0.05)
+
+
+# -- several coordinates --------------------------------------------------------------------
+
+
+def test_a_coupled_rotor_is_a_third_body_by_virtual_work() -> None:
+    """Its kinetic energy adds to the mass matrix, its friction takes power from both joints."""
+    ratio = -0.75
+    use = EffectUse("transmission_coupling", {"other": 1.0, "ratio": ratio})
+    emitted = build(with_joint(PLANAR, 1, use), Options())
+    bare = build(PLANAR, Options())
+    q, dq, ddq = states(emitted.arm, 9)
+    theta = links_vector(emitted)
+    theta[20:] = 0.4, 0.0, 0.0  # inertia alone
+    jacobian = np.array([ratio, 1.0])
+    added = emitted("mass_matrix_standard", q, theta) - bare("mass_matrix_standard", q, theta[:20])
+    agree(added, np.broadcast_to(0.4 * np.outer(jacobian, jacobian), added.shape))
+    kinetic = emitted("energy_standard", q, dq, theta)[0]
+    agree(kinetic[:, 0], np.einsum("ni,nij,nj->n", dq, emitted("mass_matrix_standard", q, theta), dq) / 2)
+    theta[20:] = 0.4, 0.3, 2.0
+    given = emitted("inverse_dynamics_standard", q, dq, ddq, theta)
+    extra = (given - bare("inverse_dynamics_standard", q, dq, ddq, theta[:20])) * emitted("drive_gain", q)
+    u, a = dq @ jacobian, ddq @ jacobian
+    agree(extra, np.outer(0.4 * a + 0.3 * u + 2.0 * np.sign(u), jacobian))
+    agree(emitted("forward_dynamics_standard", q, dq, given, theta), ddq)
+
+
+def test_a_payload_is_a_point_mass_of_the_last_link() -> None:
+    place, mass = np.array([0.3, -0.05, 0.1]), 1.7
+    use = EffectUse("payload_change", {"mass": mass, **dict(zip("xyz", place, strict=True))})
+    for name in ("ur10e", "two_fingers", "ariane4"):
+        emitted, bare = build(with_arm(ARMS[name], use), Options()), build(ARMS[name], Options())
+        q, dq, ddq = states(emitted.arm, 5)
+        theta = links_vector(emitted)
+        heavier = theta.copy()
+        last = 10 * (len(emitted.arm.joints) - 1)
+        spread = mass * (place @ place * np.eye(3) - np.outer(place, place))
+        heavier[last : last + 10] += [*spread[np.triu_indices(3)], *(mass * place), mass]
+        agree(
+            emitted("inverse_dynamics_standard", q, dq, ddq, theta),
+            bare("inverse_dynamics_standard", q, dq, ddq, heavier),
+        )
+        agree(emitted("mass_matrix_standard", q, theta), bare("mass_matrix_standard", q, heavier))
+        agree(
+            emitted("forward_dynamics_standard", q, dq, 0 * q, theta),
+            bare("forward_dynamics_standard", q, dq, 0 * q, heavier),
+        )
+
+
+def fluid_effort(q: np.ndarray, dq: np.ndarray, ddq: np.ndarray, mass: bool) -> np.ndarray:
+    """Of the planar arm, both links 0.45 and 0.4 m long, by 4,000 strips in base coordinates."""
+    effort = np.zeros(2)
+    place = (np.arange(4000) + 0.5) / 4000
+    for link, length in ((0, 0.45), (1, 0.4)):
+        rates = np.cumsum(dq)
+        a = q[0] + (q[1] if link else 0.0)
+
+        def position(x: np.ndarray, s: np.ndarray, link: int = link, length: float = length) -> np.ndarray:
+            first = 0.45 * np.array([np.cos(x[0]), np.sin(x[0])])
+            if not link:
+                return np.outer(s * length, [np.cos(x[0]), np.sin(x[0])])
+            second = np.array([np.cos(x[0] + x[1]), np.sin(x[0] + x[1])])
+            return first + np.outer(s * length, second)
+
+        h = 1e-5
+        jacobian = np.stack(
+            [(position(q + h * e, place) - position(q - h * e, place)) / (2 * h) for e in np.eye(2)], axis=2
+        )
+        across = np.array([-np.sin(a), np.cos(a)])
+        if mass:
+            t = 1e-4
+            x = [q + k * t * dq + (k * t) ** 2 / 2 * ddq for k in (-1, 0, 1)]
+            vector = (position(x[0], place) - 2 * position(x[1], place) + position(x[2], place)) / t**2
+            push = vector @ across
+        else:
+            speed = (jacobian @ dq) @ across
+            push = np.abs(speed) * speed
+        effort += length / 4000 * np.einsum("s,sk,c,sck->k", push, np.ones((4000, 2)), across, jacobian)
+        assert np.isfinite(rates).all()
+    return effort
+
+
+@pytest.mark.parametrize(("name", "tolerance"), [("fluid_drag", 2e-3), ("added_mass", 1e-5)])
+def test_what_the_fluid_does_to_slender_links(name: str, tolerance: float) -> None:
+    """Five Gauss points a link against thousands of strips; |v| v has a kink inside some links."""
+    emitted, bare = build(with_arm(PLANAR, EffectUse(name)), Options()), build(PLANAR, Options())
+    assert emitted.model.standard[-1].name == ("CD" if name == "fluid_drag" else "CM")
+    q, dq, ddq = states(emitted.arm, 6)
+    theta = links_vector(emitted)
+    given = emitted("inverse_dynamics_standard", q, dq, ddq, theta)
+    extra = (given - bare("inverse_dynamics_standard", q, dq, ddq, theta[:20])) * emitted("drive_gain", q)
+    expected = np.array([fluid_effort(*x, name == "added_mass") for x in zip(q, dq, ddq, strict=True)])
+    np.testing.assert_allclose(extra, expected, atol=tolerance * np.abs(expected).max())
+    agree(emitted("forward_dynamics_standard", q, dq, given, theta), ddq)
+    if name == "fluid_drag":
+        assert ((extra * dq).sum(axis=1) > 0).all()  # it takes power
+
+
+# -- changes of the description -------------------------------------------------------------
+
+
+def test_an_encoder_offset_shifts_the_joint() -> None:
+    for name, joint in (("ariane4", 1), ("ur10e", 2), ("scara", 2), ("gravity_arm", 0)):
+        offset = 0.013
+        emitted = build(
+            with_joint(ARMS[name], joint, EffectUse("encoder_offset", {"offset": offset})), Options()
+        )
+        bare = build(ARMS[name], Options())
+        q, dq, ddq = states(bare.arm, 6)
+        q = 0.8 * q + 0.2 * q.mean(axis=0)
+        true = q.copy()
+        true[:, bare.arm.coordinates.index(joint)] += offset
+        theta = links_vector(bare)
+        agree(
+            emitted("inverse_dynamics_standard", q, dq, ddq, theta),
+            bare("inverse_dynamics_standard", true, dq, ddq, theta),
+        )
+
+
+def test_a_tilted_base_sees_a_tilted_gravity() -> None:
+    """Turning the base is turning the first joint, for an arm whose joint 1 turns about the same axis."""
+    tilt = 0.07
+    emitted = build(with_arm(PLANAR, EffectUse("base_tilt", {"z": tilt})), Options())
+    bare = build(PLANAR, Options())
+    q, _, _ = states(bare.arm, 6)
+    theta = links_vector(bare)
+    agree(
+        emitted("gravity_standard", q, theta),
+        bare("gravity_standard", q + np.array([tilt, 0.0]), theta),
+    )
+    assert np.linalg.norm(emitted.arm.gravity) == pytest.approx(9.81, rel=1e-14)
+
+
+def test_a_gain_error_scales_its_row_and_a_lever_error_moves_its_gain() -> None:
+    arm = ARMS["ariane4"]
+    bare = build(arm, Options(without=frozenset({"effects"})))
+    q, dq, ddq = states(bare.arm, 6)
+    q = 0.8 * q + 0.2 * q.mean(axis=0)
+    theta = links_vector(bare)
+    plain = replace(arm, joints=tuple(replace(j, effects=()) for j in arm.joints))
+    wrong = build(with_joint(plain, 1, EffectUse("drive_gain_error", {"error": 0.25})), Options())
+    expected = bare("inverse_dynamics_standard", q, dq, ddq, theta) / np.array([1.0, 1.25, 1.0])
+    agree(wrong("inverse_dynamics_standard", q, dq, ddq, theta), expected)
+    longer = build(with_joint(plain, 0, EffectUse("lever_geometry", {"l1": 0.001})), Options())
+    gain = longer("drive_gain", q)
+    first = plain.joints[0]
+    assert isinstance(first.drive, LeveredDrive)
+    lever = replace(first, drive=replace(first.drive, l1=first.drive.l1 + 0.001))
+    agree(gain[:, 0], Drive(replace(plain, joints=(lever, *plain.joints[1:])), 0).gain(q[:, 0]))
+    agree(
+        longer("inverse_dynamics_standard", q, dq, ddq, theta) * gain,
+        bare("inverse_dynamics_standard", q, dq, ddq, theta) * bare("drive_gain", q),
+    )
+
+
+# -- between input and effort ---------------------------------------------------------------
+
+
+def test_a_saturated_drive_needs_more_current_for_the_same_effort() -> None:
+    coefficient = 0.002
+    use = EffectUse("torque_constant_saturation", {"coefficient": coefficient})
+    emitted, bare = build(with_joint(PLANAR, 0, use), Options()), build(PLANAR, Options())
+    q, dq, ddq = states(emitted.arm, 30)
+    theta = links_vector(emitted)
+    ideal = bare("inverse_dynamics_standard", q, dq, ddq, theta)
+    scale = 4.0 / np.abs(ideal).max()
+    theta = theta * scale
+    given = emitted("inverse_dynamics_standard", q, dq, ddq, theta)
+    agree(given[:, 0] * (1 - coefficient * given[:, 0] ** 2), (ideal * scale)[:, 0])
+    agree(given[:, 1], (ideal * scale)[:, 1])
+    agree(emitted("forward_dynamics_standard", q, dq, given, theta), ddq)
+    agree(emitted("effective_input", given), ideal * scale)
+
+
+def test_a_delayed_drive_follows_its_input_after_the_delay() -> None:
+    emitted, bare = (
+        build(with_arm(PLANAR, EffectUse("time_delay", {"delay": 0.02})), Options()),
+        build(PLANAR),
+    )
+    bare = build(PLANAR, Options())
+    assert emitted.model.states == ("time_delay_lagged_1", "time_delay_lagged_2")
+    q, dq, _ = states(emitted.arm, 1)
+    theta = links_vector(emitted)
+    base = emitted.base(theta)
+    given, lagged = np.array([[1.5, -0.4]]), np.zeros((1, 2))
+    steps = 400
+    area = np.zeros(2)
+    for _ in range(steps):
+        area += (given - lagged)[0] * 0.001
+        lagged = emitted("effects_step", q, dq, [[0.001]], base, lagged, input=given)
+    agree(lagged, given, 1e-7)
+    np.testing.assert_allclose(area / given[0], 0.02, rtol=0.03)  # the delay is the area between the two
+    agree(
+        emitted("forward_dynamics", q, dq, given, base, state=lagged),
+        bare("forward_dynamics", q, dq, lagged, base),
+    )
+
+
+# -- a link that does not follow its drive ----------------------------------------------------
+
+
+def two_masses(
+    drive_sees: bool, gap: float, stiffness: float, damping: float, inertia: float, rotor: float, span: float
+) -> object:
+    """Motor and link of a pendulum of 2 kg at 0.2 m, the motor driven by a slow torque; both positions.
+
+    `drive_sees`: the weight is that at the motor's angle, as the effect has it, not at the link's.
+    """
+
+    def spring(lag: float, rate: float) -> float:
+        beyond = lag - min(max(lag, -gap / 2), gap / 2)
+        return stiffness * beyond + (damping * rate if beyond or not gap else 0.0)
+
+    def rates(t: float, x: np.ndarray) -> list[float]:
+        motor, link, dm, dl = x
+        force = spring(motor - link, dm - dl)
+        drive = 9.0 * math.sin(3.0 * t)
+        return [
+            dm,
+            dl,
+            (drive - force) / rotor,
+            (force - 2.0 * 9.81 * 0.2 * math.cos(motor if drive_sees else link)) / inertia,
+        ]
+
+    start = [0.3 + 2.0 * 9.81 * 0.2 * math.cos(0.3) / stiffness + gap / 2, 0.3, 0.0, 0.0]
+    return solve_ivp(rates, (0.0, span), start, rtol=1e-9, atol=1e-11, max_step=2e-4, dense_output=True)
+
+
+@pytest.mark.parametrize(("drive_sees", "tolerance"), [(True, 1e-3), (False, 1.5e-2)])
+@pytest.mark.parametrize(("name", "gap"), [("joint_flexibility", 0.0), ("backlash", 0.02)])
+def test_an_elastic_joint_or_play_moves_as_two_masses(
+    name: str, gap: float, drive_sees: bool, tolerance: float
+) -> None:
+    """As with the same weight to 0.1 %; what the change of weight over the lag does is small."""
+    stiffness, damping, rotor = 900.0, 2.0, 0.35
+    values = {"stiffness": stiffness, "damping": damping, **({"play": gap} if gap else {})}
+    arm = Arm(
+        "one",
+        (
+            Joint(
+                "j1",
+                "revolute",
+                drive=NoDrive(),
+                effects=(EffectUse("drive_inertia"), EffectUse(name, values)),
+            ),
+        ),
+        (LIMB,),
+        (0.0, -9.81, 0.0),
+    )
+    emitted = build(arm, Options())
+    inertia = 0.03 + 2.0 * 0.2**2
+    theta = np.array([0.001, 0, 0, inertia, 0, inertia, 0.4, 0, 0, 2.0, rotor])
+    span, dt = 0.8, 1e-4
+    exact = two_masses(drive_sees, gap, stiffness, damping, inertia, rotor, span)
+    motor, link, _, _ = exact.sol(0.0)  # type: ignore[attr-defined]
+    q, dq, state = np.array([motor]), np.zeros(1), np.array([motor - link, 0.0])
+    for k in range(round(span / dt)):
+        given = [9.0 * math.sin(3.0 * (k + 0.5) * dt)]
+        ddq = emitted("forward_dynamics_standard", q, dq, given, theta, state=state)
+        after = emitted("effects_step_standard", q, dq, [dt], theta, state, ddq=ddq)
+        q, dq, state = q + dt * dq + dt**2 / 2 * ddq, dq + dt * ddq, after
+    truth = exact.sol(span)  # type: ignore[attr-defined]
+    moved = abs(truth[0] - motor)
+    assert abs(q[0] - truth[0]) < tolerance * moved
+    lag = np.ptp([m - x for m, x, _, _ in exact.sol(np.linspace(0, span, 400)).T])  # type: ignore[attr-defined]
+    assert abs(state[0] - (truth[0] - truth[1])) < 0.05 * lag
+    # what the drive gives is what it takes
+    back = emitted("inverse_dynamics_standard", q, dq, ddq, theta, state=state)
+    agree(emitted("forward_dynamics_standard", q, dq, back, theta, state=state), ddq, 1e-9)
+
+
+# -- the mechanism: one class more is one effect more ------------------------------------------
+
+
+class Wind(LinkEffect):
+    """A throw-away effect: a steady push along the link's own x axis."""
+
+    name = "wind"
+    text = "for a test"
+    reference = "none"
+    linear = (Parameter("push", "N", "force", "PW"),)
+
+    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
+        return p["push"] * sp.Matrix([1, 0, 0]), sp.zeros(3, 1)
+
+
+class Clock(Effect):
+    """Another: a force that depends on time and on the weight."""
+
+    name = "clock"
+    text = "for a test"
+    reference = "none"
+    linear = (Parameter("size", "1", "size", "PK"),)
+    nonlinear = (Parameter("rate", "1/s", "rate", default=2.0),)
+
+    def law(self, x: Variables, p: Mapping[str, sp.Expr]) -> sp.Expr:
+        return p["size"] * x.load * sp.sin(p["rate"] * x.time)
+
+
+def test_throw_away_effects_of_other_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
+    for effect in (Wind, Clock):
+        monkeypatch.setitem(catalogue.CATALOGUE, effect.name, effect)
+    arm = with_joint(ARMS["ur10e"], 5, EffectUse("wind"))
+    emitted, bare = build(arm, Options()), build(ARMS["ur10e"], Options())
+    q, dq, ddq = states(arm, 5)
+    theta = links_vector(emitted)
+    extra = emitted("inverse_dynamics_standard", q, dq, ddq, theta) - bare(
+        "inverse_dynamics_standard", q, dq, ddq, theta[:-1]
+    )
+    poses = emitted("forward_kinematics", q)[5]
+    linear = emitted("jacobian", q)[:, :3]
+    agree(extra * emitted("drive_gain", q), np.einsum("nij,ni->nj", linear, poses[:, :3, 0]))
+    clock = build(with_joint(PLANAR, 0, EffectUse("clock")), Options())
+    assert [a.name for f in clock.model.functions if f.name == "regressor" for a in f.arguments] == [
+        "q", "dq", "ddq", "time", "load",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arm", "message"),
+    [
+        (with_arm(PLANAR, EffectUse("spring")), "spring acts on one joint, expected under its `effects`"),
+        (with_joint(PLANAR, 0, EffectUse("base_tilt")), "base_tilt acts on the whole arm"),
+        (
+            with_arm(PLANAR, EffectUse("base_tilt"), EffectUse("base_tilt")),
+            "base_tilt stands twice at the arm",
+        ),
+        (with_joint(PLANAR, 0, EffectUse("actuator_mass")), "without a lever, expected a levered drive"),
+        (with_joint(PLANAR, 0, EffectUse("lever_geometry")), "without a lever, expected a levered drive"),
+        (
+            with_joint(PLANAR, 0, EffectUse("transmission_coupling", {"other": 1.0})),
+            "other is 1, expected one of 2",
+        ),
+        (
+            with_joint(ARMS["ariane4"], 0, EffectUse("lever_geometry", {"l1": 1.0})),
+            "leave no triangle somewhere on the stroke",
+        ),
+        (
+            with_arm(replace(PLANAR, links=(None, None)), EffectUse("fluid_drag")),
+            "needs the end of link j2, which carries no other",
+        ),
+    ],
+)
+def test_an_effect_in_the_wrong_place_is_named(arm: Arm, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        build(arm, Options())
+
+
+def test_every_effect_of_the_catalogue_says_what_it_is_confused_with() -> None:
+    for effect in CATALOGUE.values():
+        assert effect.confused_with
+        assert effect.experiment
+        assert not set(effect.confused_with) - set(CATALOGUE) - {effect.name}
