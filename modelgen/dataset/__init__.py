@@ -1,5 +1,26 @@
 """Measured logs: reading, checking, processing."""
 
+from modelgen.dataset.choice import PRESETS, Chosen, Settings, choose, preset
+from modelgen.dataset.drives import Drive, drives_of
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing import Prepared, prepare
+from modelgen.dataset.reading import read
+from modelgen.dataset.specs import Spec, check_separate, parse, split
 
-__all__ = ["Record"]
+__all__ = [
+    "PRESETS",
+    "Chosen",
+    "Drive",
+    "Prepared",
+    "Record",
+    "Settings",
+    "Spec",
+    "check_separate",
+    "choose",
+    "drives_of",
+    "parse",
+    "prepare",
+    "preset",
+    "read",
+    "split",
+]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
+from modelgen.description import Arm
 
 Array = NDArray[np.float64]
 
@@ -20,7 +22,11 @@ class Record:
     motion; `gain`: (N, n), what the input is multiplied by to give what the log carried (K(q) where
     it carried tau<n>, 1 where it carried a current); effort_unit: unit of that, by joint. dq, ddq:
     measured rates where the log has them. temperature: (N, n) [deg C]. motor_side: whether joint n was
-    logged as qm<n>. hold: time by which the input lies after the position's stamp [s].
+    logged as qm<n>. hold: time by which the input lies after the position's stamp [s]. remarks: for the
+    user. arm: whose coordinates these are. core: in a block of a stream, the samples to keep (begin, end;
+    the others are overlap with its neighbours), None for a whole record; first: number of the block's
+    first sample in the whole, counted from the first sample that is kept. held: whether the input is
+    constant between its samples.
     """
 
     name: str
@@ -36,6 +42,10 @@ class Record:
     motor_side: tuple[bool, ...] = ()
     hold: float = 0.0
     remarks: tuple[str, ...] = field(default=())
+    arm: Arm | None = None
+    core: tuple[int, int] | None = None
+    first: int = 0
+    held: bool = False
 
     @property
     def n(self) -> int:
@@ -46,3 +56,23 @@ class Record:
     def step(self) -> float:
         """Sampling period [s]."""
         return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
+
+    def part(self, begin: int, end: int, name: str = "") -> Record:
+        """Samples begin to end (end excluded) as a record of their own."""
+
+        def cut(values: Array | None) -> Array | None:
+            return None if values is None else values[begin:end]
+
+        return replace(
+            self,
+            name=name or self.name,
+            t=self.t[begin:end],
+            q=self.q[begin:end],
+            motor=self.motor[begin:end],
+            input=cut(self.input),
+            gain=cut(self.gain),
+            dq=cut(self.dq),
+            ddq=cut(self.ddq),
+            temperature=cut(self.temperature),
+            core=None,
+        )

@@ -1,0 +1,96 @@
+"""What a record must be before anything is computed from it; each refusal says what to do."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from modelgen.dataset.objects import Array
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.transmission import of_joint
+
+SHORTEST = 20  # samples
+MARGIN = 0.1  # of a joint's range, by which a log may leave it
+
+
+def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array, first: int = 0) -> None:
+    """No NaN and no infinity in a block (N, k) of columns. Raises InputError."""
+    wrong = np.argwhere(~np.isfinite(block))
+    if wrong.size:
+        row, column = (int(x) for x in wrong[0])
+        time = f"t = {stamps[row]:.9g} s" if np.isfinite(stamps[row]) else f"sample {first + row + 1}"
+        raise InputError(
+            f"{file}: found {block[row, column]} in the column {names[column]} at {time}, expected a finite "
+            f"number ({len(wrong)} such in this block); use the parts beside it, FILE@t0:t1"
+        )
+
+
+def check_length(file: str, samples: int) -> None:
+    """Enough samples. Raises InputError."""
+    if samples < SHORTEST:
+        raise InputError(f"{file}: found {samples} samples, expected at least {SHORTEST}")
+
+
+def check_constant(file: str, arm: Arm, names: tuple[str | None, ...], columns: Array, what: str) -> None:
+    """Positions and efforts must change. Raises InputError."""
+    for k, name in enumerate(names):
+        if name is None or np.ptp(columns[:, k]) > 0.0:
+            continue
+        joint = arm.joints[arm.coordinates[k]].name
+        advice = (
+            f"where joint {joint} was held, lock it in the description, locked: {{{joint}: ...}}"
+            if what == "position"
+            else "where the arm moved freely, leave the effort columns out"
+        )
+        raise InputError(
+            f"{file}: the {what} {name} is {columns[0, k]:.6g} in all {len(columns)} samples, expected one "
+            f"that changes; {advice}"
+        )
+
+
+def check_range(file: str, arm: Arm, names: tuple[str, ...], columns: Array, q: Array) -> list[str]:
+    """Positions within the joint's range and the drive's stroke, up to a tenth of it.
+
+    columns: (N, n) as logged; q: (N, n) joint coordinates, NaN where a lever cannot reach. Returns remarks
+    where a range is left by less. Raises InputError, with the unit that would fit.
+    """
+    remarks = []
+    for k, i in enumerate(arm.coordinates):
+        joint, name = arm.joints[i], names[k]
+        drive = of_joint(arm, joint)
+        motor_side = name.startswith("qm")
+        given = drive.motor_range() if motor_side else (joint.limits.position or drive.joint_range())
+        if given is None and motor_side and joint.limits.position is not None:
+            ratio = float(drive.k1())
+            ends = ratio * joint.limits.position[0], ratio * joint.limits.position[1]
+            given = min(ends), max(ends)
+        if given is None:
+            continue
+        low, high = given
+        found = float(columns[:, k].min()), float(columns[:, k].max())
+        excess = max(low - found[0], found[1] - high)
+        unit = drive.unit if motor_side else ("m" if joint.type == "prismatic" else "rad")
+        shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {unit}"
+        limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {unit}"
+        if excess > MARGIN * (high - low) or not np.isfinite(q[:, k]).all():
+            hint = _unit_hint(found, (low, high), unit)
+            raise InputError(f"{file}: {shown}, {limits}{hint}")
+        if excess > 0.0:
+            remarks.append(f"{shown}, {limits}")
+    return remarks
+
+
+def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: str) -> str:
+    """The unit in which the values would fit."""
+    slack = MARGIN * (limits[1] - limits[0])
+    options = {
+        "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
+        "m": (("millimetres", "mm", 1e-3), ("centimetres", "cm", 1e-2)),
+    }.get(unit, ())
+    for words, name, factor in options:
+        low, high = sorted((found[0] * factor, found[1] * factor))
+        if low >= limits[0] - slack and high <= limits[1] + slack:
+            return f": these look like {words}; declare `unit: {name}` in a mapping file (--mapping)"
+    return ": correct unit, sign or offset in a mapping file (--mapping), or the limits in the description"

@@ -1,0 +1,66 @@
+"""The drives of an arm in numbers: motor and joint coordinates of whole records, drive gains."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from modelgen.dataset.objects import Array
+from modelgen.description import Arm, geometry_symbol
+from modelgen.transmission import of_joint
+
+Curve = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One joint's drive as functions of arrays (N,).
+
+    motor: q_m(q). joint: q(q_m). k1: dq_m/dq. slope: d^2 q_m/dq^2. torque_constant: generalised force at
+    the motor coordinate per input. driven: whether there is a motor at all.
+    """
+
+    motor: Curve
+    joint: Curve
+    k1: Curve
+    slope: Curve
+    torque_constant: float
+    driven: bool
+    unit: str
+
+    def gain(self, q: Array) -> Array:
+        """K(q) (N,): joint effort per input."""
+        return self.torque_constant * self.k1(q)
+
+
+def drives_of(arm: Arm) -> tuple[Drive, ...]:
+    """The drives of an arm's coordinates, in their order."""
+    symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
+    found = []
+    for i in arm.coordinates:
+        t = of_joint(arm, arm.joints[i])
+
+        def curve(expression: sp.Expr, symbol: sp.Symbol) -> Curve:
+            call = sp.lambdify(symbol, sp.sympify(expression).subs(symbols), "numpy", cse=True)
+
+            def evaluate(x: Array) -> Array:
+                with np.errstate(invalid="ignore"):
+                    return np.broadcast_to(np.asarray(call(x), dtype=np.float64), np.shape(x)).copy()
+
+            return evaluate
+
+        found.append(
+            Drive(
+                motor=curve(t.motor(), t.q),
+                joint=curve(t.joint(), t.q_m),
+                k1=curve(t.k1(), t.q),
+                slope=curve(t.slope(), t.q),
+                torque_constant=float(t.torque_constant),
+                driven=t.driven,
+                unit=t.unit if t.driven else ("m" if arm.joints[i].type == "prismatic" else "rad"),
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,158 @@
+"""From a record to what regressions are made of: filtered positions, derivatives, and one parallel filter.
+
+Regressor columns are evaluated at full rate from lightly filtered positions; the effort and all columns
+then pass the same low-pass filter and are decimated alike (Gautier, 1997, "Dynamic identification of
+robots with power model"; Pham, Gautier and Poignet, 2001).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.dataset.choice import Chosen, Settings, choose
+from modelgen.dataset.drives import drives_of
+from modelgen.dataset.filters import advanced, differences, low_pass
+from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.rest import moving_samples
+from modelgen.errors import InputError
+
+FEWEST_ROWS = 10
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A processed record: N samples at full rate, M after decimation and trimming, n coordinates.
+
+    time: (N,) [s]. q, dq, ddq: (N, n) joint coordinates and derivatives [rad, m, per s, per s^2], filtered.
+    motor, dmotor, ddmotor: the same in the motor coordinates [motor unit]. input: (N, n) in the contract's
+    unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
+    times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
+    rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
+    joint moves there, away from rest. settings: as used, every choice made.
+    """
+
+    record: Record
+    settings: Chosen
+    time: Array
+    q: Array
+    dq: Array
+    ddq: Array
+    motor: Array
+    dmotor: Array
+    ddmotor: Array
+    input: Array | None
+    gain: Array | None
+    effort_unit: tuple[str, ...]
+    temperature: Array | None
+    rows: np.ndarray
+    moving: np.ndarray
+
+    @property
+    def t(self) -> Array:
+        """Times of the rows (M,) [s]."""
+        return np.asarray(self.time[self.rows])
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.record.n
+
+    @property
+    def rate(self) -> float:
+        """Rows per second [Hz]."""
+        return 1.0 / (self.record.step * self.settings.factor)
+
+    def parallel(self, columns: Array) -> Array:
+        """Columns (N,) or (N, k) at full rate, low-passed, decimated and trimmed: (M,) or (M, k).
+
+        THE filter of effort and of every regressor column.
+        """
+        table: Array = columns.reshape(len(columns), -1)
+        if self.settings.cutoff:
+            table = low_pass(table, self.settings.cutoff, 1.0 / self.record.step, self.settings.order)
+        return np.asarray(table[self.rows].reshape((len(self.rows), *columns.shape[1:])))
+
+    def picked(self, columns: Array) -> Array:
+        """Columns (N, ...) at the rows, not filtered: (M, ...)."""
+        return np.asarray(columns[self.rows])
+
+    @property
+    def effort(self) -> Array:
+        """The input through the parallel filter (M, n). Raises InputError for a free motion."""
+        if self.input is None:
+            raise InputError(f"{self.record.name}: a free motion has no effort")
+        return self.parallel(self.input)
+
+
+def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepared:
+    """The record processed by `settings`, by default by what its rate and content ask for.
+
+    Raises InputError where the record is too short for the filters, or cut-offs do not fit its rate.
+    """
+    chosen = choose(record, settings)
+    step = record.step
+    rate = 1.0 / step
+    smooth = {}
+    for name, values in (("q", record.q), ("motor", record.motor)):
+        cutoff = chosen.position_cutoff
+        smooth[name] = low_pass(values, cutoff, rate, chosen.position_order) if cutoff else values
+    half = chosen.half_width
+    q, (dq, ddq) = smooth["q"].copy(), differences(smooth["q"], step, half)
+    motor, (dmotor, ddmotor) = smooth["motor"].copy(), differences(smooth["motor"], step, half)
+    for k, drive in enumerate(drives_of(record.arm) if record.arm is not None else ()):
+        # Quantisation is even in the coordinate that was logged: that one is filtered, the other follows.
+        if record.motor_side and record.motor_side[k]:
+            q[:, k] = drive.joint(motor[:, k])
+            k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
+            dq[:, k] = dmotor[:, k] / k1
+            ddq[:, k] = (ddmotor[:, k] - slope * dq[:, k] ** 2) / k1
+        else:
+            motor[:, k] = drive.motor(q[:, k])
+            k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
+            dmotor[:, k] = k1 * dq[:, k]
+            ddmotor[:, k] = k1 * ddq[:, k] + slope * dq[:, k] ** 2
+    if not np.isfinite(q).all():
+        raise InputError(
+            f"{record.name}: filtered motor coordinates leave the lever's stroke; check the description"
+        )
+    given = None
+    if record.input is not None:
+        given = advanced(record.input, record.hold / step, record.held) if record.hold else record.input
+    rows = kept_rows(record, chosen)
+    if len(rows) < FEWEST_ROWS and record.core is None:
+        raise InputError(
+            f"{record.name}: found {len(record.t) * step:.4g} s, too short a record: with the cut-off "
+            f"{chosen.cutoff:.4g} Hz only {len(rows)} rows remain, expected at least {FEWEST_ROWS}"
+        )
+    return Prepared(
+        record=record,
+        settings=chosen,
+        time=record.t,
+        q=q,
+        dq=dq,
+        ddq=ddq,
+        motor=motor,
+        dmotor=dmotor,
+        ddmotor=ddmotor,
+        input=given,
+        gain=record.gain,
+        effort_unit=record.effort_unit,
+        temperature=record.temperature,
+        rows=rows,
+        moving=moving_samples(dq, rows, chosen, rate),
+    )
+
+
+def kept_rows(record: Record, settings: Chosen) -> np.ndarray:
+    """Indices of the samples that decimation and trimming keep.
+
+    In a block of a stream they lie on the grid of the whole file, whose sample number is round(t / step).
+    """
+    count = len(record.t)
+    trim = round(settings.trim / record.step)
+    begin, end = (trim, count - trim) if record.core is None else record.core
+    first = record.first + begin
+    begin += -first % settings.factor if record.core is not None else 0
+    return np.arange(begin, max(begin, end), settings.factor)

@@ -1,0 +1,39 @@
+"""Samples at rest: friction is undetermined there, and what is made of them breeds false causes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.dataset.choice import Chosen
+from modelgen.dataset.filters import low_pass
+from modelgen.dataset.objects import Array
+
+SHARE = 0.02  # of the filter's weight that may lie on samples at rest
+
+
+def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
+    """Whether each joint moves at the rows (M, n), given its speeds dq (N, n).
+
+    A joint is at rest where its speed stays below its gate for longer than `settings.rest_time`; a reversal
+    passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
+    taken no more than a fiftieth of its weight from samples at rest.
+    """
+    result = np.ones((len(rows), dq.shape[1]), dtype=bool)
+    longest = max(2, round(settings.rest_time * rate))
+    for k, gate in enumerate(settings.gates):
+        slow = np.abs(dq[:, k]) < gate
+        rest = _long_runs(slow, longest).astype(np.float64)
+        if settings.cutoff and rest.any():
+            rest = low_pass(rest[:, None], settings.cutoff, rate, settings.order)[:, 0]
+        result[:, k] = ~slow[rows] & (rest[rows] < SHARE)
+    return result
+
+
+def _long_runs(flags: np.ndarray, longest: int) -> np.ndarray:
+    """The flags, without runs of True shorter than `longest`."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(np.int8), [0]))))
+    kept = np.zeros(len(flags), dtype=bool)
+    for begin, end in edges.reshape(-1, 2):
+        if end - begin >= longest:
+            kept[begin:end] = True
+    return kept

@@ -1,0 +1,118 @@
+"""FILE@t0:t1: which part of which file, and that nothing is used for training and testing at once."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from modelgen.dataset.objects import Record
+from modelgen.errors import InputError
+
+_PART = re.compile(r"(?P<file>.+)@(?P<begin>[^@:]*):(?P<end>[^@:]*)")
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A file, or the samples of it with begin <= t < end [s]."""
+
+    text: str
+    path: Path
+    begin: float = -math.inf
+    end: float = math.inf
+
+    def content(self) -> str:
+        """Hash of the file's bytes. Raises InputError where it cannot be read."""
+        try:
+            with self.path.open("rb") as stream:
+                return hashlib.file_digest(stream, "sha256").hexdigest()
+        except OSError as error:
+            raise unreadable(self.path, error) from None
+
+
+def parse(text: str) -> Spec:
+    """`FILE` or `FILE@t0:t1`; t0 or t1 may be left out. Raises InputError.
+
+    A file whose own name has the form FILE@a:b is taken as a file.
+    """
+    match = _PART.fullmatch(text)
+    if match is None or Path(text).exists():
+        return Spec(text, Path(text))
+    begin = _time(text, match["begin"], -math.inf)
+    end = _time(text, match["end"], math.inf)
+    if begin >= end:
+        raise InputError(f"{text}: found the part {begin:g} s to {end:g} s, expected FILE@t0:t1 with t0 < t1")
+    return Spec(text, Path(match["file"]), begin, end)
+
+
+def _time(text: str, word: str, default: float) -> float:
+    try:
+        value = float(word) if word.strip() else default
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        raise InputError(f"{text}: found '{word}' as a time, expected FILE@t0:t1 with numbers in seconds")
+    return value
+
+
+def unreadable(path: Path, error: OSError) -> InputError:
+    """The message for a file that cannot be opened, with the names that come near."""
+    if isinstance(error, FileNotFoundError):
+        folder = path.parent
+        names = sorted(p.name for p in folder.iterdir() if p.is_file()) if folder.is_dir() else []
+        near = [n for n in names if n.lower().startswith(path.stem[:4].lower())][:5]
+        return InputError(f"{path}: there is no such log" + (f"; near: {', '.join(near)}" if near else ""))
+    return InputError(f"{path}: cannot be read: {error.strerror or error}")
+
+
+def check_separate(train: Sequence[str], test: Sequence[str]) -> None:
+    """Nothing may be trained on and tested on. Raises InputError.
+
+    Two specifications overlap where their files are one, or have the same content, and their parts share
+    samples. Records of the same kind (training among themselves) may not overlap either.
+    """
+    if not train or not test:
+        raise InputError(
+            f"found no {'test' if train else 'training'} record, expected one; {_advice(train or test)}"
+        )
+    chosen = [("train", parse(t)) for t in train] + [("test", parse(t)) for t in test]
+    contents = [spec.content() for _, spec in chosen]
+    for i, (role, spec) in enumerate(chosen):
+        for j in range(i):
+            other_role, other = chosen[j]
+            if contents[i] != contents[j] or not _overlap(spec, other):
+                continue
+            same = "" if spec.path == other.path else " (the files have the same content)"
+            raise InputError(
+                f"--{other_role} {other.text} and --{role} {spec.text} share samples{same}; "
+                + _advice([other.text])
+            )
+
+
+def _overlap(a: Spec, b: Spec) -> bool:
+    return max(a.begin, b.begin) < min(a.end, b.end)
+
+
+def _advice(texts: Sequence[str]) -> str:
+    file = parse(texts[0]).path if texts else Path("LOG")
+    return (
+        "one file can serve for both in parts that do not overlap, the last quarter held out, say: "
+        f"--train {file}@0:45 --test {file}@45:60 (times in seconds)"
+    )
+
+
+def split(record: Record, parts: int = 2) -> list[Record]:
+    """A record in consecutive blocks of equal length, named after their times. Raises InputError."""
+    edges = [round(len(record.t) * k / parts) for k in range(parts + 1)]
+    file = parse(record.name).path
+    blocks = []
+    for begin, end in pairwise(edges):
+        if end - begin < 2:
+            raise InputError(f"{record.name}: {len(record.t)} samples cannot be split into {parts} blocks")
+        name = f"{file}@{record.t[begin]:.6g}:{record.t[end - 1] + record.step:.6g}"
+        blocks.append(record.part(begin, end, name))
+    return blocks
