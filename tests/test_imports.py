@@ -24,6 +24,7 @@ ORDER = (
     "backends",
     "generation",
     "compiled",
+    "probing",
     "dataset",
     "excitation",
     "calibration",

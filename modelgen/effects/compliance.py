@@ -2,8 +2,8 @@
 
 The coordinate is the drive's, by which logs and controllers know the joint. The state is how far the
 link stays behind it; its acceleration follows from the effort that a rigid joint would transmit, the
-links' inertia about the joint and what the spring transmits instead. That effort is taken at the drive's coordinate: how it changes over
-the lag itself is left out.
+links' inertia about the joint and what the spring transmits instead. That effort is taken at the
+drive's coordinate: how it changes over the lag itself is left out.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class EffectForces:
         for effect in self.e.effects:
             for _, symbol in effect.parameters:
                 column: dict[int, Expr] = {}
-                for part in effect.parts:
+                for part in self._parts(effect):
                     slopes = [sp.diff(force, symbol) for force in part.forces]
                     for n, x in self._inputs(effect, part, slopes).items():
                         column[n] = column[n] + x if n in column else x
@@ -68,7 +68,7 @@ class EffectForces:
         n = self.e.n
         total = [[self.graph.zero] * n for _ in range(n)]
         for effect in self.e.effects:
-            for part in effect.parts:
+            for part in self._parts(effect):
                 if stored and part.place == "transmission":
                     continue
                 for row, column, mass in self._masses(effect, part):
@@ -101,6 +101,17 @@ class EffectForces:
 
     # -- one part of an effect --------------------------------------------------------------
 
+    def _parts(self, effect: AppliedEffect) -> list[Part]:
+        """Without links of no length, of which a law over their line says nothing."""
+        return [p for p in effect.parts if not (self._along_line(p) and self._short(p.joint))]
+
+    def _along_line(self, part: Part) -> bool:
+        x = part.variables
+        return isinstance(x, LinkVariables) and any(force.has(*x.end) for force in part.forces)
+
+    def _short(self, link: int) -> bool:
+        return all(e.is_zero for e in self.e.link_end(link))
+
     def _number(self, part: Part) -> int | None:
         """Coordinate of the part's joint."""
         coordinates = self.e.arm.coordinates
@@ -110,7 +121,7 @@ class EffectForces:
         """Sums of the forces at the motor coordinates, or of the efforts of all others."""
         total = self.e.zeros()
         for effect in self.e.effects:
-            for part in effect.parts:
+            for part in self._parts(effect):
                 if part.place == "input" or (part.place == "motor") != (kind == "motor"):
                     continue
                 for n, x in self._efforts(effect, part, part.forces).items():

@@ -1,0 +1,68 @@
+"""Where an effect can stand on an arm, and the arm with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from modelgen.description.objects import Arm, DirectDrive, EffectUse, LeveredDrive
+from modelgen.effects import CATALOGUE, DescriptionEffect, InputEffect
+from modelgen.effects.environment import AddedMass, FluidDrag
+from modelgen.effects.measurement import LeverGeometry
+from modelgen.effects.mechanism import ActuatorMass
+
+_LEVERS = (LeverGeometry, ActuatorMass)
+
+
+def places(arm: Arm, name: str) -> list[int | None]:
+    """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
+
+    An effect that may stand at either is offered for the whole arm.
+    """
+    effect = CATALOGUE[name]
+    if effect.scope != "joint":
+        there = any(use.name == name for use in arm.effects)
+        if issubclass(effect, FluidDrag | AddedMass) and not _tips_known(arm):
+            return []
+        return [] if there else [None]
+    found: list[int | None] = []
+    for number, index in enumerate(arm.coordinates, 1):
+        joint = arm.joints[index]
+        if any(use.name == name for use in joint.effects):
+            continue
+        if issubclass(effect, _LEVERS) and not isinstance(joint.drive, LeveredDrive):
+            continue
+        driven = isinstance(joint.drive, LeveredDrive | DirectDrive)
+        if name == "drive_gain_error" and not driven:
+            continue
+        if issubclass(effect, InputEffect) and not driven:
+            continue
+        if name == "transmission_coupling" and len(arm.coordinates) < 2:
+            continue
+        found.append(number)
+    return found
+
+
+def _tips_known(arm: Arm) -> bool:
+    """Whether the links that carry no other have nominal inertials, from which their end is taken."""
+    carrying = {joint.antecedent for joint in arm.joints}
+    return all(link is not None for i, link in enumerate(arm.links) if i not in carrying)
+
+
+def with_effect(arm: Arm, name: str, joint: int | None, values: Mapping[str, float]) -> Arm:
+    """The arm with one effect more, at coordinate number `joint` (from 1) or at the whole arm.
+
+    Where the effect stands there already, its values are replaced.
+    """
+    use = EffectUse(name, dict(values))
+    if joint is None:
+        return replace(arm, effects=(*(u for u in arm.effects if u.name != name), use))
+    index = arm.coordinates[joint - 1]
+    old = arm.joints[index]
+    new = replace(old, effects=(*(u for u in old.effects if u.name != name), use))
+    return replace(arm, joints=tuple(new if i == index else j for i, j in enumerate(arm.joints)))
+
+
+def changes_description(name: str) -> bool:
+    """Whether the effect is a departure of the arm from its description."""
+    return issubclass(CATALOGUE[name], DescriptionEffect)

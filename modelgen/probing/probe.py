@@ -1,0 +1,197 @@
+"""Columns and contributions of effects along a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from modelgen.backends.casadi_function import casadi_function
+from modelgen.backends.numpy import NumpyFunction
+from modelgen.base_parameters.analytic import slid
+from modelgen.description.objects import Arm
+from modelgen.effects import CATALOGUE, Definition, Parameter, described
+from modelgen.functions.objects import Function
+from modelgen.model.equations import Equations
+from modelgen.probing.motion import Array, Motion
+from modelgen.probing.places import changes_description, with_effect
+from modelgen.probing.programs import added_by, columns_of, grouping, inputs_of, loads_of, steps_of
+
+Values = Mapping[str, float]
+Place = tuple[str, int | None]
+
+# Not free: they choose the form of the law, or where it acts.
+_FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay")
+
+
+class Prober:
+    """One arm and its effects to be. `arm`: as described, with the effects that it has already.
+
+    Base parameters are those of `modelgen.functions.build_model` for the same arm. Effects are named as in
+    the catalogue, joints by the number of their coordinate from 1, None for the whole arm.
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm = arm
+        self.base = grouping(arm)
+        self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
+        self._made: dict[object, NumpyFunction] = {}
+
+    @cached_property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.arm.coordinates)
+
+    def linear(self, effect: str) -> tuple[Parameter, ...]:
+        """Its linear parameters: `columns` has one column for each."""
+        return CATALOGUE[effect].linear
+
+    def nonlinear(self, effect: str) -> tuple[Parameter, ...]:
+        """Its other parameters."""
+        return CATALOGUE[effect].nonlinear
+
+    def inputs(self, motion: Motion, parameters: Array) -> Array:
+        """Inputs of the arm as described, (N, n), for its base parameters."""
+        return self._inputs_of("described", self.arm, motion, parameters)
+
+    def columns(
+        self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
+    ) -> Array:
+        """Inputs per unit of each linear parameter, (N, n, k), for `values` of the others.
+
+        States start at zero and are stepped along the motion. Raises InputError where the effect cannot
+        stand there.
+        """
+        e = self._of_effect(effect, joint, values)
+        names = [p.name for p in self.linear(effect)]
+        function, places = columns_of(e)
+        call = self._made.setdefault(id(e), NumpyFunction(function))
+        found = self._run(call, e, function, motion, values, parameters)
+        result = np.zeros((len(motion.t), self.n, len(names)))
+        for k, (name, coordinate) in enumerate(places):
+            result[:, coordinate, names.index(name)] += found[:, k]
+        return result
+
+    def contribution(
+        self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
+    ) -> Array:
+        """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
+        definition = CATALOGUE[effect]
+        if effect == "time_delay":
+            return self._delayed(motion, values["delay"], parameters)
+        if changes_description(effect) or effect == "torque_constant_saturation":
+            other = with_effect(self.arm, effect, joint, values)
+            return self._inputs_of(None, other, motion, parameters) - self.inputs(motion, parameters)
+        if definition.linear:
+            weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
+            columns = self.columns(effect, joint, motion, values, parameters)
+            return np.asarray(columns @ weights)
+        e = self._of_effect(effect, joint, values)
+        function = added_by(e, self.base)
+        call = self._made.setdefault((id(e), "added"), NumpyFunction(function))
+        return self._run(call, e, function, motion, values, parameters)
+
+    # -- inside -----------------------------------------------------------------------------
+
+    def _inputs_of(self, name: str | None, arm: Arm, motion: Motion, parameters: Array) -> Array:
+        if name not in self._made:
+            call = NumpyFunction(inputs_of(arm, self.base))
+            if name is None:
+                return self._along(call, arm, motion, parameters)
+            self._made[name] = call
+        return self._along(self._made[name], arm, motion, parameters)
+
+    def _along(self, call: NumpyFunction, arm: Arm, motion: Motion, parameters: Array) -> Array:
+        """Inputs of an arm whose own effects may have states."""
+        e = Equations(slid(described(arm)))
+        states = self._states(e, motion, (), parameters) if e.state_names() else None
+        return np.asarray(call(**self._given(call.function, motion, (), parameters, None, states)))
+
+    def _delayed(self, motion: Motion, delay: float, parameters: Array) -> Array:
+        now = self.inputs(motion, parameters)
+        later = [np.interp(motion.t + delay, motion.t, now[:, k]) for k in range(self.n)]
+        return np.column_stack(later) - now
+
+    def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
+        """Equations of the arm with this effect alone, what is not fixed left free."""
+        definition: type[Definition] = CATALOGUE[effect]
+        free = tuple(p.name for p in definition.nonlinear if p.name not in _FIXED)
+        fixed = {name: value for name, value in values.items() if name in _FIXED}
+        key = (effect, joint, tuple(sorted(fixed.items())))
+        if key not in self._equations:
+            joints = tuple(replace(j, effects=()) for j in self.arm.joints)
+            alone = with_effect(replace(self.arm, joints=joints, effects=()), effect, joint, fixed)
+            self._equations[key] = Equations(slid(alone), free=free)
+        return self._equations[key]
+
+    def _run(
+        self,
+        call: NumpyFunction,
+        e: Equations,
+        function: Function,
+        motion: Motion,
+        values: Values,
+        parameters: Array,
+    ) -> Array:
+        free = self._free(e, values)
+        loads = None
+        if any(effect.depends_on("load") for effect in e.effects):
+            made = self._made.setdefault("loads", NumpyFunction(loads_of(self.arm, self.base)))
+            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
+        states = self._states(e, motion, free, parameters) if e.state_names() else None
+        return np.asarray(call(**self._given(function, motion, free, parameters, loads, states)))
+
+    def _free(self, e: Equations, values: Values) -> tuple[float, ...]:
+        """Values of what was left free, in order."""
+        defaults = {p.name: p.default for effect in e.effects for p in effect.effect.nonlinear}
+        names = [symbol.name.removeprefix("free_") for symbol in e.free]
+        given = [values.get(name, defaults[name]) for name in names]
+        missing = [name for name, value in zip(names, given, strict=True) if value is None]
+        if missing:
+            raise ValueError(f"no value for {', '.join(missing)}")
+        return tuple(float(value) for value in given if value is not None)
+
+    def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
+        """States at every sample, (N, s), from zero, stepped by CasADi's virtual machine."""
+        function = steps_of(e, self.base)
+        step = casadi_function(function)
+        count = len(motion.t)
+        given = self._given(function, motion, free, parameters, None, np.zeros((count, len(e.state_names()))))
+        given["dt"] = np.full((count, 1), motion.step)
+        names = [a.name for a in function.arguments if a.name != "state"]
+        x = {a.name: ca.SX.sym(a.name, a.size) for a in function.arguments}
+        # mapaccum feeds the first output back into the first input
+        ordered = ca.Function("ordered", [x["state"], *(x[k] for k in names)], [step(*x.values())])
+        series = ordered.mapaccum("series", count, {"base": 4})
+        columns = [
+            np.ascontiguousarray(np.broadcast_to(given[k], (count, given[k].shape[-1])).T) for k in names
+        ]
+        after = np.array(series(np.zeros(len(e.state_names())), *columns)).T
+        return np.vstack([np.zeros((1, after.shape[1])), after[:-1]])
+
+    def _given(
+        self,
+        function: Function,
+        motion: Motion,
+        free: tuple[float, ...],
+        parameters: Array,
+        loads: Array | None,
+        states: Array | None,
+    ) -> dict[str, Array]:
+        count = len(motion.t)
+        known = {
+            "q": motion.q,
+            "dq": motion.dq,
+            "ddq": motion.ddq,
+            "time": motion.t[:, None],
+            "dt": np.full((count, 1), motion.step),
+            "parameters": np.asarray(parameters, dtype=float),
+            "free": np.asarray(free, dtype=float),
+            "load": loads if loads is not None else np.zeros((count, self.n)),
+            "state": states if states is not None else np.zeros((count, 1)),
+            "input": np.zeros((count, self.n)),
+        }
+        return {a.name: known[a.name] for a in function.arguments}

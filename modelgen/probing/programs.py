@@ -1,0 +1,84 @@
+"""Functions that only probing needs: inputs, loads, columns and states of one effect."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from modelgen.base_parameters import Grouping, group
+from modelgen.base_parameters.analytic import slid
+from modelgen.description.objects import Arm
+from modelgen.effects import described
+from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.objects import Argument, Function, Output
+from modelgen.functions.parametric import base_values
+from modelgen.graph import Expr, lower
+from modelgen.model.effect_forces import EffectForces
+from modelgen.model.equations import Equations
+from modelgen.model.motion import Rates
+
+
+def grouping(arm: Arm) -> Grouping:
+    """The base parameters of the arm as `build_model` has them."""
+    return group(Equations(described(arm)))
+
+
+def bare(name: str, e: Equations, count: int, expressions: Sequence[Expr]) -> Function:
+    """A function of everything that its expressions read; `count` base parameters; one output "out"."""
+    program = lower({"out": list(expressions)}, [], None)
+    n = e.n
+    sizes = {
+        **dict.fromkeys(("q", "dq", "ddq", "load", "input"), n),
+        "parameters": count,
+        "time": 1,
+        "dt": 1,
+        "state": len(e.state_names()),
+        "free": len(e.free),
+    }
+    arguments = [Argument(a, size, "", "", float("inf")) for a, size in sizes.items() if size]
+    output = Output("out", len(expressions), 1, "", "")
+    return Function(name, "", tuple(arguments), (output,), program, {})
+
+
+def inputs_of(arm: Arm, base: Grouping) -> Function:
+    """Inputs of the arm, with the base parameters of another description of it: {q, dq, ddq, parameters}."""
+    e = Equations(slid(described(arm)))
+    values = base_values(e, base)
+    dynamics = Dynamics(e, values)
+    return bare("inputs", e, len(base.base), dynamics.inverse_dynamics(e.vector("dq"), e.vector("ddq")))
+
+
+def loads_of(arm: Arm, base: Grouping) -> Function:
+    """Loads at the motor coordinates."""
+    e = Equations(slid(described(arm)))
+    return bare("loads", e, len(base.base), Dynamics(e, base_values(e, base)).loads())
+
+
+def columns_of(e: Equations) -> tuple[Function, list[tuple[str, int]]]:
+    """Columns of the only effect of `e`: a function, and what its outputs are: (parameter, coordinate)."""
+    columns = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq"))).columns()
+    names = [parameter.name for effect in e.effects for parameter, _ in effect.parameters]
+    entries = [(name, n, x) for name, column in zip(names, columns, strict=True) for n, x in column.items()]
+    function = bare("columns", e, 0, [x for _, _, x in entries])
+    return function, [(name, n) for name, n, _ in entries]
+
+
+def steps_of(e: Equations, base: Grouping) -> Function:
+    """States of the only effect of `e` after dt."""
+    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), _values(e, base))
+    return bare("steps", e, len(base.base), forces.steps(e.graph.input("dt", 0)))
+
+
+def added_by(e: Equations, base: Grouping) -> Function:
+    """What the only effect of `e` adds to the inputs, where it has no linear parameters."""
+    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), _values(e, base))
+    return bare("added", e, len(base.base), forces.inputs())
+
+
+def _values(e: Equations, base: Grouping) -> list[Expr]:
+    """Link parameters of the base; effects' parameters are none of the base's."""
+    values = [e.graph.zero] * len(e.standard)
+    links = e.per_link * len(e.arm.joints)
+    for k, parameter in enumerate(base.base):
+        if parameter.representative < links:
+            values[parameter.representative] = e.graph.input("parameters", k)
+    return values

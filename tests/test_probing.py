@@ -1,0 +1,145 @@
+"""What probing says an effect would add is what the arm with that effect does."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from witness.arms import ARMS, Emitted, build, shipped
+from witness.compare import agree
+from witness.mechanism import states
+
+from modelgen.backends.casadi_function import casadi_function
+from modelgen.effects import CATALOGUE
+from modelgen.functions import Options
+from modelgen.probing import Motion, Prober, places, with_effect
+
+VALUES = {
+    "stribeck_friction": {"velocity": 4e3},
+    "nonlinear_viscous_friction": {"exponent": 0.6, "scale": 30.0},
+    "friction_warm_up": {"time": 7.0},
+    "torque_ripple": {"harmonic": 3.0, "revolution": 500.0},
+    "presliding": {"distance": 20.0},
+    "transmission_coupling": {"other": 1.0, "ratio": -1.0},
+    "backlash": {"play": 0.01, "stiffness": 3e4, "damping": 300.0},
+    "joint_flexibility": {"stiffness": 3e4, "damping": 300.0},
+    "lever_geometry": {"l2": 2e-4},
+    "payload_change": {"mass": 0.8, "x": 0.1},
+    "base_tilt": {"x": 0.02, "y": -0.01},
+    "drive_gain_error": {"error": 0.1},
+    "torque_constant_saturation": {"coefficient": 1e-5},
+    "encoder_offset": {"offset": 0.01},
+}
+LINKS = np.tile([0.3, 0.01, 0.02, 0.4, -0.01, 0.35, 0.2, 0.1, -0.1, 3.0], 10)
+
+
+@cache
+def prober(arm: str) -> Prober:
+    return Prober(ARMS[arm])
+
+
+def motion(arm: str) -> Motion:
+    """A smooth motion within the strokes, 200 samples at 100 Hz."""
+    q, _, _ = states(ARMS[arm], 60)
+    middle, size = (q.max(axis=0) + q.min(axis=0)) / 2, (q.max(axis=0) - q.min(axis=0)) * 0.3
+    t = np.arange(200) / 100
+    w = 2.0 + np.arange(q.shape[1])
+    phase = np.outer(t, w) + np.arange(q.shape[1])
+    return Motion(t, middle + size * np.sin(phase), size * w * np.cos(phase), -size * w**2 * np.sin(phase))
+
+
+def with_states(emitted: Emitted, m: Motion, theta: np.ndarray) -> dict[str, np.ndarray]:
+    """States along the motion, stepped one sample after the other by `effects_step`."""
+    extra: dict[str, np.ndarray] = {"time": m.t[:, None]}
+    if not emitted.model.states:
+        return extra
+    state = np.zeros((1, len(emitted.model.states)))
+    found = []
+    takes = [a.name for a in emitted.functions["effects_step_standard"].arguments]
+    for k in range(len(m.t)):
+        found.append(state[0])
+        more = {"ddq": m.ddq[k : k + 1]} if "ddq" in takes else {}
+        state = np.atleast_2d(
+            emitted(
+                "effects_step_standard", m.q[k : k + 1], m.dq[k : k + 1], [[m.step]], theta, state, **more
+            )
+        )
+    return {**extra, "state": np.array(found)}
+
+
+def call(emitted: Emitted, name: str, *inputs: np.ndarray, **more: np.ndarray) -> np.ndarray:
+    takes = [a.name for a in emitted.functions[name].arguments]
+    return np.asarray(emitted(name, *inputs, **{k: v for k, v in more.items() if k in takes}))
+
+
+@pytest.mark.parametrize("arm", ["ariane4", "scara"])
+@pytest.mark.parametrize("effect", CATALOGUE)
+def test_an_effect_adds_what_the_arm_with_it_does(effect: str, arm: str) -> None:
+    if effect == "time_delay" or not places(ARMS[arm], effect):
+        pytest.skip("has no place here, or moves the record instead")
+    found_at = places(ARMS[arm], effect)
+    joint = found_at[len(found_at) // 2]
+    values = VALUES.get(effect, {})
+    p = prober(arm)
+    m = motion(arm)
+    emitted = build(with_effect(ARMS[arm], effect, joint, values), Options())
+    before = shipped(arm)
+    names = [s.name for s in before.model.standard]
+    theta = np.ones(len(emitted.model.standard))
+    new = {s.name for s in emitted.model.standard} - set(names)
+    # a tilt shows parameters that an upright arm hides: these are zero, as for who does not know them
+    shown = {b.representative for b in before.model.grouping.base}
+    for k, s in enumerate(emitted.model.standard):
+        link = k < 10 * len(ARMS[arm].joints)
+        if s.name not in new:
+            theta[k] = (LINKS[k] if link else 1e-7) if k in shown else 0.0
+    plain = np.array([theta[[s.name for s in emitted.model.standard].index(name)] for name in names])
+    base = before.base(plain)
+    extra = with_states(emitted, m, theta)
+    if "load_standard" in emitted.functions:
+        extra["load"] = emitted("load_standard", m.q, theta)
+    given = call(emitted, "inverse_dynamics_standard", m.q, m.dq, m.ddq, theta, **extra)
+    alone = before("inverse_dynamics_standard", m.q, m.dq, m.ddq, plain)
+    agree(p.inputs(m, base), alone, 1e-9)
+    linear = CATALOGUE[effect].linear
+    everything = {**values, **{x.name: 1.0 for x in linear}}
+    found = p.contribution(effect, joint, m, everything, base)
+    scale = np.abs(given).max() + np.abs(alone).max()
+    np.testing.assert_allclose(found, given - alone, atol=1e-9 * scale)
+    assert np.abs(found).max() > 1e-7 * scale
+    if linear:
+        columns = p.columns(effect, joint, m, values, base)
+        assert columns.shape == (len(m.t), p.n, len(linear))
+        np.testing.assert_allclose(columns.sum(axis=2), found, atol=1e-9 * scale)
+
+
+def test_a_delay_moves_the_inputs_in_time() -> None:
+    p, m = prober("ur10e"), motion("ur10e")
+    base = np.ones(len(p.base.base))
+    found = p.contribution("time_delay", None, m, {"delay": 0.03}, base)
+    now = p.inputs(m, base)
+    np.testing.assert_allclose(found[:-3], now[3:] - now[:-3], atol=1e-9 * np.abs(now).max())
+
+
+def test_places_follow_the_drives() -> None:
+    assert places(ARMS["ariane6"], "lever_geometry") == [1, 2, 3, 5]
+    assert places(ARMS["ur10e"], "lever_geometry") == []
+    assert places(ARMS["ur10e"], "viscous_friction") == []  # there already
+    assert places(ARMS["ur10e"], "base_tilt") == [None]
+    assert places(ARMS["gravity_arm"], "drive_gain_error") == []
+    assert places(ARMS["gravity_link1"], "transmission_coupling") == []
+
+
+def test_a_function_in_memory_is_the_emitted_one() -> None:
+    emitted = build(ARMS["ariane4"], Options())
+    q, dq, ddq = states(ARMS["ariane4"], 3)
+    for name, inputs in (("regressor", (q, dq, ddq)), ("motor_from_joint", (q, dq, ddq))):
+        function = casadi_function(emitted.functions[name])
+        expected = emitted(name, *inputs)
+        for k in range(3):
+            found = function(*(x[k] for x in inputs))
+            for a, b in zip(
+                found if isinstance(found, tuple) else [found],
+                expected if isinstance(expected, tuple) else [expected],
+                strict=True,
+            ):
+                np.testing.assert_allclose(np.squeeze(np.array(a)), np.squeeze(b[k]), rtol=1e-11, atol=1e-11)
