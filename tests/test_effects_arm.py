@@ -15,7 +15,16 @@ from witness.levers import Drive
 from witness.mechanism import states
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive, NoDrive
-from modelgen.effects import CATALOGUE, Effect, LinkEffect, LinkVariables, Parameter, Values, catalogue
+from modelgen.effects import (
+    CATALOGUE,
+    Effect,
+    LinkEffect,
+    Parameter,
+    Point,
+    PointVariables,
+    Values,
+    catalogue,
+)
 from modelgen.effects.variables import Variables
 from modelgen.errors import InputError
 from modelgen.functions import Options
@@ -363,8 +372,11 @@ class Wind(LinkEffect):
     reference = "none"
     linear = (Parameter("push", "N", "force", "PW"),)
 
-    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
-        return p["push"] * sp.Matrix([1, 0, 0]), sp.zeros(3, 1)
+    def points(self, p: Values) -> list[Point]:
+        return [Point((sp.Integer(0), sp.Integer(0), sp.Integer(0)))]
+
+    def force(self, x: PointVariables, p: Values) -> sp.Matrix:
+        return p["push"] * sp.Matrix([1, 0, 0])
 
 
 class Clock(Effect):

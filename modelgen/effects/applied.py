@@ -16,15 +16,16 @@ from modelgen.effects.base import (
     InputEffect,
     LinkEffect,
     Parameter,
+    Point,
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE
 from modelgen.effects.variables import (
     InputVariables,
-    LinkVariables,
+    PointVariables,
     Variables,
     joint_variables,
-    link_variables,
+    point_variables,
     state_symbols,
 )
 from modelgen.errors import InputError
@@ -37,14 +38,15 @@ TIME_STEP = sp.Symbol("dt", positive=True)
 class Part:
     """Where an effect acts, and the force there.
 
-    place: that of the `Effect`, "link" or "input". joint: index into `arm.joints`. forces: one, or
-    for a link moment x, y, z and force x, y, z; for an input the required and the effective one.
+    place: that of the `Effect`, "point" or "input". joint: index into `arm.joints`. forces: one, for a
+    point x, y, z in the axes of its link; for an input the required and the effective one.
     """
 
     place: str
     joint: int
-    variables: Variables | LinkVariables | InputVariables
+    variables: Variables | PointVariables | InputVariables
     forces: tuple[sp.Expr, ...]
+    point: Point | None = None
 
 
 @dataclass(frozen=True)
@@ -154,7 +156,7 @@ def _applied(
     steps: Mapping[str, sp.Expr] = {}
     potential: sp.Expr = sp.Integer(0)
     if isinstance(effect, LinkEffect):
-        parts = tuple(_on_link(effect, i, values) for i in effect.links(arm, joint))
+        parts = tuple(part for i in effect.links(arm, joint) for part in _on_link(effect, i, values))
     else:
         assert isinstance(effect, Effect)
         assert joint is not None
@@ -181,10 +183,12 @@ def free_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(f"free_{name}", real=True)
 
 
-def _on_link(effect: LinkEffect, link: int, values: Values) -> Part:
-    x = link_variables(f"_{link + 1}")
-    force, moment = effect.wrench(x, values)
-    return Part("link", link, x, (*moment, *force))
+def _on_link(effect: LinkEffect, link: int, values: Values) -> list[Part]:
+    parts = []
+    for k, point in enumerate(effect.points(values), 1):
+        x = point_variables(f"_{link + 1}_{k}")
+        parts.append(Part("point", link, x, tuple(effect.force(x, values)), point))
+    return parts
 
 
 def _at_input(effect: InputEffect, joint: int, values: Values, nominal: Mapping[str, float]) -> AppliedEffect:

@@ -1,7 +1,7 @@
 """What an effect is: one definition in SymPy, from which everything else is derived.
 
-There are four kinds. An `Effect` is one generalised force over one coordinate, a `LinkEffect` a wrench
-on a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
+There are four kinds. An `Effect` is one generalised force over one coordinate, `LinkEffect` forces at
+points of a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
 input and the effort that comes of it. Forces are positive where they oppose the input. They are linear
 in their linear parameters, whose columns of the regressor are derivatives; all other parameters are
 fixed by the description. States advance by `step`.
@@ -10,14 +10,14 @@ fixed by the description. States advance by `step`.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects.variables import InputVariables, LinkVariables, Variables
+from modelgen.effects.variables import InputVariables, PointVariables, Variables
 
 Values = Mapping[str, sp.Expr]  # of an effect's parameters, by name
 ANY = (-float("inf"), float("inf"))
@@ -101,14 +101,27 @@ class Effect(Definition):
             cls.side = "motor" if cls.place == "motor" else "joint"
 
 
+@dataclass(frozen=True)
+class Point:
+    """A point of a link: at a place in its frame [m], or at a fraction of its line, for a part of that."""
+
+    place: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None
+    fraction: float = 0.0
+    part: float = 0.0
+
+
 class LinkEffect(Definition):
-    """A force and a moment on a link, at the origin of its frame and in its axes."""
+    """Forces at points of a link."""
 
     scope: ClassVar[str] = "either"
 
     @abstractmethod
-    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
-        """Force [N] and moment [N m] that it takes to move the link against the effect, 3 x 1 each."""
+    def points(self, p: Values) -> Sequence[Point]:
+        """Where the force acts; points of the line do not exist on a link of no length."""
+
+    @abstractmethod
+    def force(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """Force [N] that it takes to move the point against the effect, 3 x 1, in the axes of the frame."""
 
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """Indices of the links it acts on: the joint's own, all of them for the whole arm."""

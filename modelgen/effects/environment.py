@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Values
-from modelgen.effects.variables import LinkVariables
+from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values
+from modelgen.effects.variables import PointVariables
 
 # Gauss-Legendre quadrature with five points on [0, 1]: (place, weight)
 _NODES = tuple(
@@ -32,18 +32,17 @@ TIP = tuple(
 )
 
 
-def _strips(x: LinkVariables) -> list[tuple[sp.Matrix, sp.Expr]]:
-    """Points along the line of the link and the lengths that they stand for."""
-    length = sp.sqrt(x.end.dot(x.end))
-    return [(x.end * place, length * weight) for place, weight in _NODES]
+class Strips(LinkEffect):
+    """Forces along the line of a link, by quadrature."""
+
+    nonlinear = TIP
+
+    def points(self, p: Values) -> Sequence[Point]:
+        """The nodes of the quadrature."""
+        return [Point(fraction=place, part=weight) for place, weight in _NODES]
 
 
-def _across(x: LinkVariables, v: sp.Matrix) -> sp.Matrix:
-    """The part of a vector across the line of the link."""
-    return v - x.end * (v.dot(x.end) / x.end.dot(x.end))
-
-
-class FluidDrag(LinkEffect):
+class FluidDrag(Strips):
     """Drag of slender links, strip by strip, quadratic in the speed across the link."""
 
     name = "fluid_drag"
@@ -52,39 +51,28 @@ class FluidDrag(LinkEffect):
     linear = (
         Parameter("coefficient", "N s^2/m^3", "half density, drag coefficient and width together", "CD"),
     )
-    nonlinear = TIP
     confused_with = ("nonlinear_viscous_friction", "added_mass")
     experiment = "the same motion in air and in the fluid, the arm folded and straight"
 
-    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
-        """Integral of CD |v| v along the link, v the velocity across it."""
-        force, moment = sp.zeros(3, 1), sp.zeros(3, 1)
-        for point, length in _strips(x):
-            v = _across(x, x.velocity_at(point))
-            strip = p["coefficient"] * length * sp.sqrt(v.dot(v) + STILL) * v
-            force, moment = force + strip, moment + point.cross(strip)
-        return force, moment
+    def force(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """CD |v| v by length, v the velocity across the link."""
+        v = x.across(x.velocity)
+        return p["coefficient"] * x.length * sp.sqrt(v.dot(v) + STILL) * v
 
 
-class AddedMass(LinkEffect):
+class AddedMass(Strips):
     """Fluid that is accelerated with a slender link, across it."""
 
     name = "added_mass"
     text = "fluid that slender links accelerate with them, across their line"
     reference = "Morison, Johnson and Schaaf 1950; Fossen 2011"
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
-    nonlinear = TIP
     confused_with = ("payload_change", "fluid_drag")
     experiment = "the same motion in air and in the fluid, fast and slow"
 
-    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
-        """Integral of CM a along the link, a the acceleration across it (no gravity: the fluid floats)."""
-        force, moment = sp.zeros(3, 1), sp.zeros(3, 1)
-        for point, length in _strips(x):
-            a = x.acceleration_at(point) + x.gravity
-            strip = p["per_length"] * length * _across(x, a)
-            force, moment = force + strip, moment + point.cross(strip)
-        return force, moment
+    def force(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """CM a by length, a the acceleration across the link (no gravity: the fluid floats)."""
+        return p["per_length"] * x.length * x.across(x.acceleration + x.gravity)
 
 
 class PayloadChange(LinkEffect):
@@ -106,11 +94,13 @@ class PayloadChange(LinkEffect):
         """The joint's own, the last one for the whole arm."""
         return [len(arm.joints) - 1 if joint is None else joint]
 
-    def wrench(self, x: LinkVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix]:
-        """mass times acceleration less gravity, at its place."""
-        place = sp.Matrix([p["x"], p["y"], p["z"]])
-        force = p["mass"] * x.acceleration_at(place)
-        return force, place.cross(force)
+    def points(self, p: Values) -> Sequence[Point]:
+        """Its place."""
+        return [Point((p["x"], p["y"], p["z"]))]
+
+    def force(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """mass times acceleration less gravity."""
+        return p["mass"] * x.acceleration
 
 
 class BaseTilt(DescriptionEffect):

@@ -39,28 +39,22 @@ class Variables:
 
 
 @dataclass(frozen=True)
-class LinkVariables:
-    """Of a wrench on a link, everything in the axes of its frame.
+class PointVariables:
+    """Of a force at a point of a link, everything in the axes of the link's frame.
 
-    spin [rad/s]; velocity of the origin [m/s]; spin_rate [rad/s^2]; acceleration of the origin less
-    gravity, gravity [m/s^2]; end: of the link, where the next one begins [m].
+    velocity [m/s]; acceleration less gravity, gravity [m/s^2]; line: direction of the link, from its origin
+    to the next link's; length: of the line that the point stands for [m].
     """
 
-    spin: sp.Matrix
     velocity: sp.Matrix
-    spin_rate: sp.Matrix
     acceleration: sp.Matrix
     gravity: sp.Matrix
-    end: sp.Matrix
+    line: sp.Matrix
+    length: sp.Symbol
 
-    def velocity_at(self, point: sp.Matrix) -> sp.Matrix:
-        """Of a point of the link [m/s]."""
-        return self.velocity + self.spin.cross(point)
-
-    def acceleration_at(self, point: sp.Matrix) -> sp.Matrix:
-        """Of a point of the link, less gravity [m/s^2]."""
-        turning = self.spin_rate.cross(point) + self.spin.cross(self.spin.cross(point))
-        return self.acceleration + turning
+    def across(self, v: sp.Matrix) -> sp.Matrix:
+        """The part of a vector across the line of the link."""
+        return v - self.line * v.dot(self.line)
 
 
 @dataclass(frozen=True)
@@ -93,11 +87,15 @@ def joint_variables(number: str, effect: str, states: tuple[str, ...], drive: Tr
     )
 
 
-def link_variables(number: str) -> LinkVariables:
-    """Variables with the link's number in their names."""
-    names = ("spin", "velocity", "spin_rate", "acceleration", "gravity", "end")
-    return LinkVariables(
-        *(sp.Matrix([sp.Symbol(f"{name}_{axis}{number}", real=True) for axis in "xyz"]) for name in names)
+def point_variables(number: str) -> PointVariables:
+    """Variables with the number of link and point in their names."""
+
+    def triple(name: str) -> sp.Matrix:
+        return sp.Matrix([sp.Symbol(f"{name}_{axis}{number}", real=True) for axis in "xyz"])
+
+    length = sp.Symbol(f"length{number}", positive=True)
+    return PointVariables(
+        triple("velocity"), triple("acceleration"), triple("gravity"), triple("line"), length
     )
 
 

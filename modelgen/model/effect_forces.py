@@ -7,14 +7,14 @@ from functools import cached_property
 
 import sympy as sp
 
-from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, LinkVariables, Part, Variables
+from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, Part, Point, PointVariables, Variables
 from modelgen.geometry.frames import turn_z
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
-from modelgen.graph.vectors import Vector
+from modelgen.graph.vectors import Vector, add, cross, dot, times
 from modelgen.model.equations import Equations
 from modelgen.model.motion import LinkMotion, Rates, link_motions
-from modelgen.model.ports import Port, Surroundings, link_rows, origin_velocities
+from modelgen.model.ports import Port, Surroundings, origin_velocities, point_rows
 
 Lazy = Callable[[], Expr]
 
@@ -102,12 +102,8 @@ class EffectForces:
     # -- one part of an effect --------------------------------------------------------------
 
     def _parts(self, effect: AppliedEffect) -> list[Part]:
-        """Without links of no length, of which a law over their line says nothing."""
-        return [p for p in effect.parts if not (self._along_line(p) and self._short(p.joint))]
-
-    def _along_line(self, part: Part) -> bool:
-        x = part.variables
-        return isinstance(x, LinkVariables) and any(force.has(*x.end) for force in part.forces)
+        """Without the lines of links that have no length."""
+        return [p for p in effect.parts if not (p.point and p.point.place is None and self._short(p.joint))]
 
     def _short(self, link: int) -> bool:
         return all(e.is_zero for e in self.e.link_end(link))
@@ -214,8 +210,8 @@ class EffectForces:
 
     def _port(self, effect: AppliedEffect, part: Part) -> Port:
         x = part.variables
-        if isinstance(x, LinkVariables):
-            return self._link_port(x, part)
+        if isinstance(x, PointVariables):
+            return self._point_port(x, part)
         assert isinstance(x, Variables)
         n = self._number(part)
         assert n is not None
@@ -249,22 +245,35 @@ class EffectForces:
         rates |= {x.transmitted: transmitted, x.inertia: column[n]}
         return Port(({k: e for k, e in enumerate(column) if not e.is_zero},), rates, (x.transmitted,))
 
-    def _link_port(self, x: LinkVariables, part: Part) -> Port:
-        motion = self._motions[part.joint]
-        end = self.e.link_end(part.joint)
-        vectors = (motion.velocity, self._velocities[part.joint], motion.axial, motion.acceleration)
-        named = (x.spin, x.velocity, x.spin_rate, x.acceleration, x.gravity, x.end)
-        bound = {
-            symbol: value
-            for symbols, vector in zip(named, (*vectors, motion.gravity, end), strict=True)
-            for symbol, value in zip(symbols, vector, strict=True)
-        }
-        return Port(link_rows(self.e.frames, part.joint), bound, (*x.spin_rate, *x.acceleration))
+    def _point_port(self, x: PointVariables, part: Part) -> Port:
+        assert part.point is not None
+        i, motion = part.joint, self._motions[part.joint]
+        end = self.e.link_end(i)
+        whole = self.graph.sqrt(dot(end, end))
+        place = self._place(part.point, end)
+        velocity = add(self._velocities[i], cross(motion.velocity, place))
+        acceleration = add(motion.acceleration, times(motion.field, place))
+        bound: dict[sp.Symbol, Expr] = {x.length: whole * part.point.part}
+        for symbols, vector in (
+            (x.velocity, velocity),
+            (x.acceleration, acceleration),
+            (x.gravity, motion.gravity),
+            (x.line, end if whole.is_zero else (end[0] / whole, end[1] / whole, end[2] / whole)),
+        ):
+            bound |= dict(zip(symbols, vector, strict=True))
+        return Port(point_rows(self.e.frames, i, place), bound, tuple(x.acceleration))
+
+    def _place(self, point: Point, end: Vector) -> Vector:
+        """In the frame of the link [m]."""
+        if point.place is None:
+            return end[0] * point.fraction, end[1] * point.fraction, end[2] * point.fraction
+        x, y, z = (from_sympy(self.graph, e, self.e.free) for e in point.place)
+        return x, y, z
 
     def _lazy(self, part: Part) -> dict[sp.Symbol, Lazy]:
         """Variables that few laws use, made where they are needed."""
         x, n = part.variables, self._number(part)
-        if isinstance(x, LinkVariables) or n is None:
+        if isinstance(x, PointVariables) or n is None:
             return {}
         if isinstance(x, InputVariables):
             return {x.input: lambda: self.graph.input("input", n)}

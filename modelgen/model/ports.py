@@ -96,12 +96,9 @@ def origin_velocities(frames: Frames, rates: Rates, motions: Sequence[LinkMotion
     return [found[i] for i in range(len(motions))]
 
 
-def link_rows(frames: Frames, link: int) -> tuple[Mapping[int, Expr], ...]:
-    """Rows of the link's angular velocity and of its origin's, x, y, z each, in its axes."""
+def point_rows(frames: Frames, link: int, place: Vector) -> tuple[Mapping[int, Expr], ...]:
+    """Rows of the velocity x, y, z of a point of the link, in its axes."""
     screws = PartialVelocities(frames).of_link[link]
-    rows: list[dict[int, Expr]] = []
-    for half in range(2):
-        for axis in range(3):
-            found = {n: screw[half][axis] for n, screw in screws.items()}
-            rows.append({n: e for n, e in found.items() if not e.is_zero})
-    return tuple(rows)
+    velocities = {n: add(v, cross(e, place)) for n, (e, v) in screws.items()}
+    rows = [{n: v[axis] for n, v in velocities.items()} for axis in range(3)]
+    return tuple({n: e for n, e in row.items() if not e.is_zero} for row in rows)
