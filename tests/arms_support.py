@@ -13,6 +13,7 @@ import sympy as sp
 from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
 from modelgen.functions import Function, Model, Options, build_model
+from modelgen.probing import with_effect
 from modelgen.resources import shipped_arms
 from modelgen.transmission import of_joint
 
@@ -27,12 +28,36 @@ VARIANTS = {
     "runtime_geometry": Options(runtime_geometry=True),
     "sincos": Options(sincos=True),
     "links": Options(without=frozenset({"drives", "effects"})),
+    "effects": Options(),
 }
+# Of every kind that the catalogue has; (effect, coordinate or the arm, values).
+EFFECTS: tuple[tuple[str, int | None, dict[str, float]], ...] = (
+    ("load_dependent_friction", 1, {}),
+    ("presliding", 1, {"distance": 1.0}),
+    ("joint_flexibility", 1, {"stiffness": 1e3, "damping": 2.0}),
+    ("stribeck_friction", 2, {"velocity": 0.5, "exponent": 0.7}),
+    ("torque_ripple", 2, {"harmonic": 2.0, "revolution": 2000.0}),
+    ("transmission_coupling", 2, {"other": 1.0}),
+    ("encoder_offset", 2, {"offset": 1e-4}),
+    ("friction_warm_up", 3, {"time": 5.0}),
+    ("position_dependent_friction", 3, {}),
+    ("nonlinear_viscous_friction", 3, {"exponent": 0.6}),
+    ("backlash", 3, {"play": 0.01, "stiffness": 1e3}),
+    ("torque_constant_saturation", 3, {"coefficient": 1e-3}),
+    ("fluid_drag", None, {}),
+    ("added_mass", None, {}),
+    ("payload_change", None, {"mass": 0.4, "z": 0.1}),
+    ("base_tilt", None, {"x": 0.05}),
+    ("time_delay", None, {"delay": 0.002}),
+)
 
 
 @cache
 def model(name: str, variant: str = "default") -> Model:
-    return build_model(ARMS[name], VARIANTS[variant])
+    arm = ARMS[name]
+    for effect, joint, values in EFFECTS if variant == "effects" else ():
+        arm = with_effect(arm, effect, joint, values)
+    return build_model(arm, VARIANTS[variant])
 
 
 def standard_vector(made: Model, rng: np.random.Generator) -> np.ndarray:
@@ -87,6 +112,10 @@ def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np
             value = np.sin(q)
         elif a.name == "cos_q":
             value = np.cos(q)
+        elif a.name == "state":  # a lag of some millimetres, not of metres
+            value = 0.005 * value
+        elif a.name == "dt":
+            value = np.array([0.001])
         elif a.name == "geometry":
             value = np.array([made.arm.symbols[name] for name in made.geometry])
         elif a.name == "parameters":

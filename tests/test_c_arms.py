@@ -108,6 +108,8 @@ def test_c_casadi_and_numpy_agree(name: str, compiled: Compiled) -> None:
     "name", [pytest.param(n, marks=pytest.mark.xdist_group(n)) for n in ("ariane4", "scara", "two_fingers")]
 )
 def test_c_casadi_and_numpy_agree_whatever_the_options(name: str, variant: str, compiled: Compiled) -> None:
+    if (name, variant) == ("two_fingers", "effects"):
+        pytest.skip("an elastic joint needs a drive with inertia, which this arm has not")
     check_values(name, variant, compiled(name, variant))
 
 
