@@ -13,6 +13,7 @@ ORDER = (
     "__init__",
     "errors",
     "resources",
+    "figures",
     "graph",
     "description",
     "geometry",

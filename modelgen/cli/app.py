@@ -59,6 +59,10 @@ JacobianLink = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
+Pages = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="Write effects.md with a picture of each there.", show_default=False),
+]
 OnlyArms = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
 ]
@@ -167,11 +171,16 @@ def show(
 
 @app.command()
 @guarded
-def effects(as_json: Json = False) -> None:
+def effects(as_json: Json = False, pages: Pages = None) -> None:
     """Print the catalogue of effects: names, parameters, units, bounds."""
-    from modelgen.cli.catalogue import run
+    from modelgen.cli.catalogue import run, write_pages
 
-    run(as_json=as_json)
+    if pages is not None:
+        from modelgen.report.signatures import pages as made
+
+        write_pages(pages, made())
+    else:
+        run(as_json=as_json)
 
 
 @app.command()

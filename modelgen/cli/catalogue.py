@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -25,6 +27,15 @@ def run(*, as_json: bool) -> None:
     print_table("", columns, rows)
     typer.echo("side: the coordinate x that the effect belongs to, of the motor or of the joint.")
     typer.echo("units: x is that coordinate's unit, F the unit of the force or torque that does work on it.")
+
+
+def write_pages(folder: Path, pages: Mapping[str, str]) -> None:
+    """Write effects.md and its pictures, given by path."""
+    for name, text in pages.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
+    typer.echo(f"wrote {folder / 'effects.md'}")
 
 
 def _unit(parameter: Parameter) -> str:

@@ -58,6 +58,7 @@ class Definition(ABC):
     states: ClassVar[tuple[str, ...]] = ()
     confused_with: ClassVar[tuple[str, ...]] = ()
     experiment: ClassVar[str] = ""
+    seen_over: ClassVar[str] = "velocity"  # what shows it best: velocity, position, acceleration or time
 
     def values(self, given: Mapping[str, float]) -> dict[str, float]:
         """Nominal values of the linear parameters from the description's, where it gives them."""

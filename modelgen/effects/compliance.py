@@ -48,6 +48,7 @@ class JointFlexibility(Compliance):
     """An elastic transmission."""
 
     name = "joint_flexibility"
+    seen_over = "position"
     text = "elastic transmission between drive and link"
     reference = "Spong 1987"
     nonlinear = (STIFFNESS, DAMPING)
@@ -63,6 +64,7 @@ class Backlash(Compliance):
     """Play between drive and link."""
 
     name = "backlash"
+    seen_over = "position"
     text = "play between drive and link"
     reference = "Nordin and Gutman 2002"
     nonlinear = (

@@ -64,6 +64,7 @@ class AddedMass(Strips):
     """Fluid that is accelerated with a slender link, across it."""
 
     name = "added_mass"
+    seen_over = "acceleration"
     text = "fluid that slender links accelerate with them, across their line"
     reference = "Morison, Johnson and Schaaf 1950; Fossen 2011"
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
@@ -79,6 +80,7 @@ class PayloadChange(LinkEffect):
     """A mass that is there in some records only, as a point on the last link."""
 
     name = "payload_change"
+    seen_over = "position"
     text = "a payload besides the one that the parameters hold, as a point mass on the link"
     reference = "Khalil, Gautier and Lemoine 2007"
     nonlinear = (
@@ -107,6 +109,7 @@ class BaseTilt(DescriptionEffect):
     """The base stands at an angle to where the description has it."""
 
     name = "base_tilt"
+    seen_over = "position"
     text = "base turned about its x, then its y axis, against the described direction of gravity"
     reference = "Ayusawa, Venture and Nakamura 2014"
     scope = "arm"

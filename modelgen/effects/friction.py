@@ -55,6 +55,7 @@ class FrictionOffset(Effect):
     """A constant force: asymmetric Coulomb friction, or the offset of a current sensor."""
 
     name = "friction_offset"
+    seen_over = "position"
     text = "constant force while moving: asymmetric Coulomb friction or an offset of the current"
     reference = "Khalil and Dombre 2002"
     confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")

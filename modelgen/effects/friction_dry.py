@@ -37,6 +37,7 @@ class LoadDependentFriction(Effect):
     """Dry friction in proportion to the load that the transmission carries."""
 
     name = "load_dependent_friction"
+    seen_over = "position"
     text = "dry friction in proportion to the weight that the transmission carries"
     reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
     linear = (Parameter("coefficient", "1", "friction per load", "FL"),)
@@ -53,6 +54,7 @@ class PositionDependentFriction(Effect):
     """Dry friction that changes along the joint's range."""
 
     name = "position_dependent_friction"
+    seen_over = "position"
     text = "dry friction that changes with the joint coordinate"
     reference = "Armstrong 1988; Popovic and Goldenberg 1998"
     linear = (
@@ -73,6 +75,7 @@ class FrictionWarmUp(Effect):
     """Friction in excess of the warm drive's, from a cold start at time 0."""
 
     name = "friction_warm_up"
+    seen_over = "time"
     text = "friction that falls as the drive warms up, from the start of the record"
     reference = "Bittencourt and Gunnarsson 2012; Simoni, Beschi, Legnani and Visioli 2015"
     linear = (

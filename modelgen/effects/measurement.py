@@ -16,6 +16,7 @@ class EncoderOffset(DescriptionEffect):
     """The joint is not where its encoder says: the true coordinate is the reading plus the offset."""
 
     name = "encoder_offset"
+    seen_over = "position"
     text = "true coordinate of the joint less the reading"
     reference = "Hollerbach, Khalil and Gautier 2016"
     nonlinear = (Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY),)
@@ -38,6 +39,7 @@ class LeverGeometry(DescriptionEffect):
     """Lengths of a lever that differ from the described ones."""
 
     name = "lever_geometry"
+    seen_over = "position"
     text = "true lengths of the lever less the described ones"
     reference = "Leborne, Creuze, Chemori and Brignone 2018"
     nonlinear = (
@@ -69,6 +71,7 @@ class DriveGainError(DescriptionEffect):
     """The torque constant of one joint differs from the described one."""
 
     name = "drive_gain_error"
+    seen_over = "position"
     text = "relative error of one joint's torque constant"
     reference = "Gautier and Briot 2014"
     nonlinear = (Parameter("error", "1", "true over described torque constant, less 1", bounds=(-0.9, 9.0)),)
@@ -89,6 +92,7 @@ class TorqueConstantSaturation(InputEffect):
     """A torque constant that falls at high current."""
 
     name = "torque_constant_saturation"
+    seen_over = "position"
     text = "torque constant that falls with the square of the current"
     reference = "Gautier and Briot 2014"
     nonlinear = (

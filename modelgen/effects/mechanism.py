@@ -19,6 +19,7 @@ class DriveInertia(Effect):
     """
 
     name = "drive_inertia"
+    seen_over = "acceleration"
     text = "inertia of motor, gears and screw, at the motor coordinate"
     reference = "Leborne, Creuze, Chemori and Brignone 2018, (16)"
     linear = (Parameter("inertia", "{f} s^2/{x}", "inertia of the drive", "IA"),)
@@ -34,6 +35,7 @@ class Spring(Effect):
     """A passive spring at the joint: a gravity compensator, a hose, a cable."""
 
     name = "spring"
+    seen_over = "position"
     text = "passive spring at the joint, with its angle or place of rest"
     reference = "Klimchik, Caro, Furet and Pashkevich 2013"
     side = "joint"
@@ -70,6 +72,7 @@ class TorqueRipple(Effect):
     """A force periodic in the motor's angle: cogging, an eccentric screw, a kinematic error."""
 
     name = "torque_ripple"
+    seen_over = "position"
     text = "force that repeats with the motor's angle: cogging, an eccentric screw"
     reference = "Tuttle and Seering 1996; Gandhi, Ghorbel and Dabney 2002"
     linear = (
@@ -130,6 +133,7 @@ class ActuatorMass(Effect):
     """
 
     name = "actuator_mass"
+    seen_over = "position"
     text = "swing and weight of a linear actuator about its base"
     reference = "Khalil and Dombre 2002, chapter 10; Leborne, Creuze, Chemori and Brignone 2018"
     side = "joint"
