@@ -5,6 +5,7 @@ from modelgen.dataset.drives import Drive, drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import read
+from modelgen.dataset.sources import read_columns
 from modelgen.dataset.specs import Spec, check_separate, parse, split
 
 __all__ = [
@@ -22,5 +23,6 @@ __all__ = [
     "prepare",
     "preset",
     "read",
+    "read_columns",
     "split",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy import signal
@@ -12,8 +13,11 @@ from modelgen.dataset.filters import differences, low_pass
 from modelgen.dataset.objects import Array, Record
 from modelgen.errors import InputError
 
-CONTENT = 0.995  # of the speeds' power lies below the bandwidth of the motion
-OVER_CONTENT = 4.0  # parallel cut-off over that bandwidth
+NOISE = 1e-3  # of the accelerations' power may be noise of the positions, below the cut-off
+CONTENT = 0.9  # of the speeds' power make up the bandwidth of the motion
+OVER_CONTENT = 2.5  # cut-off over that bandwidth, at least
+PERIODS = 10.0  # of the cut-off in a record, at least
+SAMPLES = 25.0  # per period of the cut-off, at least
 POSITION_OVER_EFFORT = 4.5  # cut-off of the positions over the parallel one
 HIGHEST = 0.45  # of the rate: a filter above it does nothing
 DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
@@ -142,28 +146,37 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
 
 
 def chosen_cutoff(record: Record) -> float:
-    """Parallel cut-off [Hz]: four times the bandwidth of the motion, so that friction's steps are seen.
+    """Parallel cut-off [Hz]: as high as the noise of the positions allows.
 
-    Bounded by what the record's rate and length can carry.
+    Noise in a regressor biases least squares. What the accelerations' spectrum holds beyond its valley, and
+    the valley's level below it, counts as noise: it makes up a thousandth of their power at most. Bounded
+    by the motion's own bandwidth, and by the record's rate and length.
     """
     rate = 1.0 / record.step
     length = len(record.t) * record.step
-    content = max(bandwidth(record.q[:, k], rate) for k in range(record.n))
-    highest = HIGHEST * rate / POSITION_OVER_EFFORT
-    return float(np.clip(OVER_CONTENT * content, min(10.0 / length, highest), highest))
+    found = [_frequencies(record.q[:, k], rate) for k in range(record.n)]
+    quiet = min(f for f, _ in found)
+    content = max(f for _, f in found)
+    return float(min(max(quiet, OVER_CONTENT * content, PERIODS / length), rate / SAMPLES))
 
 
-def bandwidth(q: Array, rate: float) -> float:
-    """Frequency [Hz] below which 99.5 % of the power of dq/dt lies, white noise of q (N,) taken off."""
-    speed = np.gradient(q, 1.0 / rate)
-    window = int(min(len(q), max(64, 10.0 * rate)))
+def _frequencies(q: Array, rate: float) -> tuple[float, float]:
+    """Highest cut-off [Hz] that the noise of a position q (N,) allows, and the bandwidth of the motion."""
+    speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
+    window = int(min(len(speed), max(64, 10.0 * rate)))
     f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
-    shape = (np.sin(2 * np.pi * f / rate) * rate) ** 2  # a central difference's answer to white noise
-    band = (f > 0.15 * rate) & (f < 0.35 * rate)
-    floor = float(np.median(power[band] / shape[band])) if band.any() else 0.0
-    # The estimate of a white spectrum scatters: twice its level is still noise.
-    total = np.cumsum(np.maximum(power - 2.0 * floor * shape, 0.0))
-    return float(f[np.searchsorted(total, CONTENT * total[-1])]) if total[-1] > 0.0 else 0.0
+    top = 0.35 * rate  # central differences see little above
+    f, power = f[f < top], power[f < top]
+    speeds = np.cumsum(power)
+    content = float(f[np.searchsorted(speeds, CONTENT * speeds[-1])])
+    accelerations = power * (2 * np.pi * f) ** 2
+    edges = max(content, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
+    bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
+    levels = [(float(np.mean(accelerations[b])), float(f[b][0])) for b in bands if b.any()]
+    level, valley = min(levels, default=(0.0, top))
+    noise = np.cumsum(np.where(f < valley, level, accelerations))
+    noisy = noise > NOISE * np.sum(accelerations[f < valley])
+    return float(f[np.argmax(noisy)]) if noisy.any() else top, content
 
 
 def chosen_gates(record: Record, cutoff: float, order: int, half_width: int) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from modelgen.description import Arm
 from modelgen.errors import InputError
 
 KINDS = ("q", "qm", "dq", "ddq", "i", "tau", "temperature")
+MAPPED_EFFORTS = ("taum", "u")  # force at the motor coordinate; duty cycle or voltage
 _SIGNAL = re.compile(rf"({'|'.join(sorted(KINDS, key=len, reverse=True))})([1-9][0-9]*)")
 
 
@@ -33,8 +34,13 @@ class Signals:
         return ("t", *(name for row in rows for name in row if name is not None))
 
 
-def find_signals(file: str, names: Sequence[str], arm: Arm, drives: Sequence[Drive]) -> Signals:
-    """The signals of an arm with n coordinates among the columns of a log. Raises InputError."""
+def find_signals(
+    file: str, names: Sequence[str], arm: Arm, drives: Sequence[Drive], *, mapped: bool = False
+) -> Signals:
+    """The signals of an arm with n coordinates among the columns of a log. Raises InputError.
+
+    mapped: whether the names come from a mapping file, which has more kinds of effort.
+    """
     n = len(drives)
     doubled = [
         name
@@ -62,7 +68,7 @@ def find_signals(file: str, names: Sequence[str], arm: Arm, drives: Sequence[Dri
             f"{file}: the column {expected} or qm{missing[0]} is missing{_near(expected, names)}"
             f" (found {', '.join(names)})"
         )
-    effort = tuple(_effort(file, names, k, drive, arm) for k, drive in enumerate(drives, 1))
+    effort = tuple(_effort(file, names, k, drive, arm, mapped) for k, drive in enumerate(drives, 1))
     if any(effort):
         for k, (name, drive) in enumerate(zip(effort, drives, strict=True), 1):
             if name is None and drive.driven:
@@ -86,7 +92,10 @@ def _one(file: str, names: Sequence[str], first: str, second: str, arm: Arm) -> 
     return found[0] if found else None
 
 
-def _effort(file: str, names: Sequence[str], k: int, drive: Drive, arm: Arm) -> str | None:
+def _effort(file: str, names: Sequence[str], k: int, drive: Drive, arm: Arm, mapped: bool) -> str | None:
+    for kind in MAPPED_EFFORTS if mapped else ():
+        if f"{kind}{k}" in names:
+            return f"{kind}{k}"
     name = _one(file, names, f"i{k}", f"tau{k}", arm)
     if name == f"i{k}" and not drive.driven:
         joint = arm.joints[arm.coordinates[k - 1]]
@@ -116,6 +125,8 @@ def _some(names: Sequence[str], kind: str, n: int) -> tuple[str | None, ...] | N
 
 def _near(name: str, names: Sequence[str]) -> str:
     near = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.5)
+    if name == "t":
+        near = [n.lower() for n in names if "time" in n.lower() or "stamp" in n.lower()]
     original = next((n for n in names if near and n.lower() == near[0]), None)
     return (
         f", did you mean the column '{original}'? a mapping file (--mapping) renames it" if original else ""

@@ -66,6 +66,8 @@ def unreadable(path: Path, error: OSError) -> InputError:
         names = sorted(p.name for p in folder.iterdir() if p.is_file()) if folder.is_dir() else []
         near = [n for n in names if n.lower().startswith(path.stem[:4].lower())][:5]
         return InputError(f"{path}: there is no such log" + (f"; near: {', '.join(near)}" if near else ""))
+    if isinstance(error, IsADirectoryError):
+        return InputError(f"{path}: found a folder, expected a log")
     return InputError(f"{path}: cannot be read: {error.strerror or error}")
 
 

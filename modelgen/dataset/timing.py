@@ -5,22 +5,31 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from modelgen.dataset.objects import Array
 from modelgen.errors import InputError
 
 JITTER = 0.02  # of the period; below it the stamps are taken as uniform
+UNEVEN = 0.5  # of the period; above it splines ring
 GAP = 10.0  # periods without a sample
 
 
 @dataclass(frozen=True)
 class Axis:
-    """A uniform time axis t (N,) [s], and how far the stamps were from one (largest, in periods)."""
+    """A uniform time axis t (N,) [s], and how far the stamps were from one.
+
+    jitter: largest deviation of the time between two samples from the median, in medians.
+    """
 
     t: Array
     jitter: float
     resampled: bool
+
+    @property
+    def step(self) -> float:
+        """Sampling period [s]."""
+        return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
 
 
 def uniform_axis(file: str, stamps: Array, rate: float | None = None, gap: float | None = None) -> Axis:
@@ -46,21 +55,42 @@ def uniform_axis(file: str, stamps: Array, rate: float | None = None, gap: float
             f"{longest:.4g} s between samples; use the parts beside it, FILE@t0:t1, or set "
             "time: {largest_gap: ...} in a mapping file (--mapping)"
         )
+    jitter = float(np.max(np.abs(steps - period))) / period
     if rate is None:
         even = np.linspace(stamps[0], stamps[-1], len(stamps))
-        jitter = float(np.max(np.abs(stamps - even))) / period
-        if jitter <= JITTER:
+        if float(np.max(np.abs(stamps - even))) <= JITTER * period:
             return Axis(even, jitter, False)
         rate = 1.0 / period
-    else:
-        jitter = float(np.max(np.abs(steps - period))) / period
     count = int(np.floor((stamps[-1] - stamps[0]) * rate * (1.0 + 1e-12))) + 1
     return Axis(stamps[0] + np.arange(count) / rate, jitter, True)
 
 
 def smooth_resampled(stamps: Array, values: Array, t: Array) -> Array:
-    """A continuous signal (N, k) at other times (M,), by cubic splines."""
-    return np.asarray(CubicSpline(stamps, values, axis=0)(t), dtype=np.float64)
+    """A continuous signal (N, k) at other times (M,).
+
+    By cubic splines where the stamps are nearly even; by monotone cubics (PCHIP), which do not ring, where
+    they are not; by means of the broken line around each time where the new axis is coarser.
+    """
+    steps = np.diff(stamps)
+    period, step = float(np.median(steps)), float(t[-1] - t[0]) / (len(t) - 1)
+    if step > 1.5 * period:
+        return _means(stamps, values, t, step)
+    even = float(np.max(np.abs(steps - period))) < UNEVEN * period
+    curve = CubicSpline(stamps, values) if even else PchipInterpolator(stamps, values)
+    return np.asarray(curve(t), dtype=np.float64)
+
+
+def _means(stamps: Array, values: Array, t: Array, step: float) -> Array:
+    """Mean of the broken line through values (N, k) over each [t - step/2, t + step/2] within the stamps."""
+    low = np.clip(t - 0.5 * step, stamps[0], stamps[-1])
+    high = np.clip(t + 0.5 * step, stamps[0], stamps[-1])
+    knots = np.unique(np.concatenate([stamps, low, high]))
+    result = np.empty((len(t), values.shape[1]))
+    for k, column in enumerate(values.T):
+        line = np.interp(knots, stamps, column)
+        area = np.concatenate([[0.0], np.cumsum(0.5 * (line[1:] + line[:-1]) * np.diff(knots))])
+        result[:, k] = (np.interp(high, knots, area) - np.interp(low, knots, area)) / (high - low)
+    return result
 
 
 def held_resampled(stamps: Array, values: Array, t: Array) -> Array:
