@@ -7,6 +7,7 @@ from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import read
 from modelgen.dataset.sources import read_columns
 from modelgen.dataset.specs import Spec, check_separate, parse, split
+from modelgen.dataset.streaming import Stream
 
 __all__ = [
     "PRESETS",
@@ -16,6 +17,7 @@ __all__ = [
     "Record",
     "Settings",
     "Spec",
+    "Stream",
     "check_separate",
     "choose",
     "drives_of",

@@ -33,8 +33,14 @@ def check_length(file: str, samples: int) -> None:
         raise InputError(f"{file}: found {samples} samples, expected at least {SHORTEST}")
 
 
-def check_constant(file: str, arm: Arm, names: tuple[str | None, ...], columns: Array, what: str) -> None:
-    """Positions and efforts must change. Raises InputError."""
+def check_constant(
+    file: str, arm: Arm, names: tuple[str | None, ...], columns: Array, what: str, samples: int | None = None
+) -> None:
+    """Positions and efforts must change. Raises InputError.
+
+    columns: (N, n), or their lowest and highest values (2, n) over `samples`.
+    """
+    count = len(columns) if samples is None else samples
     for k, name in enumerate(names):
         if name is None or np.ptp(columns[:, k]) > 0.0:
             continue
@@ -45,7 +51,7 @@ def check_constant(file: str, arm: Arm, names: tuple[str | None, ...], columns: 
             else "where the arm moved freely, leave the effort columns out"
         )
         raise InputError(
-            f"{file}: the {what} {name} is {columns[0, k]:.6g} in all {len(columns)} samples, expected one "
+            f"{file}: the {what} {name} is {columns[0, k]:.6g} in all {count} samples, expected one "
             f"that changes; {advice}"
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -59,6 +60,11 @@ class Chosen:
     trim: float
     gates: tuple[float, ...]
     rest_time: float
+
+    def trimmed(self, step: float) -> int:
+        """Samples cut off at both ends, for a sampling period [s]."""
+        # A record's blocks have its period but for rounding: a half must not fall to either side.
+        return math.ceil(self.trim / step - 1e-6)
 
 
 # Leborne, Creuze, Chemori and Brignone (2018), IV-D: positions by a Butterworth filter of order 3,

@@ -25,8 +25,7 @@ class Record:
     logged as qm<n>. hold: time by which the input lies after the position's stamp [s]. remarks: for the
     user. arm: whose coordinates these are. core: in a block of a stream, the samples to keep (begin, end;
     the others are overlap with its neighbours), None for a whole record; first: number of the block's
-    first sample in the whole, counted from the first sample that is kept. held: whether the input is
-    constant between its samples.
+    first sample in the whole. held: whether the input is constant between its samples.
     """
 
     name: str

@@ -19,6 +19,7 @@ from modelgen.dataset.rest import moving_samples
 from modelgen.errors import InputError
 
 FEWEST_ROWS = 10
+COLUMNS = 32  # filtered together
 
 
 @dataclass(frozen=True)
@@ -70,9 +71,15 @@ class Prepared:
         THE filter of effort and of every regressor column.
         """
         table: Array = columns.reshape(len(columns), -1)
-        if self.settings.cutoff:
-            table = low_pass(table, self.settings.cutoff, 1.0 / self.record.step, self.settings.order)
-        return np.asarray(table[self.rows].reshape((len(self.rows), *columns.shape[1:])))
+        result = np.empty((len(self.rows), table.shape[1]))
+        rate, chosen = 1.0 / self.record.step, self.settings
+        # Some columns at a time: what the filter takes along stays small.
+        for k in range(0, table.shape[1], COLUMNS):
+            part = table[:, k : k + COLUMNS]
+            result[:, k : k + COLUMNS] = (
+                low_pass(part, chosen.cutoff, rate, chosen.order) if chosen.cutoff else part
+            )[self.rows]
+        return result.reshape((len(self.rows), *columns.shape[1:]))
 
     def picked(self, columns: Array) -> Array:
         """Columns (N, ...) at the rows, not filtered: (M, ...)."""
@@ -148,11 +155,9 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
 def kept_rows(record: Record, settings: Chosen) -> np.ndarray:
     """Indices of the samples that decimation and trimming keep.
 
-    In a block of a stream they lie on the grid of the whole file, whose sample number is round(t / step).
+    In a block of a stream they lie on the grid of the whole log.
     """
-    count = len(record.t)
-    trim = round(settings.trim / record.step)
-    begin, end = (trim, count - trim) if record.core is None else record.core
-    first = record.first + begin
-    begin += -first % settings.factor if record.core is not None else 0
+    trim = settings.trimmed(record.step)
+    begin, end = (trim, len(record.t) - trim) if record.core is None else record.core
+    begin += (trim - record.first - begin) % settings.factor
     return np.arange(begin, max(begin, end), settings.factor)

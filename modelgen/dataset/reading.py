@@ -10,8 +10,9 @@ import numpy as np
 
 from modelgen.dataset import checks
 from modelgen.dataset.objects import Array, Record
-from modelgen.dataset.sources import Source, open_source
-from modelgen.dataset.timing import Axis, held_resampled, smooth_resampled, uniform_axis
+from modelgen.dataset.resampling import held_resampled, smooth_resampled
+from modelgen.dataset.sources import BLOCK, Source, open_source
+from modelgen.dataset.timing import Axis, survey
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
@@ -27,8 +28,8 @@ def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
     checks.check_length(spec, len(table))
     checks.check_finite(spec, table[:, 0], source.wanted, table)
-    axis = uniform_axis(spec, table[:, 0], source.rate, source.gap)
-    record, logged = record_of(source, arm, table, axis)
+    axis = survey(spec, table[:, 0], BLOCK, source.rate, source.gap)
+    record, logged = record_of(source, arm, table, axis, axis.times())
     checks.check_constant(spec, arm, source.signals.position, logged, "position")
     if record.input is not None:
         driven = zip(source.signals.effort, source.drives, strict=True)
@@ -37,14 +38,15 @@ def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
     return record
 
 
-def record_of(source: Source, arm: Arm, table: Array, axis: Axis) -> tuple[Record, Array]:
-    """The record of a table of the source's columns (N, k) on an axis, and its positions as logged (M, n).
+def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> tuple[Record, Array]:
+    """The record of a table of the source's columns (N, k), and its positions as logged (M, n).
 
-    Raises InputError where positions leave the arm's limits.
+    t: times of the axis that it shall have (M,) [s], all or a part. Raises InputError where positions leave
+    the arm's limits.
     """
     file = source.spec.text
     signals, drives = source.signals, source.drives
-    on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis)
+    on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     motor_side = tuple(name.startswith("qm") for name in signals.position)
     q, motor = logged.copy(), logged.copy()
@@ -54,7 +56,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis) -> tuple[Recor
         else:
             motor[:, k] = drive.motor(logged[:, k])
     remarks = [*source.remarks, *checks.check_range(file, arm, signals.position, logged, q)]
-    if axis.resampled:
+    if axis.method != "none":
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
             f"resampled at {1 / axis.step:.6g} Hz"
@@ -77,7 +79,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis) -> tuple[Recor
         )
     record = Record(
         name=file,
-        t=axis.t,
+        t=t,
         q=q,
         motor=motor,
         input=given,
@@ -113,26 +115,27 @@ class _Columns:
     source: Source
     columns: dict[str, Array]
     axis: Axis
+    t: Array
 
-    def smooth(self, names: Sequence[str | None]) -> Array:
+    def smooth(self, names: Sequence[str | None], delay: float = 0.0) -> Array:
         table = self._table(names)
-        return smooth_resampled(self.columns["t"], table, self.axis.t) if self.axis.resampled else table
+        if self.axis.method == "none":
+            return table
+        stamps = self.columns["t"] + delay
+        return smooth_resampled(stamps, table, self.t, self.axis.step, self.axis.method)
 
     def efforts(self, names: Sequence[str | None]) -> tuple[Array, float]:
         """Efforts on the axis, and the time by which their samples lie after the stamps."""
-        table, hold, stamps = self._table(names), self.source.hold, self.columns["t"]
-        if not self.axis.resampled:
-            half = 0.5 * self.axis.step
+        table, hold = self._table(names), self.source.hold
+        half = 0.5 * self.axis.step
+        if self.axis.method == "none":
             later = {"following": half, "previous": -half, "instant": 0.0}
             return table, later[hold] if isinstance(hold, str) else hold
-        if hold == "following":
-            return held_resampled(stamps, table, self.axis.t), 0.5 * self.axis.step
-        if hold == "previous":
-            # Held since the sample before: the same staircase, each value one sample earlier.
-            earlier = np.vstack([table[1:], table[-1:]])
-            return held_resampled(stamps, earlier, self.axis.t), 0.5 * self.axis.step
-        delay = hold if isinstance(hold, float) else 0.0
-        return smooth_resampled(stamps + delay, table, self.axis.t), 0.0
+        if hold in ("following", "previous"):
+            if hold == "previous":  # the same staircase, each value one sample earlier
+                table = np.vstack([table[1:], table[-1:]])
+            return held_resampled(self.columns["t"], table, self.t, self.axis.step), half
+        return self.smooth(names, hold if isinstance(hold, float) else 0.0), 0.0
 
     def _table(self, names: Sequence[str | None]) -> Array:
         zero = np.zeros_like(self.columns["t"])

@@ -46,14 +46,19 @@ class Source:
         return tuple(dict.fromkeys(self.signals.wanted))
 
     def blocks(self, rows: int = BLOCK) -> Iterator[Array]:
-        """The wanted columns of the part, block after block; rows without a time are kept for refusal."""
+        """The wanted columns of the part in blocks of `rows`; rows without a time are kept for refusal."""
+        waiting: list[Array] = []
         for block in self.reader.blocks(self.wanted, rows):
             t = block[:, 0]
             inside = ((t >= self.spec.begin) & (t < self.spec.end)) | np.isnan(t)
-            if inside.all():
-                yield block
-            elif inside.any():
-                yield block[inside]
+            waiting.append(block if inside.all() else block[inside])
+            while sum(map(len, waiting)) >= rows:
+                whole = np.concatenate(waiting)
+                yield whole[:rows]
+                waiting = [whole[rows:]]
+        rest = np.concatenate(waiting) if waiting else np.empty((0, len(self.wanted)))
+        if len(rest):
+            yield rest
 
 
 def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Source:

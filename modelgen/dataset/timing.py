@@ -1,107 +1,109 @@
-"""Time axes: their order, their gaps, and records on a uniform one."""
+"""Time axes: their order, their gaps, and the uniform axis of a record, found in one pass over a log."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from modelgen.dataset.objects import Array
 from modelgen.errors import InputError
 
 JITTER = 0.02  # of the period; below it the stamps are taken as uniform
 UNEVEN = 0.5  # of the period; above it splines ring
+COARSER = 1.5  # of the period; an axis with longer steps holds means
 GAP = 10.0  # periods without a sample
 
 
 @dataclass(frozen=True)
 class Axis:
-    """A uniform time axis t (N,) [s], and how far the stamps were from one.
+    """The uniform time axis begin + k step [s], k = 0 to count - 1, of a whole log.
 
-    jitter: largest deviation of the time between two samples from the median, in medians.
+    jitter: largest deviation of the time between two samples from the period, in periods. method: how
+    signals get there: "none" (sample k stays sample k), "spline", "monotone" or "mean".
     """
 
-    t: Array
+    begin: float
+    step: float
+    count: int
     jitter: float
-    resampled: bool
+    method: str
 
-    @property
-    def step(self) -> float:
-        """Sampling period [s]."""
-        return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
+    def times(self, first: int = 0, end: int | None = None) -> Array:
+        """Times of the samples first to end (excluded) [s]."""
+        numbers = np.arange(first, self.count if end is None else end, dtype=np.float64)
+        return self.begin + self.step * numbers
 
 
-def uniform_axis(file: str, stamps: Array, rate: float | None = None, gap: float | None = None) -> Axis:
-    """The uniform axis for stamps (N,) [s].
+@dataclass
+class Survey:
+    """What is learnt about the stamps of a log, block by block.
 
-    rate: [Hz], by default one over the median period. gap: longest time without a sample that is
-    accepted [s], by default ten periods. Raises InputError where time stands still or runs backwards.
+    rate: of the uniform axis [Hz], gap: longest time without a sample [s], where they are prescribed.
     """
-    steps = np.diff(stamps)
-    wrong = np.flatnonzero(steps <= 0.0)
-    if wrong.size:
-        k = int(wrong[0])
-        what = "stands still" if steps[k] == 0.0 else "runs backwards"
-        raise InputError(
-            f"{file}: time {what} after t = {stamps[k]:.9g} s: the next stamp is {stamps[k + 1]:.9g} s"
-        )
-    period = float(np.median(steps))
-    longest = GAP * period if gap is None else gap
-    k = int(np.argmax(steps))
-    if steps[k] > longest:
-        raise InputError(
-            f"{file}: found a gap of {steps[k]:.4g} s after t = {stamps[k]:.9g} s, expected at most "
-            f"{longest:.4g} s between samples; use the parts beside it, FILE@t0:t1, or set "
-            "time: {largest_gap: ...} in a mapping file (--mapping)"
-        )
-    jitter = float(np.max(np.abs(steps - period))) / period
-    if rate is None:
-        even = np.linspace(stamps[0], stamps[-1], len(stamps))
-        if float(np.max(np.abs(stamps - even))) <= JITTER * period:
-            return Axis(even, jitter, False)
-        rate = 1.0 / period
-    count = int(np.floor((stamps[-1] - stamps[0]) * rate * (1.0 + 1e-12))) + 1
-    return Axis(stamps[0] + np.arange(count) / rate, jitter, True)
+
+    file: str
+    rate: float | None = None
+    gap: float | None = None
+    period: float = 0.0  # median of the first block
+    count: int = 0
+    last: float = 0.0
+    jitter: float = 0.0
+    ends: list[tuple[int, float]] = field(default_factory=list)  # number and time of the blocks' ends
+    bends: list[float] = field(default_factory=list)  # largest distance of a block's stamps from their chord
+
+    def add(self, stamps: Array) -> None:
+        """The next stamps (N,). Raises InputError where time does not run, or where there is a gap."""
+        before = [] if self.count == 0 else [self.last]
+        line = np.concatenate([before, stamps])
+        steps = np.diff(line)
+        wrong = np.flatnonzero(steps <= 0.0)
+        if wrong.size:
+            k = int(wrong[0])
+            what = "stands still" if steps[k] == 0.0 else "runs backwards"
+            raise InputError(
+                f"{self.file}: time {what} after t = {line[k]:.9g} s: the next stamp is {line[k + 1]:.9g} s"
+            )
+        if self.period == 0.0 and steps.size:
+            self.period = float(np.median(steps))
+        longest = GAP * self.period if self.gap is None else self.gap
+        if steps.size and steps.max() > longest:
+            k = int(np.argmax(steps > longest))
+            raise InputError(
+                f"{self.file}: found a gap of {steps[k]:.4g} s after t = {line[k]:.9g} s, expected at most "
+                f"{longest:.4g} s between samples; use the parts beside it, FILE@t0:t1, or set "
+                "time: {largest_gap: ...} in a mapping file (--mapping)"
+            )
+        if steps.size:
+            self.jitter = max(self.jitter, float(np.max(np.abs(steps - self.period))) / self.period)
+        if not self.ends:
+            self.ends.append((0, float(stamps[0])))
+        chord = np.linspace(line[0], line[-1], len(line))
+        self.bends.append(float(np.max(np.abs(line - chord))))
+        self.count += len(stamps)
+        self.last = float(stamps[-1])
+        self.ends.append((self.count - 1, self.last))
+
+    def axis(self) -> Axis:
+        """The uniform axis of the stamps seen."""
+        (_, begin), (number, end) = self.ends[0], self.ends[-1]
+        if self.rate is None:
+            step = (end - begin) / number
+            drift = max(abs(t - begin - k * step) for k, t in self.ends)
+            if drift + max(self.bends) <= JITTER * self.period:
+                return Axis(begin, step, self.count, self.jitter, "none")
+            step = self.period
+        else:
+            step = 1.0 / self.rate
+        count = int(np.floor((end - begin) / step * (1.0 + 1e-12))) + 1
+        even = "spline" if self.jitter < UNEVEN else "monotone"
+        return Axis(begin, step, count, self.jitter, "mean" if step > COARSER * self.period else even)
 
 
-def smooth_resampled(stamps: Array, values: Array, t: Array) -> Array:
-    """A continuous signal (N, k) at other times (M,).
-
-    By cubic splines where the stamps are nearly even; by monotone cubics (PCHIP), which do not ring, where
-    they are not; by means of the broken line around each time where the new axis is coarser.
-    """
-    steps = np.diff(stamps)
-    period, step = float(np.median(steps)), float(t[-1] - t[0]) / (len(t) - 1)
-    if step > 1.5 * period:
-        return _means(stamps, values, t, step)
-    even = float(np.max(np.abs(steps - period))) < UNEVEN * period
-    curve = CubicSpline(stamps, values) if even else PchipInterpolator(stamps, values)
-    return np.asarray(curve(t), dtype=np.float64)
-
-
-def _means(stamps: Array, values: Array, t: Array, step: float) -> Array:
-    """Mean of the broken line through values (N, k) over each [t - step/2, t + step/2] within the stamps."""
-    low = np.clip(t - 0.5 * step, stamps[0], stamps[-1])
-    high = np.clip(t + 0.5 * step, stamps[0], stamps[-1])
-    knots = np.unique(np.concatenate([stamps, low, high]))
-    result = np.empty((len(t), values.shape[1]))
-    for k, column in enumerate(values.T):
-        line = np.interp(knots, stamps, column)
-        area = np.concatenate([[0.0], np.cumsum(0.5 * (line[1:] + line[:-1]) * np.diff(knots))])
-        result[:, k] = (np.interp(high, knots, area) - np.interp(low, knots, area)) / (high - low)
-    return result
-
-
-def held_resampled(stamps: Array, values: Array, t: Array) -> Array:
-    """A signal (N, k) that is constant from each stamp to the next: its mean over each period of t.
-
-    The mean over [t, t + step] keeps the effort's integral, so that no delay and no bias come in.
-    """
-    step = (t[-1] - t[0]) / (len(t) - 1)
-    widths = np.diff(stamps, append=stamps[-1] + max(step, float(np.median(np.diff(stamps)))))
-    integral = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(values * widths[:, None], axis=0)])
-    knots = np.append(stamps, stamps[-1] + widths[-1])
-    edges = np.append(t, t[-1] + step)
-    totals = np.stack([np.interp(edges, knots, column) for column in integral.T], axis=1)
-    return np.diff(totals, axis=0) / np.diff(edges)[:, None]
+def survey(file: str, stamps: Array, block: int, rate: float | None, gap: float | None) -> Axis:
+    """The uniform axis of stamps (N,) [s], taken `block` at a time. Raises InputError as Survey does."""
+    found = Survey(file, rate, gap)
+    for begin, end in pairwise([*range(0, len(stamps), block), len(stamps)]):
+        found.add(stamps[begin:end])
+    return found.axis()

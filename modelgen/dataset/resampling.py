@@ -1,0 +1,48 @@
+"""Signals moved from their stamps to a uniform time axis."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from modelgen.dataset.objects import Array
+
+REACH = 64  # stamps: a cubic spline forgets a value at 0.27 per stamp
+
+
+def smooth_resampled(stamps: Array, values: Array, t: Array, step: float, method: str) -> Array:
+    """A continuous signal (N, k) at the times t (M,), `step` apart; method as in Axis.
+
+    Cubic splines where the stamps are nearly even; monotone cubics (PCHIP), which do not ring, where they
+    are not; means of the broken line around each time where the new axis is coarser.
+    """
+    if method == "mean":
+        return _means(stamps, values, t, step)
+    curve = CubicSpline(stamps, values) if method == "spline" else PchipInterpolator(stamps, values)
+    return np.asarray(curve(t), dtype=np.float64)
+
+
+def held_resampled(stamps: Array, values: Array, t: Array, step: float) -> Array:
+    """A signal (N, k) that is constant from each stamp to the next: its mean over each [t, t + step].
+
+    The mean keeps the effort's integral, so that no delay and no bias come in.
+    """
+    widths = np.diff(stamps, append=max(stamps[-1], t[-1]) + step)
+    integral = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(values * widths[:, None], axis=0)])
+    knots = np.append(stamps, stamps[-1] + widths[-1])
+    return (_columns(t + step, knots, integral) - _columns(t, knots, integral)) / step
+
+
+def _means(stamps: Array, values: Array, t: Array, step: float) -> Array:
+    """Mean of the broken line through values (N, k) over each [t - step/2, t + step/2] within the stamps."""
+    low = np.clip(t - 0.5 * step, stamps[0], stamps[-1])
+    high = np.clip(t + 0.5 * step, stamps[0], stamps[-1])
+    knots = np.unique(np.concatenate([stamps, low, high]))
+    line = _columns(knots, stamps, values)
+    pieces = 0.5 * (line[1:] + line[:-1]) * np.diff(knots)[:, None]
+    area = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(pieces, axis=0)])
+    return np.asarray((_columns(high, knots, area) - _columns(low, knots, area)) / (high - low)[:, None])
+
+
+def _columns(x: Array, knots: Array, values: Array) -> Array:
+    return np.stack([np.interp(x, knots, column) for column in values.T], axis=1)

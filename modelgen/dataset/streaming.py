@@ -1,0 +1,144 @@
+"""Logs of any length in constant memory: overlapping blocks, processed as the whole would be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset import checks
+from modelgen.dataset.choice import Chosen, Settings, choose
+from modelgen.dataset.filters import reach
+from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.processing import Prepared, prepare
+from modelgen.dataset.reading import record_of
+from modelgen.dataset.resampling import REACH
+from modelgen.dataset.sources import open_source
+from modelgen.dataset.timing import Axis, Survey
+from modelgen.description import Arm
+
+# What the filters' memory may hold of samples outside of a block. Second derivatives magnify what is
+# left in the positions by the square of their cut-off over the motion's frequency.
+FORGOTTEN_EFFORT = 1e-12
+FORGOTTEN_POSITION = 1e-16
+LONGEST_SAMPLE = 1 << 18  # samples that the settings are chosen from
+
+
+class Stream:
+    """A log as a sequence of Prepared blocks.
+
+    Their rows, one block after the other, are those of the whole log prepared at once, and filtered columns
+    agree with the whole's to 1e-9 of their size: neighbouring blocks overlap by `overlap` samples. A first
+    pass checks the log and finds its time axis. spec, mapping: as in `read`. settings: None or unset
+    values are chosen from the first quarter million samples. block: samples per block, at least. Raises
+    InputError as `read` does. Iterate as often as needed; every iteration reads the file.
+    """
+
+    def __init__(
+        self,
+        spec: str,
+        arm: Arm,
+        settings: Settings | Chosen | None = None,
+        mapping: Path | str | None = None,
+        block: int = 16_384,
+    ) -> None:
+        self.spec, self.arm = spec, arm
+        self._source = open_source(spec, arm, mapping)
+        self.axis = self._survey()
+        self.samples = self.axis.count
+        head = self._head()
+        self.settings = choose(head, settings)
+        self.remarks = head.remarks
+        self.overlap = overlap(self.settings, self.axis.step)
+        self.block = max(block, 4 * self.overlap)
+
+    def __iter__(self) -> Iterator[Prepared]:
+        for record in self.records():
+            yield prepare(record, self.settings)
+
+    def records(self) -> Iterator[Record]:
+        """The blocks before they are processed, overlap included."""
+        trim = self.settings.trimmed(self.axis.step)
+        begins = range(trim, self.samples - trim, self.block)
+        rows = _Rows(self._source.blocks(), self.axis)
+        for number, begin in enumerate(begins, 1):
+            end = min(begin + self.block, self.samples - trim)
+            low, high = max(0, begin - self.overlap), min(self.samples, end + self.overlap)
+            table, t = rows.table(low, high)
+            record, _ = record_of(self._source, self.arm, table, self.axis, t)
+            name = f"{self.spec} block {number} of {len(begins)}"
+            yield replace(record, name=name, core=(begin - low, end - low), first=low)
+
+    def _survey(self) -> Axis:
+        """First pass: finite numbers, running time, changing signals. Raises InputError."""
+        found = Survey(self.spec, self._source.rate, self._source.gap)
+        wanted = self._source.wanted
+        low, high = np.full(len(wanted), np.inf), np.full(len(wanted), -np.inf)
+        for block in self._source.blocks():
+            checks.check_finite(self.spec, block[:, 0], wanted, block, found.count)
+            found.add(block[:, 0])
+            low, high = np.minimum(low, block.min(axis=0)), np.maximum(high, block.max(axis=0))
+        checks.check_length(self.spec, found.count)
+        span = dict(zip(wanted, np.stack([low, high], axis=1), strict=True))
+        signals = self._source.signals
+        for names, what in ((signals.position, "position"), (self._driven(), "effort")):
+            ends = np.stack([span[name] if name else np.zeros(2) for name in names], axis=1)
+            checks.check_constant(self.spec, self.arm, names, ends, what, found.count)
+        return found.axis()
+
+    def _driven(self) -> tuple[str | None, ...]:
+        efforts = zip(self._source.signals.effort, self._source.drives, strict=True)
+        return tuple(name if drive.driven else None for name, drive in efforts)
+
+    def _head(self) -> Record:
+        """The beginning of the log, for settings to be chosen from."""
+        table, t = _Rows(self._source.blocks(), self.axis).table(0, min(self.samples, LONGEST_SAMPLE))
+        return replace(record_of(self._source, self.arm, table, self.axis, t)[0], name=self.spec)
+
+
+class _Rows:
+    """Rows of a log in order, the last ones kept while blocks overlap."""
+
+    def __init__(self, blocks: Iterator[Array], axis: Axis) -> None:
+        self.blocks, self.axis = blocks, axis
+        self.held = np.empty((0, 0))
+        self.first = 0  # number of the first held row
+
+    def table(self, low: int, high: int) -> tuple[Array, Array]:
+        """Rows (N, k) for the samples low to high (excluded) of the axis, and those samples' times (M,)."""
+        t = self.axis.times(low, high)
+        if self.axis.method == "none":
+            self._read_to(lambda held: self.first + len(held) >= high)
+            begin, end = low - self.first, high - self.first
+            self._drop(begin)
+            return self.held[: end - begin], t
+        margin = REACH * self.axis.step
+        self._read_to(lambda held: bool(held[-1, 0] > t[-1] + margin))
+        begin = max(0, int(np.searchsorted(self.held[:, 0], t[0] - margin)) - REACH)
+        self._drop(begin)
+        end = int(np.searchsorted(self.held[:, 0], t[-1] + margin)) + REACH
+        return self.held[:end], t
+
+    def _read_to(self, enough: Callable[[Array], bool]) -> None:
+        while not len(self.held) or not enough(self.held):
+            block = next(self.blocks, None)
+            if block is None:
+                return
+            self.held = np.concatenate([self.held, block]) if len(self.held) else block
+
+    def _drop(self, rows: int) -> None:
+        self.held = self.held[rows:]
+        self.first += rows
+
+
+def overlap(settings: Chosen, step: float) -> int:
+    """Samples on each side of a block that its filters reach, and that rest is looked for in."""
+    rate = 1.0 / step
+    samples = settings.half_width + 4 + round(settings.rest_time * rate)
+    if settings.cutoff:
+        samples += reach(settings.cutoff, rate, settings.order, FORGOTTEN_EFFORT)
+    if settings.position_cutoff:
+        samples += reach(settings.position_cutoff, rate, settings.position_order, FORGOTTEN_POSITION)
+    return samples
