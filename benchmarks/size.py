@@ -25,6 +25,7 @@ from modelgen.description import load
 from modelgen.description.objects import Arm
 from modelgen.effects import known_effects
 from modelgen.functions import Model, Options, build_model, nominal_base
+from modelgen.generation.sizes import code_digest
 from modelgen.resources import shipped_arms
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -49,9 +50,16 @@ def sized_model(arm: Arm) -> Model:
     return build_model(arm, Options(identified=nominal_base(model)))
 
 
+def accepted_code() -> dict[str, str]:
+    """Digests of the code whose figures were accepted, by arm."""
+    code: dict[str, str] = json.loads(ACCEPTED.read_text(encoding="utf-8"))["code"]
+    return code
+
+
 def accepted() -> dict[str, dict[str, dict[str, Size]]]:
     """The figures that were accepted, by compiler, arm and function."""
     read = json.loads(ACCEPTED.read_text(encoding="utf-8"))
+    read.pop("code")
     return {
         tool: {arm: {name: Size(**size) for name, size in sizes.items()} for arm, sizes in table.items()}
         for tool, table in read.items()
@@ -87,9 +95,10 @@ def document(tables: Mapping[str, Table]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def serialised(tables: Mapping[str, Table]) -> str:
-    """benchmarks/sizes.json: one line for each function."""
-    parts = []
+def serialised(tables: Mapping[str, Table], code: Mapping[str, str]) -> str:
+    """benchmarks/sizes.json: one line for each function. `code`: digests of what was measured, by arm."""
+    digests = [f"    {json.dumps(arm)}: {json.dumps(digest)}" for arm, digest in code.items()]
+    parts = ['  "code": {\n' + ",\n".join(digests) + "\n  }"]
     for tool, table in tables.items():
         of_arms = []
         for arm, sizes in table.items():
@@ -118,13 +127,15 @@ def main(arguments: Sequence[str]) -> int:
     if given.accept and given.arm:
         parser.error("--accept measures every arm")
     measured: dict[str, dict[str, dict[str, Size]]] = {compiler(tool): {} for tool in tools()}
+    code: dict[str, str] = {}
     for name in given.arm or described:
         model = sized_model(described[name])
+        code[name] = code_digest(model)
         for tool in tools():
             with tempfile.TemporaryDirectory() as folder:
                 measured[compiler(tool)][name] = measure(model, Path(folder), tool)
     if given.accept:
-        ACCEPTED.write_text(serialised(measured), encoding="utf-8")
+        ACCEPTED.write_text(serialised(measured, code), encoding="utf-8")
         TABLE.write_text(document(measured), encoding="utf-8")
     print(document(measured))
     before = accepted() if ACCEPTED.exists() else {}

@@ -30,12 +30,21 @@ def shipped_arms() -> Path:
     return _find("arms.yaml")
 
 
+def shipped_sizes() -> Path | None:
+    """The measured sizes of the shipped arms' functions, None where they are not at hand."""
+    try:
+        return _find("sizes.json")
+    except FileNotFoundError:
+        return None
+
+
 def _find(name: str) -> Path:
     package = Path(str(files("modelgen")))
     checkout = package.parent
     # The checkout comes first: an editable installation leaves a copy that ages. pyproject.toml tells it
     # from a site-packages folder, where `templates` may belong to somebody else.
-    candidates = [checkout / name] if (checkout / "pyproject.toml").is_file() else []
+    beside = checkout / ("benchmarks" if name == "sizes.json" else "") / name
+    candidates = [beside] if (checkout / "pyproject.toml").is_file() else []
     candidates.append(package / f"_{name}")
     for path in candidates:
         if path.exists():

@@ -17,6 +17,7 @@ from firmware.sizes import Size, compiler, grown, measure
 from firmware.targets import M4F
 
 from modelgen.functions import Model
+from modelgen.generation.sizes import code_digest, size_rows
 
 # What the compilers' run-time libraries do for them; the square root is one instruction.
 ALLOWED = {"acosf", "memset"}
@@ -123,6 +124,14 @@ def test_no_function_has_grown_by_more_than_three_percent(measured: Measured, na
     assert not lines, "accept with python benchmarks/size.py --accept:\n" + "\n".join(lines)
 
 
+@pytest.mark.parametrize("name", ARMS)
+def test_the_accepted_figures_are_those_of_this_code(name: str) -> None:
+    """Else the README of the arm shows none: python benchmarks/size.py --accept, then generate."""
+    assert size.accepted_code()[name] == code_digest(model(name))
+    rows = size_rows(model(name))
+    assert {row[0] for row in rows[1:]} == {f"`{f.name}`" for f in model(name).functions}
+
+
 def test_growth_is_told_with_both_figures() -> None:
     before = {"gravity": Size(100, 40, 200), "bias": Size(100, 40, 200)}
     now = {"gravity": Size(103, 40, 207), "bias": Size(90, 44, 206), "new": Size(1, 1, 1)}
@@ -134,7 +143,7 @@ def test_growth_is_told_with_both_figures() -> None:
 
 def test_the_table_in_the_documentation_is_the_accepted_one() -> None:
     assert size.TABLE.read_text(encoding="utf-8") == size.document(size.accepted())
-    assert size.ACCEPTED.read_text(encoding="utf-8") == size.serialised(size.accepted())
+    assert size.ACCEPTED.read_text(encoding="utf-8") == size.serialised(size.accepted(), size.accepted_code())
     assert all(set(table) == set(ARMS) for table in json.loads(size.ACCEPTED.read_text()).values())
 
 

@@ -11,7 +11,7 @@ from safety.eva import written
 
 pytestmark = pytest.mark.xdist_group("safety_static")
 SETTINGS = Path(__file__).parent / "safety"
-ARMS = ("ariane4", "scara")
+ARMS = ("ariane4", "scara", "ur10e", "ariane6")
 
 
 @pytest.fixture(scope="module", params=ARMS)

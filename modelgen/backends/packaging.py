@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from modelgen import __version__
 from modelgen.backends.packaging_readme import readme
@@ -23,8 +23,13 @@ _TEMPLATES = {
 }
 
 
-def packaging_files(model: Model, provenance: Provenance, paths: Iterable[str]) -> dict[str, str]:
-    """Text of the packaging's files by path below the arm's folder, whose C files are at `paths`."""
+def packaging_files(
+    model: Model, provenance: Provenance, paths: Iterable[str], sizes: Sequence[Sequence[str]] = ()
+) -> dict[str, str]:
+    """Text of the packaging's files by path below the arm's folder, whose C files are at `paths`.
+
+    `sizes`: rows of the README's table of measured sizes, its heading first.
+    """
     arm = model.arm.name
     macro = arm.upper()
     values = {
@@ -39,7 +44,7 @@ def packaging_files(model: Model, provenance: Provenance, paths: Iterable[str]) 
     files[f"src/{arm}.h"] = render("package/forward.h.j2", **values)
     files["library.json"] = _platformio(arm, provenance)
     files["examples/self_test/main.c"] = self_test(model, provenance)
-    files["README.md"] = readme(model, provenance)
+    files["README.md"] = readme(model, provenance, sizes)
     return files
 
 

@@ -16,6 +16,7 @@ from modelgen.functions import Options, build_model
 from modelgen.functions.objects import Model
 from modelgen.generation.canonical import description_hash
 from modelgen.generation.folders import ARTEFACTS, MARK
+from modelgen.generation.sizes import size_rows
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> Generated
     provenance = Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
     try:
         files = {**c_files(model, provenance), **casadi_files(model, provenance)}
-        files |= packaging_files(model, provenance, files)
+        files |= packaging_files(model, provenance, files, size_rows(model))
     except ValueError as error:
         raise InputError(str(error), arm.where) from error
     symbols = frozenset(c_symbols(model.arm.name, files))
