@@ -1,0 +1,236 @@
+"""A case: an arm, records of it, and what is hidden in it, all drawn from a seed."""
+
+from __future__ import annotations
+
+import json
+import math
+import zlib
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator, default_rng
+
+from hidden import arms, fitting, logs, native, trajectories
+from hidden.arms import Arm
+from hidden.effects import EFFECTS, OUTSIDE, Scales, Site, joints_for, scales
+from hidden.logs import Log
+from hidden.native import Array, Plant, PlantError
+
+RECORDS = ("train_a", "train_b", "test", "check")
+FINE, COARSE = 0.25e-3, 0.5e-3  # s, longest step of the integrator with and without contacts
+TRIES = 10
+SMALL, LARGE = 1e-3, 60.0  # magnitudes
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """One hidden effect. joint counts from 1. strength: wanted; magnitude: known from before, or None."""
+
+    effect: str
+    joint: int
+    strength: float
+    magnitude: float | None = None
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is drawn. encoder: motor, joint (20 bits) or coarse (14 bits, joint side)."""
+
+    arm: str
+    seed: int
+    hidden: tuple[Hidden, ...] = ()
+    encoder: str = "motor"
+    rate: float = 500.0
+    periods: int = 3
+    noise: float = 1.0
+    name: str = "arm"
+
+
+@dataclass(frozen=True)
+class Label:
+    """The truth about a case. strength: reached, by effect; floor: test RMSE (n,) of the arm without it."""
+
+    case: dict[str, Any]
+    strength: list[float]
+    magnitude: list[float]
+    floor: list[float]
+    with_effect: list[float]
+    check_floor: list[float] = field(default_factory=list)
+
+
+def _random(case: Case, *more: int) -> Generator:
+    return default_rng([case.seed, zlib.crc32(case.arm.encode()), *more])
+
+
+class Bench:
+    """Arm and trajectories of a case, and records of it with any effects at any magnitudes."""
+
+    def __init__(self, case: Case) -> None:
+        self.case = case
+        self.arm: Arm = arms.draw(case.arm, _random(case, 1))
+        self._encoders(self.arm.plant)
+        if any(EFFECTS[hidden.effect].fine for hidden in case.hidden):
+            # The speed loop is tuned for one inertia: slower, where a spring parts it in two.
+            for gain, value in (("position_gain", 8.0), ("speed_gain", 16.0), ("integral_gain", 60.0)):
+                self.arm.plant[gain] = value
+        free = case.arm in arms.FREE
+        self.paths: list[Plant] = [
+            self._release(_random(case, 2, k)) if free else trajectories.draw(self.arm, _random(case, 2, k))
+            for k in range(len(RECORDS))
+        ]
+        self.duration = case.periods / float(self.arm.plant["frequency"])
+        q, _, current, _ = native.simulate(self.paths[0], case.rate, self.duration, self._substeps([]))
+        self.scales: Scales = scales(self.arm.plant, q, current, case.rate)
+
+    def _encoders(self, plant: Plant) -> None:
+        bits = {"motor": None, "joint": 20, "coarse": 14}[self.case.encoder]
+        if bits is not None:
+            plant["joint_side"][: self.arm.n] = 1.0
+            plant["count"][: self.arm.n] = 2 * math.pi / 2**bits
+
+    def _release(self, random: Generator) -> Plant:
+        plant = self.arm.plant.copy()
+        plant["free"] = 1.0
+        for j in range(self.arm.n):
+            plant["q0"][j] = random.uniform(0.6, 1.0) * self.arm.position[j][1] * random.choice((-1.0, 1.0))
+        return plant
+
+    def _substeps(self, hidden: list[str]) -> int:
+        longest = FINE if any(EFFECTS[name].fine for name in hidden) else COARSE
+        return max(1, math.ceil(1.0 / self.case.rate / longest - 1e-9))
+
+    def record(self, k: int, magnitudes: dict[int, float]) -> Log:
+        """Record k with effects of the case, by their place in its list, at these magnitudes."""
+        case, plant = self.case, self.arm.plant.copy()
+        names = [case.hidden[place].effect for place in magnitudes]
+        for place, magnitude in magnitudes.items():
+            hidden = case.hidden[place]
+            if EFFECTS[hidden.effect].later and k == 0:
+                continue
+            site = Site(self.arm, hidden.joint - 1, self.scales, _random(case, 3, place))
+            EFFECTS[hidden.effect].put(plant, site, magnitude)
+        plant = trajectories.carry_over(self.paths[k], plant)
+        steps = self._substeps(names)
+        return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, case.noise)
+
+    def errors(self, magnitudes: dict[int, float], test: int = 2) -> Array:
+        """RMSE (n,) on a record that the fit has not seen."""
+        train = [self.record(k, magnitudes) for k in (0, 1)]
+        return fitting.held_out(train, self.record(test, magnitudes), self.arm.plant)[0]
+
+    def strength(self, place: int, floor: Array, found: Array) -> float:
+        """Error with over without, on the joint the effect sits at, or on the joint that shows it most."""
+        hidden = self.case.hidden[place]
+        ratio = found / floor
+        return float(ratio.max() if EFFECTS[hidden.effect].whole else ratio[hidden.joint - 1])
+
+    def tune(self, place: int, floor: Array) -> tuple[float, float]:
+        """Magnitude at which the effect, alone, has the strength wanted; and the strength it has."""
+        wanted = self.case.hidden[place].strength
+        goal, close = math.log(wanted**2 - 1.0), 0.05
+        tried: list[tuple[float, float]] = []
+        best = (math.inf, 1.0, 1.0)
+        at = math.log(0.3)
+        for _ in range(TRIES):
+            try:
+                found = self.strength(place, floor, self.errors({place: math.exp(at)}))
+                value = math.log(max(found**2 - 1.0, 1e-4))
+            except PlantError:
+                found, value = math.inf, 6.0
+            tried.append((at, value))
+            best = min(best, (abs(value - goal), math.exp(at), found))
+            if best[0] < close:
+                break
+            at = _next(tried, goal)
+        return best[1], best[2]
+
+
+def _next(tried: list[tuple[float, float]], goal: float) -> float:
+    """Log magnitude to try next: within a bracket where there is one, else by a square law."""
+    at, value = tried[-1]
+    below = [item for item in tried if item[1] < goal]
+    above = [item for item in tried if item[1] >= goal]
+    if below and above:
+        low, high = max(below), min(above, key=lambda item: item[0])
+        share = (goal - low[1]) / (high[1] - low[1]) if high[1] > low[1] else 0.5
+        nxt = low[0] + min(0.85, max(0.15, share)) * (high[0] - low[0])
+    else:
+        nxt = at + max(-2.5, min(2.5, (goal - value) / 2.0))
+    return min(math.log(LARGE), max(math.log(SMALL), nxt))
+
+
+def make(case: Case, folder: Path) -> Label:
+    """Writes arms.yaml and the records train_a, train_b, test, check as CSV into the folder.
+
+    Raises PlantError where an effect cannot sit at that joint of that arm.
+    """
+    bench = Bench(case)
+    for hidden in case.hidden:
+        if hidden.effect not in EFFECTS:
+            raise PlantError(f"no effect {hidden.effect!r}; there are {', '.join(EFFECTS)}")
+        possible = [j + 1 for j in joints_for(hidden.effect, bench.arm)]
+        if hidden.joint not in possible:
+            raise PlantError(f"{hidden.effect} sits at joint {possible} of {case.arm}, not {hidden.joint}")
+    folder.mkdir(parents=True, exist_ok=True)
+    floor = bench.errors({})
+    magnitudes, strengths = {}, []
+    for place, hidden in enumerate(case.hidden):
+        if hidden.magnitude is not None:
+            magnitudes[place] = hidden.magnitude
+            strengths.append(math.nan)
+        else:
+            magnitudes[place], reached = bench.tune(place, floor)
+            strengths.append(reached)
+    kept = [bench.record(k, magnitudes) for k in range(len(RECORDS))]
+    found = fitting.held_out(kept[:2], kept[2], bench.arm.plant)[0]
+    if len(case.hidden) == 1:
+        strengths = [bench.strength(0, floor, found)]
+    for name, log in zip(RECORDS, kept, strict=True):
+        logs.write(folder / f"{name}.csv", log)
+    free = case.arm in arms.FREE
+    entry = arms.describe(bench.arm, _random(case, 5), exact_links=free)
+    arms.write_description(folder / "arms.yaml", case.name, entry)
+    return Label(
+        asdict(case),
+        strengths,
+        [magnitudes[place] for place in range(len(case.hidden))],
+        [float(value) for value in floor],
+        [float(value) for value in found],
+        [float(value) for value in bench.errors({}, test=3)],
+    )
+
+
+def seal(label: Label, path: Path) -> None:
+    """The label, packed: nothing that reads text comes across it."""
+    path.write_bytes(zlib.compress(json.dumps(asdict(label)).encode()))
+
+
+def unseal(path: Path) -> Label:
+    """The label that was sealed."""
+    data = json.loads(zlib.decompress(path.read_bytes()))
+    case = data["case"]
+    case["hidden"] = tuple(case["hidden"])
+    return Label(**data)
+
+
+def kind(label: Label) -> str:
+    """null, single, pair or outside."""
+    names = [hidden["effect"] for hidden in label.case["hidden"]]
+    if any(name in OUTSIDE for name in names):
+        return "outside"
+    return ("null", "single", "pair")[len(names)]
+
+
+def draw_arm(effect: str, random: np.random.Generator, names: tuple[str, ...]) -> tuple[str, int]:
+    """An arm of those names, and a joint (from 1) of it, that the effect can sit at."""
+    possible = [
+        (name, joint + 1) for name in names for joint in joints_for(effect, arms.draw(name, default_rng(0)))
+    ]
+    if not possible:
+        raise PlantError(f"{effect} can sit at no joint of {', '.join(names)}")
+    having = sorted({name for name, _ in possible})
+    name = having[int(random.integers(len(having)))]
+    joints = [joint for arm, joint in possible if arm == name]
+    return name, joints[int(random.integers(len(joints)))]

@@ -1,0 +1,123 @@
+"""The plant's own least squares: what a complete and an incomplete model leave of a record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import qr
+from scipy.ndimage import maximum_filter1d
+from scipy.signal import butter, sosfiltfilt
+
+from hidden import native
+from hidden.logs import Log, joints_of
+from hidden.native import Array, Plant
+
+POSITION_BAND, BAND = 60.0, 15.0  # Hz
+EDGE = 0.6  # s left out at either end
+REST, SPREAD = 0.01, 0.02  # of the top speed; s about it
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Decimated equations. columns: (N, n, p), effort: (N, n) [A], or N m of a free motion.
+
+    moving: (N, n), 1 where the joint is neither at rest nor about to reverse, else 0.
+    """
+
+    columns: Array
+    effort: Array
+    moving: Array
+
+
+def _low_pass(values: Array, band: float, rate: float) -> Array:
+    return np.asarray(sosfiltfilt(butter(4, band, fs=rate, output="sos"), values, axis=0))
+
+
+def equations(log: Log, described: Plant) -> Rows:
+    """Regressor of links and standard friction, and effort, low-passed alike."""
+    n = int(described["n"])
+    q = _low_pass(joints_of(log, described), POSITION_BAND, log.rate)
+    dq = np.gradient(q, 1.0 / log.rate, axis=0)
+    ddq = np.gradient(dq, 1.0 / log.rate, axis=0)
+    columns = native.regressor(described, q, dq, ddq)
+    if log.current is None:
+        effort = -(columns[:, :, : 10 * n] @ standard_links(described))
+        columns = columns[:, :, 10 * n :].reshape(len(q), n, n, 3)[..., 1:].reshape(len(q), n, 2 * n)
+    else:
+        # Held from its stamp on: centred on the stamp by the mean with the one before.
+        effort = log.current.copy()
+        effort[1:] = 0.5 * (log.current[1:] + log.current[:-1])
+        columns = columns[:, :, independent(described)]
+    step, edge = max(1, int(log.rate / (2.4 * BAND))), int(EDGE * log.rate)
+    kept = slice(edge, len(q) - edge, step)
+    flat = _low_pass(columns.reshape(len(q), -1), BAND, log.rate)[kept]
+    # At rest dry friction takes any value within its bounds: no equation. The filters spread that in time.
+    slow = np.abs(dq) < REST * np.abs(dq).max(axis=0)
+    moving = maximum_filter1d(slow.astype(float), 2 * int(SPREAD * log.rate) + 1, axis=0) < 0.5
+    return Rows(
+        flat.reshape(len(flat), n, -1), _low_pass(effort, BAND, log.rate)[kept], moving[kept].astype(float)
+    )
+
+
+def standard_links(plant: Plant) -> Array:
+    """(10 n,): mass, first moments, inertia about the origin (xx xy xz yy yz zz), link after link."""
+    out = []
+    for j in range(int(plant["n"])):
+        mass, com = float(plant["mass"][j]), plant["com"][j]
+        at_origin = mass * (com @ com * np.eye(3) - np.outer(com, com))
+        out += [[mass], mass * com, plant["inertia"][j] + at_origin[np.triu_indices(3)]]
+    return np.concatenate(out)
+
+
+def independent(described: Plant) -> Array:
+    """Indices of standard parameters whose columns span all of them, in motions of any kind."""
+    n = int(described["n"])
+    draw = np.random.default_rng(0)
+    q, dq, ddq = (draw.uniform(-1, 1, size=(200, n)) for _ in range(3))
+    for j in range(n):
+        if described["kind"][j] > 1.5:  # within the stroke
+            inner = np.pi / 2 + 0.6 * q[:, j]
+            q[:, j] = described["offset"][j] + described["rev"][j] * inner
+    stacked = native.regressor(described, q, dq, ddq).reshape(200 * n, -1)
+    size = np.linalg.norm(stacked, axis=0)
+    used = np.flatnonzero(size > 1e-12 * size.max())
+    _, upper, order = qr(stacked[:, used] / size[used], mode="economic", pivoting=True)
+    values = np.abs(np.diag(upper))
+    return np.asarray(np.sort(used[order[: int((values > 1e-8 * values[0]).sum())]]))
+
+
+def solve(rows: list[Rows]) -> Array:
+    """Weighted least squares over records, each joint by its own residual."""
+    n = rows[0].effort.shape[1]
+    weight = np.ones(n)
+    estimate = np.zeros(rows[0].columns.shape[2])
+    for _ in range(3):
+        scale = [item.moving * weight for item in rows]
+        left = np.concatenate(
+            [
+                (item.columns * by[..., None]).reshape(-1, len(estimate))
+                for item, by in zip(rows, scale, strict=True)
+            ]
+        )
+        right = np.concatenate([(item.effort * by).ravel() for item, by in zip(rows, scale, strict=True)])
+        estimate = np.linalg.lstsq(left, right, rcond=None)[0]
+        weight = 1.0 / rms([residual(item, estimate) for item in rows], rows)
+    return estimate
+
+
+def residual(rows: Rows, estimate: Array) -> Array:
+    """Effort less prediction (N, n), zero where the joint does not move."""
+    return np.asarray((rows.effort - rows.columns @ estimate) * rows.moving)
+
+
+def rms(residuals: list[Array], rows: list[Rows]) -> Array:
+    """Over the moving samples, by joint (n,)."""
+    total = sum((item**2).sum(axis=0) for item in residuals)
+    return np.asarray(np.sqrt(total / sum(item.moving.sum(axis=0) for item in rows)))
+
+
+def held_out(train: list[Log], test: Log, described: Plant) -> tuple[Array, Array]:
+    """RMSE (n,) on the test record of what the training records give; its residual (N, n)."""
+    rows = [equations(log, described) for log in (*train, test)]
+    estimate = solve(rows[:-1])
+    left_over = residual(rows[-1], estimate)
+    return rms([left_over], rows[-1:]), left_over
