@@ -71,7 +71,7 @@ class MappedReader:
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""
-        needed = [*self._time.formula.names]
+        needed = [*self._time.formula.names]  # first: in a bag, the time's topic sets the rows
         for name in wanted:
             for member in self._members(name):
                 needed += self._signals[member].formula.names
@@ -213,7 +213,7 @@ class MappedReader:
         try:
             return formula(text, self._columns)
         except FormulaError as error:
-            if text.replace("_", "a").isalnum():
+            if text.startswith("/") or text.replace("_", "a").isalnum():
                 raise self.foreign.error(self._no_column(text), path) from None
             raise self.foreign.error(f"found {describe(text)}: {error}{self._there_are()}", path) from None
 

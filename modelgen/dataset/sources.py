@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from modelgen.dataset.bags import BagReader
 from modelgen.dataset.drives import Drive, drives_of
 from modelgen.dataset.mapped import MappedReader
-from modelgen.dataset.mapping import load_mapping
+from modelgen.dataset.mapping import listed, load_mapping
 from modelgen.dataset.objects import Array
 from modelgen.dataset.signals import Signals, find_signals
 from modelgen.dataset.specs import Spec, parse
@@ -67,6 +68,11 @@ def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Sourc
     drives = drives_of(arm)
     if mapping is None:
         reader = open_table(spec.path)
+        if isinstance(reader, BagReader):
+            raise InputError(
+                f"{text}: a bag needs a mapping file (--mapping) that names its columns: "
+                + listed(reader.names)
+            )
         return Source(spec, reader, find_signals(spec.text, reader.names, arm, drives), drives)
     foreign = load_mapping(mapping)
     mapped = MappedReader(foreign, open_table(spec.path), arm, drives)

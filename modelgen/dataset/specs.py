@@ -26,12 +26,16 @@ class Spec:
     end: float = math.inf
 
     def content(self) -> str:
-        """Hash of the file's bytes. Raises InputError where it cannot be read."""
-        try:
-            with self.path.open("rb") as stream:
-                return hashlib.file_digest(stream, "sha256").hexdigest()
-        except OSError as error:
-            raise unreadable(self.path, error) from None
+        """Hash of the bytes, of a folder's files. Raises InputError where it cannot be read."""
+        digest = hashlib.sha256()
+        files = sorted(p for p in self.path.rglob("*") if p.is_file()) if self.path.is_dir() else [self.path]
+        for file in files:
+            try:
+                with file.open("rb") as stream:
+                    digest.update(hashlib.file_digest(stream, "sha256").digest())
+            except OSError as error:
+                raise unreadable(self.path, error) from None
+        return digest.hexdigest()
 
 
 def parse(text: str) -> Spec:

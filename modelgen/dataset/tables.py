@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from modelgen.dataset import csv_table
+from modelgen.dataset.bags import BagReader
+from modelgen.dataset.csv_table import CsvReader
 from modelgen.dataset.objects import Array
-from modelgen.dataset.specs import Spec
+from modelgen.dataset.parquet_table import ParquetReader
+from modelgen.dataset.specs import unreadable
 from modelgen.errors import InputError
+
+BAGS = (".bag", ".db3", ".mcap")
 
 
 class Reader(Protocol):
@@ -24,18 +27,18 @@ class Reader(Protocol):
         """The wanted columns (rows at most, len(wanted)), block after block. Raises InputError."""
 
 
-@dataclass(frozen=True)
-class Table:
-    """Columns of the part of a file that a Spec names."""
-
-    spec: Spec
-    reader: Reader
-    time: str = "t"
-
-
 def open_table(path: Path) -> Reader:
-    """The reader for a file, by its suffix. Raises InputError."""
+    """The reader for a file, by its suffix; a folder is a ROS 2 bag. Raises InputError."""
     suffix = path.suffix.lower()
+    if path.is_dir():
+        if not (path / "metadata.yaml").exists():
+            raise unreadable(path, IsADirectoryError())
+        return BagReader(path)
+    if suffix in BAGS:
+        return BagReader(path)
+    if suffix in (".parquet", ".pq"):
+        return ParquetReader(path)
     if suffix in (".csv", ".txt", ".tsv", ""):
-        return csv_table.CsvReader(path)
-    raise InputError(f"{path}: found a log of the kind '{suffix}', expected .csv")
+        return CsvReader(path)
+    kinds = ".csv, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
+    raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}")

@@ -1,0 +1,50 @@
+"""Parquet logs, read row group by row group (extra `logs`: pyarrow)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset.objects import Array
+from modelgen.dataset.specs import unreadable
+from modelgen.errors import InputError
+
+
+class ParquetReader:
+    """A Parquet file of numeric columns. Raises InputError where it is none, or pyarrow is missing."""
+
+    def __init__(self, path: Path) -> None:
+        try:
+            import pyarrow.parquet  # noqa: PLC0415 - an extra
+        except ImportError:
+            raise InputError(f"{path}: Parquet needs pyarrow: pip install 'modelgen[logs]'") from None
+        self.path = path
+        try:
+            with path.open("rb"):
+                pass
+            self._file = pyarrow.parquet.ParquetFile(path)
+        except OSError as error:
+            raise unreadable(path, error) from None
+        except pyarrow.ArrowException as error:
+            raise InputError(f"{path}: this is no Parquet file: {str(error).splitlines()[0]}") from None
+        self.names = tuple(self._file.schema_arrow.names)
+
+    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+        """The wanted columns, block after block; a missing value is NaN. Raises InputError."""
+        import pyarrow  # noqa: PLC0415 - an extra
+
+        for name in wanted:
+            kind = self._file.schema_arrow.field(name).type
+            if not (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)):
+                raise InputError(f"{self.path}: found {kind} in the column {name}, expected numbers")
+        try:
+            for batch in self._file.iter_batches(batch_size=rows, columns=list(wanted)):
+                block = np.empty((batch.num_rows, len(wanted)))
+                for k, name in enumerate(wanted):
+                    block[:, k] = batch.column(name).cast(pyarrow.float64()).to_numpy(zero_copy_only=False)
+                if len(block):
+                    yield block
+        except (OSError, pyarrow.ArrowException) as error:
+            raise InputError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
