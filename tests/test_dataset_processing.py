@@ -1,9 +1,18 @@
 """Filters, derivatives, the hold, parallel filtering: against closed forms."""
 
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
+from dataset_support import AXIS, DRIVEN, FREE, columns, counts_of, motion, times, write_csv
 
+from modelgen.dataset import Record, Settings, choose, described, prepare, preset, read, spectra_svg
 from modelgen.dataset.filters import advanced, differences, low_pass
+from modelgen.errors import InputError
 
 
 @pytest.mark.parametrize("half_width", [1, 2, 3])
@@ -41,3 +50,156 @@ def test_a_held_sample_gives_what_its_staircase_holds_at_low_frequencies(side: i
     staircase = np.cos(w * (np.floor(fine) if side > 0 else np.ceil(fine)))
     c, s = (2 * np.mean(staircase * f(w * fine)) for f in (np.cos, np.sin))
     assert moved[5:-5, 0] == pytest.approx(c * np.cos(w * k[5:-5]) + s * np.sin(w * k[5:-5]), abs=1e-5)
+
+
+RATE = 200.0
+T = times(20.0, RATE)
+
+
+def recorded(folder: Path, **changed: np.ndarray) -> Record:
+    return read(write_csv(folder / "a.csv", columns(T) | changed), DRIVEN)
+
+
+@pytest.mark.parametrize("cutoff", [2.0, 4.0, None])
+def test_derivatives_are_those_of_the_motion(cutoff: float | None, tmp_path: Path) -> None:
+    p = prepare(recorded(tmp_path), Settings(cutoff=cutoff))
+    for found, expected in zip((p.q, p.dq, p.ddq), motion(T), strict=True):
+        error = np.abs(found - expected)[p.rows] / np.max(np.abs(expected), axis=0)
+        assert np.max(error) < 2e-4
+    # Motor rates by the chain rule, against differences of the law of cosines.
+    q = motion(T)[0][:, 1]
+    dmotor = np.gradient(counts_of(q), 1 / RATE, edge_order=2)
+    ddmotor = np.gradient(dmotor, 1 / RATE, edge_order=2)
+    assert p.dmotor[p.rows, 1] == pytest.approx(dmotor[p.rows], abs=2e-3 * np.ptp(dmotor))
+    assert p.ddmotor[p.rows, 1] == pytest.approx(ddmotor[p.rows], abs=5e-3 * np.ptp(ddmotor))
+
+
+def test_a_quantised_lever_is_filtered_in_its_increments(tmp_path: Path) -> None:
+    coarse = np.round(counts_of(motion(T)[0][:, 1]) / 40) * 40
+    record = recorded(tmp_path, qm2=coarse)
+    p = prepare(record, Settings(cutoff=2.0))
+    assert p.motor[:, 1] == pytest.approx(low_pass(coarse[:, None], 9.0, RATE, 4)[:, 0], rel=1e-12)
+    assert p.q[:, 1] != pytest.approx(low_pass(record.q, 9.0, RATE, 4)[:, 1], abs=1e-9)
+
+
+def test_a_linear_law_stays_linear_through_the_parallel_filter(tmp_path: Path) -> None:
+    """Friction's steps at reversals pass the filter in the effort as in the regressor."""
+    _, dq, _ = motion(T)
+    law = 0.3 * np.sign(dq[:, 0]) + 0.2 * dq[:, 0] + 0.1
+    record = replace(recorded(tmp_path, i1=law), hold=0.0)
+    p = prepare(record, Settings(cutoff=2.0))
+    sign = np.sign(p.dq[:, 0])
+    wide = p.parallel(np.stack([sign, p.dq[:, 0], np.ones_like(sign)], axis=1))
+    values, *_ = np.linalg.lstsq(wide, p.effort[:, 0], rcond=None)
+    assert values == pytest.approx([0.3, 0.2, 0.1], abs=1e-3)
+    # Filtering the effort alone leaves the steps over, and biases.
+    alone, *_ = np.linalg.lstsq(p.picked(np.stack([sign, p.dq[:, 0]], axis=1)), p.effort[:, 0], rcond=None)
+    assert abs(alone[0] - 0.3) > 0.01
+
+
+def test_a_held_effort_is_known_half_a_period_later(tmp_path: Path) -> None:
+    """A controller's staircase against the motion it causes: without compensation there is a delay."""
+    w = 2 * np.pi * 1.5
+    mass, step = 2.0, 1 / RATE
+    held = np.cos(w * T)
+    # Exact response of a mass to the staircase, from the velocity that makes it periodic.
+    speed = np.concatenate([[0.0], np.cumsum(held[:-1]) * step]) / mass
+    place = np.concatenate([[0.0], np.cumsum(speed[:-1] * step + held[:-1] * step**2 / 2 / mass)])
+    table = {"t": T, "q1": 5e-3 * place, "tau1": held}
+    record = read(write_csv(tmp_path / "a.csv", table), AXIS)
+    p = prepare(record, Settings(cutoff=5.0))
+    columns = np.stack([p.ddq[:, 0], np.gradient(p.ddq[:, 0], step)], axis=1)
+    values, *_ = np.linalg.lstsq(p.parallel(columns), p.effort[:, 0], rcond=None)
+    assert values[0] == pytest.approx(mass / 5e-3, rel=1e-3)
+    assert abs(values[1] / values[0]) < 1e-2 * step  # the delay that is left
+    late = prepare(replace(record, hold=0.0), Settings(cutoff=5.0))
+    values, *_ = np.linalg.lstsq(late.parallel(columns), late.effort[:, 0], rcond=None)
+    assert values[1] / values[0] == pytest.approx(0.5 * step, rel=0.05)
+
+
+def test_rest_is_gated_and_reversals_are_not(tmp_path: Path) -> None:
+    q = motion(T)[0][:, 0].copy()
+    still = (T > 5) & (T < 9)
+    q[still] = q[np.argmax(still)]
+    p = prepare(recorded(tmp_path, q1=q), Settings(cutoff=5.0, rest_gate=0.05))
+    inside = (p.t > 5.1) & (p.t < 8.9)
+    assert not p.moving[inside, 0].any()
+    away = (p.t < 4.6) | (p.t > 9.4)
+    assert p.moving[away, 0].mean() > 0.9
+    assert p.moving[:, 1].mean() > 0.9
+
+
+def test_rows_fill_the_pass_band(tmp_path: Path) -> None:
+    p = prepare(recorded(tmp_path), Settings(cutoff=4.0))
+    assert p.rate == pytest.approx(RATE / p.settings.factor)
+    assert 2.3 <= p.rate / 4.0 < 2.6
+    assert p.settings.position_cutoff >= 4 * 4.0
+    assert p.t[0] >= 1.5 / 4.0
+    assert T[-1] - p.t[-1] >= 1.5 / 4.0 - 1e-9
+
+
+def test_the_preset_of_the_paper(tmp_path: Path) -> None:
+    record = recorded(tmp_path)
+    settings = choose(record, preset("paper", RATE))
+    assert settings.position_cutoff == pytest.approx(0.1 * RATE / 2)
+    assert (settings.position_order, settings.half_width, settings.factor) == (3, 1, 1)
+    p = prepare(replace(record, hold=0.0), settings)
+    assert p.effort == pytest.approx(record.input[p.rows])
+    assert choose(record, preset("paper_parallel", RATE)).cutoff == pytest.approx(10.0)
+    with pytest.raises(InputError, match="found the preset 'papers', expected one of default, paper"):
+        preset("papers", RATE)
+
+
+def test_the_cut_off_falls_with_the_noise_of_the_positions() -> None:
+    rng = np.random.default_rng(5)
+    t = times(30.0, 500.0)
+    q = sum(np.sin(2 * np.pi * 0.1 * k * t + k) / k for k in range(1, 6))
+    found = []
+    for step in (1e-6, 1e-4, 1e-2):
+        logged = (np.round((q + rng.uniform(0, step, len(t))) / step) * step)[:, None]
+        found.append(choose(Record("a", t, logged, logged)).cutoff)
+    assert found == sorted(found, reverse=True)
+    assert found[0] == pytest.approx(20.0)  # a twenty-fifth of the rate
+    assert 1.25 <= found[2] < 0.5 * found[0]
+
+
+def test_one_choice_serves_several_records(tmp_path: Path) -> None:
+    record = recorded(tmp_path)
+    quiet = record.part(0, 2000)
+    both = choose([quiet, record.part(2000, 4000)])
+    assert prepare(quiet, both).settings is both
+    other = replace(record, t=record.t * 2)
+    with pytest.raises(InputError, match=r"found the rate 100 Hz, .* has 200 Hz"):
+        choose([record, other])
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (Settings(cutoff=120.0), "found the cut-off 120 Hz, expected one below half the rate, 100 Hz"),
+        (Settings(cutoff=5.0, position_cutoff=-1.0), "found the position cut-off -1 Hz"),
+        (Settings(cutoff=0.2), "too short a record: with the cut-off 0.2 Hz only"),
+        (Settings(rest_gate=(0.1, 0.1, 0.1)), "found 3 rest gates, expected one or 2"),
+    ],
+)
+def test_settings_must_fit_the_record(settings: Settings, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
+        prepare(recorded(tmp_path), settings)
+
+
+def test_the_spectra_are_drawn_alike_every_time(tmp_path: Path) -> None:
+    p = prepare(recorded(tmp_path), Settings(cutoff=4.0))
+    picture = spectra_svg(p)
+    assert picture == spectra_svg(p)
+    assert "<dc:date>" not in picture
+    words = [e.text for e in ElementTree.fromstring(picture).iter() if e.tag.endswith("text")]
+    assert {"hip", "knee", "18 Hz", "4 Hz", "effort [A/√Hz]"} <= set(words)
+    free = read(write_csv(tmp_path / "b.csv", {"t": T, "q1": np.cos(T), "q2": np.sin(T)}), FREE)
+    assert "free motion" in spectra_svg(prepare(free))
+
+
+def test_the_processing_is_told(tmp_path: Path) -> None:
+    text = described(prepare(recorded(tmp_path), Settings(cutoff=4.0)))
+    assert text[0] == "record: 4000 samples at 200 Hz"
+    assert "effort and regressor alike: Butterworth, order 4, 4 Hz, forwards and backwards" in text[3]
+    assert "every 21st sample" in text[4]

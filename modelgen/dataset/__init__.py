@@ -7,6 +7,7 @@ from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import read
 from modelgen.dataset.sources import read_columns
 from modelgen.dataset.specs import Spec, check_separate, parse, split
+from modelgen.dataset.spectra import described, spectra_svg
 from modelgen.dataset.streaming import Stream
 
 __all__ = [
@@ -20,11 +21,13 @@ __all__ = [
     "Stream",
     "check_separate",
     "choose",
+    "described",
     "drives_of",
     "parse",
     "prepare",
     "preset",
     "read",
     "read_columns",
+    "spectra_svg",
     "split",
 ]

@@ -22,6 +22,7 @@ SAMPLES = 25.0  # per period of the cut-off, at least
 POSITION_OVER_EFFORT = 4.5  # cut-off of the positions over the parallel one
 HIGHEST = 0.45  # of the rate: a filter above it does nothing
 DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
+SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
 GATE = 0.01  # of the joint's speed (99 % quantile)
 
 
@@ -87,12 +88,12 @@ def preset(name: str, rate: float) -> Settings:
 def choose(records: Record | Sequence[Record], settings: Settings | Chosen | None = None) -> Chosen:
     """The settings with every choice made, the same for all of the records.
 
-    They must have one rate (to a thousandth). Raises InputError where the settings do not fit them.
+    They must have one rate, to 2 %. Raises InputError where the settings do not fit them.
     """
     several = [records] if isinstance(records, Record) else list(records)
     first = several[0]
     for record in several[1:]:
-        if abs(record.step / first.step - 1.0) > 1e-3:
+        if abs(record.step / first.step - 1.0) > SAME_RATE:
             raise InputError(
                 f"{record.name}: found the rate {1 / record.step:.6g} Hz, {first.name} has "
                 f"{1 / first.step:.6g} Hz; `time: {{resample: ...}}` in a mapping file gives them one rate"
@@ -173,7 +174,11 @@ def _frequencies(q: Array, rate: float) -> tuple[float, float]:
     f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
     top = 0.35 * rate  # central differences see little above
     f, power = f[f < top], power[f < top]
-    speeds = np.cumsum(power)
+    # White noise of the position, from the upper half; its estimate scatters: twice the level is noise yet.
+    white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
+    upper = f > 0.5 * top
+    floor = 2.0 * float(np.median(power[upper] / white[upper]))
+    speeds = np.cumsum(np.maximum(power - floor * white, 0.0))
     content = float(f[np.searchsorted(speeds, CONTENT * speeds[-1])])
     accelerations = power * (2 * np.pi * f) ** 2
     edges = max(content, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
