@@ -11,6 +11,7 @@ from dataset_support import AXIS, DRIVEN, FREE, counts_of, motion, times, write_
 
 from modelgen.dataset import read
 from modelgen.dataset.formula import FormulaError, formula
+from modelgen.dataset.sources import open_source
 from modelgen.errors import InputError
 
 T = times()
@@ -139,6 +140,23 @@ def test_time_may_count_from_the_first_sample(tmp_path: Path) -> None:
     record = read(write_csv(tmp_path / "a.csv", table) + "@1:3", AXIS, written(tmp_path, text))
     assert record.t[0] == pytest.approx(1.0, abs=1e-5)
     assert len(record.t) == 400
+
+
+def test_a_sensor_that_starts_anew_is_made_continuous(tmp_path: Path) -> None:
+    turns = {"t": T, "q1": 20 * np.sin(T), "a": np.cos(T)}
+    wrapped = turns | {"q1": np.mod(np.degrees(turns["q1"]), 360.0)}
+    file = write_csv(tmp_path / "a.csv", turns | {"q1": np.mod(turns["q1"], 2 * np.pi), "q2": np.sin(T)})
+    with pytest.raises(InputError, match=r"q1 jumps by .* rad after t = .* declare `wrap: 2\*pi`"):
+        read(file, FREE)
+    file = write_csv(tmp_path / "b.csv", wrapped)
+    text = "schema: 1\njoints:\n  - position: {column: q1, unit: deg, wrap: 360}\n"
+    text += "  - position: {column: a, unit: rad}\n"
+    record = read(file, FREE, written(tmp_path, text))
+    assert record.q[:, 0] == pytest.approx(turns["q1"], abs=1e-9)
+    # The same block by block.
+    reader = open_source(file, FREE, tmp_path / "mapping.yaml").reader
+    parts = [block[:, 0] for block in reader.blocks(("q1",), 100)]
+    assert np.concatenate(parts) == pytest.approx(turns["q1"], abs=1e-9)
 
 
 BROKEN = [

@@ -8,10 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy
+from arms_support import ARMS
 from dataset_support import AXIS, DRIVEN, FREE, LEVER, columns, counts_of, motion, times, write_csv
 
-from modelgen.dataset import check_separate, read, read_columns, split
+from modelgen.dataset import check_separate, prepare, read, read_columns, split
+from modelgen.description import geometry_symbol
 from modelgen.errors import InputError
+from modelgen.transmission import of_joint
 
 T = times()
 Table = dict[str, np.ndarray]
@@ -249,3 +253,27 @@ def test_a_record_is_split_into_blocks_in_time(tmp_path: Path) -> None:
     assert np.concatenate([first.t, second.t]) == pytest.approx(record.t)
     assert np.concatenate([first.input, second.input]) == pytest.approx(record.input)
     assert read(second.name, DRIVEN).q == pytest.approx(second.q)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_every_shipped_arm_reads_its_log(name: str, tmp_path: Path) -> None:
+    """Half of the joints logged as motor coordinates: both ways lead to the same joint coordinates."""
+    arm = ARMS[name]
+    rng = np.random.default_rng(6)
+    symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
+    t = times(4.0, 100.0)
+    table = {"t": t}
+    joints = []
+    for k, i in enumerate(arm.coordinates, 1):
+        joint = arm.joints[i]
+        transmission = of_joint(arm, joint)
+        low, high = joint.limits.position or transmission.joint_range() or (-0.5, 0.5)
+        q = low + (high - low) * (0.5 + 0.4 * np.sin((1 + 0.2 * k) * t + rng.uniform(0, 6)))
+        joints.append(q)
+        motor = sympy.lambdify(transmission.q, sympy.sympify(transmission.motor()).subs(symbols), "numpy")
+        table |= {f"qm{k}": motor(q)} if k % 2 and transmission.driven else {f"q{k}": q}
+        table |= {f"{'i' if transmission.driven else 'tau'}{k}": np.cos(t + k)}
+    record = read(write_csv(tmp_path / "a.csv", table), arm)
+    assert record.q == pytest.approx(np.stack(joints, axis=1), abs=1e-9)
+    prepared = prepare(record)
+    assert np.isfinite(prepared.ddmotor).all()

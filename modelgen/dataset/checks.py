@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from modelgen.dataset.drives import Drive
 from modelgen.dataset.objects import Array
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -56,7 +58,25 @@ def check_constant(
         )
 
 
-def check_range(file: str, arm: Arm, names: tuple[str, ...], columns: Array, q: Array) -> list[str]:
+def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array) -> None:
+    """No sensor that starts anew after a turn. q: (N, n) joint coordinates. Raises InputError."""
+    for k, i in enumerate(arm.coordinates):
+        if arm.joints[i].type == "prismatic":
+            continue
+        steps = np.diff(q[:, k])
+        jumps = np.abs(steps) > math.pi
+        # Half a turn within one sample, among samples that hardly move: no motion does that.
+        if jumps.any() and np.median(np.abs(steps)) < 0.1:
+            m = int(np.argmax(jumps))
+            raise InputError(
+                f"{file}: {names[k]} jumps by {steps[m]:.4g} rad after t = {t[m]:.9g} s; where the sensor "
+                "starts anew after a turn, declare `wrap: 2*pi` (in its unit) in a mapping file (--mapping)"
+            )
+
+
+def check_range(
+    file: str, arm: Arm, drives: Sequence[Drive], names: tuple[str, ...], columns: Array, q: Array
+) -> list[str]:
     """Positions within the joint's range and the drive's stroke, up to a tenth of it.
 
     columns: (N, n) as logged; q: (N, n) joint coordinates, NaN where a lever cannot reach. Returns remarks
@@ -69,9 +89,8 @@ def check_range(file: str, arm: Arm, names: tuple[str, ...], columns: Array, q: 
         motor_side = name.startswith("qm")
         given = drive.motor_range() if motor_side else (joint.limits.position or drive.joint_range())
         if given is None and motor_side and joint.limits.position is not None:
-            ratio = float(drive.k1())
-            ends = ratio * joint.limits.position[0], ratio * joint.limits.position[1]
-            given = min(ends), max(ends)
+            ends = drives[k].motor(np.array(joint.limits.position))
+            given = float(ends.min()), float(ends.max())
         if given is None:
             continue
         low, high = given

@@ -36,8 +36,21 @@ class Drive:
         return self.torque_constant * self.k1(q)
 
 
+_KEPT = 8  # arms whose drives are remembered: a stream asks for them block after block
+_known: list[tuple[Arm, tuple[Drive, ...]]] = []
+
+
 def drives_of(arm: Arm) -> tuple[Drive, ...]:
     """The drives of an arm's coordinates, in their order."""
+    found = next((drives for known, drives in _known if known is arm), None)
+    if found is None:
+        found = _made(arm)
+        _known.insert(0, (arm, found))
+        del _known[_KEPT:]
+    return found
+
+
+def _made(arm: Arm) -> tuple[Drive, ...]:
     symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
     found = []
     for i in arm.coordinates:

@@ -39,7 +39,7 @@ class FormulaError(ValueError):
     """The text is no formula of the allowed kind; the message says what is wrong with it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Formula:
     """A formula, checked: the names of the columns it needs, and its value on arrays (N,)."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,10 +26,17 @@ class Signal:
     formula: Formula
     factor: float
     offset: float
+    wrap: float | None = None
 
-    def __call__(self, columns: dict[str, Array]) -> Array:
-        """Its values (N,)."""
-        return self.factor * self.formula(columns) + self.offset
+    def __call__(self, columns: dict[str, Array], last: dict[Signal, float]) -> Array:
+        """Its values (N,); `last` keeps its last value from block to block where it wraps."""
+        values = self.factor * self.formula(columns) + self.offset
+        if self.wrap is None:
+            return values
+        before = last.get(self, float(values[0]))
+        values = np.unwrap(np.concatenate([[before], values]), period=self.wrap)[1:]
+        last[self] = float(values[-1])
+        return values
 
 
 class MappedReader:
@@ -77,15 +84,18 @@ class MappedReader:
                 needed += self._signals[member].formula.names
         original = tuple(dict.fromkeys(self._aliases.get(name, name) for name in needed))
         start: float | None = None
+        last: dict[Signal, float] = {}
         for block in self.reader.blocks(original, rows):
             columns = {name: block[:, i] for i, name in enumerate(original)}
             columns |= {short: columns[name] for short, name in self._aliases.items() if name in columns}
             if start is None:
                 raw = self._time.formula(columns)
                 start = float(raw[0]) if self.foreign.document.time.relative else 0.0
-            yield self._block(wanted, columns, start)
+            yield self._block(wanted, columns, start, last)
 
-    def _block(self, wanted: tuple[str, ...], columns: dict[str, Array], start: float) -> Array:
+    def _block(
+        self, wanted: tuple[str, ...], columns: dict[str, Array], start: float, last: dict[Signal, float]
+    ) -> Array:
         # The first stamp is taken off before the unit: nanoseconds of an epoch have no digits to spare.
         t = self._time.factor * (self._time.formula(columns) - start)
         result = np.empty((len(t), len(wanted)))
@@ -95,11 +105,13 @@ class MappedReader:
                 result[:, i] = t
             elif (kind := _kind(name)) in self._groups:
                 if kind not in coupled:
-                    table = [np.broadcast_to(self._signals[m](columns), t.shape) for m in self._groups[kind]]
+                    table = [
+                        np.broadcast_to(self._signals[m](columns, last), t.shape) for m in self._groups[kind]
+                    ]
                     coupled[kind] = self._uncoupled(kind, np.stack(table, axis=1))
                 result[:, i] = coupled[kind][:, self._groups[kind].index(name)]
             else:
-                result[:, i] = self._signals[name](columns)
+                result[:, i] = self._signals[name](columns, last)
         return result
 
     def _members(self, name: str) -> list[str]:
@@ -122,7 +134,10 @@ class MappedReader:
         motor = joint.position.side == "motor"
         unit = self.drives[k].unit if motor else coordinate
         name = f"{'qm' if motor else 'q'}{k + 1}"
-        self._signals[name] = self._signal(joint.position, units.POSITIONS[unit], [*path, "position"])
+        place = self._signal(joint.position, units.POSITIONS[unit], [*path, "position"])
+        wrap = self.foreign.positive(joint.position.wrap, [*path, "position", "wrap"])
+        factor = units.POSITIONS[unit][joint.position.unit]
+        self._signals[name] = place if wrap is None else replace(place, wrap=factor * wrap)
         for kind, model, known in (
             ("dq", joint.velocity, units.VELOCITIES[coordinate]),
             ("ddq", joint.acceleration, units.ACCELERATIONS[coordinate]),

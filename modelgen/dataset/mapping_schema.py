@@ -46,10 +46,18 @@ class TemperatureModel(ColumnModel):
     unit: str = Field(default="degC", description="degC.")
 
 
+class PositionModel(PlacedModel):
+    """A position; a sensor that starts anew after a turn is made continuous."""
+
+    wrap: Number | None = Field(
+        default=None, description="Range after which the sensor starts anew, in the unit: 360, 2*pi."
+    )
+
+
 class JointModel(Model):
     """One joint's signals."""
 
-    position: PlacedModel = Field(description="Where the joint is.")
+    position: PositionModel = Field(description="Where the joint is.")
     effort: PlacedModel | None = Field(
         default=None,
         description="What drives it, none for a free motion: A, mA; N m, N mm, kN m, N, kN; duty, % (of the "

@@ -24,7 +24,7 @@ class ParquetReader:
         try:
             with path.open("rb"):
                 pass
-            self._file = pyarrow.parquet.ParquetFile(path)
+            self._file = pyarrow.parquet.ParquetFile(path, pre_buffer=False)
         except OSError as error:
             raise unreadable(path, error) from None
         except pyarrow.ArrowException as error:
@@ -40,7 +40,9 @@ class ParquetReader:
             if not (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)):
                 raise InputError(f"{self.path}: found {kind} in the column {name}, expected numbers")
         try:
-            for batch in self._file.iter_batches(batch_size=rows, columns=list(wanted)):
+            # pyarrow would otherwise keep what it has read of the file.
+            batches = self._file.iter_batches(batch_size=rows, columns=list(wanted), use_threads=False)
+            for batch in batches:
                 block = np.empty((batch.num_rows, len(wanted)))
                 for k, name in enumerate(wanted):
                     block[:, k] = batch.column(name).cast(pyarrow.float64()).to_numpy(zero_copy_only=False)

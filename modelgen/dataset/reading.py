@@ -55,7 +55,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
             q[:, k] = drive.joint(logged[:, k])
         else:
             motor[:, k] = drive.motor(logged[:, k])
-    remarks = [*source.remarks, *checks.check_range(file, arm, signals.position, logged, q)]
+    checks.check_jumps(file, arm, signals.position, q, t)
+    remarks = [*source.remarks, *checks.check_range(file, arm, drives, signals.position, logged, q)]
     if axis.method != "none":
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "

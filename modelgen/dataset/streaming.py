@@ -54,14 +54,17 @@ class Stream:
         self.overlap = overlap(self.settings, self.axis.step)
         self.block = max(block, 4 * self.overlap)
 
+    def __len__(self) -> int:
+        """Number of blocks."""
+        return len(self._begins())
+
     def __iter__(self) -> Iterator[Prepared]:
         for record in self.records():
             yield prepare(record, self.settings)
 
     def records(self) -> Iterator[Record]:
         """The blocks before they are processed, overlap included."""
-        trim = self.settings.trimmed(self.axis.step)
-        begins = range(trim, self.samples - trim, self.block)
+        trim, begins = self.settings.trimmed(self.axis.step), self._begins()
         rows = _Rows(self._source.blocks(), self.axis)
         for number, begin in enumerate(begins, 1):
             end = min(begin + self.block, self.samples - trim)
@@ -70,6 +73,11 @@ class Stream:
             record, _ = record_of(self._source, self.arm, table, self.axis, t)
             name = f"{self.spec} block {number} of {len(begins)}"
             yield replace(record, name=name, core=(begin - low, end - low), first=low)
+
+    def _begins(self) -> range:
+        """First samples of the blocks, without their overlap."""
+        trim = self.settings.trimmed(self.axis.step)
+        return range(trim, self.samples - trim, self.block)
 
     def _survey(self) -> Axis:
         """First pass: finite numbers, running time, changing signals. Raises InputError."""
