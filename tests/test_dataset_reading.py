@@ -12,7 +12,7 @@ import sympy
 from arms_support import ARMS
 from dataset_support import AXIS, DRIVEN, FREE, LEVER, columns, counts_of, motion, times, write_csv
 
-from modelgen.dataset import check_separate, prepare, read, read_columns, split
+from modelgen.dataset import check_separate, gather, prepare, read, read_columns, split
 from modelgen.description import geometry_symbol
 from modelgen.errors import InputError
 from modelgen.transmission import of_joint
@@ -188,6 +188,7 @@ def test_a_short_record_is_refused(tmp_path: Path) -> None:
         ("", "the log is empty, expected a header"),
         ("0.0,1.0\n0.1,1.1\n", ":1:1: found numbers in the first line"),
         ("t,q1,q1,tau1\n0,1,1,2\n", "the column q1 stands there 2 times, expected once"),
+        ("t,q1,tau1\n" + "0,1,2\n" * 20000 + "\udcff,1,2\n", ":20002:1: found bytes that are no UTF-8 text"),
         ("t,q1,tau1\n0,1,2\n0.1,x,2\n", ":3:5: found 'x' in the column q1, expected a number"),
         ("t,q1,tau1\n0,1,2\n0.1,,2\n", ":3:5: found 'nothing' in the column q1, expected a number"),
         ("t,q1,tau1\n0,1,2\n0.1,1\n", ":3:1: found 2 cells, expected 3: t, q1, tau1"),
@@ -195,7 +196,7 @@ def test_a_short_record_is_refused(tmp_path: Path) -> None:
 )
 def test_a_broken_file_is_refused_with_its_place(text: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")
     with pytest.raises(InputError, match=re.escape(message)):
         read(str(path), AXIS)
 
@@ -211,7 +212,8 @@ def test_a_broken_file_is_refused_with_its_place(text: str, message: str, tmp_pa
     ],
 )
 def test_what_is_no_log_is_refused(name: str, message: str, tmp_path: Path) -> None:
-    write_csv(tmp_path / "a.csv", columns(T))
+    for file in ("a.csv", "a.xlsx"):
+        write_csv(tmp_path / file, columns(T))
     with pytest.raises(InputError, match=re.escape(message)):
         read(str(tmp_path / name), DRIVEN)
 
@@ -245,6 +247,22 @@ def test_training_and_test_share_nothing(tmp_path: Path) -> None:
         check_separate([f"{file}@0:4", f"{file}@3:5"], [other])
     with pytest.raises(InputError, match="found no test record, expected one; one file can serve for both"):
         check_separate([file], [])
+
+
+def test_a_copy_under_another_name_is_no_test(tmp_path: Path) -> None:
+    rng = np.random.default_rng(7)
+    table = columns(T)
+    table["i1"] = table["i1"] + rng.normal(0, 0.1, len(T))
+    file = write_csv(tmp_path / "a.csv", table)
+    copied = {name: column[1000:1200] for name, column in table.items()} | {"t": T[:200] + 0.5}
+    copy = write_csv(tmp_path / "b.csv", copied)
+    with pytest.raises(InputError, match=r"--train .*a\.csv and --test .*b\.csv share samples: .* t = 0\.5"):
+        gather([file], [copy], DRIVEN)
+    train, test = gather([f"{file}@:4"], [copy, f"{file}@6:"], DRIVEN)
+    assert (len(train), len(test)) == (1, 2)
+    # The same motion with other noise is another measurement.
+    other = write_csv(tmp_path / "c.csv", table | {"i1": table["i1"] + 1e-6 * rng.normal(size=len(T))})
+    gather([file], [other], DRIVEN)
 
 
 def test_a_record_is_split_into_blocks_in_time(tmp_path: Path) -> None:

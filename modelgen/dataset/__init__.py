@@ -2,6 +2,7 @@
 
 from modelgen.dataset.choice import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.drives import Drive, drives_of
+from modelgen.dataset.gathering import check_different, gather
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import read
@@ -19,10 +20,12 @@ __all__ = [
     "Settings",
     "Spec",
     "Stream",
+    "check_different",
     "check_separate",
     "choose",
     "described",
     "drives_of",
+    "gather",
     "parse",
     "prepare",
     "preset",

@@ -54,7 +54,8 @@ class CsvReader:
         """The wanted columns, block after block. Raises InputError with the place of a bad cell."""
         indices = [self.names.index(name) for name in wanted]
         line = self.header_line
-        with self.path.open(encoding="utf-8-sig", newline=None) as stream:
+        # What is no UTF-8 becomes a lone surrogate, which no number holds: the cell is then found.
+        with self.path.open(encoding="utf-8-sig", errors="surrogateescape", newline=None) as stream:
             for _ in range(self.header_line):
                 next(stream)
             while lines := list(islice(stream, rows)):
@@ -74,6 +75,8 @@ class CsvReader:
         """The first cell that is no number."""
         for number, line in enumerate(lines, before + 1):
             text = line.split("#")[0]
+            if any("\udc80" <= c <= "\udcff" for c in text):
+                return InputError("found bytes that are no UTF-8 text", Location(str(self.path), number, 1))
             if not text.strip():
                 continue
             cells = text.rstrip("\r\n").split(self.separator)

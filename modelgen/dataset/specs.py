@@ -44,13 +44,20 @@ def parse(text: str) -> Spec:
     A file whose own name has the form FILE@a:b is taken as a file.
     """
     match = _PART.fullmatch(text)
-    if match is None or Path(text).exists():
+    if match is None or _exists(text):
         return Spec(text, Path(text))
     begin = _time(text, match["begin"], -math.inf)
     end = _time(text, match["end"], math.inf)
     if begin >= end:
         raise InputError(f"{text}: found the part {begin:g} s to {end:g} s, expected FILE@t0:t1 with t0 < t1")
     return Spec(text, Path(match["file"]), begin, end)
+
+
+def _exists(text: str) -> bool:
+    try:
+        return Path(text).exists()
+    except (OSError, ValueError):
+        return False  # no name of a file at all
 
 
 def _time(text: str, word: str, default: float) -> float:
@@ -63,7 +70,7 @@ def _time(text: str, word: str, default: float) -> float:
     return value
 
 
-def unreadable(path: Path, error: OSError) -> InputError:
+def unreadable(path: Path, error: OSError | ValueError) -> InputError:
     """The message for a file that cannot be opened, with the names that come near."""
     if isinstance(error, FileNotFoundError):
         folder = path.parent
@@ -72,7 +79,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
         return InputError(f"{path}: there is no such log" + (f"; near: {', '.join(near)}" if near else ""))
     if isinstance(error, IsADirectoryError):
         return InputError(f"{path}: found a folder, expected a log")
-    return InputError(f"{path}: cannot be read: {error.strerror or error}")
+    return InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}")
 
 
 def check_separate(train: Sequence[str], test: Sequence[str]) -> None:

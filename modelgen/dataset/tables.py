@@ -30,6 +30,10 @@ class Reader(Protocol):
 def open_table(path: Path) -> Reader:
     """The reader for a file, by its suffix; a folder is a ROS 2 bag. Raises InputError."""
     suffix = path.suffix.lower()
+    try:
+        path.stat()
+    except (OSError, ValueError) as error:
+        raise unreadable(path, error) from None
     if path.is_dir():
         if not (path / "metadata.yaml").exists():
             raise unreadable(path, IsADirectoryError())
