@@ -97,24 +97,42 @@ def test_a_linear_law_stays_linear_through_the_parallel_filter(tmp_path: Path) -
     assert abs(alone[0] - 0.3) > 0.01
 
 
-def test_a_held_effort_is_known_half_a_period_later(tmp_path: Path) -> None:
-    """A controller's staircase against the motion it causes: without compensation there is a delay."""
-    w = 2 * np.pi * 1.5
-    mass, step = 2.0, 1 / RATE
-    held = np.cos(w * T)
-    # Exact response of a mass to the staircase, from the velocity that makes it periodic.
-    speed = np.concatenate([[0.0], np.cumsum(held[:-1]) * step]) / mass
-    place = np.concatenate([[0.0], np.cumsum(speed[:-1] * step + held[:-1] * step**2 / 2 / mass)])
-    table = {"t": T, "q1": 5e-3 * place, "tau1": held}
-    record = read(write_csv(tmp_path / "a.csv", table), AXIS)
+MASS = 400.0
+
+
+def pushed(stamps: np.ndarray) -> dict[str, np.ndarray]:
+    """A mass under a force that a controller holds between the stamps, solved exactly."""
+    held, steps = np.cos(2 * np.pi * 1.5 * stamps), np.diff(stamps)
+    speed = np.concatenate([[0.0], np.cumsum(held[:-1] * steps)]) / MASS
+    moved = speed[:-1] * steps + held[:-1] * steps**2 / 2 / MASS
+    return {"t": stamps, "q1": np.concatenate([[0.0], np.cumsum(moved)]), "tau1": held}
+
+
+def mass_and_delay(record: Record) -> tuple[float, float]:
+    """By least squares: mass [kg], and the delay of the motion behind the force [s]."""
     p = prepare(record, Settings(cutoff=5.0))
-    columns = np.stack([p.ddq[:, 0], np.gradient(p.ddq[:, 0], step)], axis=1)
+    columns = np.stack([p.ddq[:, 0], np.gradient(p.ddq[:, 0], record.step)], axis=1)
     values, *_ = np.linalg.lstsq(p.parallel(columns), p.effort[:, 0], rcond=None)
-    assert values[0] == pytest.approx(mass / 5e-3, rel=1e-3)
-    assert abs(values[1] / values[0]) < 1e-2 * step  # the delay that is left
-    late = prepare(replace(record, hold=0.0), Settings(cutoff=5.0))
-    values, *_ = np.linalg.lstsq(late.parallel(columns), late.effort[:, 0], rcond=None)
-    assert values[1] / values[0] == pytest.approx(0.5 * step, rel=0.05)
+    return float(values[0]), float(values[1] / values[0])
+
+
+def test_a_held_effort_is_known_half_a_period_later(tmp_path: Path) -> None:
+    record = read(write_csv(tmp_path / "a.csv", pushed(T)), AXIS)
+    mass, delay = mass_and_delay(record)
+    assert mass == pytest.approx(MASS, rel=1e-3)
+    assert abs(delay) < 1e-2 * record.step
+    # Where that is not undone, half a period is a delay.
+    assert mass_and_delay(replace(record, hold=0.0))[1] == pytest.approx(0.5 * record.step, rel=0.05)
+
+
+def test_a_held_effort_on_a_jittering_clock_has_no_delay(tmp_path: Path) -> None:
+    rng = np.random.default_rng(8)
+    stamps = np.cumsum(rng.uniform(0.8, 1.2, len(T)) / RATE)
+    record = read(write_csv(tmp_path / "a.csv", pushed(stamps)), AXIS)
+    assert "resampled" in record.remarks[0]
+    mass, delay = mass_and_delay(record)
+    assert mass == pytest.approx(MASS, rel=1e-3)
+    assert abs(delay) < 2e-2 * record.step
 
 
 def test_rest_is_gated_and_reversals_are_not(tmp_path: Path) -> None:

@@ -47,8 +47,9 @@ def check_different(train: Record, test: Record) -> None:
     if len(counts) > RUN and np.any(counts[RUN:] - counts[:-RUN] == RUN):
         first = int(np.argmax(counts[RUN:] - counts[:-RUN] == RUN))
         raise InputError(
-            f"--train {train.name} and --test {test.name} share samples: those after t = {test.t[first]:.6g} s "
-            "of the test record are in the training record as well; a test record must be another measurement"
+            f"--train {train.name} and --test {test.name} share samples: those after "
+            f"t = {test.t[first]:.6g} s "
+            "of the test record are in the training record too; a test record must be another measurement"
         )
 
 
