@@ -5,13 +5,17 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 from dataset_support import AXIS, DRIVEN, FREE, counts_of, motion, times, write_csv
 
 from modelgen.dataset import read
 from modelgen.dataset.formula import FormulaError, formula
+from modelgen.dataset.mapping import load_mapping
+from modelgen.dataset.mapping_schema import mapping_json_schema
 from modelgen.dataset.sources import open_source
+from modelgen.description.document import parse
 from modelgen.errors import InputError
 
 T = times()
@@ -249,3 +253,16 @@ def test_a_formula_is_arithmetic(text: str, value: float) -> None:
 def test_a_formula_is_nothing_else(text: str) -> None:
     with pytest.raises(FormulaError):
         formula(text, ("a", "b"))
+
+
+def test_the_schema_accepts_the_case_studies_and_refuses_a_misspelt_key(checkout: Path) -> None:
+    schema = mapping_json_schema()
+    files = sorted((checkout / "examples" / "case_studies").glob("*_mapping.yaml"))
+    assert len(files) == 6
+    for file in files:
+        document = parse(file.read_text(encoding="utf-8"), str(file)).plain()
+        jsonschema.validate(document, schema)
+        load_mapping(file)
+    document["joints"][0]["effort"]["units"] = "A"
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(document, schema)

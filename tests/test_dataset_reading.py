@@ -176,6 +176,11 @@ def test_a_gap_is_refused(tmp_path: Path) -> None:
         read(write_csv(tmp_path / "a.csv", table), DRIVEN)
 
 
+def test_a_clock_in_milliseconds_is_remarked(tmp_path: Path) -> None:
+    record = read(write_csv(tmp_path / "a.csv", columns(T) | {"t": 1e3 * T}), DRIVEN)
+    assert record.remarks == ("a sample every 5 s: where t is in milliseconds, a mapping file says so",)
+
+
 def test_a_short_record_is_refused(tmp_path: Path) -> None:
     file = write_csv(tmp_path / "a.csv", columns(T))
     with pytest.raises(InputError, match="found 10 samples, expected at least 20"):

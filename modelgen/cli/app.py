@@ -97,6 +97,11 @@ NewName = Annotated[str, typer.Argument(help="Name of the arm, a C identifier.",
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
 
 
+OfMapping = Annotated[
+    bool, typer.Option("--mapping", help="Of the files that say what the columns of a foreign log are.")
+]
+
+
 @app.callback(invoke_without_command=True)
 def _common(context: typer.Context, version: Version = False) -> None:
     if version:
@@ -185,10 +190,15 @@ def effects(as_json: Json = False, pages: Pages = None) -> None:
 
 @app.command()
 @guarded
-def schema() -> None:
-    """Print a JSON Schema of the description, for editors."""
+def schema(of_mapping: OfMapping = False) -> None:
+    """Print a JSON Schema of the description, or of a mapping file, for editors."""
     import json
 
+    if of_mapping:
+        from modelgen.dataset.mapping_schema import mapping_json_schema
+
+        typer.echo(json.dumps(mapping_json_schema(), indent=2))
+        return
     from modelgen.description import json_schema
     from modelgen.effects import known_effects
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -95,3 +95,10 @@ class Document(Model):
         description="The joints, in the order of the arm's coordinates."
     )
     coupling: CouplingModel | None = Field(default=None, description="A coupled transmission.")
+
+
+def mapping_json_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of mapping files, for editors."""
+    schema = Document.model_json_schema(by_alias=True)
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "modelgen mapping of a log"}
+    return head | {key: value for key, value in schema.items() if key != "title"}

@@ -16,6 +16,8 @@ from modelgen.dataset.timing import Axis, survey
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
+SLOW = 0.5  # s between samples: hardly a log of a motion
+
 
 def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
     """The record that `FILE` or `FILE@t0:t1` names, in the arm's coordinates.
@@ -61,6 +63,10 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
             f"resampled at {1 / axis.step:.6g} Hz"
+        )
+    if axis.step >= SLOW:
+        remarks.append(
+            f"a sample every {axis.step:.6g} s: where t is in milliseconds, a mapping file says so"
         )
     gain, given, hold = None, None, 0.0
     if any(signals.effort):
