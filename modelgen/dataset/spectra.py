@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 from scipy import signal
 
 from modelgen.dataset.filters import low_pass
 from modelgen.dataset.objects import Array
 from modelgen.dataset.processing import Prepared
+from modelgen.figures import COLOURS, figure, svg
 
-RAW, FILTERED = "#9aa5b1", "#1f5fa8"
-# The same text in every run: no date, and names of elements that depend on the picture alone.
-STYLE: Any = {"svg.hashsalt": "modelgen", "svg.fonttype": "none", "font.size": 8.0, "axes.linewidth": 0.6}
+RAW, FILTERED = "#9aa5b1", COLOURS[0]
 POINTS = 300  # of a curve, at most: the picture stays small
 
 
@@ -58,16 +54,12 @@ def spectra_svg(prepared: Prepared) -> str:
     Above: amplitude densities of the positions, raw and filtered; below: of the efforts in the log's units;
     a column per joint.
     """
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(2.6 * max(prepared.n, 2), 4.6), layout="constrained")
-        grid = figure.subplots(2, prepared.n, squeeze=False, sharex=True)
-        for k in range(prepared.n):
-            _position(grid[0][k], prepared, k)
-            _effort(grid[1][k], prepared, k)
-            grid[1][k].set_xlabel("frequency [Hz]")
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return text.getvalue()
+    made, grid = figure(2, prepared.n, (2.6 * max(prepared.n, 2), 4.6))
+    for k in range(prepared.n):
+        _position(grid[0][k], prepared, k)
+        _effort(grid[1][k], prepared, k)
+        grid[1][k].set_xlabel("frequency [Hz]")
+    return svg(made)
 
 
 def _position(axes: Any, prepared: Prepared, k: int) -> None:
@@ -107,8 +99,7 @@ def _curves(axes: Any, raw: Array, filtered: Array, rate: float) -> None:
         axes.loglog(f[1:][chosen], density[chosen], color=colour, lw=0.8, label=name)
         top = float(density.max()) if name == "raw" else top
     axes.set_ylim(1e-7 * top, 3 * top)
-    axes.grid(visible=True, lw=0.3)
-    axes.legend(loc="lower left", frameon=False)
+    axes.legend(loc="lower left")
 
 
 def _cutoff(axes: Any, cutoff: float) -> None:
