@@ -182,7 +182,7 @@ def test_without_a_hidden_effect_only_the_noise_is_left(name: str) -> None:
     assert (model < 0.25 * noisy).all()
     current = loud.record(2, {}).current
     assert current is not None
-    drawn = fitting._low_pass(logs.noise(current, 500.0, default_rng(9)), fitting.BAND, 500.0)
+    drawn = fitting.low_pass(logs.noise(current, 500.0, default_rng(9)), fitting.BAND, 500.0)
     np.testing.assert_allclose(noisy, np.sqrt((drawn**2).mean(axis=0)), rtol=0.2)
 
 

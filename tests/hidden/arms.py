@@ -46,11 +46,12 @@ class Joint:
     ratio: float = 100.0
     levers: tuple[float, float] = (0.35, 0.08)
     rev: int = 1
+    friction: float = 1.0
 
 
 UP, HANG = math.pi / 2, -math.pi / 2
 SLEW = Joint("direct", 0.0, 0.0, 8.0, 0.15, (-1.4, 1.4))
-BOOM = Joint("screw", UP, 0.08, 6.0, 0.45, (-0.55, 0.75), levers=(0.36, 0.09))
+BOOM = Joint("screw", UP, 0.08, 6.0, 0.45, (-0.55, 0.75), levers=(0.36, 0.09), friction=2.5)
 STICK = Joint("screw", 0.0, 0.45, 4.0, 0.38, (-0.7, 0.6), theta=-0.9, levers=(0.33, 0.08), rev=-1)
 DESIGNS: dict[str, tuple[Joint, ...]] = {
     "pendulum1": (Joint("none", UP, 0.0, 4.0, 0.5, (-2.5, 2.5), theta=HANG),),
@@ -64,25 +65,27 @@ DESIGNS: dict[str, tuple[Joint, ...]] = {
     ),
     "direct3": (
         SLEW,
-        Joint("direct", UP, 0.06, 6.0, 0.42, (-0.4, 1.9), ratio=120.0),
+        Joint("direct", UP, 0.06, 6.0, 0.42, (-0.4, 1.9), ratio=120.0, friction=1.6),
         Joint("direct", 0.0, 0.42, 3.5, 0.36, (-2.2, 0.2), ratio=100.0),
     ),
     "direct6": (
         SLEW,
-        Joint("direct", UP, 0.06, 7.0, 0.42, (-0.2, 1.9), ratio=120.0),
-        Joint("direct", 0.0, 0.42, 5.0, 0.2, (-2.2, 0.2), ratio=100.0),
+        Joint("direct", UP, 0.06, 7.0, 0.42, (-0.2, 1.9), ratio=120.0, friction=3.0),
+        Joint("direct", 0.0, 0.42, 5.0, 0.2, (-2.2, 0.2), ratio=100.0, friction=1.8),
         Joint("direct", -UP, 0.05, 2.5, 0.1, (-1.8, 1.8), r=0.38, ratio=80.0),
         Joint("direct", UP, 0.0, 1.6, 0.1, (-1.5, 1.5), ratio=80.0),
         Joint("direct", -UP, 0.0, 0.8, 0.12, (-2.4, 2.4), r=0.08, ratio=60.0),
     ),
     "levered2": (
-        Joint("screw", UP, 0.0, 7.0, 0.45, (-0.6, 0.75), levers=(0.35, 0.09)),
+        Joint("screw", UP, 0.0, 7.0, 0.45, (-0.6, 0.75), levers=(0.35, 0.09), friction=3.0),
         Joint("screw", 0.0, 0.45, 4.5, 0.38, (-0.7, 0.65), theta=-0.7, levers=(0.33, 0.08), rev=-1),
     ),
     "levered3": (
-        Joint("counts", UP, 0.0, 8.0, 0.5, (-0.55, 0.75), levers=(0.38, 0.1)),
-        Joint("counts", 0.0, 0.5, 5.0, 0.4, (-0.7, 0.6), theta=-0.8, levers=(0.34, 0.085), rev=-1),
-        Joint("counts", 0.0, 0.4, 2.5, 0.25, (-0.7, 0.7), theta=-0.5, levers=(0.28, 0.06)),
+        Joint("counts", UP, 0.0, 8.0, 0.5, (-0.55, 0.75), levers=(0.38, 0.1), friction=4.0),
+        Joint(
+            "counts", 0.0, 0.5, 5.0, 0.4, (-0.7, 0.6), theta=-0.8, levers=(0.34, 0.085), rev=-1, friction=1.5
+        ),
+        Joint("counts", 0.0, 0.4, 2.5, 0.25, (-0.7, 0.7), theta=-0.5, levers=(0.28, 0.06), friction=0.7),
     ),
     "mixed2": (
         Joint("direct", UP, 0.0, 6.0, 0.4, (-1.3, 1.3), theta=HANG),
@@ -175,7 +178,7 @@ def _drive(plant: Plant, j: int, joint: Joint, random: Generator) -> None:
     plant["torque_constant"][j] = round(0.05 * varied[0], 5) / unit
     plant["rotor"][j] = 2.5e-5 * varied[1] * heavy / unit**2
     plant["viscous"][j] = 2.0e-4 * varied[2] * heavy / unit**2
-    plant["dry"][j] = 0.022 * varied[3] * heavy / unit
+    plant["dry"][j] = 0.022 * varied[3] * heavy * joint.friction / unit
     plant["revolution"][j] = 2 * math.pi * unit
     plant["count"][j] = 2 * math.pi * unit / COUNTS
     plant["current_limit"][j] = 40.0

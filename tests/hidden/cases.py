@@ -21,7 +21,7 @@ from hidden.native import Array, Plant, PlantError
 RECORDS = ("train_a", "train_b", "test", "check")
 FINE, COARSE = 0.25e-3, 0.5e-3  # s, longest step of the integrator with and without contacts
 TRIES = 10
-SMALL, LARGE = 1e-3, 60.0  # magnitudes
+SMALL = 1e-3  # magnitude
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class Bench:
             best = min(best, (abs(value - goal), math.exp(at), found))
             if best[0] < close:
                 break
-            at = _next(tried, goal)
+            at = min(math.log(EFFECTS[self.case.hidden[place].effect].most), _next(tried, goal))
         return best[1], best[2]
 
 
@@ -158,7 +158,7 @@ def _next(tried: list[tuple[float, float]], goal: float) -> float:
         nxt = low[0] + min(0.85, max(0.15, share)) * (high[0] - low[0])
     else:
         nxt = at + max(-2.5, min(2.5, (goal - value) / 2.0))
-    return min(math.log(LARGE), max(math.log(SMALL), nxt))
+    return max(math.log(SMALL), nxt)
 
 
 def make(case: Case, folder: Path) -> Label:
@@ -234,3 +234,42 @@ def draw_arm(effect: str, random: np.random.Generator, names: tuple[str, ...]) -
     name = having[int(random.integers(len(having)))]
     joints = [joint for arm, joint in possible if arm == name]
     return name, joints[int(random.integers(len(joints)))]
+
+
+def draw(
+    seed: int, effects: tuple[str, ...], strength: float, names: tuple[str, ...], encoder: str = "motor"
+) -> Case:
+    """A case whose effects reach the strength wanted, within what a plausible arm allows.
+
+    The seed draws arm and joint, and draws again where the effect hides there (a load of one sign hides
+    backlash, a narrow range an offset). Raises PlantError after some draws.
+    """
+    random = default_rng([seed, zlib.crc32("+".join(effects).encode()), round(1000 * strength)])
+    for attempt in range(12):
+        if not effects:
+            name = names[int(random.integers(len(names)))]
+            return Case(name, seed, (), encoder)
+        name, first = draw_arm(effects[0], random, names)
+        arm = arms.draw(name, default_rng(0))
+        joints = [first]
+        for effect in effects[1:]:
+            possible = [j + 1 for j in joints_for(effect, arm)]
+            if possible:
+                joints.append(possible[int(random.integers(len(possible)))])
+        if len(joints) < len(effects):
+            continue
+        # Counts of a motor that are off by some are a wrong length of the lever: only an encoder at the
+        # joint can have an offset of its own.
+        side = "joint" if "encoder_offset" in effects and encoder == "motor" else encoder
+        hidden = tuple(Hidden(e, j, strength) for e, j in zip(effects, joints, strict=True))
+        case = Case(name, seed + 1000 * attempt, hidden, side)
+        bench = Bench(case)
+        floor = bench.errors({})
+        tuned = [bench.tune(place, floor) for place in range(len(hidden))]
+        if all(abs(reached - strength) < 0.25 * (strength - 1.0) for _, reached in tuned):
+            known = tuple(
+                Hidden(item.effect, item.joint, strength, magnitude)
+                for item, (magnitude, _) in zip(hidden, tuned, strict=True)
+            )
+            return Case(name, case.seed, known, side)
+    raise PlantError(f"{' and '.join(effects)} reach {strength:g} on none of the arms drawn with seed {seed}")

@@ -40,7 +40,7 @@ Put = Callable[[Plant, Site, float], None]
 
 @dataclass(frozen=True)
 class Effect:
-    """put: see Put. kind: what the joint must have: any, driven, lever, chain (more than one joint)."""
+    """put: see Put. kind: which joints can have it, see joints_for."""
 
     put: Put
     kind: str = "driven"
@@ -48,6 +48,7 @@ class Effect:
     later: bool = False  # absent in the first record
     fine: bool = False  # needs small steps
     outside: bool = False  # no entry of the catalogue
+    most: float = 12.0  # largest magnitude that is still a plausible arm
 
 
 def _offset(p: Plant, s: Site, m: float) -> None:
@@ -205,7 +206,7 @@ def _sag(p: Plant, s: Site, m: float) -> None:
 
 
 def _floor(p: Plant, s: Site, m: float) -> None:
-    p["floor_height"] = float(np.quantile(s.scales.reach, 0.12))
+    p["floor_height"] = float(np.quantile(s.scales.reach, 0.06))
     p["floor_stiffness"] = 400.0 * m
 
 
@@ -219,23 +220,23 @@ EFFECTS: dict[str, Effect] = {
     "friction_warm_up": Effect(_warm),
     "presliding": Effect(_presliding),
     "torque_ripple": Effect(_ripple),
-    "backlash": Effect(_backlash, fine=True),
-    "joint_flexibility": Effect(_flexible, fine=True),
+    "backlash": Effect(_backlash, fine=True, most=25.0),
+    "joint_flexibility": Effect(_flexible, fine=True, most=25.0),
     "transmission_coupling": Effect(_coupling, "chain"),
-    "lever_geometry": Effect(_lever, "lever"),
+    "lever_geometry": Effect(_lever, "lever", most=6.0),
     "actuator_mass": Effect(_cylinder, "lever"),
     "spring": Effect(_spring, "any"),
     "payload_change": Effect(_payload, "last", whole=True, later=True),
     "fluid_drag": Effect(_drag, "outer", whole=True),
     "added_mass": Effect(_fluid, "outer", whole=True),
-    "base_tilt": Effect(_tilt, whole=True),
-    "drive_gain_error": Effect(_gain, "chain", whole=True),
+    "base_tilt": Effect(_tilt, "slewing", whole=True, most=4.0),
+    "drive_gain_error": Effect(_gain, "chain", whole=True, most=6.0),
     "torque_constant_saturation": Effect(_saturation),
-    "encoder_offset": Effect(_encoder, "loaded", whole=True),
+    "encoder_offset": Effect(_encoder, "inner", whole=True, most=4.0),
     "time_delay": Effect(_delay),
     "hard_spot": Effect(_spot, outside=True),
     "supply_sag": Effect(_sag, whole=True, outside=True),
-    "external_contact": Effect(_floor, whole=True, outside=True),
+    "external_contact": Effect(_floor, whole=True, outside=True, most=20.0),
 }
 CATALOGUE = tuple(name for name, effect in EFFECTS.items() if not effect.outside)
 OUTSIDE = tuple(name for name, effect in EFFECTS.items() if effect.outside)
@@ -245,6 +246,8 @@ def joints_for(name: str, arm: Arm) -> list[int]:
     """Joints (from 0) at which an effect can sit on this arm; empty where it cannot."""
     kinds, kind = arm.plant["kind"][: arm.n], EFFECTS[name].kind
     upright = arm.plant["alpha"][0] == 0.0  # the first axis is vertical: no gravity torque
+    bent = arm.plant["alpha"][1 : arm.n] != 0.0  # axes j and j + 1 are not parallel
+    between = [0 < j < arm.n - 1 and (bent[j - 1] or bent[j]) for j in range(arm.n)]
     allowed = {
         "any": [True] * arm.n,
         "driven": [value > 0.5 for value in kinds],
@@ -252,6 +255,11 @@ def joints_for(name: str, arm: Arm) -> list[int]:
         "chain": [value > 0.5 and arm.n > 1 for value in kinds],
         "loaded": [value > 0.5 and not (upright and j == 0) for j, value in enumerate(kinds)],
         "last": [j == arm.n - 1 and arm.n > 1 for j in range(arm.n)],
+        # An arm whose axes are all parallel takes a tilt, and any arm an offset of its last joint or of a
+        # vertical first one, or among parallel ones, for other links: what is left would ask for an absurd
+        # angle. A lever's ratio tells.
+        "slewing": [upright and value > 0.5 for value in kinds],
+        "inner": [value > 1.5 or (value > 0.5 and between[j]) for j, value in enumerate(kinds)],
         "outer": [j > 0 and value > 0.5 for j, value in enumerate(kinds)],
     }[kind]
     return [j for j, good in enumerate(allowed) if good]

@@ -1,10 +1,11 @@
 """The plant's own least squares: what a complete and an incomplete model leave of a record."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.ndimage import maximum_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.signal import butter, sosfiltfilt
 
 from hidden import native
@@ -12,6 +13,7 @@ from hidden.logs import Log, joints_of
 from hidden.native import Array, Plant
 
 POSITION_BAND, BAND = 60.0, 15.0  # Hz
+THIN = 250.0  # Hz, at which columns are evaluated: far above the band
 EDGE = 0.6  # s left out at either end
 REST, SPREAD = 0.01, 0.02  # of the top speed; s about it
 
@@ -28,34 +30,40 @@ class Rows:
     moving: Array
 
 
-def _low_pass(values: Array, band: float, rate: float) -> Array:
-    return np.asarray(sosfiltfilt(butter(4, band, fs=rate, output="sos"), values, axis=0))
+def low_pass(values: Array, band: float, rate: float) -> Array:
+    """By a Gaussian kernel, 3 dB down at `band` [Hz] whatever the rate."""
+    return np.asarray(gaussian_filter1d(values, math.sqrt(math.log(2)) / (2 * math.pi * band) * rate, axis=0))
 
 
 def equations(log: Log, described: Plant) -> Rows:
     """Regressor of links and standard friction, and effort, low-passed alike."""
     n = int(described["n"])
-    q = _low_pass(joints_of(log, described), POSITION_BAND, log.rate)
+    flat = butter(4, POSITION_BAND, fs=log.rate, output="sos")  # a bell would round off the motion itself
+    q = sosfiltfilt(flat, joints_of(log, described), axis=0)
     dq = np.gradient(q, 1.0 / log.rate, axis=0)
     ddq = np.gradient(dq, 1.0 / log.rate, axis=0)
-    columns = native.regressor(described, q, dq, ddq)
+    # At rest dry friction takes any value within its bounds: no equation. The filters spread that in time.
+    slow = np.abs(dq) < REST * np.abs(dq).max(axis=0)
+    moving = maximum_filter1d(slow.astype(float), 2 * int(SPREAD * log.rate) + 1, axis=0) < 0.5
+    thin = max(1, round(log.rate / THIN))
+    columns = native.regressor(described, q[::thin], dq[::thin], ddq[::thin])
     if log.current is None:
         effort = -(columns[:, :, : 10 * n] @ standard_links(described))
-        columns = columns[:, :, 10 * n :].reshape(len(q), n, n, 3)[..., 1:].reshape(len(q), n, 2 * n)
+        columns = columns[:, :, 10 * n :].reshape(-1, n, n, 3)[..., 1:].reshape(-1, n, 2 * n)
+        effort = low_pass(effort, BAND, log.rate / thin)
     else:
         # Held from its stamp on: centred on the stamp by the mean with the one before.
         effort = log.current.copy()
         effort[1:] = 0.5 * (log.current[1:] + log.current[:-1])
+        effort = low_pass(effort, BAND, log.rate)[::thin]
         columns = columns[:, :, independent(described)]
-    step, edge = max(1, int(log.rate / (2.4 * BAND))), int(EDGE * log.rate)
-    kept = slice(edge, len(q) - edge, step)
-    flat = _low_pass(columns.reshape(len(q), -1), BAND, log.rate)[kept]
-    # At rest dry friction takes any value within its bounds: no equation. The filters spread that in time.
-    slow = np.abs(dq) < REST * np.abs(dq).max(axis=0)
-    moving = maximum_filter1d(slow.astype(float), 2 * int(SPREAD * log.rate) + 1, axis=0) < 0.5
-    return Rows(
-        flat.reshape(len(flat), n, -1), _low_pass(effort, BAND, log.rate)[kept], moving[kept].astype(float)
+    rate = log.rate / thin
+    step, edge = max(1, int(rate / (2.4 * BAND))), int(EDGE * rate)
+    kept = slice(edge, len(columns) - edge, step)
+    kept_columns = low_pass(columns.reshape(len(columns), -1), BAND, rate)[kept].reshape(
+        -1, n, columns.shape[2]
     )
+    return Rows(kept_columns, effort[kept], moving[::thin][kept].astype(float))
 
 
 def standard_links(plant: Plant) -> Array:

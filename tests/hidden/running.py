@@ -1,0 +1,46 @@
+"""One case from its drawing to its verdict: the command line sees the logs, then the label is opened."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from hidden.cases import Case, make, seal, unseal
+from hidden.judging import Outcome, judge
+
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+class CommandError(RuntimeError):
+    """modelgen diagnose did not do its work."""
+
+
+def diagnose(folder: Path, name: str) -> tuple[dict[str, Any], float]:
+    """The answer of the command line on the logs in the folder, and the seconds it took."""
+    command = [sys.executable, "-m", "modelgen", "diagnose", str(folder / "arms.yaml"), "--arm", name]
+    command += ["--train", str(folder / "train_a.csv"), "--train", str(folder / "train_b.csv")]
+    command += ["--test", str(folder / "test.csv"), "--out", str(folder / "diagnosis"), "--json"]
+    begin = time.perf_counter()
+    environment = {**os.environ, **ONE_THREAD}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    if done.returncode:
+        raise CommandError(f"{' '.join(command[1:])}: exit {done.returncode}\n{done.stderr[-2000:]}")
+    printed: dict[str, Any] = json.loads(done.stdout)
+    written = json.loads((folder / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
+    if printed != written:
+        raise CommandError(f"{folder.name}: --json prints something else than diagnosis.json")
+    return printed, time.perf_counter() - begin
+
+
+def run(case: Case, folder: Path) -> tuple[Outcome, list[float], float]:
+    """Makes the case, lets it be diagnosed, opens the label. Outcome, strengths reached, seconds."""
+    sealed = folder.with_suffix(".sealed")
+    seal(make(case, folder), sealed)
+    answer, seconds = diagnose(folder, case.name)
+    label = unseal(sealed)
+    return judge(answer, label), label.strength, seconds
