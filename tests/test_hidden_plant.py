@@ -176,10 +176,10 @@ def test_a_payload_is_a_point_mass() -> None:
 
 @pytest.mark.parametrize("name", arms.DRIVEN)
 def test_without_a_hidden_effect_only_the_noise_is_left(name: str) -> None:
-    """Against a run without noise: the complete model leaves a tenth of the noise, and no more with it."""
+    """Against a run without noise: what is left then comes from the encoders' counts, and is far less."""
     quiet, loud = (Bench(Case(name, 4, noise=level)) for level in (0.0, 1.0))
     model, noisy = quiet.errors({}), loud.errors({})
-    assert (model < 0.25 * noisy).all()
+    assert (model < 0.4 * noisy).all()
     current = loud.record(2, {}).current
     assert current is not None
     drawn = fitting.low_pass(logs.noise(current, 500.0, default_rng(9)), fitting.BAND, 500.0)
@@ -208,7 +208,7 @@ def test_trajectories_reach_their_limits_and_repeat() -> None:
     ("effect", "name", "joint"),
     [
         ("stribeck_friction", "direct2", 2),
-        ("actuator_mass", "levered2", 1),
+        ("actuator_mass", "levered2", 2),
         ("joint_flexibility", "direct2", 1),
         ("payload_change", "mixed2", 2),
         ("hard_spot", "direct2", 2),

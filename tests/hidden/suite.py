@@ -1,4 +1,4 @@
-"""The cases of the test suite. Seeds were taken in order; magnitudes are what hidden.cases.draw finds for them."""
+"""The cases of the test suite. Seeds in order of the list; magnitudes as hidden.cases.draw finds them."""
 
 from hidden.cases import Case, Hidden
 
