@@ -124,7 +124,7 @@ def draw(name: str, random: Generator) -> Arm:
         _drive(plant, j, joint, random)
     speed = np.array([1.6 if joint.drive == "direct" else 0.9 for joint in design])
     position = np.array([joint.position for joint in design])
-    return Arm(name, plant, position, speed, 6.0 * speed)
+    return Arm(name, plant, position, speed, np.round(6.0 * speed, 3))
 
 
 def _link(plant: Plant, j: int, joint: Joint, random: Generator) -> None:
@@ -173,9 +173,9 @@ def _drive(plant: Plant, j: int, joint: Joint, random: Generator) -> None:
         ]
         plant["offset"][j] = round(float(plant["offset"][j]), 6)
         stroke = plant["length"][j][1] - plant["length"][j][0]
-        plant["motor"][j] = (0.0, stroke / LEAD * 2 * math.pi * unit)
+        plant["motor"][j] = (0.0, round(stroke / LEAD * 2 * math.pi * unit, 3))
     heavy = min(1.0, joint.mass / 4.0)
-    plant["torque_constant"][j] = round(0.05 * varied[0], 5) / unit
+    plant["torque_constant"][j] = float(f"{0.05 * varied[0] / unit:.5g}")
     plant["rotor"][j] = 2.5e-5 * varied[1] * heavy / unit**2
     plant["viscous"][j] = 2.0e-4 * varied[2] * heavy / unit**2
     plant["dry"][j] = 0.022 * varied[3] * heavy * joint.friction / unit

@@ -29,6 +29,7 @@ def main() -> int:
     parser.add_argument("--rate", type=float, default=500.0)
     parser.add_argument("--periods", type=int, default=3)
     parser.add_argument("--noise", type=float, default=1.0, help="0 switches the current's noise off")
+    parser.add_argument("--name", default="arm", help="of the arm in arms.yaml")
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     if len(given.joint) != len(given.effect):
@@ -36,7 +37,9 @@ def main() -> int:
     hidden = tuple(
         Hidden(effect, joint, given.strength) for effect, joint in zip(given.effect, given.joint, strict=True)
     )
-    case = Case(given.arm, given.seed, hidden, given.encoder, given.rate, given.periods, given.noise)
+    case = Case(
+        given.arm, given.seed, hidden, given.encoder, given.rate, given.periods, given.noise, given.name
+    )
     try:
         label = make(case, given.out)
     except PlantError as error:
