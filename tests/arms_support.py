@@ -34,7 +34,7 @@ VARIANTS = {
 EFFECTS: tuple[tuple[str, int | None, dict[str, float]], ...] = (
     ("load_dependent_friction", 1, {}),
     ("presliding", 1, {"distance": 1.0}),
-    ("joint_flexibility", 1, {"stiffness": 1e3, "damping": 2.0}),
+    ("joint_flexibility", 1, {"stiffness": 50.0, "damping": 2.0}),
     ("stribeck_friction", 2, {"velocity": 0.5, "exponent": 0.7}),
     ("torque_ripple", 2, {"harmonic": 2.0, "revolution": 2000.0}),
     ("transmission_coupling", 2, {"other": 1.0}),
@@ -42,7 +42,7 @@ EFFECTS: tuple[tuple[str, int | None, dict[str, float]], ...] = (
     ("friction_warm_up", 3, {"time": 5.0}),
     ("position_dependent_friction", 3, {}),
     ("nonlinear_viscous_friction", 3, {"exponent": 0.6}),
-    ("backlash", 3, {"play": 0.01, "stiffness": 1e3}),
+    ("backlash", 3, {"play": 0.0001, "stiffness": 50.0}),
     ("torque_constant_saturation", 3, {"coefficient": 1e-3}),
     ("fluid_drag", None, {}),
     ("added_mass", None, {}),
@@ -112,8 +112,8 @@ def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np
             value = np.sin(q)
         elif a.name == "cos_q":
             value = np.cos(q)
-        elif a.name == "state":  # a lag of some millimetres, not of metres
-            value = 0.005 * value
+        elif a.name == "state":  # a lag of a millimetre, not of metres
+            value = 0.0005 * value
         elif a.name == "dt":
             value = np.array([0.001])
         elif a.name == "geometry":

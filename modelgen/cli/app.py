@@ -59,6 +59,25 @@ JacobianLink = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
+Train = Annotated[
+    list[str], typer.Option(metavar="LOG", help="A training record, FILE or FILE@t0:t1 [s]; repeatable.")
+]
+Test = Annotated[
+    list[str], typer.Option(metavar="LOG", help="The record that nothing but the final errors looks at.")
+]
+Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
+Mapping = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Mapping file of a foreign log.", show_default=False),
+]
+CutOff = Annotated[
+    float | None,
+    typer.Option(metavar="HZ", help="Low-pass of effort and regressor.", show_default=False),
+]
+Period = Annotated[
+    float | None,
+    typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
+]
 Pages = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="Write effects.md with a picture of each there.", show_default=False),
@@ -172,6 +191,37 @@ def show(
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
     _, (found,) = selected(arms, [arm])
     run(found, chosen, as_json=as_json)
+
+
+@app.command()
+@guarded
+def diagnose(
+    arm: OneArm,
+    train: Train,
+    test: Test,
+    out: Folder,
+    arms: Arms = None,
+    mapping: Mapping = None,
+    cutoff: CutOff = None,
+    period: Period = None,
+    as_json: Json = False,
+) -> None:
+    """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
+    from modelgen.cli.diagnosing import run
+    from modelgen.cli.selecting import selected
+
+    file, (found,) = selected(arms, [arm])
+    run(
+        Path(file),
+        found,
+        train,
+        test,
+        out,
+        mapping=mapping,
+        cutoff=cutoff,
+        period=period,
+        as_json=as_json,
+    )
 
 
 @app.command()

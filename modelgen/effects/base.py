@@ -31,6 +31,9 @@ class Parameter:
     unit: {f} stands for the unit of the generalised force, {x} for that of the coordinate. symbol: its
     name among the standard parameters, before the joint's number (linear parameters only). default:
     None where the description must give a value for a nonlinear parameter. bounds: sensible values.
+    grid: where a diagnosis begins to look for the value of a nonlinear parameter, in units of `scale`:
+    "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time" (the record's
+    length), "stiffness" (largest effort over the span) or "1".
     """
 
     name: str
@@ -39,6 +42,8 @@ class Parameter:
     symbol: str = ""
     default: float | None = None
     bounds: tuple[float, float] = (0.0, float("inf"))
+    scale: str = "1"
+    grid: tuple[float, ...] = ()
 
 
 class Definition(ABC):

@@ -2,8 +2,8 @@
 
 The coordinate is the drive's, by which logs and controllers know the joint. The state is how far the
 link stays behind it; its acceleration follows from the effort that a rigid joint would transmit, the
-links' inertia about the joint and what the spring transmits instead. That effort is taken at the
-drive's coordinate: how it changes over the lag itself is left out.
+links' inertia about the joint and what the spring transmits instead. The links' equations are taken
+where the links are.
 """
 
 from __future__ import annotations
@@ -68,7 +68,14 @@ class Backlash(Compliance):
     text = "play between drive and link"
     reference = "Nordin and Gutman 2002"
     nonlinear = (
-        Parameter("play", "{x}", "width of the gap, from contact to contact", bounds=POSITIVE),
+        Parameter(
+            "play",
+            "{x}",
+            "width of the gap, from contact to contact",
+            bounds=POSITIVE,
+            scale="span",
+            grid=(3e-4, 1e-3, 3e-3, 1e-2, 3e-2),
+        ),
         STIFFNESS,
         DAMPING,
     )

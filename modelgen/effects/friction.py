@@ -94,7 +94,14 @@ class NonlinearViscousFriction(Effect):
     reference = "Grotjahn, Daemi and Heimann 2001; Wolf and Iskandar 2018"
     linear = (Parameter("coefficient", "{f}", "friction at the speed `scale`", "FN", bounds=ANY),)
     nonlinear = (
-        Parameter("exponent", "1", "power of the speed", default=2.0, bounds=(0.1, 4.0)),
+        Parameter(
+            "exponent",
+            "1",
+            "power of the speed",
+            default=2.0,
+            bounds=(0.1, 4.0),
+            grid=(0.3, 0.6, 1.6, 2.0, 3.0),
+        ),
         Parameter("scale", "{x}/s", "speed to which the power is referred", default=1.0, bounds=POSITIVE),
     )
     confused_with = ("stribeck_friction", "fluid_drag", "torque_constant_saturation")

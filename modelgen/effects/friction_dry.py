@@ -19,7 +19,14 @@ class StribeckFriction(Effect):
     reference = "Stribeck 1902; Bo and Pavelescu 1982"
     linear = (Parameter("magnitude", "{f}", "excess of static over Coulomb friction", "FS"),)
     nonlinear = (
-        Parameter("velocity", "{x}/s", "Stribeck velocity", bounds=POSITIVE),
+        Parameter(
+            "velocity",
+            "{x}/s",
+            "Stribeck velocity",
+            bounds=POSITIVE,
+            scale="speed",
+            grid=(0.01, 0.02, 0.04, 0.08, 0.16, 0.3),
+        ),
         Parameter("exponent", "1", "shape of the fall", default=2.0, bounds=(0.5, 4.0)),
         SMOOTHING,
     )
@@ -82,7 +89,17 @@ class FrictionWarmUp(Effect):
         Parameter("dry", "{f}", "excess of dry friction at the start", "FCW", bounds=ANY),
         Parameter("viscous", "{f} s/{x}", "excess of viscous friction at the start", "FVW", bounds=ANY),
     )
-    nonlinear = (Parameter("time", "s", "time constant of the warm-up", bounds=POSITIVE), SMOOTHING)
+    nonlinear = (
+        Parameter(
+            "time",
+            "s",
+            "time constant of the warm-up",
+            bounds=POSITIVE,
+            scale="time",
+            grid=(0.05, 0.1, 0.2, 0.4, 0.8, 1.6),
+        ),
+        SMOOTHING,
+    )
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
 
@@ -99,7 +116,16 @@ class Presliding(Effect):
     text = "dry friction that builds up over a distance after a reversal"
     reference = "Dahl 1968"
     linear = (Parameter("magnitude", "{f}", "friction once it has built up", "FD"),)
-    nonlinear = (Parameter("distance", "{x}", "distance over which it builds up", bounds=POSITIVE),)
+    nonlinear = (
+        Parameter(
+            "distance",
+            "{x}",
+            "distance over which it builds up",
+            bounds=POSITIVE,
+            scale="span",
+            grid=(3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1),
+        ),
+    )
     states = ("bend",)
     confused_with = ("stribeck_friction", "backlash", "time_delay")
     experiment = "reversals of small amplitude, at several amplitudes and speeds"

@@ -120,7 +120,7 @@ class TimeDelay(InputEffect):
     name = "time_delay"
     text = "time by which the effort comes after the logged input"
     reference = "Swevers, Verdonck and De Schutter 2007"
-    scope = "arm"
+    scope = "either"
     nonlinear = (Parameter("delay", "s", "time from the logged input to its effort", bounds=(-1.0, 1.0)),)
     states = ("lagged",)
     confused_with = ("joint_flexibility", "presliding", "stribeck_friction")

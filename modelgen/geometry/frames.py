@@ -6,6 +6,7 @@ Vectors are turned by one plane rotation after the other: a right angle then cos
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from modelgen.description.objects import Arm, Joint
@@ -80,11 +81,20 @@ class Frame:
 
 
 class Frames:
-    """All frames of an arm; `frames[i]` belongs to `arm.joints[i]`, `order` lists antecedents first."""
+    """All frames of an arm; `frames[i]` belongs to `arm.joints[i]`, `order` lists antecedents first.
+
+    lag_rates: rates at which links stay behind their drives, by coordinate.
+    """
 
     def __init__(
-        self, arm: Arm, scalars: Scalars, trigonometry: Trigonometry, factored: bool = False
+        self,
+        arm: Arm,
+        scalars: Scalars,
+        trigonometry: Trigonometry,
+        factored: bool = False,
+        lag_rates: Mapping[int, Expr] | None = None,
     ) -> None:
+        self.lag_rates = lag_rates or {}
         self.factored = factored
         self.arm = arm
         self.graph = scalars.graph
@@ -109,6 +119,8 @@ class Frames:
         elif prismatic:
             theta = scalars.sin_cos(joint.theta)
             r = r + self.graph.input("q", coordinate)
+            if coordinate in self.trigonometry.lags:
+                r = r - self.trigonometry.lags[coordinate]
         else:
             theta = self.trigonometry.of(coordinate, joint.theta)
         alpha, gamma = scalars.sin_cos(joint.alpha), scalars.sin_cos(joint.gamma)

@@ -6,7 +6,7 @@ from modelgen.geometry import Frames
 from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross, dot
 from modelgen.model.dynamics import Parameters
-from modelgen.model.motion import Rates, link_motions
+from modelgen.model.motion import Rates, link_motions, of_links
 
 
 def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple[Expr, Expr]:
@@ -16,7 +16,7 @@ def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple
     + density g'(V p + first moments of the volume).
     """
     graph, density = frames.graph, frames.arm.fluid_density
-    motions = link_motions(frames, rates)
+    motions, moving = link_motions(frames, rates), of_links(frames, rates)
     zero: Vector = (graph.zero, graph.zero, graph.zero)
     velocity: dict[int | None, Vector] = {None: zero}
     height: dict[int | None, Expr] = {None: graph.zero}  # g . p
@@ -29,7 +29,7 @@ def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple
         before = frame.antecedent
         v = frame.to_link(add(velocity[before], cross(spin[before], frame.origin)))
         if frame.coordinate is not None and frame.prismatic:
-            v = (v[0], v[1], v[2] + rates.dq[frame.coordinate])
+            v = (v[0], v[1], v[2] + moving.dq[frame.coordinate])
         height[i] = height[before] + dot(gravity[before], frame.origin)
         velocity[i], gravity[i], spin[i] = v, motion.gravity, motion.velocity
         xx, xy, xz, yy, yz, zz, mx, my, mz, m = parameters[i][:10]

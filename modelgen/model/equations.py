@@ -48,12 +48,13 @@ class Equations:
     ) -> None:
         self.arm = arm
         self.graph = Graph()
-        self.scalars = Scalars(self.graph, arm, runtime)
-        self.trigonometry = Trigonometry(arm, self.scalars, sincos)
-        self.frames = Frames(arm, self.scalars, self.trigonometry)
-        self.frames_factored = Frames(arm, self.scalars, self.trigonometry, factored=True)
-        self.n = len(arm.coordinates)
         self.effects = applied_effects(arm, free)
+        self.scalars = Scalars(self.graph, arm, runtime)
+        lags, lag_rates = self._lags()
+        self.trigonometry = Trigonometry(arm, self.scalars, sincos, lags)
+        self.frames = Frames(arm, self.scalars, self.trigonometry, lag_rates=lag_rates)
+        self.frames_factored = Frames(arm, self.scalars, self.trigonometry, True, lag_rates)
+        self.n = len(arm.coordinates)
         self.free = {free_symbol(name): self.graph.input("free", k) for k, name in enumerate(free)}
         self.drives = [self._drive(n, index) for n, index in enumerate(arm.coordinates)]
         self.standard = standard_parameters(arm, self.effects)
@@ -107,6 +108,19 @@ class Equations:
     def state_names(self) -> list[str]:
         """Names of all states of the effects, in the order of the input `state`."""
         return [symbol.name for effect in self.effects for symbol in effect.states.values()]
+
+    def _lags(self) -> tuple[dict[int, Expr], dict[int, Expr]]:
+        """How far, and how fast, links stay behind their drives, by coordinate: states of effects."""
+        lags: dict[int, Expr] = {}
+        rates: dict[int, Expr] = {}
+        names = self.state_names()
+        for effect in self.effects:
+            if any(part.place == "transmission" for part in effect.parts) and effect.joint is not None:
+                n = self.arm.coordinates.index(effect.joint)
+                lag, rate = (self.graph.input("state", names.index(s.name)) for s in effect.states.values())
+                lags[n] = lags[n] + lag if n in lags else lag
+                rates[n] = rates[n] + rate if n in rates else rate
+        return lags, rates
 
     def link_end(self, index: int) -> Vector:
         """Where a link ends, in its frame [m]: at the next link's origin, at the tip given for the last."""

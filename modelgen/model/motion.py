@@ -69,6 +69,19 @@ class Rates:
     reference: Sequence[Expr] | None = None
 
 
+def of_links(frames: Frames, rates: Rates) -> Rates:
+    """Rates of the links where they stay behind their drives; accelerations stay the drives'."""
+    if not frames.lag_rates:
+        return rates
+
+    def less(values: Sequence[Expr]) -> list[Expr]:
+        lags = frames.lag_rates
+        return [x - lags[n] if n in lags else x for n, x in enumerate(values)]
+
+    reference = None if rates.reference is None else less(rates.reference)
+    return Rates(less(rates.dq), rates.ddq, reference)
+
+
 def base_motion(frames: Frames) -> LinkMotion:
     """The base at rest, accelerated against gravity."""
     graph = frames.graph
@@ -79,6 +92,7 @@ def base_motion(frames: Frames) -> LinkMotion:
 
 def link_motions(frames: Frames, rates: Rates) -> list[LinkMotion]:
     """The motion of every link, indexed as `arm.joints`."""
+    rates = of_links(frames, rates)
     motions: dict[int | None, LinkMotion] = {None: base_motion(frames)}
     for i in frames.order:
         motions[i] = _link_motion(frames, i, motions[frames[i].antecedent], rates)

@@ -12,7 +12,7 @@ from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 from modelgen.model.composite import mass_matrix
 from modelgen.model.dynamics import joint_efforts
-from modelgen.model.motion import LinkMotion, Rates, link_motions
+from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
 from modelgen.model.screws import PartialVelocities
 
 
@@ -58,7 +58,9 @@ class Surroundings:
     def weight(self, n: int) -> Expr | None:
         """Effort of coordinate n that the links' weight takes [N m, N]; None where it is an input."""
         zeros = [self.frames.graph.zero] * self.n
-        return self._efforts("weight", Rates(zeros, zeros), n)
+        # the links at rest: their drives move as fast as they lag
+        rest = [self.frames.lag_rates.get(k, zero) for k, zero in enumerate(zeros)]
+        return self._efforts("weight", Rates(rest, zeros), n)
 
     def transmitted(self, n: int) -> Expr | None:
         """Effort of coordinate n that moves the links [N m, N]; None without parameters."""
@@ -83,7 +85,7 @@ class Surroundings:
 
 def origin_velocities(frames: Frames, rates: Rates, motions: Sequence[LinkMotion]) -> list[Vector]:
     """Velocity of the origin of every link's frame, in its own axes [m/s]."""
-    zero = frames.graph.zero
+    zero, rates = frames.graph.zero, of_links(frames, rates)
     found: dict[int | None, Vector] = {None: (zero, zero, zero)}
     for i in frames.order:
         frame = frames[i]

@@ -20,6 +20,8 @@ def places(arm: Arm, name: str) -> list[int | None]:
     An effect that may stand at either is offered for the whole arm.
     """
     effect = CATALOGUE[name]
+    if name == "time_delay":
+        return _of_delay(arm)
     if effect.scope != "joint":
         there = any(use.name == name for use in arm.effects)
         if issubclass(effect, FluidDrag | AddedMass) and not _tips_known(arm):
@@ -41,6 +43,19 @@ def places(arm: Arm, name: str) -> list[int | None]:
             continue
         found.append(number)
     return found
+
+
+def _of_delay(arm: Arm) -> list[int | None]:
+    """Of one driven joint's input, or of all."""
+    if any(use.name == "time_delay" for use in arm.effects):
+        return []
+    found: list[int | None] = [None]
+    for number, index in enumerate(arm.coordinates, 1):
+        joint = arm.joints[index]
+        there = any(use.name == "time_delay" for use in joint.effects)
+        if isinstance(joint.drive, LeveredDrive | DirectDrive) and not there:
+            found.append(number)
+    return found if len(found) != 2 else [None]
 
 
 def _tips_known(arm: Arm) -> bool:

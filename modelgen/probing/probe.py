@@ -14,11 +14,18 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, Parameter, described
-from modelgen.functions.objects import Function
+from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array, Motion
 from modelgen.probing.places import changes_description, with_effect
-from modelgen.probing.programs import added_by, columns_of, grouping, inputs_of, loads_of, steps_of
+from modelgen.probing.programs import (
+    columns_of,
+    grouping,
+    inputs_of,
+    links_and_effect,
+    loads_of,
+    steps_of,
+)
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]
@@ -39,6 +46,9 @@ class Prober:
         self.base = grouping(arm)
         self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
         self._made: dict[object, NumpyFunction] = {}
+        self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
+        self._series: dict[tuple[Equations, int], tuple[Function, ca.Function]] = {}
+        self._inputs: dict[tuple[int, bytes], tuple[Motion, Array]] = {}
 
     @cached_property
     def n(self) -> int:
@@ -57,6 +67,47 @@ class Prober:
         """Inputs of the arm as described, (N, n), for its base parameters."""
         return self._inputs_of("described", self.arm, motion, parameters)
 
+    def regressor(self, model: Model, motion: Motion, parameters: Array) -> Array:
+        """The regressor of the arm's own model (N, n, p); `parameters` where its columns depend on them."""
+        function = self._function(model, "regressor")
+        names = {a.name for a in function.function.arguments}
+        loads = states = None
+        if "load" in names:
+            made = self._function(model, "load")
+            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
+        if "state" in names:
+            states = self._states(self._own, motion, (), parameters)
+        found = function(**self._given(function.function, motion, (), parameters, loads, states))
+        return np.asarray(found).reshape(len(motion.t), self.n, -1)
+
+    def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
+        """Inputs of ideal drives with the efforts of the measured ones (N, n)."""
+        for use, joint in [(u, None) for u in self.arm.effects] + [
+            (u, n) for n, i in enumerate(self.arm.coordinates) for u in self.arm.joints[i].effects
+        ]:
+            if use.name == "time_delay":  # what was commanded a delay ago acts now
+                shifted = [np.interp(motion.t - use.values["delay"], motion.t, x) for x in given.T]
+                columns = range(self.n) if joint is None else [joint]
+                given = given.copy()
+                for k in columns:
+                    given[:, k] = shifted[k]
+        if not any(f.name == "effective_input" for f in model.functions):
+            return given
+        function = self._function(model, "effective_input")
+        known = {"input": given, "state": given}  # a lag was undone by the shift
+        return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
+
+    @cached_property
+    def _own(self) -> Equations:
+        """Equations of the arm with its own effects."""
+        return Equations(slid(described(self.arm)))
+
+    def _function(self, model: Model, name: str) -> NumpyFunction:
+        if ("model", name) not in self._made:
+            (function,) = [f for f in model.functions if f.name == name]
+            self._made["model", name] = NumpyFunction(function)
+        return self._made["model", name]
+
     def columns(
         self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
     ) -> Array:
@@ -67,9 +118,11 @@ class Prober:
         """
         e = self._of_effect(effect, joint, values)
         names = [p.name for p in self.linear(effect)]
-        function, places = columns_of(e)
-        call = self._made.setdefault(id(e), NumpyFunction(function))
-        found = self._run(call, e, function, motion, values, parameters)
+        if e not in self._columns:
+            function, places = columns_of(e)
+            self._columns[e] = NumpyFunction(function), places
+        call, places = self._columns[e]
+        found = self._run(call, e, call.function, motion, values, parameters)
         result = np.zeros((len(motion.t), self.n, len(names)))
         for k, (name, coordinate) in enumerate(places):
             result[:, coordinate, names.index(name)] += found[:, k]
@@ -81,28 +134,48 @@ class Prober:
         """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
         definition = CATALOGUE[effect]
         if effect == "time_delay":
-            return self._delayed(motion, values["delay"], parameters)
+            delayed = self._delayed(motion, values["delay"], parameters)
+            if joint is not None:
+                delayed[:, [k for k in range(self.n) if k != joint - 1]] = 0.0
+            return delayed
         if changes_description(effect) or effect == "torque_constant_saturation":
+            key = (effect, joint, tuple(sorted(values.items())))
             other = with_effect(self.arm, effect, joint, values)
-            return self._inputs_of(None, other, motion, parameters) - self.inputs(motion, parameters)
+            return self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
             columns = self.columns(effect, joint, motion, values, parameters)
             return np.asarray(columns @ weights)
         e = self._of_effect(effect, joint, values)
-        function = added_by(e, self.base)
-        call = self._made.setdefault((id(e), "added"), NumpyFunction(function))
-        return self._run(call, e, function, motion, values, parameters)
+        if (e, "added") not in self._made:
+            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+        call = self._made[e, "added"]
+        return self._run(call, e, call.function, motion, values, parameters) - self._links(motion, parameters)
+
+    def _links(self, motion: Motion, parameters: Array) -> Array:
+        """Inputs of the links alone."""
+        if "links" not in self._made:
+            joints = tuple(replace(j, effects=()) for j in described(self.arm).joints)
+            alone = replace(described(self.arm), joints=joints, effects=())
+            self._made["links"] = NumpyFunction(links_and_effect(Equations(slid(alone)), self.base))
+        call = self._made["links"]
+        return np.asarray(call(**self._given(call.function, motion, (), parameters, None, None)))
 
     # -- inside -----------------------------------------------------------------------------
 
-    def _inputs_of(self, name: str | None, arm: Arm, motion: Motion, parameters: Array) -> Array:
-        if name not in self._made:
-            call = NumpyFunction(inputs_of(arm, self.base))
-            if name is None:
-                return self._along(call, arm, motion, parameters)
-            self._made[name] = call
-        return self._along(self._made[name], arm, motion, parameters)
+    def _inputs_of(self, key: object, arm: Arm, motion: Motion, parameters: Array) -> Array:
+        if key not in self._made:
+            self._made[key] = NumpyFunction(inputs_of(arm, self.base))
+        call = self._made[key]
+        if key != "described":
+            return self._along(call, arm, motion, parameters)
+        at = (id(motion), np.asarray(parameters).tobytes())
+        if at not in self._inputs:
+            if len(self._inputs) > 20:
+                self._inputs.clear()
+            # the motion is kept: its place in memory is the key
+            self._inputs[at] = motion, self._along(call, arm, motion, parameters)
+        return self._inputs[at][1]
 
     def _along(self, call: NumpyFunction, arm: Arm, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
@@ -139,7 +212,9 @@ class Prober:
         free = self._free(e, values)
         loads = None
         if any(effect.depends_on("load") for effect in e.effects):
-            made = self._made.setdefault("loads", NumpyFunction(loads_of(self.arm, self.base)))
+            if "loads" not in self._made:
+                self._made["loads"] = NumpyFunction(loads_of(self.arm, self.base))
+            made = self._made["loads"]
             loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
         states = self._states(e, motion, free, parameters) if e.state_names() else None
         return np.asarray(call(**self._given(function, motion, free, parameters, loads, states)))
@@ -156,16 +231,13 @@ class Prober:
 
     def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
         """States at every sample, (N, s), from zero, stepped by CasADi's virtual machine."""
-        function = steps_of(e, self.base)
-        step = casadi_function(function)
         count = len(motion.t)
+        if (e, count) not in self._series:
+            self._series[e, count] = _series(steps_of(e, self.base), count)
+        function, series = self._series[e, count]
         given = self._given(function, motion, free, parameters, None, np.zeros((count, len(e.state_names()))))
         given["dt"] = np.full((count, 1), motion.step)
         names = [a.name for a in function.arguments if a.name != "state"]
-        x = {a.name: ca.SX.sym(a.name, a.size) for a in function.arguments}
-        # mapaccum feeds the first output back into the first input
-        ordered = ca.Function("ordered", [x["state"], *(x[k] for k in names)], [step(*x.values())])
-        series = ordered.mapaccum("series", count, {"base": 4})
         columns = [
             np.ascontiguousarray(np.broadcast_to(given[k], (count, given[k].shape[-1])).T) for k in names
         ]
@@ -195,3 +267,13 @@ class Prober:
             "input": np.zeros((count, self.n)),
         }
         return {a.name: known[a.name] for a in function.arguments}
+
+
+def _series(function: Function, count: int) -> tuple[Function, ca.Function]:
+    """`function`, and its state stepped `count` times: inputs state, then the others in their order."""
+    step = casadi_function(function)
+    x = {a.name: ca.SX.sym(a.name, a.size) for a in function.arguments}
+    others = [x[a.name] for a in function.arguments if a.name != "state"]
+    # mapaccum feeds the first output back into the first input
+    ordered = ca.Function("ordered", [x["state"], *others], [step(*x.values())])
+    return function, ordered.mapaccum("series", count, {"base": 4})

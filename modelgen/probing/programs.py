@@ -68,10 +68,10 @@ def steps_of(e: Equations, base: Grouping) -> Function:
     return bare("steps", e, len(base.base), forces.steps(e.graph.input("dt", 0)))
 
 
-def added_by(e: Equations, base: Grouping) -> Function:
-    """What the only effect of `e` adds to the inputs, where it has no linear parameters."""
-    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), _values(e, base))
-    return bare("added", e, len(base.base), forces.inputs())
+def links_and_effect(e: Equations, base: Grouping) -> Function:
+    """Inputs of the links with the only effect of `e`, which has no linear parameters."""
+    dynamics = Dynamics(e, _values(e, base))
+    return bare("added", e, len(base.base), dynamics.inverse_dynamics(e.vector("dq"), e.vector("ddq")))
 
 
 def _values(e: Equations, base: Grouping) -> list[Expr]:

@@ -1,0 +1,75 @@
+"""Effects that no motion of this arm can tell apart, and those that the base parameters absorb.
+
+Derived from the model along a synthetic motion, before any data are seen: equal spans of the columns,
+once what the base parameters explain is taken off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import subspace_angles
+
+from modelgen.base_parameters.oracle import random_states
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, STEPS, Candidate, sensitivities
+from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.system import orthonormal
+from modelgen.errors import InputError
+from modelgen.functions import Model
+from modelgen.model.equations import Equations
+from modelgen.probing import Motion, Prober
+
+EQUAL = 1e-6  # rad, principal angle
+ABSORBED = 1e-6  # part of a column that is left
+SEED = 20181101
+
+
+def synthetic(arm: Arm, model: Model, samples: int = 400) -> Motion:
+    """Random states within the strokes and limits, as a motion without order in time."""
+    found = random_states(Equations(model.arm), samples, SEED)
+    q, dq, ddq = (np.asarray(found[name], dtype=np.float64) for name in ("q", "dq", "ddq"))
+    return Motion(0.01 * np.arange(samples, dtype=np.float64), q, dq, ddq)
+
+
+def aliases(
+    causes: Sequence[Candidate], pool: Sequence[Candidate], prober: Prober, model: Model, base: Array
+) -> list[list[Candidate]]:
+    """For every cause the candidates whose columns span the same."""
+    motion = synthetic(prober.arm, model)
+    q = orthonormal(prober.regressor(model, motion, base).reshape(-1, len(base)))
+    spans = {id(c): _span(c, prober, motion, base, q) for c in [*causes, *pool]}
+    result = []
+    for cause in causes:
+        own = spans[id(cause)]
+        equal = []
+        for other in pool:
+            there = spans[id(other)]
+            if (other.effect, other.joint) == (cause.effect, cause.joint) or own is None or there is None:
+                continue
+            if there.shape == own.shape and float(subspace_angles(own, there).max()) < EQUAL:
+                equal.append(other)
+        result.append(equal)
+    return result
+
+
+def _span(c: Candidate, prober: Prober, motion: Motion, base: Array, q: Array) -> Array | None:
+    """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
+    if c.effect in COMPLIANT or c.effect in (LATER, "time_delay", "presliding") or c.searched:
+        return None
+    try:
+        if c.effect in STEPS:
+            table = sensitivities(c, motion, prober, base)
+        else:
+            table = prober.columns(c.effect, c.joint, motion, c.fixed, base)
+    except (InputError, ValueError):
+        return None
+    flat = table.reshape(-1, table.shape[2])
+    sizes = np.linalg.norm(flat, axis=0)
+    flat = flat[:, sizes > 1e-5 * sizes.max(initial=0.0)] if sizes.any() else flat[:, :0]
+    if not flat.shape[1]:
+        return None
+    own = flat - q @ (q.T @ flat)
+    left = np.linalg.norm(own, axis=0) > ABSORBED * np.linalg.norm(flat, axis=0)
+    return orthonormal(own[:, left]) if left.any() else None

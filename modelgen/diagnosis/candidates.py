@@ -1,0 +1,203 @@
+"""Effects that the arm may have besides: where, with which values to search for, and their columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from modelgen.dataset import drives_of
+from modelgen.description import Arm
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.effects import CATALOGUE, Parameter
+from modelgen.errors import InputError
+from modelgen.probing import Motion, Prober, places
+
+Values = Mapping[str, float]
+
+# Sensitivities: the step over which they are taken, by parameter.
+STEPS: Mapping[str, Mapping[str, float]] = {
+    "encoder_offset": {"offset": 1e-4},
+    "base_tilt": {"x": 1e-4, "y": 1e-4, "z": 1e-4},
+    "lever_geometry": {"l1": 1e-6, "l2": 1e-6, "length": 1e-6},
+    "drive_gain_error": {"error": 1e-4},
+    "torque_constant_saturation": {"coefficient": 1e-8},
+    "time_delay": {"delay": 1e-4},
+}
+INVISIBLE = 1e-5  # of the largest column of a sensitivity
+RELAXATION = 0.003  # s, damping over stiffness of an elastic joint
+RIGID = 3e3  # stiffness of a contact, in the scale of stiffness
+COMPLIANT = ("joint_flexibility", "backlash")
+PERIODIC = "torque_ripple"
+LATER = "payload_change"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are.
+
+    joint counts coordinates from 1, None for the whole arm.
+    """
+
+    effect: str
+    joint: int | None
+    fixed: Values = field(default_factory=dict)
+    searched: tuple[Parameter, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters that the columns belong to."""
+        if self.effect in STEPS:
+            return tuple(STEPS[self.effect])
+        if self.effect == LATER:
+            return ("mass", "moment_x", "moment_y", "moment_z")
+        if self.effect in COMPLIANT:
+            return ("share",)
+        return tuple(p.name for p in CATALOGUE[self.effect].linear)
+
+    def joints(self, n: int) -> list[int]:
+        """Coordinates (from 0) that it is judged by."""
+        if self.joint is None:
+            return list(range(n))
+        others = [int(self.fixed["other"]) - 1] if "other" in self.fixed else []
+        return [self.joint - 1, *others]
+
+
+def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
+    """Everything of the catalogue that can stand somewhere on the arm and is not there yet."""
+    found: list[Candidate] = []
+    free = all(r.prepared.input is None for r in rows)
+    for name, effect in CATALOGUE.items():
+        if name == LATER and len(rows) < 2:
+            continue
+        if free and name in ("drive_gain_error", "torque_constant_saturation", "time_delay"):
+            continue
+        for joint in places(arm, name):
+            searched = tuple(p for p in effect.nonlinear if p.grid)
+            for fixed in _fixed(name, joint, rows, prober):
+                found.append(Candidate(name, joint, fixed, () if name in STEPS else searched))
+    return found
+
+
+def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:
+    if name == "transmission_coupling":
+        assert joint is not None
+        return [{"other": float(k), "ratio": r} for k in range(1, joint) for r in (1.0, -1.0)]
+    if name == "nonlinear_viscous_friction":
+        return [{"scale": scale("speed", name, joint, rows, prober)}]
+    if name == PERIODIC:
+        assert joint is not None
+        unit = drives_of(prober.arm)[joint - 1].unit
+        return [{"revolution": 2 * np.pi if unit in ("rad", "unit rad") else 1.0}]
+    if name in COMPLIANT:
+        stiffness = RIGID * scale("stiffness", name, joint, rows, prober)
+        return [{"stiffness": stiffness, "damping": RELAXATION * stiffness}]
+    return [{}]
+
+
+def scale(kind: str, name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> float:
+    """What a grid is in units of, over all records."""
+    if kind == "1":
+        return 1.0
+    if kind == "time":
+        return max(float(r.prepared.time[-1] - r.prepared.time[0]) for r in rows)
+    assert joint is not None
+    j = joint - 1
+    side = CATALOGUE[name].side
+    position = [(r.prepared.motor if side == "motor" else r.prepared.q)[:, j] for r in rows]
+    speed = [(r.prepared.dmotor if side == "motor" else r.prepared.dq)[:, j] for r in rows]
+    span = max(float(np.ptp(x)) for x in position)
+    if kind == "span":
+        return span
+    if kind == "speed":
+        return float(np.quantile(np.abs(np.concatenate(speed)), 0.95))
+    drive = drives_of(prober.arm)[j]
+    efforts = [
+        np.abs(drive.gain(r.prepared.q[:, j]) * (0 if r.prepared.input is None else r.prepared.input[:, j]))
+        for r in rows
+    ]
+    return float(np.quantile(np.concatenate(efforts), 0.95)) / max(span, 1e-12)
+
+
+def columns(
+    candidate: Candidate, values: Values, rows: Sequence[Rows], prober: Prober, base: Array
+) -> list[Array] | None:
+    """Its columns (M, n, k) in every record for values of what is searched; None where it cannot stand."""
+    try:
+        return [r.filtered(_at_full_rate(candidate, values, r, k, prober, base)) for k, r in enumerate(rows)]
+    except InputError:
+        return None
+
+
+def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Prober, base: Array) -> Array:
+    motion = r.motion
+    if c.effect in STEPS:
+        return sensitivities(c, motion, prober, base)
+    if c.effect == LATER:
+        return _payload(c, r, record, prober, base)
+    given = {**c.fixed, **values}
+    if c.effect in COMPLIANT:
+        if "damping" not in given:
+            given["damping"] = RELAXATION * given["stiffness"]
+        return prober.contribution(c.effect, c.joint, motion, given, base)[:, :, None]
+    return prober.columns(c.effect, c.joint, motion, given, base)
+
+
+def sensitivities(c: Candidate, motion: Motion, prober: Prober, base: Array) -> Array:
+    """Derivatives of the inputs (N, n, k) by the parameters of an effect without linear ones."""
+    parts = []
+    for name, step in STEPS[c.effect].items():
+        ahead = prober.contribution(c.effect, c.joint, motion, {name: step}, base)
+        if c.effect == "torque_constant_saturation":  # not negative
+            parts.append(ahead / step)
+        else:
+            behind = prober.contribution(c.effect, c.joint, motion, {name: -step}, base)
+            parts.append((ahead - behind) / (2 * step))
+    together = np.stack(parts, axis=2)
+    # what differences leave of an effect that does not show is no column
+    sizes = np.abs(together).max(axis=(0, 1))
+    return np.where(sizes > INVISIBLE * sizes.max(initial=0.0), together, 0.0)
+
+
+def _payload(c: Candidate, r: Rows, record: int, prober: Prober, base: Array) -> Array:
+    """Mass and first moments of what the last link carries in all records but the first."""
+    if record == 0:
+        return np.zeros((*r.prepared.q.shape, 4))
+    step = 1e-3
+    at_origin = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0}, base)
+    parts = [at_origin]
+    for axis in "xyz":
+        ahead = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0, axis: step}, base)
+        behind = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0, axis: -step}, base)
+        parts.append((ahead - behind) / (2 * step))  # without the square of the place
+    return np.stack(parts, axis=2)
+
+
+def waves(residual: Array, position: Array, speed: Array, cutoff: float, count: int = 4) -> list[float]:
+    """Wave numbers [rad per motor unit] at which a residual repeats with the motor's position, best first.
+
+    residual, position, speed: (M,). A periodogram over position (Lomb 1976), of waves that pass slower
+    than the cut-off [Hz] for a tenth of the rows at least.
+    """
+    span = float(np.ptp(position))
+    slow = float(np.quantile(np.abs(speed), 0.1))
+    if span <= 0 or len(residual) < 20:
+        return []
+    step = np.pi / span
+    highest = 2 * np.pi * cutoff / max(slow, 1e-9 * span)
+    grid = step * np.arange(3, min(4000, max(8, int(highest / step))))
+    power = np.concatenate(
+        [
+            np.abs(np.exp(1j * np.outer(part, position)) @ residual) ** 2
+            for part in np.array_split(grid, max(1, len(grid) // 200))
+        ]
+    )
+    order: list[Any] = []
+    for k in np.argsort(power)[::-1]:
+        if all(abs(k - other) > 2 for other in order):
+            order.append(k)
+        if len(order) == count:
+            break
+    return [float(grid[k]) for k in order]

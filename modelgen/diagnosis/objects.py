@@ -1,0 +1,157 @@
+"""A diagnosis, as it is reported."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from modelgen.description import Arm
+from modelgen.diagnosis.lack_of_fit import LackOfFit
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import Selection
+from modelgen.functions import Model
+
+VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter of a cause."""
+
+    value: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Named:
+    """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
+    how far their evidence lies behind; aliases: effects that no motion tells apart from it.
+    """
+
+    effect: str
+    joint: int | None
+    parameters: Mapping[str, Estimate]
+    delta_bic: float
+    cross_gain: float
+    aliases: tuple[tuple[str, int | None], ...] = ()
+    ambiguous_with: tuple[tuple[str, int | None, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Errors:
+    """RMSE on the test record by joint (n,), in `unit`. gain: percent; low, high: its 95 % interval."""
+
+    unit: str
+    before: Array
+    after: Array
+    gain: Array
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Of simulated against measured motion, by joint (n,): F_gof [%], MAE and RMSE [rad, m]."""
+
+    f_gof: Array
+    mae: Array
+    rmse: Array
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything that was found. extended: the description with the causes, the arm itself without any.
+
+    test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts.
+    """
+
+    arm: Arm
+    verdict: str
+    reason: str
+    causes: tuple[Named, ...]
+    not_identifiable: tuple[tuple[str, str], ...]
+    lack_of_fit: LackOfFit | None
+    errors: Errors
+    simulation: tuple[Scores, Scores] | None
+    extended: Arm
+    extended_model: Model
+    extended_parameters: Array
+    parameters: Mapping[str, Estimate]
+    next_experiment: Mapping[str, Any] | None
+    test: Rows
+    residuals: tuple[Array, Array]
+    selection: Selection
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+def to_json(d: Diagnosis) -> dict[str, Any]:
+    """diagnosis.json."""
+    fit = d.lack_of_fit
+    return {
+        "schema": 1,
+        "arm": d.arm.name,
+        "verdict": d.verdict,
+        "reason": d.reason,
+        "causes": [_cause(c) for c in d.causes],
+        "not_identifiable": [{"effect": name, "reason": reason} for name, reason in d.not_identifiable],
+        "lack_of_fit": None
+        if fit is None
+        else {
+            "statistic": rounded(fit.statistic),
+            "threshold": rounded(fit.threshold),
+            "by_joint": numbers(fit.by_joint),
+            "periods": fit.periods,
+        },
+        "error": {
+            "unit": d.errors.unit,
+            "before": numbers(d.errors.before),
+            "after": numbers(d.errors.after),
+            "gain_percent": numbers(d.errors.gain),
+            "gain_interval_percent": [
+                [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
+            ],
+        },
+        "simulation": {
+            name: {"f_gof": [], "mae": [], "rmse": []}
+            if d.simulation is None
+            else {
+                "f_gof": numbers(d.simulation[k].f_gof),
+                "mae": numbers(d.simulation[k].mae),
+                "rmse": numbers(d.simulation[k].rmse),
+            }
+            for k, name in enumerate(("before", "after"))
+        },
+        "next_experiment": d.next_experiment,
+        "settings": dict(d.settings),
+    }
+
+
+def _cause(c: Named) -> dict[str, Any]:
+    return {
+        "effect": c.effect,
+        "joint": c.joint,
+        "parameters": {
+            name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
+            for name, e in c.parameters.items()
+        },
+        "evidence": {"delta_bic": rounded(c.delta_bic), "cross_gain_percent": rounded(c.cross_gain)},
+        "aliases": [{"effect": effect, "joint": joint} for effect, joint in c.aliases],
+        "ambiguous_with": [
+            {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}
+            for effect, joint, behind in c.ambiguous_with
+        ],
+    }
+
+
+def rounded(value: float) -> float | None:
+    """Six digits; None for what is no number."""
+    return float(f"{value:.6g}") if np.isfinite(value) else None
+
+
+def numbers(values: Array) -> list[float | None]:
+    """A list of rounded numbers."""
+    return [rounded(float(v)) for v in values]

@@ -1,0 +1,64 @@
+"""Equations of one record: effort and regressor through one filter, sample by sample and joint by joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset import Prepared
+from modelgen.functions import Model
+from modelgen.probing import Motion, Prober
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """M rows of n joints. effort: (M, n) as the model has its inputs; columns: (M, n, p), one for each base
+    parameter; moving: (M, n), rows that count.
+    """
+
+    prepared: Prepared
+    effort: Array
+    columns: Array
+    moving: NDArray[np.bool_]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """At full rate."""
+        p = self.prepared
+        return Motion(p.time, p.q, p.dq, p.ddq)
+
+    @property
+    def gain(self) -> Array:
+        """What an input is multiplied by to give what the log carried, (M, n)."""
+        p = self.prepared
+        return np.ones(self.effort.shape) if p.gain is None else np.asarray(p.gain[p.rows])
+
+    def filtered(self, columns: Array) -> Array:
+        """(N, n, k) at full rate through the parallel filter: (M, n, k). What is zero stays so."""
+        n, count = columns.shape[1:]
+        result = np.zeros((len(self.effort), n, count))
+        used = [(j, k) for j in range(n) for k in range(count) if columns[:, j, k].any()]
+        if used:
+            table = np.column_stack([columns[:, j, k] for j, k in used])
+            found = self.prepared.parallel(table)
+            for place, (j, k) in enumerate(used):
+                result[:, j, k] = found[:, place]
+        return result
+
+
+def rows_of(prober: Prober, model: Model, prepared: Prepared, parameters: Array) -> Rows:
+    """The equations of a record. `parameters`: for what of the regressor depends on them (loads).
+
+    A free motion has the effort 0: its model is about 0 = regressor parameters.
+    """
+    motion = Motion(prepared.time, prepared.q, prepared.dq, prepared.ddq)
+    columns = prober.regressor(model, motion, parameters)
+    given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
+    ideal = prober.ideal(model, motion, given)
+    empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving)
+    return Rows(prepared, np.asarray(prepared.parallel(ideal)), empty.filtered(columns), prepared.moving)

@@ -1,0 +1,233 @@
+"""A diagnosis from logs to verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset import Prepared, Record, Settings, check_separate, choose, prepare, read, split
+from modelgen.description import Arm
+from modelgen.diagnosis.aliases import aliases
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, candidates, columns
+from modelgen.diagnosis.errors import errors
+from modelgen.diagnosis.estimates import base_estimates, cause_estimates
+from modelgen.diagnosis.experiments import next_experiment
+from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
+from modelgen.diagnosis.objects import Diagnosis, Named
+from modelgen.diagnosis.replay import replay
+from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.selection import Selection, select
+from modelgen.diagnosis.system import weighted_fit
+from modelgen.errors import InputError
+from modelgen.extension import extended_arm
+from modelgen.functions import Model, build_model
+from modelgen.probing import Prober
+
+Progress = Callable[[str, int, int], None]
+CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
+SAMPLES = 12.0  # per period of the cut-off, at least
+
+
+def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:
+    """Training records, the last is the test record; a single training record gives two.
+
+    Raises InputError where records overlap, are missing, or do not fit the arm.
+    """
+    check_separate(train, test)
+    if len(test) != 1:
+        raise InputError(f"found {len(test)} test records, expected one: --test LOG")
+    found = [read(spec, arm, mapping) for spec in train]
+    if len(found) == 1:
+        found = split(found[0])
+    return [*found, read(test[0], arm, mapping)]
+
+
+def settings_for(found: Sequence[Record], cutoff: float | None) -> Settings:
+    """A wide band: what friction and backlash do lies far above the motion's own frequencies."""
+    rate = 1.0 / found[0].step
+    return Settings(cutoff=min(CUTOFF, rate / SAMPLES) if cutoff is None else cutoff)
+
+
+def diagnose(
+    arm: Arm,
+    found: Sequence[Record],
+    *,
+    cutoff: float | None = None,
+    period: float | None = None,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """What the arm's model gets wrong in the records, of which the last is looked at for the errors alone.
+
+    Raises InputError where the records cannot answer.
+    """
+    chosen = choose(list(found), settings_for(found, cutoff))
+    prepared = [prepare(record, chosen) for record in found]
+    model, prober = build_model(arm), Prober(arm)
+    train, test = prepared[:-1], prepared[-1]
+    rows = _rows(prober, model, train)
+    _check_motion(arm, rows)
+    pool = candidates(arm, prober, rows)
+    selection = select(rows, prober, pool, progress)
+    base = selection.system.theta[: rows[0].columns.shape[2]]
+    fit = lack_of_fit(selection.system, rows, period)
+    verdict, reason = _verdict(selection, fit)
+    named = _named(selection, pool, prober, model, base, rows)
+    after = _extended(arm, selection, rows, train)
+    plain = weighted_fit(rows, [r.columns for r in rows])
+    held = rows_of(prober, model, test, plain)
+    pair = _residuals(held, plain, selection, after, prober, base)
+    unit = _unit(test)
+    simulated = None
+    if verdict == "named":
+        one, two = replay(model, plain, held), replay(after[1], after[2], held)
+        simulated = None if one is None or two is None else (one[0], two[0])
+    return Diagnosis(
+        arm,
+        verdict,
+        reason,
+        named,
+        _absorbed(arm, rows, selection),
+        fit,
+        errors(held, pair[0], pair[1], unit),
+        simulated,
+        *after[:3],
+        base_estimates(after[1], after[3]),
+        next_experiment(named),
+        held,
+        pair,
+        selection,
+        {"cutoff_hz": chosen.cutoff, "position_cutoff_hz": chosen.position_cutoff, "factor": chosen.factor},
+    )
+
+
+def _rows(prober: Prober, model: Model, prepared: Sequence[Prepared]) -> list[Rows]:
+    """Twice where columns depend on the parameters."""
+    theta = np.zeros(len(model.grouping.base))
+    rows = [rows_of(prober, model, p, theta) for p in prepared]
+    (regressor,) = [f for f in model.functions if f.name == "regressor"]
+    if {"load", "state"} & {a.name for a in regressor.arguments}:
+        theta = weighted_fit(rows, [r.columns for r in rows])
+        rows = [rows_of(prober, model, p, theta) for p in prepared]
+    return rows
+
+
+def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
+    moving = np.mean(np.concatenate([r.moving for r in rows]), axis=0)
+    if not (moving > 0.02).any():
+        raise InputError(
+            f"{arm.name}: all joints rest in the training records; expected a motion, see modelgen excite"
+        )
+    unknowns, equations = rows[0].columns.shape[2], sum(int(r.moving.sum()) for r in rows)
+    if equations < 3 * unknowns:
+        raise InputError(
+            f"{arm.name}: {equations} equations for {unknowns} parameters: the records are too short or move "
+            "too little, expected at least three times as many; see modelgen excite"
+        )
+
+
+def _verdict(selection: Selection, fit: LackOfFit | None) -> tuple[str, str]:
+    if selection.causes:
+        left = "" if fit is None or not fit.found else "; something deterministic remains beside it"
+        return "named", f"a cause passed every gate{left}"
+    if fit is None:
+        return "cannot_tell", (
+            "nothing could be named, and no period repeats by which the noise could be measured: excite with "
+            "two or more identical periods (--period gives their length where it is not found)"
+        )
+    if fit.found:
+        return "outside_catalogue", "something deterministic remains that no effect of the catalogue explains"
+    return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _named(
+    selection: Selection,
+    pool: Sequence[Candidate],
+    prober: Prober,
+    model: Model,
+    base: Array,
+    rows: Sequence[Rows],
+) -> tuple[Named, ...]:
+    if not selection.causes:
+        return ()
+    equal = aliases([c.trial.candidate for c in selection.causes], pool, prober, model, base)
+    estimates = cause_estimates(selection, rows, prober.arm)
+    result = []
+    for cause, same, values in zip(selection.causes, equal, estimates, strict=True):
+        c = cause.trial.candidate
+        alias = tuple((other.effect, other.joint) for other in same)
+        rivals = tuple(
+            (t.candidate.effect, t.candidate.joint, behind)
+            for t, behind in cause.rivals
+            if (t.candidate.effect, t.candidate.joint) not in alias
+        )
+        result.append(Named(c.effect, c.joint, values, cause.delta_bic, cause.cross_gain, alias, rivals))
+    return tuple(result)
+
+
+def _extended(
+    arm: Arm, selection: Selection, rows: Sequence[Rows], train: Sequence[Prepared]
+) -> tuple[Arm, Model, Array, tuple[Model, Sequence[Rows], Array]]:
+    """The arm with the causes, its model, its base parameters fitted anew, and what they were fitted to."""
+    causes = [
+        (c.trial.candidate.effect, c.trial.candidate.joint, c.trial.parameters) for c in selection.causes
+    ]
+    bigger = extended_arm(arm, causes)
+    model = build_model(bigger)
+    if not causes:
+        theta = weighted_fit(rows, [r.columns for r in rows])
+        return bigger, model, theta, (model, rows, theta)
+    prober = Prober(bigger)
+    own = _rows(prober, model, train)
+    if any(effect == LATER for effect, _, _ in causes):
+        # the first record is without it
+        own = [rows[0], *own[1:]] if own[0].columns.shape == rows[0].columns.shape else own
+    theta = weighted_fit(own, [r.columns for r in own])
+    return bigger, model, theta, (model, own, theta)
+
+
+def _residuals(
+    held: Rows,
+    plain: Array,
+    selection: Selection,
+    after: tuple[Arm, Model, Array, object],
+    prober: Prober,
+    base: Array,
+) -> tuple[Array, Array]:
+    """On the test record, in the unit of its efforts: of the arm as described, and of the extended one."""
+    before = (held.effort - held.columns @ plain) * held.gain
+    if not selection.causes:
+        return before, before
+    bigger, model, theta, _ = after
+    if any(c.trial.candidate.effect in (*COMPLIANT, LATER) for c in selection.causes):
+        table = [held.columns]
+        for cause in selection.causes:
+            # a payload that came between the records stays
+            found = columns(cause.trial.candidate, cause.trial.values, [held, held], prober, base)
+            assert found is not None
+            table.append(found[1])
+        left = held.effort - np.concatenate(table, axis=2) @ selection.system.theta
+        return before, left * held.gain
+    rows = rows_of(Prober(bigger), model, held.prepared, theta)
+    return before, (rows.effort - rows.columns @ theta) * held.gain
+
+
+def _unit(test: Prepared) -> str:
+    units = list(dict.fromkeys(test.effort_unit)) if test.input is not None else []
+    return ", ".join(units) if units else "A"
+
+
+def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tuple[str, str], ...]:
+    """What these records could not show, whatever is there."""
+    found = []
+    named = {c.trial.candidate.effect for c in selection.causes}
+    if LATER not in named:
+        found.append(
+            (LATER, "a payload that is there in all training records is a part of the last link's parameters")
+        )
+    if "drive_gain_error" not in named and len(arm.coordinates) == 1:
+        found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))
+    still = [n + 1 for n in range(rows[0].effort.shape[1]) if not any(r.moving[:, n].any() for r in rows)]
+    found += [("coulomb_friction", f"joint {n} does not move in the training records") for n in still]
+    return tuple(found)

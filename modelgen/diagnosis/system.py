@@ -1,0 +1,163 @@
+"""The whitened equations of all training records, with what has been named so far among the columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lstsq
+
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
+
+NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What further columns explain. rss0, rss1: by joint, without and with; values: of the columns."""
+
+    delta_bic: float
+    values: Array
+    rss0: Array
+    rss1: Array
+    rank: int
+
+
+class System:
+    """Rows of several records with columns (M, n, p) each: baseline and what was added.
+
+    Weighted by joint, whitened, stacked joint after joint, record after record.
+    """
+
+    def __init__(self, rows: Sequence[Rows], columns: Sequence[Array]) -> None:
+        self.rows = rows
+        self.columns = columns
+        self.n = rows[0].effort.shape[1]
+        self.theta = weighted_fit(rows, columns)
+        self.residuals = [r.effort - c @ self.theta for r, c in zip(rows, columns, strict=True)]
+        self.whiteners = [
+            whitener([e[:, j] for e in self.residuals], [r.moving[:, j] for r in rows]) for j in range(self.n)
+        ]
+        self.usable = [np.column_stack([usable_rows(r.moving[:, j]) for j in range(self.n)]) for r in rows]
+        self.matrix = self.whitened(columns)
+        self.right = self.whitened([r.effort[:, :, None] for r in rows])[:, 0]
+        self.joint = np.concatenate(
+            [np.full(int(u[:, j].sum()), j) for u in self.usable for j in range(self.n)]
+        )
+        self.record = np.concatenate(
+            [np.full(int(u[:, j].sum()), i) for i, u in enumerate(self.usable) for j in range(self.n)]
+        )
+        self.basis = orthonormal(self.matrix)
+        self.left = self.right - self.basis @ (self.basis.T @ self.right)
+        self.counts = np.bincount(self.joint, minlength=self.n)
+        self.rss = self.by_joint(self.left)
+
+    def whitened(self, columns: Sequence[Array]) -> Array:
+        """Columns (M, n, k) of each record, whitened and stacked."""
+        parts = []
+        for i, table in enumerate(columns):
+            for j in range(self.n):
+                block = np.ascontiguousarray(table[:, j, :])
+                flags = self.usable[i][:, j]
+                if block.any():
+                    parts.append(self.whiteners[j](block, flags))
+                else:
+                    parts.append(np.zeros((int(flags.sum()), block.shape[1])))
+        return np.concatenate(parts)
+
+    def by_joint(self, left: Array) -> Array:
+        """Sums of squares, (n,)."""
+        return np.asarray(np.bincount(self.joint, weights=left**2, minlength=self.n), dtype=float)
+
+    def gain(self, columns: Sequence[Array], extra: float = 0.0) -> Gain | None:
+        """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
+
+        extra: parameters that were searched for besides.
+        """
+        return self.gain_of(self.whitened(columns), extra)
+
+    def gain_of(self, stacked: Array, extra: float = 0.0) -> Gain | None:
+        """The same for columns that have been whitened and stacked."""
+        norms = np.linalg.norm(stacked, axis=0)
+        if not norms.all() or not np.isfinite(norms).all():
+            if not norms.any() or not np.isfinite(norms).all():
+                return None
+            stacked, norms = stacked[:, norms > 0], norms[norms > 0]
+        unit = stacked / norms
+        own = unit - self.basis @ (self.basis.T @ unit)
+        u, s, vt = np.linalg.svd(own, full_matrices=False)
+        kept = s > NOTHING
+        if not kept.any():
+            return None
+        scores = u[:, kept].T @ self.left
+        values = (vt[kept].T @ (scores / s[kept])) / norms
+        rss1 = self.by_joint(self.left - u[:, kept] @ scores)
+        rank = int(kept.sum())
+        used = self.counts > 0
+        drop = (self.counts[used] * np.log(self.rss[used] / np.maximum(rss1[used], 1e-300))).sum()
+        penalty = (rank + extra) * math.log(max(2, int(self.counts.sum())))
+        return Gain(float(drop - penalty), values, self.rss, rss1, rank)
+
+
+def orthonormal(matrix: Array) -> Array:
+    """An orthonormal basis of the columns, dependent ones left out."""
+    norms = np.linalg.norm(matrix, axis=0)
+    used = norms > 0
+    u, s, _ = np.linalg.svd(matrix[:, used] / norms[used], full_matrices=False)
+    return np.asarray(u[:, s > 1e-10 * s[0]]) if len(s) else np.zeros((len(matrix), 0))
+
+
+def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
+    """Least squares over the moving rows, each joint weighted by what it leaves; two passes."""
+    n = rows[0].effort.shape[1]
+    weights = np.ones(n)
+    theta = np.zeros(columns[0].shape[2])
+    for turn in range(3):
+        left, right = stacked(rows, columns, weights)
+        norms = np.linalg.norm(left, axis=0)
+        norms[norms == 0] = 1.0
+        theta = lstsq(left / norms, right, cond=1e-10, lapack_driver="gelsy", check_finite=False)[0] / norms
+        if turn < 2:
+            weights = 1.0 / np.maximum(rmse(rows, columns, theta), 1e-300)
+    return theta
+
+
+def stacked(
+    rows: Sequence[Rows], columns: Sequence[Array], weights: Array | None = None
+) -> tuple[Array, Array]:
+    """Moving rows of all records and joints, weighted by joint: (R, p) and (R,)."""
+    left, right = [], []
+    for r, c in zip(rows, columns, strict=True):
+        for j in range(r.effort.shape[1]):
+            m = r.moving[:, j]
+            w = 1.0 if weights is None else weights[j]
+            left.append(c[m, j] * w)
+            right.append(r.effort[m, j] * w)
+    return np.concatenate(left), np.concatenate(right)
+
+
+def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
+    """Of the moving rows, by joint (n,); nan where a joint never moves."""
+    n = rows[0].effort.shape[1]
+    found = np.full(n, np.nan)
+    for j in range(n):
+        errors = [
+            (r.effort[r.moving[:, j], j] - c[r.moving[:, j], j] @ theta)
+            for r, c in zip(rows, columns, strict=True)
+        ]
+        together = np.concatenate(errors)
+        if len(together):
+            found[j] = math.sqrt(float(np.mean(together**2)))
+    return np.where(np.isnan(found), 1.0, found)
+
+
+def moving_share(rows: Sequence[Rows]) -> NDArray[np.float64]:
+    """Share of rows that count, by joint."""
+    return np.asarray(np.mean(np.concatenate([r.moving for r in rows]), axis=0))
+
+
+__all__ = ["Gain", "System", "Whitener", "moving_share", "orthonormal", "rmse", "weighted_fit"]

@@ -1,0 +1,166 @@
+"""A candidate on trial: the best values of its nonlinear parameters, and what it explains with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.diagnosis import candidates as of
+from modelgen.diagnosis.candidates import PERIODIC, Candidate
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import Gain, System
+from modelgen.effects import CATALOGUE
+from modelgen.probing import Prober
+
+REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
+SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
+ONE_SIGNED = (
+    "load_dependent_friction",
+    "stribeck_friction",
+    "fluid_drag",
+    "added_mass",
+    "torque_constant_saturation",
+)
+GOLDEN = (math.sqrt(5) - 1) / 2
+WORTH = 4.0  # evidence below which a grid's best is not refined
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate with values for what is searched. columns: (M, n, k) of every training record."""
+
+    candidate: Candidate
+    values: Mapping[str, float]
+    columns: Sequence[Array]
+    gain: Gain
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All values: fixed, searched and estimated."""
+        estimated = dict(zip(self.candidate.names, (float(v) for v in self.gain.values), strict=False))
+        return physical(self.candidate, {**self.candidate.fixed, **self.values, **estimated})
+
+
+def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
+    """The effect's own parameters from those of its columns."""
+    if candidate.effect == "joint_flexibility":
+        share = found.pop("share", 1.0)
+        # the deflection is in proportion to the compliance
+        stiffness = found["stiffness"] / share if share > 0 else found["stiffness"]
+        return {"stiffness": stiffness, "damping": of.RELAXATION * stiffness}
+    if candidate.effect == "backlash":
+        found.pop("share", None)
+    if candidate.effect == of.LATER and found.get("mass"):
+        mass = found["mass"]
+        return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
+    return found
+
+
+def sensible(trial: Trial) -> bool:
+    """Whether the values have the sign that the effect must have."""
+    if trial.candidate.effect in of.COMPLIANT:
+        return bool(trial.gain.values[0] > 0.0)
+    bounds = {p.name: p.bounds for p in CATALOGUE[trial.candidate.effect].accepted()}
+    if trial.candidate.effect in ONE_SIGNED:
+        found = trial.parameters
+        return all(bounds[name][0] <= found[name] <= bounds[name][1] for name in trial.candidate.names)
+    return True
+
+
+class Court:
+    """Tries candidates against one system."""
+
+    def __init__(self, system: System, rows: Sequence[Rows], prober: Prober, base: Array) -> None:
+        self.system = system
+        self.rows = rows
+        self.prober = prober
+        self.base = base
+
+    def trial(self, candidate: Candidate) -> Trial | None:
+        """The best that the candidate can do; None where it adds nothing of its own."""
+        if candidate.effect == PERIODIC:
+            return self._periodic(candidate)
+        if not candidate.searched:
+            return self._at(candidate, {}, 0.0)
+        (parameter,) = candidate.searched[:1]
+        if candidate.effect == "backlash":
+            parameter = next(p for p in candidate.searched if p.name == "play")
+        unit = of.scale(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
+        if not unit > 0:
+            return None
+        grid = [unit * g for g in parameter.grid]
+        trials = [self._at(candidate, {parameter.name: x}, 1.0) for x in grid]
+        best = _best(trials)
+        if best is None or best.gain.delta_bic < WORTH:
+            return best
+        k = trials.index(best)
+        low, high = grid[max(0, k - 1)], grid[min(len(grid) - 1, k + 1)]
+        return self._refined(candidate, parameter.name, low, high, best, 1.0)
+
+    def _at(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
+        columns = of.columns(candidate, values, self.rows, self.prober, self.base)
+        if columns is None or not all(np.isfinite(c).all() for c in columns):
+            return None
+        gain = self.system.gain(columns, extra)
+        return None if gain is None else Trial(candidate, dict(values), columns, gain)
+
+    def _refined(
+        self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float
+    ) -> Trial:
+        """Golden section over the logarithm."""
+
+        def at(x: float) -> Trial | None:
+            return self._at(candidate, {**best.values, name: math.exp(x)}, extra)
+
+        return golden(at, math.log(low), math.log(high), best)
+
+    def _periodic(self, candidate: Candidate) -> Trial | None:
+        assert candidate.joint is not None
+        j = candidate.joint - 1
+        residual, position, speed = [], [], []
+        for r, e in zip(self.rows, self.system.residuals, strict=True):
+            m = r.moving[:, j]
+            residual.append(e[m, j])
+            position.append(r.prepared.picked(r.prepared.motor)[m, j])
+            speed.append(r.prepared.picked(r.prepared.dmotor)[m, j])
+        together = [np.concatenate(x) for x in (residual, position, speed)]
+        cutoff = self.rows[0].prepared.settings.cutoff or self.rows[0].prepared.rate / 2
+        per_harmonic = 2 * np.pi / candidate.fixed["revolution"]
+        best: Trial | None = None
+        step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
+        for wave in of.waves(together[0], together[1], together[2], cutoff):
+            found = self._at(candidate, {"harmonic": wave / per_harmonic}, SEARCHED_WAVES)
+            if found is not None and found.gain.delta_bic > WORTH:
+                low, high = (max(wave - step, step / 4), wave + step)
+                found = self._refined(
+                    candidate, "harmonic", low / per_harmonic, high / per_harmonic, found, SEARCHED_WAVES
+                )
+            best = _best([best, found])
+        return best
+
+
+def golden(at: Callable[[float], Trial | None], low: float, high: float, best: Trial) -> Trial:
+    """The best trial of a golden section search on [low, high]."""
+    a, b = low, high
+    inner = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)]
+    found = [at(inner[0]), at(inner[1])]
+    for _ in range(REFINEMENTS):
+        scores = [-math.inf if t is None else t.gain.delta_bic for t in found]
+        best = _best([best, *found]) or best
+        if scores[0] > scores[1]:
+            b = inner[1]
+            inner = [b - GOLDEN * (b - a), inner[0]]
+            found = [at(inner[0]), found[0]]
+        else:
+            a = inner[0]
+            inner = [inner[1], a + GOLDEN * (b - a)]
+            found = [found[1], at(inner[1])]
+    return _best([best, *found]) or best
+
+
+def _best(trials: Sequence[Trial | None]) -> Trial | None:
+    there = [t for t in trials if t is not None]
+    return max(there, key=lambda t: t.gain.delta_bic) if there else None

@@ -1,0 +1,74 @@
+"""An arm with further effects, as objects and as YAML that `modelgen generate` accepts."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from modelgen.description import Arm
+from modelgen.effects import CATALOGUE
+from modelgen.probing import with_effect
+
+# effect, number of the coordinate from 1 or None for the whole arm, values of its parameters
+Found = tuple[str, int | None, Mapping[str, float]]
+
+
+def extended_arm(arm: Arm, causes: Sequence[Found]) -> Arm:
+    """The arm with the causes' effects."""
+    for effect, joint, values in causes:
+        arm = with_effect(arm, effect, joint, admitted(effect, values))
+    return arm
+
+
+def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
+    """Values that the description may hold: of a linear parameter none outside its bounds."""
+    definition = CATALOGUE[effect]
+    linear = {p.name for p in definition.linear}
+    found = {}
+    for p in definition.accepted():
+        if p.name in values and (p.name not in linear or p.bounds[0] <= values[p.name] <= p.bounds[1]):
+            found[p.name] = float(f"{values[p.name]:.9g}")
+    return found
+
+
+def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
+    """The arm's part of its description file with the causes added; comments and order stay."""
+    yaml = YAML()
+    yaml.width = 110
+    whole = yaml.load(file.read_text(encoding="utf-8"))
+    entry: CommentedMap = whole["arms"][arm.name]
+    for effect, joint, values in causes:
+        added: Any = effect
+        given = admitted(effect, values)
+        if given:
+            added = CommentedMap({effect: CommentedMap(given)})
+            added[effect].fa.set_flow_style()
+            added.fa.set_flow_style()
+        if joint is None:
+            _listed(entry, []).append(added)
+        else:
+            index = arm.coordinates[joint - 1]
+            present = [use.name for use in arm.joints[index].effects]
+            _listed(entry["joints"][index], present).append(added)
+    document = CommentedMap()
+    for key in ("schema", "convention"):
+        document[key] = whole[key]
+    document["arms"] = CommentedMap({arm.name: entry})
+    out = io.StringIO()
+    yaml.dump(document, out)
+    return out.getvalue()
+
+
+def _listed(owner: CommentedMap, present: Sequence[str]) -> CommentedSeq:
+    """The list of effects, written out where it was left to its default."""
+    if owner.get("effects") is None:
+        made = CommentedSeq(present)
+        made.fa.set_flow_style()
+        owner["effects"] = made
+    found: CommentedSeq = owner["effects"]
+    return found

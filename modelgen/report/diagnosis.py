@@ -1,0 +1,215 @@
+"""The report of a diagnosis: one HTML file with its pictures inside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from modelgen.diagnosis.candidates import LATER
+from modelgen.diagnosis.objects import Diagnosis
+from modelgen.diagnosis.replay import WINDOW, replay
+from modelgen.diagnosis.rows import Array
+from modelgen.effects import CATALOGUE
+from modelgen.figures import COLOURS, figure, svg
+from modelgen.functions import build_model
+from modelgen.resources import templates_folder
+
+_SECONDS = 10.0  # of the test record that the pictures over time show
+
+
+def report(d: Diagnosis) -> str:
+    """HTML that needs nothing beside it."""
+    environment = Environment(
+        loader=FileSystemLoader(templates_folder()),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    template = environment.get_template("report/diagnosis.html.j2")
+    text: str = template.render(
+        arm=d.arm.name,
+        verdict=d.verdict,
+        reason=d.reason,
+        causes=[_cause(d, k) for k in range(len(d.causes))],
+        fit=_fit(d),
+        errors=_errors(d),
+        unit=d.errors.unit,
+        simulation=_simulation(d),
+        effort_picture=_over_time(d),
+        residual_pictures=_residuals(d),
+        replay_picture=_replay(d),
+        parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
+        missing=d.not_identifiable,
+        experiment=d.next_experiment,
+        settings=[(name, str(value)) for name, value in d.settings.items()],
+    )
+    return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
+
+
+def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
+    c = d.causes[k]
+    place = "the whole arm" if c.joint is None else f"joint {c.joint}"
+    return {
+        "effect": c.effect,
+        "text": CATALOGUE[c.effect].text,
+        "place": place,
+        "parameters": [
+            (n, f"{e.value:.4g}", "" if np.isnan(e.std) else f"{e.std:.2g}", e.unit)
+            for n, e in c.parameters.items()
+        ],
+        "delta_bic": f"{c.delta_bic:.1f}",
+        "gain": f"{c.cross_gain:.1f}",
+        "aliases": [f"{e} ({'arm' if j is None else f'joint {j}'})" for e, j in c.aliases],
+        "rivals": [
+            (f"{e} ({'arm' if j is None else f'joint {j}'})", f"{b:.1f}") for e, j, b in c.ambiguous_with
+        ],
+        "experiment": CATALOGUE[c.effect].experiment,
+        "reference": CATALOGUE[c.effect].reference,
+    }
+
+
+def _fit(d: Diagnosis) -> dict[str, str] | None:
+    f = d.lack_of_fit
+    if f is None:
+        return None
+    return {"statistic": f"{f.statistic:.2f}", "threshold": f"{f.threshold:.2f}", "periods": str(f.periods)}
+
+
+def _errors(d: Diagnosis) -> list[Sequence[str]]:
+    e = d.errors
+    return [
+        (
+            str(j + 1),
+            f"{e.before[j]:.4g}",
+            f"{e.after[j]:.4g}",
+            f"{e.gain[j]:.1f}",
+            f"{e.low[j]:.1f} to {e.high[j]:.1f}",
+        )
+        for j in range(len(e.before))
+    ]
+
+
+def _simulation(d: Diagnosis) -> list[Sequence[str]]:
+    if d.simulation is None:
+        return []
+    one, two = d.simulation
+    return [
+        (
+            str(j + 1),
+            f"{one.f_gof[j]:.2f}",
+            f"{two.f_gof[j]:.2f}",
+            f"{one.mae[j]:.3g}",
+            f"{two.mae[j]:.3g}",
+            f"{one.rmse[j]:.3g}",
+            f"{two.rmse[j]:.3g}",
+        )
+        for j in range(len(one.f_gof))
+    ]
+
+
+def _over_time(d: Diagnosis) -> str:
+    """Measured and predicted effort, and what is left, over the first seconds of the test record."""
+    held, t = d.test, d.test.prepared.t
+    shown = t <= t[0] + _SECONDS
+    n = held.effort.shape[1]
+    made, axes = figure(n, 2, (9.0, 1.9 * n))
+    measured = held.effort * held.gain
+    for j in range(n):
+        before, after = (measured - r for r in d.residuals)
+        left, right = axes[j]
+        left.plot(t[shown], measured[shown, j], color="#999999", label="measured")
+        left.plot(t[shown], before[shown, j], color=COLOURS[0], label="model as described")
+        if d.causes:
+            left.plot(t[shown], after[shown, j], color=COLOURS[1], label="extended model")
+        left.set_ylabel(f"joint {j + 1} [{d.errors.unit}]")
+        right.plot(t[shown], d.residuals[0][shown, j], color=COLOURS[0], linewidth=0.8)
+        if d.causes:
+            right.plot(t[shown], d.residuals[1][shown, j], color=COLOURS[1], linewidth=0.8)
+        right.set_ylabel("left over")
+    axes[0, 0].legend(loc="upper right", fontsize=7)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]")
+    return _inline(svg(made))
+
+
+def _residuals(d: Diagnosis) -> list[tuple[str, str]]:
+    """What is left over against speed, position, load, motor angle and time, before and after."""
+    held, p = d.test, d.test.prepared
+    n = held.effort.shape[1]
+    load = np.abs(held.effort * held.gain)
+    against: list[tuple[str, Array]] = [
+        ("joint velocity", p.picked(p.dq)),
+        ("joint position", p.picked(p.q)),
+        ("size of the effort", load),
+        ("motor position", p.picked(p.motor)),
+        ("time [s]", np.tile(p.t[:, None], (1, n))),
+    ]
+    if p.temperature is not None:
+        against.append(("temperature [deg C]", p.picked(p.temperature)))
+    pictures = []
+    for name, x in against:
+        made, axes = figure(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
+        for j in range(n):
+            m = held.moving[:, j]
+            for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
+                centre, mean = _binned(x[m, j], r[m, j])
+                axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
+            axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
+            axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
+        axes[0, 0].set_ylabel(f"left over [{d.errors.unit}]", fontsize=7)
+        pictures.append((name.split(" [")[0], _inline(svg(made))))
+    return pictures
+
+
+def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
+    """Means over bins of equal width that hold five samples at least."""
+    if len(x) < 5:
+        return np.zeros(0), np.zeros(0)
+    edges = np.linspace(x.min(), x.max() + 1e-12, bins + 1)
+    place = np.clip(np.digitize(x, edges) - 1, 0, bins - 1)
+    count = np.bincount(place, minlength=bins)
+    total = np.bincount(place, weights=y, minlength=bins)
+    full = count >= 5
+    return ((edges[1:] + edges[:-1]) / 2)[full], total[full] / count[full]
+
+
+def _replay(d: Diagnosis) -> str:
+    """Measured and simulated positions of the first windows of the test record."""
+    if d.simulation is None or any(c.effect == LATER for c in d.causes):
+        return ""
+    plain = build_model(d.arm)
+    names = [b.name for b in plain.grouping.base]
+    values = np.array([d.parameters[n].value if n in d.parameters else 0.0 for n in names])
+    found = replay(d.extended_model, d.extended_parameters, d.test), replay(plain, values, d.test)
+    if found[0] is None:
+        return ""
+    p = d.test.prepared
+    n = p.q.shape[1]
+    made, axes = figure(n, 1, (9.0, 1.7 * n))
+    path = found[0][1][:12]
+    length = path.shape[1]
+    trim, step = int(p.rows[0]), p.record.step
+    for j in range(n):
+        t = p.time[trim : trim + length * len(path)]
+        axes[j, 0].plot(t, p.q[trim : trim + len(t), j], color="#999999", label="measured")
+        for w in range(len(path)):
+            begin = p.time[trim + w * length]
+            axes[j, 0].plot(
+                begin + step * np.arange(length),
+                path[w, :, j],
+                color=COLOURS[1],
+                label=f"extended model, windows of {WINDOW:g} s" if w == 0 else None,
+            )
+        axes[j, 0].set_ylabel(f"joint {j + 1}")
+    axes[0, 0].legend(loc="upper right", fontsize=7)
+    axes[-1, 0].set_xlabel("time [s]")
+    return _inline(svg(made))
+
+
+def _inline(text: str) -> str:
+    """From the svg element on."""
+    return text[text.index("<svg") :]

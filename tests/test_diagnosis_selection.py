@@ -1,0 +1,107 @@
+"""The diagnosis on records made of the model itself: what was put in comes out, and nothing else."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arms_support import base_vector, standard_vector
+
+from modelgen.dataset import Record
+from modelgen.description import Arm, DirectDrive, EffectUse, Joint
+from modelgen.diagnosis.objects import to_json
+from modelgen.diagnosis.run import diagnose
+from modelgen.functions import build_model
+from modelgen.probing import Motion, Prober, with_effect
+
+EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "coulomb_friction", "drive_inertia"))
+ARM = Arm(
+    "bench",
+    (
+        Joint("j1", "revolute", drive=DirectDrive(80.0, 0.05), effects=EFFECTS),
+        Joint("j2", "revolute", d=0.45, antecedent=0, drive=DirectDrive(60.0, 0.04), effects=EFFECTS),
+    ),
+    (None, None),
+    (0.0, -9.81, 0.0),
+)
+
+
+def record(effect: str | None, joint: int, size: float, seed: int, name: str) -> Record:
+    """Three periods of five harmonics at 250 Hz, the current with 3 % of white noise."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, 30.0, 0.004)
+    a, b = random.uniform(-0.5, 0.5, (2, 2, 5)) / (1 + np.arange(5))
+    w = 2 * np.pi * 0.1 * (1 + np.arange(5))
+    phase = np.multiply.outer(t, w)
+    q = np.cos(phase) @ a.T + np.sin(phase) @ b.T
+    dq = (np.cos(phase) * w) @ b.T - (np.sin(phase) * w) @ a.T
+    ddq = -(np.cos(phase) * w**2) @ a.T - (np.sin(phase) * w**2) @ b.T
+    model, prober = build_model(ARM), Prober(ARM)
+    base = base_vector(model, standard_vector(model, np.random.default_rng(5)))
+    motion = Motion(t, q, dq, ddq)
+    given = prober.inputs(motion, base)
+    if effect is not None:
+        values = {"velocity": 8.0, "magnitude": size, "coefficient": size, "stiffness": size, "harmonic": 1.7}
+        values |= {"sine": size, "cosine": 0.0, "preload": 0.0, "offset": size}
+        own = {p.name for p in (*prober.linear(effect), *prober.nonlinear(effect))}
+        known = {k: v for k, v in values.items() if k in own}
+        given = given + prober.contribution(effect, joint, motion, known, base)
+    given = given + 0.03 * np.sqrt((given**2).mean(axis=0)) * random.normal(size=given.shape)
+    ratio = np.array([80.0, 60.0])
+    return Record(name, t, q, q * ratio, given, np.ones_like(q), ("A", "A"), motor_side=(True, True), arm=ARM)
+
+
+def three(effect: str | None, joint: int, size: float, seed: int = 0) -> list[Record]:
+    return [record(effect, joint, size, 10 * seed + k, f"r{k}") for k in range(3)]
+
+
+@pytest.mark.parametrize(
+    ("effect", "joint", "size"),
+    [
+        ("stribeck_friction", 2, 0.012),
+        ("friction_offset", 1, 0.04),
+        ("spring", 2, 1.2),
+        ("load_dependent_friction", 1, 0.2),
+        ("torque_ripple", 1, 0.02),
+    ],
+)
+def test_what_was_put_in_is_named_and_the_gain_measured(effect: str, joint: int, size: float) -> None:
+    found = diagnose(ARM, three(effect, joint, size))
+    assert found.verdict == "named"
+    assert [(c.effect, c.joint) for c in found.causes] == [(effect, joint)]
+    assert found.errors.gain[joint - 1] > 1.5
+    assert found.errors.low[joint - 1] > 0.0
+    name = {"stribeck_friction": "magnitude", "friction_offset": "offset", "spring": "stiffness"}.get(effect)
+    if name:
+        estimate = found.causes[0].parameters[name]
+        assert abs(estimate.value - size) < 4 * estimate.std + 0.05 * size
+    uses = found.extended.joints[joint - 1].effects
+    assert effect in {use.name for use in uses}
+    assert to_json(found)["causes"][0]["evidence"]["delta_bic"] > 15
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_nothing_is_named_where_nothing_was_put_in(seed: int) -> None:
+    found = diagnose(ARM, three(None, 1, 0.0, seed))
+    assert found.verdict == "nothing_missing"
+    assert found.lack_of_fit is not None
+    assert found.lack_of_fit.periods == 3
+    assert found.lack_of_fit.statistic < found.lack_of_fit.threshold
+    np.testing.assert_array_equal(found.errors.before, found.errors.after)
+
+
+def test_without_repetition_nothing_can_be_said() -> None:
+    records = [replace_part(r, 0, 2200) for r in three(None, 1, 0.0, 4)]
+    found = diagnose(ARM, records)
+    assert found.verdict == "cannot_tell"
+    assert "--period" in found.reason
+
+
+def replace_part(r: Record, begin: int, end: int) -> Record:
+    return r.part(begin, end, r.name)
+
+
+def test_an_effect_that_is_there_already_is_not_named_again(tmp_path: Path) -> None:
+    arm = with_effect(ARM, "friction_offset", 1, {})
+    records = [replace(r, arm=arm) for r in three("friction_offset", 1, 0.04)]
+    assert diagnose(arm, records).verdict == "nothing_missing"
