@@ -41,7 +41,7 @@ def record(effect: str | None, joint: int, size: float, seed: int, name: str) ->
     motion = Motion(t, q, dq, ddq)
     given = prober.inputs(motion, base)
     if effect is not None:
-        values = {"velocity": 8.0, "magnitude": size, "coefficient": size, "stiffness": size, "harmonic": 1.7}
+        values = {"velocity": 8.0, "magnitude": size, "coefficient": size, "stiffness": size, "harmonic": 2.0}
         values |= {"sine": size, "cosine": 0.0, "preload": 0.0, "offset": size}
         own = {p.name for p in (*prober.linear(effect), *prober.nonlinear(effect))}
         known = {k: v for k, v in values.items() if k in own}

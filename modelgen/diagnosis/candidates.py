@@ -29,6 +29,8 @@ STEPS: Mapping[str, Mapping[str, float]] = {
 INVISIBLE = 1e-5  # of the largest column of a sensitivity
 RELAXATION = 0.003  # s, damping over stiffness of an elastic joint
 RIGID = 3e3  # stiffness of a contact, in the scale of stiffness
+# At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
+SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
 PERIODIC = "torque_ripple"
 LATER = "payload_change"
@@ -59,7 +61,7 @@ class Candidate:
 
     def joints(self, n: int) -> list[int]:
         """Coordinates (from 0) that it is judged by."""
-        if self.joint is None:
+        if self.joint is None or self.effect in SPREADING:
             return list(range(n))
         others = [int(self.fixed["other"]) - 1] if "other" in self.fixed else []
         return [self.joint - 1, *others]

@@ -16,6 +16,7 @@ from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.objects import Diagnosis, Named
+from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import Selection, select
@@ -62,16 +63,18 @@ def diagnose(
 
     Raises InputError where the records cannot answer.
     """
-    chosen = choose(list(found), settings_for(found, cutoff))
+    lengths = [period_of(record, period) for record in found[:-1]]
+    chosen = with_whole_rows(choose(list(found), settings_for(found, cutoff)), lengths)
+    periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
     prepared = [prepare(record, chosen) for record in found]
     model, prober = build_model(arm), Prober(arm)
     train, test = prepared[:-1], prepared[-1]
     rows = _rows(prober, model, train)
     _check_motion(arm, rows)
     pool = candidates(arm, prober, rows)
-    selection = select(rows, prober, pool, progress)
+    selection = select(rows, prober, pool, periods, progress)
     base = selection.system.theta[: rows[0].columns.shape[2]]
-    fit = lack_of_fit(selection.system, rows, period)
+    fit = lack_of_fit(selection.system)
     verdict, reason = _verdict(selection, fit)
     named = _named(selection, pool, prober, model, base, rows)
     after = _extended(arm, selection, rows, train)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from modelgen.probing import Prober
 
 EVIDENCE = 15.0  # delta BIC
 PRACTICAL = 1.5  # percent of the RMSE on a record that the fit has not seen
+DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample
 AMBIGUOUS = 10.0  # delta BIC behind the winner
 MOST = 4  # causes
 
@@ -47,6 +48,7 @@ def select(
     rows: Sequence[Rows],
     prober: Prober,
     pool: Sequence[Candidate],
+    periods: Sequence[int | None],
     report: Report | None = None,
     evidence: float = EVIDENCE,
 ) -> Selection:
@@ -54,7 +56,7 @@ def select(
     baseline = [r.columns for r in rows]
     p = baseline[0].shape[2]
     causes: list[Cause] = []
-    system = System(rows, baseline)
+    system = System(rows, baseline, periods)
     for turn in range(MOST):
         court = Court(system, rows, prober, system.theta[:p])
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
@@ -81,7 +83,7 @@ def select(
             if best.gain.delta_bic - t.gain.delta_bic <= AMBIGUOUS
         ]
         causes.append(Cause(best, best.gain.delta_bic, gain, rivals))
-        system = System(rows, with_causes(rows, [c.trial for c in causes]))
+        system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     causes, system = _eliminated(causes, rows, system, evidence)
     return Selection(causes, system, len(pool))
 
@@ -96,53 +98,59 @@ def _eliminated(
 ) -> tuple[list[Cause], System]:
     """Without causes that the others have made superfluous; evidence of the rest in the final model."""
     while len(causes) > 1:
-        scores = [_worth(k, causes, rows) for k in range(len(causes))]
+        scores = [_worth(k, causes, system) for k in range(len(causes))]
         worst = int(np.argmin(scores))
         if scores[worst] >= evidence:
             for cause, score in zip(causes, scores, strict=True):
                 cause.delta_bic = score
             break
         del causes[worst]
-        system = System(rows, with_causes(rows, [c.trial for c in causes]))
+        system = System(rows, with_causes(rows, [c.trial for c in causes]), system.periods)
     return causes, system
 
 
-def _worth(k: int, causes: Sequence[Cause], rows: Sequence[Rows]) -> float:
+def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
     """Delta BIC of cause k given all others."""
     others = [c.trial for i, c in enumerate(causes) if i != k]
-    without = System(rows, with_causes(rows, others))
+    without = System(system.rows, with_causes(system.rows, others), system.periods)
     trial = causes[k].trial
     gain = without.gain(trial.columns, float(len(trial.values)))
     return -np.inf if gain is None else gain.delta_bic
 
 
 def passes(trial: Trial, rows: Sequence[Rows], before: Sequence[Trial]) -> float | None:
-    """Percent of the RMSE gained on rows that the fit has not seen; None where a gate stays shut.
+    """Percent of the RMSE gained on rows that the cause's fit has not seen; None where a gate stays shut.
 
-    Fitted on one part, tried on the other, and the other way round: the squares of all parts together.
+    The cause is fitted on one part and carried to the other, where the rest of the model is fitted anew
+    with and without it; then the other way round. The squares of all parts count together.
     """
     later = trial.candidate.effect == LATER  # shows between records: halves of all are tried instead
-    parts = [[0], [1]] if later else [[k] for k in range(len(rows))]
-    old = with_causes(rows, before)
-    new = with_causes(rows, [*before, trial])
-    sums = np.zeros((2, rows[0].effort.shape[1]))
-    for part in parts:
+    n = rows[0].effort.shape[1]
+    sums, counts = np.zeros((2, n)), np.zeros(n)
+    for k in range(2 if later else len(rows)):
         if later:
-            used, seen = _masked(rows, part[0])
-            pairs = [(used, old, seen, old), (used, new, seen, new)]
+            fitted, tried = _masked(rows, k)
+            places = list(range(len(rows))), list(range(len(rows)))
         else:
-            others = [k for k in range(len(rows)) if k not in part]
-            used, seen = [rows[k] for k in others], [rows[k] for k in part]
-            pairs = [(used, [c[k] for k in others], seen, [c[k] for k in part]) for c in (old, new)]
-        for place, (fit_rows, fit_columns, test_rows, test_columns) in enumerate(pairs):
-            theta = weighted_fit(fit_rows, fit_columns)
-            counts = np.array([sum(r.moving[:, j].sum() for r in test_rows) for j in range(sums.shape[1])])
-            sums[place] += rmse(test_rows, test_columns, theta) ** 2 * counts
-    judged = trial.candidate.joints(sums.shape[1])
+            others = [i for i in range(len(rows)) if i != k]
+            fitted, tried, places = [rows[i] for i in others], [rows[k]], (others, [k])
+        old, new = with_causes(rows, before), with_causes(rows, [*before, trial])
+        theta = weighted_fit(fitted, [new[i] for i in places[0]])[old[0].shape[2] :]
+        carried = [
+            replace(r, effort=r.effort - trial.columns[i] @ theta)
+            for r, i in zip(tried, places[1], strict=True)
+        ]
+        table = [old[i] for i in places[1]]
+        moving = np.sum([r.moving.sum(axis=0) for r in tried], axis=0)
+        sums[0] += moving * rmse(tried, table, weighted_fit(tried, table)) ** 2
+        sums[1] += moving * rmse(carried, table, weighted_fit(carried, table)) ** 2
+        counts += moving
+    ratio = np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))[counts > 0]
+    judged = [j for j in trial.candidate.joints(n) if counts[j] > 0]
     gains = 100.0 * (1.0 - np.sqrt(sums[1, judged] / np.maximum(sums[0, judged], 1e-300)))
-    gain = float(gains.max())
-    whole = float(np.sqrt((sums[1] / np.maximum(sums[0], 1e-300)).mean()))
-    return gain if gain >= PRACTICAL and whole < 1.0 else None
+    gain = float(gains.max(initial=-np.inf))
+    least = DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL
+    return gain if gain >= least and float((ratio**2).mean()) < 1.0 else None
 
 
 def _masked(rows: Sequence[Rows], half: int) -> tuple[list[Rows], list[Rows]]:

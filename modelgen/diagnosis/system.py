@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
+from modelgen.diagnosis.periods import noise_of
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
 
+LAGS = 80  # rows of autocorrelation that count
+LEAST = 300  # rows from which noise is told from what repeats
 NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
@@ -30,18 +33,20 @@ class Gain:
 class System:
     """Rows of several records with columns (M, n, p) each: baseline and what was added.
 
-    Weighted by joint, whitened, stacked joint after joint, record after record.
+    Weighted by joint, whitened, stacked joint after joint, record after record. periods: rows in a period
+    of each record, None where nothing repeats.
     """
 
-    def __init__(self, rows: Sequence[Rows], columns: Sequence[Array]) -> None:
+    def __init__(
+        self, rows: Sequence[Rows], columns: Sequence[Array], periods: Sequence[int | None] | None = None
+    ) -> None:
         self.rows = rows
+        self.periods = periods or [None] * len(rows)
         self.columns = columns
         self.n = rows[0].effort.shape[1]
         self.theta = weighted_fit(rows, columns)
         self.residuals = [r.effort - c @ self.theta for r, c in zip(rows, columns, strict=True)]
-        self.whiteners = [
-            whitener([e[:, j] for e in self.residuals], [r.moving[:, j] for r in rows]) for j in range(self.n)
-        ]
+        self.whiteners = [self._whitener(j) for j in range(self.n)]
         self.usable = [np.column_stack([usable_rows(r.moving[:, j]) for j in range(self.n)]) for r in rows]
         self.matrix = self.whitened(columns)
         self.right = self.whitened([r.effort[:, :, None] for r in rows])[:, 0]
@@ -51,10 +56,22 @@ class System:
         self.record = np.concatenate(
             [np.full(int(u[:, j].sum()), i) for i, u in enumerate(self.usable) for j in range(self.n)]
         )
+        self.plain = _Plain(self)
         self.basis = orthonormal(self.matrix)
         self.left = self.right - self.basis @ (self.basis.T @ self.right)
         self.counts = np.bincount(self.joint, minlength=self.n)
         self.rss = self.by_joint(self.left)
+
+    def _whitener(self, j: int) -> Whitener:
+        """From what differs between periods: noise alone. Else from all that is left, causes included."""
+        residuals = [e[:, j] for e in self.residuals]
+        moving = [r.moving[:, j] for r in self.rows]
+        repeating = [k for k, p in enumerate(self.periods) if p is not None]
+        if repeating:
+            noise = [noise_of(residuals[k], moving[k], int(self.periods[k] or 0)) for k in repeating]
+            if sum(int(flags.sum()) for _, flags in noise) > LEAST:
+                return whitener([x for x, _ in noise], [flags for _, flags in noise])
+        return whitener(residuals, moving)
 
     def whitened(self, columns: Sequence[Array]) -> Array:
         """Columns (M, n, k) of each record, whitened and stacked."""
@@ -76,31 +93,110 @@ class System:
     def gain(self, columns: Sequence[Array], extra: float = 0.0) -> Gain | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
-        extra: parameters that were searched for besides.
+        extra: parameters that were searched for besides. The evidence is that of the whitened equations, or
+        of the plain ones with as many of their rows as are independent, whichever is more: whitening takes
+        slow effects for slow noise.
         """
-        return self.gain_of(self.whitened(columns), extra)
+        white = self.gain_of(self.whitened(columns), extra)
+        plain = self.plain.gain(columns, extra)
+        if white is None or plain is None:
+            return white or plain
+        return plain if plain.delta_bic > white.delta_bic else white
 
     def gain_of(self, stacked: Array, extra: float = 0.0) -> Gain | None:
         """The same for columns that have been whitened and stacked."""
-        norms = np.linalg.norm(stacked, axis=0)
-        if not norms.all() or not np.isfinite(norms).all():
-            if not norms.any() or not np.isfinite(norms).all():
-                return None
-            stacked, norms = stacked[:, norms > 0], norms[norms > 0]
-        unit = stacked / norms
-        own = unit - self.basis @ (self.basis.T @ unit)
-        u, s, vt = np.linalg.svd(own, full_matrices=False)
-        kept = s > NOTHING
-        if not kept.any():
+        return explained(stacked, self.basis, self.left, self.by_joint, self.counts.astype(float), extra)
+
+
+class _Plain:
+    """The weighted equations as they are, and how many of each joint's rows are independent."""
+
+    def __init__(self, system: System) -> None:
+        self.rows = system.rows
+        self.n = system.n
+        self.sizes = np.array([max(_size(system, j), 1e-300) for j in range(self.n)])
+        matrix = self.stacked(system.columns)
+        self.joint = np.concatenate(
+            [np.full(int(r.moving[:, j].sum()), j) for r in self.rows for j in range(self.n)]
+        )
+        self.basis = orthonormal(matrix)
+        right = self.stacked([r.effort[:, :, None] for r in self.rows])[:, 0]
+        self.left = right - self.basis @ (self.basis.T @ right)
+        rows = np.bincount(self.joint, minlength=self.n)
+        self.counts = rows * np.array([_independent(system, j) for j in range(self.n)])
+
+    def stacked(self, columns: Sequence[Array]) -> Array:
+        """Moving rows, weighted, record after record, joint after joint."""
+        return np.concatenate(
+            [
+                c[r.moving[:, j], j] / self.sizes[j]
+                for r, c in zip(self.rows, columns, strict=True)
+                for j in range(self.n)
+            ]
+        )
+
+    def by_joint(self, left: Array) -> Array:
+        """Sums of squares, (n,)."""
+        return np.asarray(np.bincount(self.joint, weights=left**2, minlength=self.n), dtype=float)
+
+    def gain(self, columns: Sequence[Array], extra: float) -> Gain | None:
+        """As that of the system."""
+        return explained(self.stacked(columns), self.basis, self.left, self.by_joint, self.counts, extra)
+
+
+def _size(system: System, j: int) -> float:
+    left = np.concatenate([e[r.moving[:, j], j] for e, r in zip(system.residuals, system.rows, strict=True)])
+    return float(np.sqrt(np.mean(left**2))) if len(left) else 1.0
+
+
+def _independent(system: System, j: int) -> float:
+    """Share of independent rows, from what differs between periods or else from all that is left."""
+    shares = []
+    for e, r, p in zip(system.residuals, system.rows, system.periods, strict=True):
+        values, flags = e[:, j], r.moving[:, j]
+        if p is not None:
+            values, flags = noise_of(values, flags, p)
+        shares.append(independent(np.where(flags, values, 0.0)))
+    return float(np.mean(shares))
+
+
+def independent(values: Array) -> float:
+    """1 / (1 + 2 sum of squared autocorrelations): of a coloured series, for variances."""
+    power = float(values @ values)
+    if power <= 0:
+        return 1.0
+    lags = [float(values[k:] @ values[:-k]) / power for k in range(1, min(LAGS, len(values) // 4))]
+    return 1.0 / (1.0 + 2.0 * float(np.sum(np.square(lags))))
+
+
+def explained(
+    stacked: Array,
+    basis: Array,
+    left: Array,
+    by_joint: Callable[[Array], Array],
+    counts: Array,
+    extra: float,
+) -> Gain | None:
+    """What columns explain of `left`, beyond `basis`; `counts`: rows that count, by joint."""
+    norms = np.linalg.norm(stacked, axis=0)
+    if not norms.all() or not np.isfinite(norms).all():
+        if not norms.any() or not np.isfinite(norms).all():
             return None
-        scores = u[:, kept].T @ self.left
-        values = (vt[kept].T @ (scores / s[kept])) / norms
-        rss1 = self.by_joint(self.left - u[:, kept] @ scores)
-        rank = int(kept.sum())
-        used = self.counts > 0
-        drop = (self.counts[used] * np.log(self.rss[used] / np.maximum(rss1[used], 1e-300))).sum()
-        penalty = (rank + extra) * math.log(max(2, int(self.counts.sum())))
-        return Gain(float(drop - penalty), values, self.rss, rss1, rank)
+        stacked, norms = stacked[:, norms > 0], norms[norms > 0]
+    unit = stacked / norms
+    own = unit - basis @ (basis.T @ unit)
+    u, s, vt = np.linalg.svd(own, full_matrices=False)
+    kept = s > NOTHING
+    if not kept.any():
+        return None
+    scores = u[:, kept].T @ left
+    values = (vt[kept].T @ (scores / s[kept])) / norms
+    rss0, rss1 = by_joint(left), by_joint(left - u[:, kept] @ scores)
+    rank = int(kept.sum())
+    used = counts > 0
+    drop = (counts[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
+    penalty = (rank + extra) * math.log(max(2.0, float(counts.sum())))
+    return Gain(float(drop - penalty), values, rss0, rss1, rank)
 
 
 def orthonormal(matrix: Array) -> Array:

@@ -25,6 +25,7 @@ ONE_SIGNED = (
     "torque_constant_saturation",
 )
 GOLDEN = (math.sqrt(5) - 1) / 2
+WHOLE = 0.02  # off a whole number of waves, of that number
 WORTH = 4.0  # evidence below which a grid's best is not refined
 
 
@@ -132,11 +133,17 @@ class Court:
         best: Trial | None = None
         step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
         for wave in of.waves(together[0], together[1], together[2], cutoff):
-            found = self._at(candidate, {"harmonic": wave / per_harmonic}, SEARCHED_WAVES)
+            harmonic = wave / per_harmonic
+            if per_harmonic == 1.0:
+                # what turns with a motor repeats a whole number of times in its turn
+                harmonic = max(1.0, round(harmonic))
+                if abs(harmonic - wave) > max(2 * step, WHOLE * harmonic):
+                    continue
+            found = self._at(candidate, {"harmonic": harmonic}, SEARCHED_WAVES)
             if found is not None and found.gain.delta_bic > WORTH:
-                low, high = (max(wave - step, step / 4), wave + step)
+                width = step / 2 / per_harmonic
                 found = self._refined(
-                    candidate, "harmonic", low / per_harmonic, high / per_harmonic, found, SEARCHED_WAVES
+                    candidate, "harmonic", harmonic - width, harmonic + width, found, SEARCHED_WAVES
                 )
             best = _best([best, found])
         return best

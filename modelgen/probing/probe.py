@@ -94,7 +94,12 @@ class Prober:
         if not any(f.name == "effective_input" for f in model.functions):
             return given
         function = self._function(model, "effective_input")
-        known = {"input": given, "state": given}  # a lag was undone by the shift
+        states = np.zeros((len(given), max(1, len(model.states))))
+        for k, name in enumerate(model.states):
+            if name.startswith("time_delay_"):  # the lag was undone by the shift
+                joint = int(name.rsplit("_", 1)[1]) - 1
+                states[:, k] = given[:, self.arm.coordinates.index(joint)]
+        known = {"input": given, "state": states}
         return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
 
     @cached_property
