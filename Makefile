@@ -9,6 +9,7 @@
 #   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
+#   make blind   diagnose the full matrix of hidden effects (SEED=n; hours), write docs/diagnosis.md
 #   make clean   remove the environment and the caches
 
 PYTHON ?= python3
@@ -16,7 +17,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench size run-examples prove fuzz clean
+.PHONY: run test pytest lint format bench size run-examples prove fuzz blind clean
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
@@ -53,6 +54,9 @@ FUZZ_SECONDS ?= 60
 
 fuzz: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
+
+blind: $(INSTALLED)
+	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED))
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis

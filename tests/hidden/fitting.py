@@ -15,7 +15,7 @@ from hidden.native import Array, Plant
 POSITION_BAND, BAND = 60.0, 15.0  # Hz
 THIN = 250.0  # Hz, at which columns are evaluated
 EDGE = 0.6  # s left out at either end
-REST, SPREAD = 0.01, 0.04  # of the top speed; s about it
+REST, SPREAD = 0.01, 0.02  # of the top speed; s about it
 
 
 @dataclass(frozen=True)
