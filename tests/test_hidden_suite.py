@@ -69,7 +69,7 @@ def test_nothing_is_named_where_nothing_is_hidden(case: Case, outcome: Any) -> N
 @pytest.mark.parametrize("case", SINGLES, ids=title)
 def test_a_hidden_effect_is_answered(case: Case, outcome: Any) -> None:
     found = outcome(case)
-    assert found["strength"][0] == pytest.approx(1.3, abs=0.05)
+    assert found["strength"][0] == pytest.approx(1.3, abs=0.06)
     assert found["verdict"] in ("named", "outside_catalogue", "cannot_tell", "nothing_missing")
 
 

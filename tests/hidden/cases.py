@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import zlib
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -50,14 +50,13 @@ class Case:
 
 @dataclass(frozen=True)
 class Label:
-    """The truth about a case. strength: reached, by effect; floor: test RMSE (n,) of the arm without it."""
+    """The truth about a case. strength: reached, by effect. floor, with_effect: RMSE (n,) on test."""
 
     case: dict[str, Any]
     strength: list[float]
     magnitude: list[float]
     floor: list[float]
     with_effect: list[float]
-    check_floor: list[float] = field(default_factory=list)
 
 
 def _random(case: Case, *more: int) -> Generator:
@@ -82,7 +81,9 @@ class Bench:
         ]
         self.duration = case.periods / float(self.arm.plant["frequency"])
         q, _, current, _ = native.simulate(self.paths[0], case.rate, self.duration, self._substeps([]))
-        self.scales: Scales = scales(self.arm.plant, q, current, case.rate)
+        times = np.linspace(0.0, 1.0 / float(self.arm.plant["frequency"]), 500)
+        walked = [q] if free else [trajectories.motion(path, times)[0] for path in self.paths]
+        self.scales: Scales = scales(self.arm.plant, q, current, case.rate, walked)
 
     def _encoders(self, plant: Plant) -> None:
         bits = {"motor": None, "joint": 20, "coarse": 14}[self.case.encoder]
@@ -115,10 +116,15 @@ class Bench:
         steps = self._substeps(names)
         return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, case.noise)
 
-    def errors(self, magnitudes: dict[int, float], test: int = 2) -> Array:
-        """RMSE (n,) on a record that the fit has not seen."""
-        train = [self.record(k, magnitudes) for k in (0, 1)]
-        return fitting.held_out(train, self.record(test, magnitudes), self.arm.plant)[0]
+    def errors(self, magnitudes: dict[int, float]) -> Array:
+        """RMSE (n,) on records that the fit has not seen: train_a, train_b and test, each in its turn.
+
+        With an effect that comes after train_a, on test alone.
+        """
+        later = any(EFFECTS[hidden.effect].later for hidden in self.case.hidden)
+        return fitting.rotated(
+            [self.record(k, magnitudes) for k in range(3)], self.arm.plant, (2,) if later else (0, 1, 2)
+        )
 
     def strength(self, place: int, floor: Array, found: Array) -> float:
         """Error with over without, on the joint the effect sits at, or on the joint that shows it most."""
@@ -184,9 +190,8 @@ def make(case: Case, folder: Path) -> Label:
             magnitudes[place], reached = bench.tune(place, floor)
             strengths.append(reached)
     kept = [bench.record(k, magnitudes) for k in range(len(RECORDS))]
-    found = fitting.held_out(kept[:2], kept[2], bench.arm.plant)[0]
     if len(case.hidden) == 1:
-        strengths = [bench.strength(0, floor, found)]
+        strengths = [bench.strength(0, floor, bench.errors(magnitudes))]
     for name, log in zip(RECORDS, kept, strict=True):
         logs.write(folder / f"{name}.csv", log)
     free = case.arm in arms.FREE
@@ -196,10 +201,13 @@ def make(case: Case, folder: Path) -> Label:
         asdict(case),
         strengths,
         [magnitudes[place] for place in range(len(case.hidden))],
-        [float(value) for value in floor],
-        [float(value) for value in found],
-        [float(value) for value in bench.errors({}, test=3)],
+        _test(bench, [bench.record(k, {}) for k in range(3)]),
+        _test(bench, kept),
     )
+
+
+def _test(bench: Bench, records: list[Log]) -> list[float]:
+    return [float(value) for value in fitting.rotated(records[:3], bench.arm.plant, (2,))]
 
 
 def seal(label: Label, path: Path) -> None:

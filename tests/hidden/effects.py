@@ -14,13 +14,17 @@ from hidden.native import Array, Plant
 
 @dataclass(frozen=True)
 class Scales:
-    """Of an arm at work, by joint (n,): slope of the drive, motor speed, current, power of friction [W]."""
+    """Of an arm at work, by joint (n,): slope of the drive, motor speed, current, power of friction [W].
+
+    common: (n, 2), the range that every record visits.
+    """
 
     slope: Array
     speed: Array
     current: Array
     friction: Array
-    reach: Array  # tip heights (N,) [m]
+    common: Array
+    floor: float  # height below which the tip is for a part of every record [m]
     power: Array  # electrical power of the whole arm (N,) [W]
 
 
@@ -120,11 +124,7 @@ def _coupling(p: Plant, s: Site, m: float) -> None:
 
 
 def _lever(p: Plant, s: Site, m: float) -> None:
-    which, side = s.random.choice(("l1", "l2", "length")), s.random.choice((-1.0, 1.0))
-    if which == "length":
-        p["length"][s.joint] += 0.004 * m * side
-    else:
-        p[which][s.joint] += 0.004 * m * side
+    p[s.random.choice(("l1", "l2"))][s.joint] += 0.004 * m * s.random.choice((-1.0, 1.0))
 
 
 def _cylinder(p: Plant, s: Site, m: float) -> None:
@@ -159,11 +159,13 @@ def _payload(p: Plant, s: Site, m: float) -> None:
 
 
 def _drag(p: Plant, s: Site, m: float) -> None:
-    p["drag"][s.joint] = 60.0 * m
+    for link in range(int(p["n"])):  # the whole arm is in the water
+        p["drag"][link] = 60.0 * m * s.random.uniform(0.8, 1.2)
 
 
 def _fluid(p: Plant, s: Site, m: float) -> None:
-    p["added_mass"][s.joint] = 8.0 * m
+    for link in range(int(p["n"])):
+        p["added_mass"][link] = 8.0 * m * s.random.uniform(0.8, 1.2)
 
 
 def _tilt(p: Plant, s: Site, m: float) -> None:
@@ -194,10 +196,10 @@ def _delay(p: Plant, s: Site, m: float) -> None:
 
 
 def _spot(p: Plant, s: Site, m: float) -> None:
-    j, (low, high) = s.joint, s.arm.position[s.joint]
+    j, (low, high) = s.joint, s.scales.common[s.joint]
     p["spot"][j] = 2.0 * m * p["dry"][j] * abs(s.scales.slope[j]) * s.random.choice((-1.0, 1.0))
     p["spot_place"][j] = low + s.random.uniform(0.35, 0.65) * (high - low)
-    p["spot_width"][j] = 0.03 * (high - low)
+    p["spot_width"][j] = 0.03 * float(np.ptp(s.arm.position[j]))
 
 
 def _sag(p: Plant, s: Site, m: float) -> None:
@@ -206,7 +208,7 @@ def _sag(p: Plant, s: Site, m: float) -> None:
 
 
 def _floor(p: Plant, s: Site, m: float) -> None:
-    p["floor_height"] = float(np.quantile(s.scales.reach, 0.06))
+    p["floor_height"] = s.scales.floor
     p["floor_stiffness"] = 400.0 * m
 
 
@@ -265,8 +267,16 @@ def joints_for(name: str, arm: Arm) -> list[int]:
     return [j for j, good in enumerate(allowed) if good]
 
 
-def scales(plant: Plant, q: Array, current: Array, rate: float) -> Scales:
-    """What a record (N, n) of the arm without a hidden effect says about sizes."""
+def _lowest(path: Array) -> Array:
+    return np.asarray(path.min(axis=0))
+
+
+def _highest(path: Array) -> Array:
+    return np.asarray(path.max(axis=0))
+
+
+def scales(plant: Plant, q: Array, current: Array, rate: float, paths: list[Array]) -> Scales:
+    """What a record (N, n) of the arm without a hidden effect, and all paths (N, n), say about sizes."""
     n = int(plant["n"])
     dq = np.gradient(q, 1.0 / rate, axis=0)
     middle = 0.5 * (q.max(axis=0) + q.min(axis=0))
@@ -275,7 +285,10 @@ def scales(plant: Plant, q: Array, current: Array, rate: float) -> Scales:
     motor = np.abs(slope * dq)
     friction = (plant["dry"][:n] * motor + plant["viscous"][:n] * motor**2).mean(axis=0)
     power = np.abs(plant["torque_constant"][:n] * current * slope * dq).sum(axis=1)
-    return Scales(slope, speed, np.sqrt((current**2).mean(axis=0)), friction, heights(plant, q), power)
+    low, high = (np.array([end(path) for path in paths]) for end in (_lowest, _highest))
+    common = np.column_stack([low.max(axis=0), high.min(axis=0)])
+    floor = max(float(np.quantile(heights(plant, path), 0.06)) for path in paths)
+    return Scales(slope, speed, np.sqrt((current**2).mean(axis=0)), friction, common, floor, power)
 
 
 def heights(plant: Plant, q: Array) -> Array:

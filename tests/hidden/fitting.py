@@ -123,9 +123,11 @@ def rms(residuals: list[Array], rows: list[Rows]) -> Array:
     return np.asarray(np.sqrt(total / sum(item.moving.sum(axis=0) for item in rows)))
 
 
-def held_out(train: list[Log], test: Log, described: Plant) -> tuple[Array, Array]:
-    """RMSE (n,) on the test record of what the training records give; its residual (N, n)."""
-    rows = [equations(log, described) for log in (*train, test)]
-    estimate = solve(rows[:-1])
-    left_over = residual(rows[-1], estimate)
-    return rms([left_over], rows[-1:]), left_over
+def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...]) -> Array:
+    """RMSE (n,) over the records of these numbers, each predicted by a fit to the others."""
+    rows = [equations(log, described) for log in records]
+    left_over = []
+    for k in held_out:
+        estimate = solve([item for number, item in enumerate(rows) if number != k])
+        left_over.append(residual(rows[k], estimate))
+    return rms(left_over, [rows[k] for k in held_out])

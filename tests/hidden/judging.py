@@ -7,7 +7,7 @@ from typing import Any
 
 from hidden.cases import Label, kind
 
-ARM_WIDE = {"base_tilt"}  # named without a joint
+ARM_WIDE = {"base_tilt", "fluid_drag", "added_mass"}  # named without a joint
 COMPLIANT = {"backlash", "joint_flexibility"}
 FOUND, MISSED, WRONG = "found", "missed", "wrong"
 
