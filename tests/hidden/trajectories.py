@@ -8,7 +8,7 @@ from hidden.arms import Arm
 from hidden.native import Array, Plant
 
 HARMONICS = 5
-DRAWS = 12
+DRAWS = 40
 
 
 def draw(arm: Arm, random: Generator) -> Plant:
