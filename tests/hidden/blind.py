@@ -154,7 +154,7 @@ def main() -> int:
             file.flush()
             lines.append(line)
             progress.advance(task)
-    blind_report.write(lines, seed, head, given.docs)
+    blind_report.write(lines, seed, head, given.docs, len(matrix()))
     return 1 if any("failed" in line for line in lines) else 0
 
 

@@ -21,8 +21,8 @@ HEAD = """\
 What `modelgen diagnose` answers on logs of simulated arms with something hidden in them. Written by
 `make blind`; the method is in [diagnosis_method.md](diagnosis_method.md).
 
-Seed {seed}, commit {commit}, {lines} cases: {answered} answered, {failed} failed, {undrawn} could not be
-drawn (the effect reaches the strength on no plausible arm of the draw).
+Seed {seed}, commit {commit}, {lines} of {planned} cases: {answered} answered, {failed} failed, {undrawn}
+could not be drawn (the effect reaches the strength on no plausible arm of the draw).
 
 The plant shares no code with modelgen (`tests/hidden`): other functional forms of the effects, another
 integrator (Moreau's midpoint stepping with set-valued friction), arms of 2 to 6 joints with direct and
@@ -57,14 +57,16 @@ def proportion(hits: int, total: int) -> str:
     return f"{hits} of {total}: {100 * hits / total:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
 
 
-def write(lines: list[Line], seed: int, commit: str, docs: Path) -> None:
-    """The page and its pictures into `docs`, the same for the same lines."""
+def write(lines: list[Line], seed: int, commit: str, docs: Path, planned: int) -> None:
+    """The page and its pictures into `docs`, the same for the same lines; `planned`: cases of the matrix."""
     lines = sorted(lines, key=lambda line: line["key"])
     good = [line for line in lines if "result" in line]
     docs.mkdir(parents=True, exist_ok=True)
     _confusion(good, docs / "diagnosis_confusion.svg")
     _power(good, docs / "diagnosis_power.svg")
-    (docs / "diagnosis.md").write_text("\n".join(_page(lines, good, seed, commit)) + "\n", encoding="utf-8")
+    (docs / "diagnosis.md").write_text(
+        "\n".join(_page(lines, good, seed, commit, planned)) + "\n", encoding="utf-8"
+    )
 
 
 def _of(
@@ -79,11 +81,12 @@ def _of(
     ]
 
 
-def _page(lines: list[Line], good: list[Line], seed: int, commit: str) -> list[str]:
+def _page(lines: list[Line], good: list[Line], seed: int, commit: str, planned: int) -> list[str]:
     nulls, pairs = _of(good, "null"), _of(good, "pair")
     counts = (len(good), sum("failed" in line for line in lines), sum("no_case" in line for line in lines))
     out = [
         HEAD.format(
+            planned=planned,
             seed=seed,
             commit=commit[:12],
             lines=len(lines),

@@ -1,0 +1,86 @@
+"""The matrix of `make blind`, and the page it writes."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hidden import blind, blind_report
+from hidden.arms import DESIGNS
+from hidden.cases import draw
+from hidden.effects import CATALOGUE, OUTSIDE
+
+
+def test_the_matrix_holds_enough_of_everything() -> None:
+    items = blind.matrix()
+    assert len({item.key for item in items}) == len(items)
+
+    def count(group: str, strength: float | None = None) -> int:
+        return sum(item.group == group and strength in (None, item.strength) for item in items)
+
+    assert count("null") == 200
+    assert all(count("single", strength) >= 60 for strength in (1.05, 1.10, 1.30))
+    assert count("outside", 1.3) >= 60
+    assert count("pair") == 30
+    assert {item.effects[0] for item in items if item.group == "single"} == set(CATALOGUE)
+    # A run that is stopped after a tenth has seen every group.
+    assert {item.group for item in items[: len(items) // 10]} == {item.group for item in items}
+
+
+def test_pairs_are_of_two_effects() -> None:
+    pairs = [item.effects for item in blind.matrix() if item.group == "pair"]
+    assert all(len(set(pair)) == 2 for pair in pairs)
+    assert len(set(pairs)) == len(pairs)
+
+
+def test_a_drawn_case_has_its_strength_and_is_drawn_again_the_same() -> None:
+    first, again = (draw(77, ("spring",), 1.1, ("direct2", "levered2")) for _ in range(2))
+    assert first == again
+    assert first.arm in DESIGNS
+    assert first.hidden[0].magnitude is not None
+
+
+@pytest.mark.parametrize(
+    ("hits", "total", "low", "high"),
+    [(0, 200, 0.0, 0.0188), (57, 60, 0.8630, 0.9829), (5, 10, 0.2366, 0.7634), (0, 0, 0.0, 1.0)],
+)
+def test_wilson_intervals(hits: int, total: int, low: float, high: float) -> None:
+    assert blind_report.wilson(hits, total) == pytest.approx((low, high), abs=2e-4)
+
+
+def line(group: str, effects: list[str], result: str, number: int, **more: Any) -> dict[str, Any]:
+    named = [[effects[0], 1]] if effects and result == "found" and group != "outside" else []
+    return {
+        "key": f"{group}/{'+'.join(effects)}/{number}",
+        "group": group,
+        "effects": effects,
+        "strength": 1.3,
+        "result": result,
+        "by_class": result,
+        "verdict": "nothing_missing" if not effects else "named",
+        "named": named,
+        "in_set": result == "found",
+        "size": 1.0,
+        "recovered": 0.95 if named else None,
+        "seconds": 3.0,
+        "case": {"arm": "direct2"},
+        **more,
+    }
+
+
+def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
+    lines = [line("null", [], "found", k) for k in range(10)]
+    lines += [line("single", ["spring"], "found" if k else "missed", k) for k in range(4)]
+    lines += [line("outside", [OUTSIDE[0]], "found", 0)]
+    lines += [
+        {"key": "x", "group": "single", "effects": ["spring"], "strength": 1.3, "failed": "exit 1\nboom"}
+    ]
+    for folder in ("one", "two"):
+        blind_report.write(lines, 5, "0123456789abcdef", tmp_path / folder, 40)
+    page = (tmp_path / "one" / "diagnosis.md").read_text()
+    assert "Seed 5, commit 0123456789ab, 16 of 40 cases: 15 answered, 1 failed, 0\ncould not be" in page
+    assert "| nothing hidden: something named | 0 of 10: 0.0 % (0.0 to 27.8) |" in page
+    assert "| one effect, s = 1.3: cause and joint, no extra | 3 of 4: 75.0 %" in page
+    assert "| `spring` | 3 | 1 | 0 | – |" in page
+    assert "- `x`: boom" in page
+    for name in ("diagnosis.md", "diagnosis_power.svg", "diagnosis_confusion.svg"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
