@@ -1,5 +1,5 @@
 # Needs Python 3.11 or later, a C and C++ compiler and make; everything else goes into $(VENV).
-#   make run     generate every arm of arms.yaml into generated/
+#   make run     generate every arm of arms.yaml into generated/, then diagnose a simulated recording
 #   make test    lint, then every test
 #   make pytest  every test
 #   make lint    ruff and mypy
@@ -9,6 +9,7 @@
 #   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
+#   make hidden  diagnose two dozen simulated recordings with hidden effects, a quarter of an hour
 #   make blind   diagnose the full matrix of hidden effects (SEED=n; hours), write docs/diagnosis.md
 #   make clean   remove the environment and the caches
 
@@ -17,10 +18,15 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench size run-examples prove fuzz blind clean
+.PHONY: run test pytest lint format bench size run-examples prove fuzz hidden blind clean
+
+EXAMPLE := examples/diagnosis
 
 run: $(INSTALLED)
 	$(BIN)/modelgen generate
+	@echo 'Diagnosing a simulated recording with a hidden cause: $(EXAMPLE)'
+	$(BIN)/modelgen diagnose $(EXAMPLE)/arms.yaml --arm digger --train $(EXAMPLE)/train_a.csv \
+	    --train $(EXAMPLE)/train_b.csv --test $(EXAMPLE)/test.csv --out build/digger
 
 test: lint pytest
 
@@ -54,6 +60,9 @@ FUZZ_SECONDS ?= 60
 
 fuzz: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
+
+hidden: $(INSTALLED)
+	MODELGEN_HIDDEN=1 $(BIN)/python -m pytest -n auto tests/test_hidden_suite.py
 
 blind: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED))

@@ -20,7 +20,7 @@ from modelgen.errors import InputError
 from modelgen.extension import extended_yaml
 from modelgen.functions import Options
 from modelgen.generation import generate
-from modelgen.report.diagnosis import report
+from modelgen.report.diagnosis import pictures, report
 
 
 def run(
@@ -73,6 +73,8 @@ def write(d: Diagnosis, file: Path, out: Path) -> None:
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
         (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
+        for picture, drawn in pictures(d).items():
+            (new / picture).write_text(drawn, encoding="utf-8", newline="\n")
         out.mkdir(parents=True, exist_ok=True)
         for path in sorted(new.iterdir()):
             target = out / path.name

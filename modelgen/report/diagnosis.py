@@ -20,6 +20,11 @@ from modelgen.resources import templates_folder
 _SECONDS = 10.0  # of the test record that the pictures over time show
 
 
+def pictures(d: Diagnosis) -> dict[str, str]:
+    """Pictures of the report that stand alone, by file name."""
+    return {"effort.svg": _effort(d)}
+
+
 def report(d: Diagnosis) -> str:
     """HTML that needs nothing beside it."""
     environment = Environment(
@@ -112,6 +117,10 @@ def _simulation(d: Diagnosis) -> list[Sequence[str]]:
 
 
 def _over_time(d: Diagnosis) -> str:
+    return _inline(_effort(d))
+
+
+def _effort(d: Diagnosis) -> str:
     """Measured and predicted effort, and what is left, over the first seconds of the test record."""
     held, t = d.test, d.test.prepared.t
     shown = t <= t[0] + _SECONDS
@@ -133,7 +142,7 @@ def _over_time(d: Diagnosis) -> str:
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
-    return _inline(svg(made))
+    return svg(made)
 
 
 def _residuals(d: Diagnosis) -> list[tuple[str, str]]:
