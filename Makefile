@@ -4,7 +4,8 @@
 #   make pytest  every test
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
-#   make bench   CPU time of generation, per arm and over the number of joints
+#   make bench   beside Pinocchio, MuJoCo, SymPy and FIGAROH: docs/benchmarks.md (needs valgrind)
+#   make bench-generation  CPU time of generation, per arm and over the number of joints
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
 #   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
@@ -18,7 +19,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench size run-examples prove fuzz hidden blind clean
+.PHONY: run test pytest lint format bench bench-generation size run-examples prove fuzz hidden blind clean
 
 EXAMPLE := examples/diagnosis
 
@@ -43,6 +44,10 @@ format: $(INSTALLED)
 	$(BIN)/ruff format .
 
 bench: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	$(BIN)/python benchmarks/compare.py --accept
+
+bench-generation: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
 
 size: $(INSTALLED)

@@ -1,0 +1,1 @@
+"""Programs that compute the same functions by other means, and how they are measured."""

@@ -1,0 +1,55 @@
+// Pinocchio's algorithms traced with CasADi's symbols, as C: pinocchio_traced MODEL OUT.c
+#include <pinocchio/autodiff/casadi.hpp>
+
+#include "pinocchio_model.hpp"
+
+#include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
+
+using casadi::SX;
+
+namespace {
+using Model = pinocchio::ModelTpl<SX>;
+using Vector = Model::ConfigVectorType;
+
+Vector vector(const SX &symbols)
+{
+    Vector result(symbols.size1());
+    pinocchio::casadi::copy(symbols, result);
+    return result;
+}
+
+template <typename Matrix> SX symbols(const Matrix &matrix)
+{
+    SX result(matrix.rows(), matrix.cols());
+    pinocchio::casadi::copy(matrix, result);
+    return result;
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 3)
+        return 2;
+    const Model model = read_model(argv[1]).cast<SX>();
+    pinocchio::DataTpl<SX> data(model);
+    const int n = model.nv;
+    const SX x = SX::sym("q", n), v = SX::sym("dq", n), a = SX::sym("third", n);
+    const Vector q = vector(x), dq = vector(v), third = vector(a);
+    casadi::CodeGenerator code("traced", {{"with_header", false}});
+    const auto add = [&](const std::string &name, const SX &result) {
+        code.add(casadi::Function("traced_" + name, {x, v, a}, {densify(result)}, {{"cse", true}}));
+    };
+    pinocchio::rnea(model, data, q, dq, third);
+    add("inverse_dynamics", symbols(data.tau));
+    pinocchio::crba(model, data, q, pinocchio::Convention::LOCAL);
+    data.M.triangularView<Eigen::StrictlyLower>() = data.M.transpose().triangularView<Eigen::StrictlyLower>();
+    add("mass_matrix", symbols(data.M));
+    pinocchio::aba(model, data, q, dq, third, pinocchio::Convention::LOCAL);
+    add("forward_dynamics", symbols(data.ddq));
+    pinocchio::computeJointTorqueRegressor(model, data, q, dq, third);
+    add("regressor", symbols(data.jointTorqueRegressor));
+    std::ofstream(argv[2]) << code.dump();
+}
