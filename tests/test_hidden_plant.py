@@ -192,6 +192,15 @@ def test_without_a_hidden_effect_only_the_noise_is_left(name: str) -> None:
     assert (noisy < 1.3 * expected).all()
 
 
+@pytest.mark.parametrize("name", ["mixed3", "direct3"])
+def test_without_counts_and_noise_nothing_is_left(name: str) -> None:
+    """The stepping, the log of a held current and the regressor are one model, to a part in a thousand."""
+    noise = Bench(Case(name, 4)).errors({})
+    exact = Bench(Case(name, 4, noise=0.0))
+    exact.arm.plant["count"] = 0.0
+    assert (exact.errors({}) < 0.005 * noise).all()
+
+
 def test_trajectories_reach_their_limits_and_repeat() -> None:
     arm = arms.draw("mixed3", default_rng(1))
     plant = trajectories.draw(arm, default_rng(2))
