@@ -80,6 +80,7 @@ def matrix() -> list[Item]:
             for k, effects in enumerate([(), *((name,) for name in FREE_EFFECTS)] * 6)
         ],
     }
+    Random(1).shuffle(groups["single"])
     rows = zip_longest(*(_spread(items, NULLS) for items in groups.values()))
     return [item for row in rows for chunk in row if chunk for item in chunk]
 
