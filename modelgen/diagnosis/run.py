@@ -17,10 +17,12 @@ from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.objects import Diagnosis, Named
 from modelgen.diagnosis.periods import period_of, with_whole_rows
+from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import Selection, select
-from modelgen.diagnosis.system import weighted_fit
+from modelgen.diagnosis.selection import PRACTICAL, Selection, select
+from modelgen.diagnosis.system import mean_squares, weighted_fit
+from modelgen.diagnosis.whitening import ORDER
 from modelgen.errors import InputError
 from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
@@ -72,10 +74,12 @@ def diagnose(
     rows = _rows(prober, model, train)
     _check_motion(arm, rows)
     pool = candidates(arm, prober, rows)
-    selection = select(rows, prober, pool, periods, progress)
+    first = weighted_fit(rows, [r.columns for r in rows])
+    blurs = blur(train, rows, prober, model, first)
+    selection = select(rows, prober, pool, periods, progress, blur=blurs)
     base = selection.system.theta[: rows[0].columns.shape[2]]
     fit = lack_of_fit(selection.system)
-    verdict, reason = _verdict(selection, fit)
+    verdict, reason = _verdict(selection, fit, feigned(blurs, mean_squares(selection.system)))
     named = _named(selection, pool, prober, model, base, rows)
     after = _extended(arm, selection, rows, train)
     plain = weighted_fit(rows, [r.columns for r in rows])
@@ -117,6 +121,12 @@ def _rows(prober: Prober, model: Model, prepared: Sequence[Prepared]) -> list[Ro
 
 
 def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
+    short = [r.prepared for r in rows if len(r.effort) < 5 * ORDER]
+    if short:
+        raise InputError(
+            f"{short[0].record.name}: too short a record: {len(short[0].rows)} rows are left of it, expected at "
+            f"least {5 * ORDER} ({5 * ORDER / short[0].rate:.2g} s and what the filters trim)"
+        )
     moving = np.mean(np.concatenate([r.moving for r in rows]), axis=0)
     if not (moving > 0.02).any():
         raise InputError(
@@ -130,10 +140,17 @@ def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
         )
 
 
-def _verdict(selection: Selection, fit: LackOfFit | None) -> tuple[str, str]:
+def _verdict(selection: Selection, fit: LackOfFit | None, noisy: Array) -> tuple[str, str]:
+    """noisy: percent of the RMSE by joint that errors of the positions could feign."""
     if selection.causes:
         left = "" if fit is None or not fit.found else "; something deterministic remains beside it"
         return "named", f"a cause passed every gate{left}"
+    if noisy.max() > PRACTICAL:
+        joint = int(np.argmax(noisy)) + 1
+        return "cannot_tell", (
+            f"the positions are too coarse: their errors alone could feign a gain of {noisy.max():.1f} % at "
+            f"joint {joint}, and nothing explains more; finer encoders, or encoders at the motors, can tell"
+        )
     if fit is None:
         return "cannot_tell", (
             "nothing could be named, and no period repeats by which the noise could be measured: excite with "

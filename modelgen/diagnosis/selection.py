@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from modelgen.diagnosis.candidates import LATER, Candidate
+from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, rmse, weighted_fit
 from modelgen.diagnosis.trials import Court, Trial, sensible
@@ -51,8 +52,11 @@ def select(
     periods: Sequence[int | None],
     report: Report | None = None,
     evidence: float = EVIDENCE,
+    blur: Array | None = None,
 ) -> Selection:
-    """Causes in the order in which they were found."""
+    """Causes in the order in which they were found. blur: what errors of the positions leave in the
+    residuals, mean squares by joint (n,): a cause must explain more than they could feign.
+    """
     baseline = [r.columns for r in rows]
     p = baseline[0].shape[2]
     causes: list[Cause] = []
@@ -72,7 +76,7 @@ def select(
         eligible = [
             (t, gain)
             for t in sorted(trials, key=lambda t: -t.gain.delta_bic)
-            if (gain := passes(t, rows, [c.trial for c in causes])) is not None
+            if (gain := passes(t, rows, [c.trial for c in causes], blur)) is not None
         ]
         if not eligible:
             break
@@ -118,7 +122,9 @@ def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
     return -np.inf if gain is None else gain.delta_bic
 
 
-def passes(trial: Trial, rows: Sequence[Rows], before: Sequence[Trial]) -> float | None:
+def passes(
+    trial: Trial, rows: Sequence[Rows], before: Sequence[Trial], blur: Array | None = None
+) -> float | None:
     """Percent of the RMSE gained on rows that the cause's fit has not seen; None where a gate stays shut.
 
     The cause is fitted on one part and carried to the other, where the rest of the model is fitted anew
@@ -148,9 +154,11 @@ def passes(trial: Trial, rows: Sequence[Rows], before: Sequence[Trial]) -> float
     ratio = np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))[counts > 0]
     judged = [j for j in trial.candidate.joints(n) if counts[j] > 0]
     gains = 100.0 * (1.0 - np.sqrt(sums[1, judged] / np.maximum(sums[0, judged], 1e-300)))
-    gain = float(gains.max(initial=-np.inf))
-    least = DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL
-    return gain if gain >= least and float((ratio**2).mean()) < 1.0 else None
+    least = np.full(len(judged), DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL)
+    if blur is not None:
+        least = np.maximum(least, feigned(blur[judged], sums[0, judged] / counts[judged]))
+    gain = float(gains[gains >= least].max(initial=-np.inf))
+    return gain if np.isfinite(gain) and float((ratio**2).mean()) < 1.0 else None
 
 
 def _masked(rows: Sequence[Rows], half: int) -> tuple[list[Rows], list[Rows]]:

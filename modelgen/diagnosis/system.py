@@ -251,6 +251,11 @@ def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
     return np.where(np.isnan(found), 1.0, found)
 
 
+def mean_squares(system: System) -> Array:
+    """Of what the fit leaves on the moving rows, by joint (n,)."""
+    return rmse(system.rows, system.columns, system.theta) ** 2
+
+
 def moving_share(rows: Sequence[Rows]) -> NDArray[np.float64]:
     """Share of rows that count, by joint."""
     return np.asarray(np.mean(np.concatenate([r.moving for r in rows]), axis=0))

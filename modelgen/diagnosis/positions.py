@@ -1,0 +1,87 @@
+"""How far the noise of the positions can feign a cause.
+
+Regressors are made of measured positions; where a coarse encoder blurs them, least squares correlates
+columns with their own errors (Fuller 1987, "Measurement Error Models", 1.1). What the error of the
+regressor leaves in the residuals is measured by blurring the positions once more in the same way and
+looking at what that changes (Cook and Stefanski 1994). No column can gain more by following that error
+than the error's whole share of the residuals: a gain up to that share is no evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.functions import Model
+from modelgen.probing import Prober
+
+STEPPED = 0.05  # of a count: how far differences may lie from whole counts
+SEED = 19940801
+
+
+def counts(record: Record) -> Array:
+    """Resolution of the logged positions by coordinate, (n,), in the unit that was logged; 0: not stepped."""
+    return np.array([_count(_logged(record, j)) for j in range(record.n)])
+
+
+def _logged(record: Record, j: int) -> Array:
+    motor = bool(record.motor_side) and record.motor_side[j]
+    return (record.motor if motor else record.q)[:, j]
+
+
+def _count(values: Array) -> float:
+    """The smallest step of which all others are multiples."""
+    steps = np.abs(np.diff(values))
+    steps = steps[steps > 1e-12 * max(float(np.ptp(values)), 1e-300)]
+    if len(steps) < 20:
+        return 0.0
+    smallest = float(steps.min())
+    near = steps[steps < 1.5 * smallest]
+    count = float(near.mean())
+    off = np.abs(steps / count - np.round(steps / count))[steps < 10 * count]
+    return count if float(np.quantile(off, 0.95)) < STEPPED else 0.0
+
+
+def blurred(record: Record) -> Record:
+    """The record with one more error of a uniform distribution over a count on every position."""
+    random = np.random.default_rng(SEED)
+    q, motor = record.q.copy(), record.motor.copy()
+    drives = drives_of(record.arm) if record.arm is not None else ()
+    for j, count in enumerate(counts(record)):
+        if not count:
+            continue
+        error = random.uniform(-0.5, 0.5, len(q)) * count
+        if record.motor_side and record.motor_side[j]:
+            motor[:, j] += error
+        else:
+            q[:, j] += error
+            if drives:
+                motor[:, j] = drives[j].motor(q[:, j])
+    return replace(record, q=q, motor=motor)
+
+
+def blur(
+    train: Sequence[Prepared], rows: Sequence[Rows], prober: Prober, model: Model, theta: Array
+) -> Array:
+    """Mean square of what errors of the positions leave in the residuals, by joint (n,), inputs squared."""
+    total, count = np.zeros(train[0].n), np.zeros(train[0].n)
+    for p, r in zip(train, rows, strict=True):
+        count += r.moving.sum(axis=0)
+        if counts(p.record).any():
+            again = rows_of(prober, model, prepare(blurred(p.record), p.settings), theta)
+            change = (again.effort - r.effort) - (again.columns - r.columns) @ theta
+            total += (change**2 * r.moving).sum(axis=0)
+    return np.asarray(total / np.maximum(count, 1.0))
+
+
+def feigned(blur: Array, squares: Array) -> Array:
+    """Percent of the RMSE that a column could gain by following the errors of the positions alone.
+
+    squares: mean squares of the residuals by joint, as blur.
+    """
+    share = np.clip(blur / np.maximum(squares, 1e-300), 0.0, 1.0)
+    return np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
