@@ -124,7 +124,7 @@ def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
     short = [r.prepared for r in rows if len(r.effort) < 5 * ORDER]
     if short:
         raise InputError(
-            f"{short[0].record.name}: too short a record: {len(short[0].rows)} rows are left of it, expected at "
+            f"{short[0].record.name}: too short a record: {len(short[0].rows)} rows are left, expected at "
             f"least {5 * ORDER} ({5 * ORDER / short[0].rate:.2g} s and what the filters trim)"
         )
     moving = np.mean(np.concatenate([r.moving for r in rows]), axis=0)

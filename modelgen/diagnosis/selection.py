@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.diagnosis.candidates import LATER, Candidate
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, rmse, weighted_fit
+from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Court, Trial, sensible
 from modelgen.probing import Prober
 
@@ -83,13 +83,23 @@ def select(
         best, gain = eligible[0]
         rivals = [
             (t, best.gain.delta_bic - t.gain.delta_bic)
-            for t, _ in eligible[1:]
+            for t, other in eligible[1:]
             if best.gain.delta_bic - t.gain.delta_bic <= AMBIGUOUS
+            or 100.0 * (gain - other) / (100.0 - other) <= _margin(best, gain, system, blur)
         ]
         causes.append(Cause(best, best.gain.delta_bic, gain, rivals))
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     causes, system = _eliminated(causes, rows, system, evidence)
     return Selection(causes, system, len(pool))
+
+
+def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> float:
+    """Percent of what a rival leaves by which errors of coarse positions can put the best before it."""
+    if blur is None:
+        return -np.inf
+    left = mean_squares(system) * (1.0 - gain / 100.0) ** 2
+    found = float(feigned(blur, left)[best.candidate.joints(system.n)].max())
+    return found if found > PRACTICAL else -np.inf
 
 
 def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
