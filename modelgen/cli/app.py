@@ -2,13 +2,55 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from modelgen import __version__
+from modelgen.cli.arguments import (
+    Arms,
+    AssumedAcceleration,
+    AssumedVelocity,
+    Boxes,
+    Check,
+    Coordinates,
+    Criterion,
+    CutOff,
+    DriveGains,
+    ExcitationPeriod,
+    Folder,
+    Gains,
+    Harmonics,
+    Iterations,
+    JacobianLink,
+    Jobs,
+    Json,
+    Mapping,
+    MaxFlash,
+    MaxStack,
+    NewName,
+    OfMapping,
+    OneArm,
+    OnlyArms,
+    OutFile,
+    OutFolder,
+    Pages,
+    Period,
+    Plant,
+    Rate,
+    Rest,
+    RuntimeGeometry,
+    Seed,
+    Serialised,
+    SinCos,
+    Starts,
+    Target,
+    Test,
+    Train,
+    TrajectoryFile,
+    Version,
+    Without,
+)
 from modelgen.cli.guard import guarded
 
 # ruff: noqa: PLC0415 - see above
@@ -21,104 +63,6 @@ app = typer.Typer(
     # A traceback that Python prints itself can be copied into a report.
     pretty_exceptions_enable=False,
 )
-
-
-class Gains(StrEnum):
-    """How the drive gains enter the model."""
-
-    KNOWN = "known"
-    ESTIMATED = "estimated"
-    ROW_WISE = "row_wise"
-
-
-Arms = Annotated[
-    Path | None,
-    typer.Argument(
-        metavar="ARMS",
-        help="Description in YAML. Default: arms.yaml here, else the shipped arms.",
-        show_default=False,
-    ),
-]
-Without = Annotated[
-    str,
-    typer.Option(
-        metavar="PARTS", help="Leave out drives, effects or both: drives,effects.", show_default=False
-    ),
-]
-DriveGains = Annotated[Gains, typer.Option(help="Drive gains: known, estimated, or scaled row by row.")]
-RuntimeGeometry = Annotated[
-    bool, typer.Option("--runtime-geometry", help="Lever geometry, offsets and symbols become an input.")
-]
-SinCos = Annotated[
-    bool, typer.Option("--sincos-inputs", help="Sines and cosines of the joint angles become inputs.")
-]
-JacobianLink = Annotated[
-    str | None,
-    typer.Option(
-        metavar="LINK", help="Link that the Jacobian belongs to. Default: the last.", show_default=False
-    ),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
-Train = Annotated[
-    list[str], typer.Option(metavar="LOG", help="A training record, FILE or FILE@t0:t1 [s]; repeatable.")
-]
-Test = Annotated[
-    list[str], typer.Option(metavar="LOG", help="The record that nothing but the final errors looks at.")
-]
-Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
-Mapping = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Mapping file of a foreign log.", show_default=False),
-]
-CutOff = Annotated[
-    float | None,
-    typer.Option(metavar="HZ", help="Low-pass of effort and regressor.", show_default=False),
-]
-Period = Annotated[
-    float | None,
-    typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
-]
-Pages = Annotated[
-    Path | None,
-    typer.Option(metavar="DIR", help="Write effects.md with a picture of each there.", show_default=False),
-]
-OnlyArms = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
-]
-OneArm = Annotated[str, typer.Option(metavar="NAME", help="The arm.", show_default=False)]
-OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
-OutFile = Annotated[Path, typer.Option(metavar="FILE", help="File to write; it must not exist.")]
-Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
-Serialised = Annotated[
-    bool, typer.Option("--casadi", help="Also write the CasADi functions serialised: <arm>/casadi/.")
-]
-Plant = Annotated[
-    bool, typer.Option("--casadi-plant", help="Also write the C plant for casadi.external: <arm>/plant/.")
-]
-MaxFlash = Annotated[
-    int | None,
-    typer.Option(metavar="BYTES", min=1, help="Most flash that a function may take.", show_default=False),
-]
-MaxStack = Annotated[
-    int | None,
-    typer.Option(metavar="BYTES", min=1, help="Most stack that a function may take.", show_default=False),
-]
-Target = Annotated[
-    str, typer.Option(metavar="NAME", help="Whose compiler measures them: cortex-m4f, cortex-m7, host.")
-]
-Jobs = Annotated[
-    int | None,
-    typer.Option(
-        "-j", "--jobs", metavar="N", min=1, help="Processes. Default: one per processor.", show_default=False
-    ),
-]
-NewName = Annotated[str, typer.Argument(help="Name of the arm, a C identifier.", show_default=False)]
-Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
-
-
-OfMapping = Annotated[
-    bool, typer.Option("--mapping", help="Of the files that say what the columns of a foreign log are.")
-]
 
 
 @app.callback(invoke_without_command=True)
@@ -222,6 +166,52 @@ def diagnose(
         period=period,
         as_json=as_json,
     )
+
+
+@app.command()
+@guarded
+def excite(
+    arm: OneArm,
+    arms: Arms = None,
+    out: TrajectoryFile = Path("trajectory.csv"),
+    period: ExcitationPeriod = 80.0,
+    harmonics: Harmonics = 5,
+    rate: Rate = 10.0,
+    criterion: Criterion = "cond",
+    coordinates: Coordinates = "motor",
+    starts: Starts = 8,
+    seed: Seed = 0,
+    rest: Rest = False,
+    velocity: AssumedVelocity = None,
+    acceleration: AssumedAcceleration = None,
+    box: Boxes = None,
+    iterations: Iterations = 150,
+    jobs: Jobs = None,
+    as_json: Json = False,
+) -> None:
+    """Compute a trajectory that determines the base parameters well, within the arm's limits."""
+    from modelgen.cli.exciting import run
+    from modelgen.cli.selecting import selected
+    from modelgen.excitation import Settings
+    from modelgen.excitation import box as parsed
+
+    settings = Settings(
+        period=period,
+        harmonics=harmonics,
+        rate=rate,
+        criterion=criterion,
+        coordinates=coordinates,
+        starts=starts,
+        seed=seed,
+        rest=rest,
+        velocity=velocity,
+        acceleration=acceleration,
+        boxes=tuple(parsed(text) for text in box or []),
+        iterations=iterations,
+        processes=jobs,
+    )
+    _, (found,) = selected(arms, [arm])
+    run(found, settings, out, as_json=as_json)
 
 
 @app.command()

@@ -1,0 +1,135 @@
+"""The options of the commands, each written once."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Gains(StrEnum):
+    """How the drive gains enter the model."""
+
+    KNOWN = "known"
+    ESTIMATED = "estimated"
+    ROW_WISE = "row_wise"
+
+
+Arms = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="ARMS",
+        help="Description in YAML. Default: arms.yaml here, else the shipped arms.",
+        show_default=False,
+    ),
+]
+Without = Annotated[
+    str,
+    typer.Option(
+        metavar="PARTS", help="Leave out drives, effects or both: drives,effects.", show_default=False
+    ),
+]
+DriveGains = Annotated[Gains, typer.Option(help="Drive gains: known, estimated, or scaled row by row.")]
+RuntimeGeometry = Annotated[
+    bool, typer.Option("--runtime-geometry", help="Lever geometry, offsets and symbols become an input.")
+]
+SinCos = Annotated[
+    bool, typer.Option("--sincos-inputs", help="Sines and cosines of the joint angles become inputs.")
+]
+JacobianLink = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LINK", help="Link that the Jacobian belongs to. Default: the last.", show_default=False
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
+Train = Annotated[
+    list[str], typer.Option(metavar="LOG", help="A training record, FILE or FILE@t0:t1 [s]; repeatable.")
+]
+Test = Annotated[
+    list[str], typer.Option(metavar="LOG", help="The record that nothing but the final errors looks at.")
+]
+Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
+Mapping = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Mapping file of a foreign log.", show_default=False),
+]
+CutOff = Annotated[
+    float | None,
+    typer.Option(metavar="HZ", help="Low-pass of effort and regressor.", show_default=False),
+]
+Period = Annotated[
+    float | None,
+    typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
+]
+Pages = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="Write effects.md with a picture of each there.", show_default=False),
+]
+OnlyArms = Annotated[
+    list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
+]
+OneArm = Annotated[str, typer.Option(metavar="NAME", help="The arm.", show_default=False)]
+OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
+OutFile = Annotated[Path, typer.Option(metavar="FILE", help="File to write; it must not exist.")]
+Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
+Serialised = Annotated[
+    bool, typer.Option("--casadi", help="Also write the CasADi functions serialised: <arm>/casadi/.")
+]
+Plant = Annotated[
+    bool, typer.Option("--casadi-plant", help="Also write the C plant for casadi.external: <arm>/plant/.")
+]
+MaxFlash = Annotated[
+    int | None,
+    typer.Option(metavar="BYTES", min=1, help="Most flash that a function may take.", show_default=False),
+]
+MaxStack = Annotated[
+    int | None,
+    typer.Option(metavar="BYTES", min=1, help="Most stack that a function may take.", show_default=False),
+]
+Target = Annotated[
+    str, typer.Option(metavar="NAME", help="Whose compiler measures them: cortex-m4f, cortex-m7, host.")
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "-j", "--jobs", metavar="N", min=1, help="Processes. Default: one per processor.", show_default=False
+    ),
+]
+TrajectoryFile = Annotated[
+    Path, typer.Option("--out", metavar="FILE", help="Table to write; its companions lie beside it.")
+]
+ExcitationPeriod = Annotated[float, typer.Option(metavar="S", help="Period of the trajectory.")]
+Harmonics = Annotated[int, typer.Option(metavar="N", help="Harmonics of 1/period.")]
+Rate = Annotated[float, typer.Option(metavar="HZ", help="Samples per second.")]
+Criterion = Annotated[str, typer.Option(metavar="NAME", help="cond or d_optimal.")]
+Coordinates = Annotated[
+    str, typer.Option(metavar="NAME", help="motor or joint: what the Fourier series gives.")
+]
+Starts = Annotated[int, typer.Option(metavar="N", help="Random starts, in parallel.")]
+Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random starts.")]
+Rest = Annotated[bool, typer.Option("--rest", help="Start and end with zero speed and acceleration.")]
+AssumedVelocity = Annotated[
+    float | None,
+    typer.Option(metavar="V", help="Speed limit of joints that have none [rad/s, m/s].", show_default=False),
+]
+AssumedAcceleration = Annotated[
+    float | None,
+    typer.Option(metavar="A", help="Likewise the acceleration [rad/s2, m/s2].", show_default=False),
+]
+Boxes = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="BOX",
+        help="LINK=x0:x1,y0:y1,z0:z1 [m], where the origin of its frame must stay; repeatable.",
+        show_default=False,
+    ),
+]
+Iterations = Annotated[int, typer.Option(metavar="N", min=1, help="Most iterations of one start.")]
+NewName = Annotated[str, typer.Argument(help="Name of the arm, a C identifier.", show_default=False)]
+Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
+OfMapping = Annotated[
+    bool, typer.Option("--mapping", help="Of the files that say what the columns of a foreign log are.")
+]

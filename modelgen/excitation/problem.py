@@ -1,0 +1,204 @@
+"""The arm along a trajectory, as CasADi functions of one sample."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from modelgen.backends.casadi_function import casadi_function
+from modelgen.description import Arm
+from modelgen.effects import CATALOGUE
+from modelgen.errors import InputError
+from modelgen.excitation.fourier import Basis, basis
+from modelgen.excitation.limits import Bound, bounds, ranges, speeds
+from modelgen.excitation.settings import Array, Box, Settings
+from modelgen.functions import build_model
+from modelgen.functions.nominal import nominal_base
+
+GRID = 24  # samples per period of the highest harmonic, in the optimisation
+MARGIN = 0.01  # of every limit, left for what happens between the samples
+SMOOTHING = 0.01  # of the speed limit: width of the smoothed sign that the optimisation sees
+SIGNALS = ("q", "dq", "ddq", "qm", "dqm", "ddqm", "input", "effort")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What the optimiser and the random search need; it can be sent to other processes.
+
+    smooth, exact: (x, dx, ddx) of one sample to (regressor^T (p, n), constraints); in `smooth` the signs of
+    dry friction are smoothed. Constraints are scaled to lie in [-1, 1]. motion: (x, dx, ddx) to all of
+    SIGNALS. middle, half: (n,) ranges of the coordinates that the series is written in; amplitude: (n,)
+    their unit in the coefficients. names: of the base parameters. constraints: what each limits.
+    """
+
+    settings: Settings
+    basis: Basis
+    smooth: ca.Function
+    exact: ca.Function
+    motion: ca.Function
+    middle: Array
+    half: Array
+    amplitude: Array
+    names: tuple[str, ...]
+    constraints: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+    def grid(self, density: int = GRID) -> Array:
+        """Times [s] of one period, `density` per period of the highest harmonic."""
+        count = density * self.settings.harmonics
+        return np.arange(count) * self.settings.period / count
+
+    def at_rate(self) -> Array:
+        """Times [s] of one period at the settings' rate."""
+        return np.arange(round(self.settings.period * self.settings.rate)) / self.settings.rate
+
+    def series(self, z: Array, t: Array) -> tuple[Array, Array, Array]:
+        """x, dx, ddx (N, n) at times t (N,) of the coefficients z (n, size), in units of the coordinates."""
+        x, dx, ddx = (matrix @ z.T for matrix in self.basis.signals(t))
+        return self.middle + self.amplitude * x, self.amplitude * dx, self.amplitude * ddx
+
+    def sampled(self, function: ca.Function, z: Array, t: Array) -> tuple[Array, ...]:
+        """The outputs of a function of one sample, (N, rows, columns), at times t (N,)."""
+        mapped = _mapped(function, len(t))
+        outputs = mapped.call([ca.DM(part.T) for part in self.series(z, t)])
+        found = []
+        for k, value in enumerate(outputs):
+            rows, columns = function.size_out(k)
+            found.append(value.full().reshape(rows, len(t), columns).transpose(1, 0, 2))
+        return tuple(found)
+
+    def observation(self, z: Array, t: Array) -> tuple[Array, float]:
+        """The observation matrix (n N, p) and the largest magnitude of a constraint; infinite for NaN."""
+        regressor, limits = self.sampled(self.exact, z, t)
+        size = regressor.shape[1]
+        largest = float(np.abs(limits).max()) if np.isfinite(limits).all() else float("inf")
+        return regressor.transpose(0, 2, 1).reshape(-1, size), largest
+
+
+@lru_cache(maxsize=16)
+def _mapped(function: ca.Function, count: int) -> ca.Function:
+    return function.map(count)
+
+
+def problem(arm: Arm, settings: Settings) -> Problem:
+    """The problem of one arm.
+
+    Raises InputError where a limit is missing that nothing can stand for, where the arm has effects with
+    states, and for a box of an unknown link.
+    """
+    settings.checked()
+    limits, remarks = bounds(arm, settings)
+    middle, half = ranges(arm, limits, settings.coordinates)
+    exact = _functions(arm, limits, settings)
+    smooth = _functions(_smoothed(arm, speeds(arm, limits, "motor")), limits, settings)
+    series = basis(settings.period, settings.harmonics, settings.rest)
+    if not exact.nominal:
+        kept = [b for b in limits if b.signal in ("input", "effort")]
+        if kept:
+            remarks.append("efforts are not limited: the description has no nominal inertials and effects")
+    speed = speeds(arm, limits, settings.coordinates)
+    amplitude = np.minimum(half, speed * settings.period / (2 * np.pi))
+    return Problem(
+        settings,
+        series,
+        smooth.sample,
+        exact.sample,
+        exact.motion,
+        middle,
+        half,
+        amplitude,
+        exact.names,
+        exact.constraints,
+        tuple(remarks),
+    )
+
+
+@dataclass(frozen=True)
+class _Functions:
+    sample: ca.Function
+    motion: ca.Function
+    names: tuple[str, ...]
+    constraints: tuple[str, ...]
+    nominal: bool
+
+
+def _functions(arm: Arm, limits: Sequence[Bound], settings: Settings) -> _Functions:
+    model = build_model(arm)
+    if model.states:
+        raise InputError(
+            f"{arm.name}: its effects have states ({', '.join(model.states)}), which depend on the past; "
+            "excite needs the description without them",
+            arm.where,
+        )
+    made = {f.name: f for f in model.functions}
+    n = len(arm.coordinates)
+    x, dx, ddx = (ca.SX.sym(name, n) for name in ("x", "dx", "ddx"))
+    if settings.coordinates == "motor":
+        q, dq, ddq = casadi_function(made["joint_from_motor"]).call([x, dx, ddx])
+        motor = [x, dx, ddx]
+    else:
+        q, dq, ddq = x, dx, ddx
+        motor = casadi_function(made["motor_from_joint"]).call([q, dq, ddq])
+    arguments = {"q": q, "dq": dq, "ddq": ddq}
+    regressor = casadi_function(made["regressor"])
+    y = regressor(*(arguments[name] for name in regressor.name_in()))
+    values = {**arguments, "qm": motor[0], "dqm": motor[1], "ddqm": motor[2]}
+    try:
+        nominal = list(nominal_base(model).values())
+    except InputError:
+        nominal = []
+    values["input"] = y @ ca.DM(nominal) if nominal else ca.SX.nan(n)
+    values["effort"] = values["input"] * casadi_function(made["drive_gain"])(q)
+    rows, names = [], []
+    for b in limits:
+        if b.signal in ("input", "effort") and not nominal:
+            continue
+        rows.append((values[b.signal][b.coordinate] - (b.high + b.low) / 2) / ((b.high - b.low) / 2))
+        names.append(f"{b.signal}{b.coordinate + 1}")
+    frames = casadi_function(made["forward_kinematics"])
+    for box in settings.boxes:
+        found, said = _boxed(box, frames, q)
+        rows += found
+        names += said
+    sample = ca.Function("sample", [x, dx, ddx], [ca.densify(y.T), ca.vertcat(*rows)])
+    motion = ca.Function("motion", [x, dx, ddx], [values[name] for name in SIGNALS])
+    parameters = tuple(p.name for p in model.grouping.base)
+    return _Functions(sample, motion, parameters, tuple(names), bool(nominal))
+
+
+def _boxed(box: Box, frames: ca.Function, q: ca.SX) -> tuple[list[ca.SX], list[str]]:
+    """The rows of a box: two-sided ranges scaled to [-1, 1], one-sided ones bent to stay below 1."""
+    links = [name.removeprefix("T_") for name in frames.name_out()]
+    if box.link not in links:
+        raise InputError(f"--box: found link '{box.link}', expected one of {', '.join(links)}")
+    place = frames.call([q])[links.index(box.link)]
+    rows, names = [], []
+    for axis, (low, high) in enumerate(zip(box.low, box.high, strict=True)):
+        value = place[axis, 3]
+        if np.isfinite(low) and np.isfinite(high):
+            rows.append((value - (low + high) / 2) / ((high - low) / 2))
+        elif np.isfinite(low) or np.isfinite(high):
+            depth = value - low if np.isfinite(low) else high - value
+            # depth 0 gives 1, depth of a metre about -0.5, none ever -1
+            rows.append(1 - 2 * depth / (1 + ca.sqrt(1 + depth**2)))
+        else:
+            continue
+        names.append(f"{'xyz'[axis]} of {box.link}")
+    return rows, names
+
+
+def _smoothed(arm: Arm, speed: Array) -> Arm:
+    """The arm with the sign of every dry friction smoothed, as far as its description leaves that open."""
+    joints = list(arm.joints)
+    for n, i in enumerate(arm.coordinates):
+        uses = []
+        for use in joints[i].effects:
+            known = any(p.name == "smoothing" for p in CATALOGUE[use.name].nonlinear)
+            smooth = {**use.values, "smoothing": SMOOTHING * float(speed[n])}
+            uses.append(replace(use, values=smooth) if known and not use.values.get("smoothing") else use)
+        joints[i] = replace(joints[i], effects=tuple(uses))
+    return replace(arm, joints=tuple(joints))

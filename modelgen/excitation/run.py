@@ -1,0 +1,103 @@
+"""From an arm to its excitation trajectory: many starts in parallel, the best one kept."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.excitation.optimisation import Optimiser, merit
+from modelgen.excitation.problem import SIGNALS, Problem, problem
+from modelgen.excitation.random_motion import feasible
+from modelgen.excitation.settings import Array, Settings
+from modelgen.excitation.spectrum import condition
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """A trajectory of one period.
+
+    z: its coefficients as the problem has them. t: (N,) [s], the period's end excluded. signals: name to
+    (N, n): q, dq, ddq in joint coordinates, qm, dqm, ddqm in motor coordinates, input [A, or N m and N],
+    effort [N m, N], the latter two NaN without nominal parameters. condition: after scaling the columns of
+    the observation matrix to unit norm; raw: without, so of the units as they are. usage: largest share of
+    every limit. values: condition numbers that the starts ended with, in their order.
+    """
+
+    arm: Arm
+    problem: Problem
+    z: Array
+    t: Array
+    signals: dict[str, Array]
+    condition: float
+    raw: float
+    usage: dict[str, float]
+    values: tuple[float, ...]
+
+
+def excite(arm: Arm, settings: Settings, progress: Progress | None = None) -> Excitation:
+    """The best trajectory of all starts; the same for any number of processes.
+
+    Raises InputError for settings that make no trajectory, missing limits, and limits that exclude
+    each other.
+    """
+    p = problem(arm, settings)
+    processes = min(settings.processes or os.cpu_count() or 1, settings.starts)
+    found: list[Array | None] = [None] * settings.starts
+    done = 0
+    if processes == 1:
+        optimiser = Optimiser(p)
+        for k in range(settings.starts):
+            found[k] = optimiser.start(k)
+            done += 1
+            if progress:
+                progress(done, settings.starts)
+    else:
+        # One job per start, so that progress is seen; a worker keeps the programme that it has built.
+        jobs = Parallel(n_jobs=processes, return_as="generator_unordered")
+        for k, z in jobs(delayed(_one)(p, k) for k in range(settings.starts)):
+            found[k] = z
+            done += 1
+            if progress:
+                progress(done, settings.starts)
+    merits = [np.inf if z is None else merit(p, z) for z in found]
+    best = found[int(np.argmin(merits))]
+    if best is None or not np.isfinite(min(merits)):
+        raise InputError(f"{arm.name}: no start found a trajectory that excites every base parameter")
+    return described(arm, p, best, tuple(found))
+
+
+def described(arm: Arm, p: Problem, z: Array, found: tuple[Array | None, ...] = ()) -> Excitation:
+    """A trajectory with its signals and figures."""
+    t = p.at_rate()
+    w, _ = p.observation(z, t)
+    limits = p.sampled(p.exact, z, t)[1][:, :, 0]
+    signals = {name: value[:, :, 0] for name, value in zip(SIGNALS, p.sampled(p.motion, z, t), strict=True)}
+    values = [np.inf if one is None else condition(p.observation(one, t)[0]) for one in found]
+    usage = dict(zip(p.constraints, (float(x) for x in np.abs(limits).max(axis=0)), strict=True))
+    return Excitation(
+        arm, p, z, t, signals, condition(w), condition(w, scaled=False), usage, tuple(map(float, values))
+    )
+
+
+def random_conditions(p: Problem, count: int, seed: int) -> Array:
+    """Condition numbers (count,) of random trajectories within the limits, at the settings' rate."""
+    rng = np.random.default_rng(seed)
+    t = p.at_rate()
+    return np.array([condition(p.observation(feasible(p, rng), t)[0]) for _ in range(count)])
+
+
+_kept: list[Optimiser] = []
+
+
+def _one(p: Problem, k: int) -> tuple[int, Array | None]:
+    if not _kept or _kept[0].problem.settings != p.settings or _kept[0].problem.names != p.names:
+        _kept[:] = [Optimiser(p)]
+    return k, _kept[0].start(k)
