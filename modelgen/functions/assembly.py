@@ -84,9 +84,10 @@ class Assembly:
                 names += ["sin_q", "cos_q"]
         if self.options.runtime_geometry and self.real.arm.symbols:
             names.append("geometry")
-        for extra in ("state", "time", "load", "ddq", "input"):
-            if extra not in names and any(_reads(s.term, extra) for s in program.statements):
-                names.append(extra)
+        read: set[str] = set()
+        for statement in program.statements:
+            _collect(statement.term, read)
+        names += [x for x in ("state", "time", "load", "ddq", "input") if x in read and x not in names]
         found = []
         for name in names:
             if name == "standard_parameters":  # the same place in every signature
@@ -138,9 +139,14 @@ class Assembly:
         )
 
 
-def _reads(term: Term, name: str) -> bool:
-    """Whether a term uses an element of the input `name`."""
-    return term[:2] == ("in", name) or any(_reads(part, name) for part in term if isinstance(part, tuple))
+def _collect(term: Term, names: set[str]) -> None:
+    """Add the names of the inputs of which a term uses an element."""
+    if term[0] == "in":
+        names.add(term[1])
+        return
+    for part in term:
+        if isinstance(part, tuple):
+            _collect(part, names)
 
 
 def _range(name: str, index: int, span: tuple[float, float], margin: float) -> InputRange:
