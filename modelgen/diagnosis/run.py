@@ -121,11 +121,11 @@ def _rows(prober: Prober, model: Model, prepared: Sequence[Prepared]) -> list[Ro
 
 
 def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
-    short = [r.prepared for r in rows if len(r.effort) < 5 * ORDER]
+    short = [r.prepared for r in rows if len(r.effort) < 3 * ORDER]
     if short:
         raise InputError(
             f"{short[0].record.name}: too short a record: {len(short[0].rows)} rows are left, expected at "
-            f"least {5 * ORDER} ({5 * ORDER / short[0].rate:.2g} s and what the filters trim)"
+            f"least {3 * ORDER} ({3 * ORDER / short[0].rate:.2g} s and what the filters trim)"
         )
     moving = np.mean(np.concatenate([r.moving for r in rows]), axis=0)
     if not (moving > 0.02).any():
