@@ -9,6 +9,7 @@ import typer
 from modelgen import __version__
 from modelgen.cli.arguments import (
     Arms,
+    ArmsAndLog,
     AssumedAcceleration,
     AssumedVelocity,
     Boxes,
@@ -25,6 +26,8 @@ from modelgen.cli.arguments import (
     JacobianLink,
     Jobs,
     Json,
+    LengthStd,
+    LeverJoint,
     Mapping,
     MaxFlash,
     MaxStack,
@@ -212,6 +215,27 @@ def excite(
     )
     _, (found,) = selected(arms, [arm])
     run(found, settings, out, as_json=as_json)
+
+
+@app.command()
+@guarded
+def calibrate(
+    files: ArmsAndLog,
+    arm: OneArm,
+    joint: LeverJoint,
+    out: Folder = Path("calibration"),
+    length_std: LengthStd = 0.01,
+    as_json: Json = False,
+) -> None:
+    """Fit a lever's geometry to motor counts and measured joint angles."""
+    from modelgen.cli.calibrating import run
+    from modelgen.cli.selecting import selected
+    from modelgen.errors import InputError
+
+    if len(files) > 2:
+        raise InputError(f"found {len(files)} files ({', '.join(files)}), expected [ARMS] LOG")
+    file, (found,) = selected(Path(files[0]) if len(files) == 2 else None, [arm])
+    run(Path(file), found, joint, files[-1], out, length_std=length_std, as_json=as_json)
 
 
 @app.command()

@@ -128,6 +128,18 @@ Boxes = Annotated[
     ),
 ]
 Iterations = Annotated[int, typer.Option(metavar="N", min=1, help="Most iterations of one start.")]
+LeverJoint = Annotated[int, typer.Option(metavar="J", help="The joint, counted from 1.", show_default=False)]
+ArmsAndLog = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="[ARMS] LOG",
+        help="The description, and the log with t, qm<J> and the measured q<J> [rad].",
+        show_default=False,
+    ),
+]
+LengthStd = Annotated[
+    float, typer.Option(metavar="M", help="How well the lengths of the description are known.")
+]
 NewName = Annotated[str, typer.Argument(help="Name of the arm, a C identifier.", show_default=False)]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
 OfMapping = Annotated[

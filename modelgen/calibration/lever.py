@@ -1,0 +1,91 @@
+"""A lever in numbers: joint angle from motor coordinate, and its derivatives by the geometry.
+
+Leborne, Creuze, Chemori and Brignone (2018), the law of cosines: q = rev q_j + offset,
+cos q_j = (l1^2 + l2^2 - q_p^2) / (2 l1 l2), q_p affine in q_m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.description import Arm, LeveredDrive, Scalar, geometry_symbol
+from modelgen.errors import InputError
+
+Array = NDArray[np.float64]
+
+NAMES = ("l1", "l2", "qp_min", "qp_max", "offset")
+UNITS = ("m", "m", "m", "m", "rad")
+_DEAD = 0.995  # cosine beyond which `continued` follows its tangent: within 6 deg of a dead centre
+
+
+@dataclass(frozen=True)
+class Lever:
+    """Branch, range of the motor coordinate, and (l1, l2, qp_min, qp_max [m], offset [rad])."""
+
+    rev: int
+    motor: tuple[float, float]
+    values: Array
+
+    def share(self, motor: Array) -> Array:
+        """Position in the stroke (N,), 0 at qp_min and 1 at qp_max."""
+        return (motor - self.motor[0]) / (self.motor[1] - self.motor[0])
+
+    def cosine(self, motor: Array) -> Array:
+        """cos q_j (N,) at motor coordinates (N,); beyond +-1 where the triangle does not close."""
+        l1, l2, low, high = self.values[:4]
+        length = low + (high - low) * self.share(motor)
+        found: Array = (l1**2 + l2**2 - length**2) / (2 * l1 * l2)
+        return found
+
+    def angle(self, motor: Array) -> Array:
+        """q (N,) [rad]; NaN where the triangle does not close."""
+        with np.errstate(invalid="ignore"):
+            found: Array = self.rev * np.arccos(self.cosine(motor)) + self.values[4]
+        return found
+
+    def continued(self, motor: Array) -> Array:
+        """q (N,) [rad], continued smoothly to where the triangle does not close: for the search alone."""
+        cosine = self.cosine(motor)
+        inner = np.clip(cosine, -_DEAD, _DEAD)
+        found: Array = np.arccos(inner) - (cosine - inner) / np.sqrt(1 - _DEAD**2)
+        return self.rev * found + self.values[4]
+
+    def jacobian(self, motor: Array) -> Array:
+        """Derivatives (N, 5) of `continued` by l1, l2, qp_min, qp_max and offset."""
+        l1, l2, low, high = self.values[:4]
+        share = self.share(motor)
+        length = low + (high - low) * share
+        cosine = self.cosine(motor)
+        outer = -self.rev / np.sqrt(np.maximum(1 - cosine**2, 1 - _DEAD**2))
+        by_l1 = 1 / l2 - cosine / l1
+        by_l2 = 1 / l1 - cosine / l2
+        by_length = -length / (l1 * l2)
+        columns = [outer * by_l1, outer * by_l2, outer * by_length * (1 - share), outer * by_length * share]
+        return np.column_stack([*columns, np.ones(len(motor))])
+
+
+def lever_of(arm: Arm, joint: int) -> Lever:
+    """The lever that the description gives coordinate `joint`, counted from 1.
+
+    Raises InputError where there is none.
+    """
+    if not 1 <= joint <= len(arm.coordinates):
+        raise InputError(f"--joint: found {joint}, expected 1 to {len(arm.coordinates)} ({arm.name})")
+    own = arm.joints[arm.coordinates[joint - 1]]
+    drive = own.drive
+    if not isinstance(drive, LeveredDrive):
+        levered = [
+            str(n) for n, i in enumerate(arm.coordinates, 1) if isinstance(arm.joints[i].drive, LeveredDrive)
+        ]
+        available = f"levered: {', '.join(levered)}" if levered else "the arm has no levered drive"
+        raise InputError(f"--joint: joint {joint} ({own.name}) has no lever to calibrate ({available})")
+    symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
+
+    def number(value: Scalar) -> float:
+        return float(value.subs(symbols)) if hasattr(value, "subs") else float(value)
+
+    values = (drive.l1, drive.l2, *drive.length, drive.offset)
+    return Lever(drive.rev, (drive.motor[0], drive.motor[1]), np.array([number(v) for v in values]))

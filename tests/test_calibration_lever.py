@@ -1,0 +1,157 @@
+"""Levers found again from motor counts and measured angles."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from modelgen.calibration import Lever, calibrate, lever_of
+from modelgen.cli.app import app
+from modelgen.dataset import drives_of
+from modelgen.description import load
+from modelgen.effects import known_effects
+from modelgen.errors import InputError
+from modelgen.resources import shipped_arms
+
+ARMS = load(shipped_arms(), known_effects())
+LEVERED = [
+    (name, n)
+    for name, arm in ARMS.items()
+    for n, i in enumerate(arm.coordinates, 1)
+    if type(arm.joints[i].drive).__name__ == "LeveredDrive"
+]
+
+
+def triangle(lever: Lever, motor: np.ndarray) -> np.ndarray:
+    """Joint angle by bisection on the law of cosines: another way than the arccosine's."""
+    l1, l2, low, high, offset = lever.values
+    length = low + (high - low) * (motor - lever.motor[0]) / (lever.motor[1] - lever.motor[0])
+    a, b = np.zeros_like(length), np.full_like(length, np.pi)
+    for _ in range(60):
+        middle = (a + b) / 2
+        short = np.hypot(l1 - l2 * np.cos(middle), l2 * np.sin(middle)) < length
+        a, b = np.where(short, middle, a), np.where(short, b, middle)
+    return lever.rev * (a + b) / 2 + offset
+
+
+def experiment(lever: Lever, noise: float, seed: int, count: int = 2000) -> tuple[np.ndarray, np.ndarray]:
+    """Motor counts over the stroke and the angles of a marker with white noise [rad]."""
+    rng = np.random.default_rng(seed)
+    share = 0.5 - 0.5 * np.cos(np.linspace(0, 6 * np.pi, count))
+    motor = np.round(lever.motor[0] + (lever.motor[1] - lever.motor[0]) * share)
+    return motor, triangle(lever, motor) + noise * rng.standard_normal(count)
+
+
+def wrong(lever: Lever, seed: int) -> Lever:
+    """As measured by hand: every length 5 to 10 mm off, small ones less."""
+    rng = np.random.default_rng(seed)
+    error = rng.uniform(0.005, 0.010, 4) * rng.choice([-1.0, 1.0], 4)
+    return Lever(lever.rev, lever.motor, lever.values + np.append(error, 0.0))
+
+
+@pytest.mark.parametrize(("name", "joint"), LEVERED)
+def test_angle_and_derivatives(name: str, joint: int) -> None:
+    lever = lever_of(ARMS[name], joint)
+    motor = np.linspace(*lever.motor, 25)
+    inside = motor[1:-1]
+    assert np.allclose(lever.angle(inside), triangle(lever, inside), atol=1e-9)
+    assert np.allclose(lever.angle(inside), drives_of(ARMS[name])[joint - 1].joint(inside), atol=1e-12)
+    for k, column in enumerate(lever.jacobian(inside).T):
+        step = np.zeros(5)
+        step[k] = 1e-6
+        ends = [Lever(lever.rev, lever.motor, lever.values + s * step).angle(inside) for s in (1.0, -1.0)]
+        assert np.allclose(column, (ends[0] - ends[1]) / 2e-6, rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("joint", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_residual_reaches_the_noise_floor(joint: int, seed: int) -> None:
+    true = lever_of(ARMS["ariane4"], joint)
+    noise = 0.02
+    motor, measured = experiment(true, noise, seed)
+    found = calibrate(wrong(true, seed), joint, motor, measured, 0.008)
+    count = len(motor)
+    assert found.after.rev == true.rev
+    # chi-square of N - 4 degrees of freedom, four standard deviations wide
+    assert abs(found.rms_after / noise - 1) < 4 / np.sqrt(2 * count) + 4 / count
+    assert np.sqrt(np.mean((found.after.angle(motor) - triangle(true, motor)) ** 2)) < noise / 5
+    assert found.rms_before > found.rms_after
+
+
+def test_the_common_scale_is_named_and_left_as_measured() -> None:
+    true = lever_of(ARMS["ariane4"], 1)
+    motor, measured = experiment(true, 1e-4, 1)
+    found = calibrate(true, 1, motor, measured, 0.005)
+    assert any(words.startswith("the common scale of l1, l2, qp_min and qp_max") for words in found.weak)
+    larger = Lever(true.rev, true.motor, true.values * np.array([1.1, 1.1, 1.1, 1.1, 1.0]))
+    assert np.allclose(larger.angle(motor), true.angle(motor), atol=1e-9)
+    l1 = next(e for e in found.estimates if e.name == "l1")
+    # of the scale as much is known as four lengths with one error each can say
+    assert l1.std == pytest.approx(0.005 * true.values[0] / np.linalg.norm(true.values[:4]), rel=0.1)
+
+
+def test_uncertainty_covers_the_truth() -> None:
+    """The prior's errors and the noise drawn anew: normalised errors have unit size."""
+    true = lever_of(ARMS["ariane4"], 3)
+    scores = []
+    for seed in range(60):
+        rng = np.random.default_rng(1000 + seed)
+        prior = Lever(true.rev, true.motor, true.values + np.append(0.004 * rng.standard_normal(4), 0.3))
+        motor, measured = experiment(true, 0.01, seed, 400)
+        found = calibrate(prior, 3, motor, measured, 0.004)
+        scores.append([(e.value - t) / e.std for e, t in zip(found.estimates, true.values, strict=True)])
+    table = np.abs(np.array(scores))
+    assert 0.88 <= (table < 1.96).mean() <= 0.99
+
+
+def test_the_other_branch_is_found() -> None:
+    true = lever_of(ARMS["ariane4"], 2)
+    motor, measured = experiment(true, 0.005, 4)
+    mirrored = Lever(-true.rev, true.motor, true.values)
+    assert calibrate(mirrored, 2, motor, measured, 0.01).after.rev == true.rev
+
+
+def test_command_writes_a_description_that_loads(tmp_path: Path) -> None:
+    true = lever_of(ARMS["ariane4"], 1)
+    bent = Lever(1, true.motor, true.values + np.array([0.004, -0.001, 0.005, -0.002, 0.05]))
+    motor, measured = experiment(bent, 0.01, 5)
+    log = tmp_path / "log.csv"
+    table = np.column_stack([0.1 * np.arange(len(motor)), motor, measured])
+    np.savetxt(log, table, delimiter=",", header="t,qm1,q1", comments="", fmt="%.9g")
+    out = tmp_path / "out"
+    line = ["calibrate", str(shipped_arms()), str(log), "--arm", "ariane4", "--joint", "1", "--out", str(out)]
+    answer = CliRunner().invoke(app, [*line, "--json"])
+    assert answer.exit_code == 0, answer.output
+    found = json.loads((out / "calibration.json").read_text())
+    assert found["rmse"]["after"] < 0.0105 < found["rmse"]["before"]
+    arm = load(out / "ariane4_calibrated.yaml", known_effects())["ariane4"]
+    assert np.allclose(lever_of(arm, 1).angle(motor), triangle(bent, motor), atol=0.004)
+    first = {p.name: p.read_bytes() for p in out.iterdir()}
+    assert CliRunner().invoke(app, line).exit_code == 0
+    assert first == {p.name: p.read_bytes() for p in out.iterdir()}
+
+
+def test_refusals(tmp_path: Path) -> None:
+    lever = lever_of(ARMS["ariane4"], 1)
+    motor, measured = experiment(lever, 0.01, 1)
+    for bad, text in (
+        ((motor[:10], measured[:10]), "10 samples"),
+        ((motor * 3, measured), "another joint"),
+        ((np.full_like(motor, 100.0), measured), "of the stroke"),
+        ((motor, np.degrees(measured)), "not degrees"),
+        ((motor, np.where(motor == motor[5], np.nan, measured)), "not finite"),
+    ):
+        with pytest.raises(InputError, match=text):
+            calibrate(lever, 1, *bad, 0.01)
+    with pytest.raises(InputError, match="expected 1 to 3"):
+        lever_of(ARMS["ariane4"], 4)
+    with pytest.raises(InputError, match="no lever"):
+        lever_of(ARMS["rx90"], 1)
+    log = tmp_path / "log.csv"
+    log.write_text("t,qm1\n0,0\n")
+    line = ["calibrate", str(shipped_arms()), str(log), "--arm", "ariane4", "--joint", "1"]
+    answer = CliRunner().invoke(app, [*line, "--out", str(tmp_path / "no")])
+    assert answer.exit_code == 2
+    assert not (tmp_path / "no").exists()
