@@ -31,7 +31,8 @@ class Lever:
 
     def share(self, motor: Array) -> Array:
         """Position in the stroke (N,), 0 at qp_min and 1 at qp_max."""
-        return (motor - self.motor[0]) / (self.motor[1] - self.motor[0])
+        found: Array = (motor - self.motor[0]) / (self.motor[1] - self.motor[0])
+        return found
 
     def cosine(self, motor: Array) -> Array:
         """cos q_j (N,) at motor coordinates (N,); beyond +-1 where the triangle does not close."""
@@ -51,7 +52,8 @@ class Lever:
         cosine = self.cosine(motor)
         inner = np.clip(cosine, -_DEAD, _DEAD)
         found: Array = np.arccos(inner) - (cosine - inner) / np.sqrt(1 - _DEAD**2)
-        return self.rev * found + self.values[4]
+        found = self.rev * found + self.values[4]
+        return found
 
     def jacobian(self, motor: Array) -> Array:
         """Derivatives (N, 5) of `continued` by l1, l2, qp_min, qp_max and offset."""
