@@ -31,13 +31,16 @@ from modelgen.cli.arguments import (
     Mapping,
     MaxFlash,
     MaxStack,
+    Method,
     NewName,
     OfMapping,
     OneArm,
     OnlyArms,
+    OptionalTest,
     OutFile,
     OutFolder,
     Pages,
+    Parameters,
     Period,
     Plant,
     Rate,
@@ -96,15 +99,17 @@ def generate(
     max_stack: MaxStack = None,
     target: Target = "cortex-m4f",
     jobs: Jobs = None,
+    parameters: Parameters = None,
     as_json: Json = False,
 ) -> None:
-    """Write C99 and CasADi functions of every arm."""
+    """Write C99 and CasADi functions of every arm, with identified parameters folded in where given."""
     from modelgen.cli.generating import budget_of, run
-    from modelgen.cli.selecting import options, selected
+    from modelgen.cli.selecting import options, selected, with_parameters
 
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
     budget = budget_of(target, max_flash, max_stack)
     file, found = selected(arms, arm or [])
+    chosen = with_parameters(chosen, parameters, found)
     artefacts = [name for name, asked in (("casadi", casadi), ("plant", casadi_plant)) if asked]
     run(
         found,
@@ -138,6 +143,35 @@ def show(
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
     _, (found,) = selected(arms, [arm])
     run(found, chosen, as_json=as_json)
+
+
+@app.command()
+@guarded
+def identify(
+    arm: OneArm,
+    train: Train,
+    out: Folder,
+    test: OptionalTest = None,
+    arms: Arms = None,
+    mapping: Mapping = None,
+    cutoff: CutOff = None,
+    method: Method = "wls",
+    without: Without = "",
+    as_json: Json = False,
+) -> None:
+    """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
+    from modelgen.cli.identifying import run
+    from modelgen.cli.selecting import options, selected
+
+    chosen = options(without, Gains.KNOWN, False, False, None)
+    _, (found,) = selected(arms, [arm])
+    run(
+        *(found, train, test or [], out, chosen),
+        mapping=mapping,
+        cutoff=cutoff,
+        method=method,
+        as_json=as_json,
+    )
 
 
 @app.command()

@@ -64,6 +64,15 @@ Period = Annotated[
     float | None,
     typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
 ]
+OptionalTest = Annotated[
+    list[str] | None,
+    typer.Option("--test", metavar="LOG", help="A record not fitted; repeatable.", show_default=False),
+]
+Method = Annotated[str, typer.Option(metavar="NAME", help="ols, wls (weights by joint) or robust.")]
+Parameters = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="<arm>_parameters.yaml of modelgen identify.", show_default=False),
+]
 Pages = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="Write effects.md with a picture of each there.", show_default=False),

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from modelgen.description import Arm, load
 from modelgen.description.messages import suggest
@@ -50,3 +54,24 @@ def options(
         sincos=sincos,
         jacobian_link=jacobian_link,
     )
+
+
+def with_parameters(chosen: Options, file: Path | None, arms: Sequence[Arm]) -> Options:
+    """The options with the values of <arm>_parameters.yaml. Raises InputError where it does not fit."""
+    if file is None:
+        return chosen
+    try:
+        data = YAML(typ="safe", pure=True).load(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, YAMLError) as error:
+        raise InputError(f"--parameters {file}: cannot be read as YAML ({type(error).__name__})") from error
+    values = data.get("parameters") if isinstance(data, dict) else None
+    if not isinstance(values, dict) or not all(
+        isinstance(k, str) and type(v) in (int, float) for k, v in values.items()
+    ):
+        raise InputError(f"--parameters {file}: expected 'parameters:' with a number by each name")
+    if [arm.name for arm in arms] != [data.get("arm")]:
+        raise InputError(
+            f"--parameters {file}: belongs to the arm '{data.get('arm')}', found "
+            f"{', '.join(arm.name for arm in arms)}; give --arm {data.get('arm')}"
+        )
+    return replace(chosen, identified={k: float(v) for k, v in values.items()})

@@ -1,0 +1,16 @@
+"""Parameters from logs: regression, uncertainty, validation."""
+
+from modelgen.identification.identify import METHODS, Estimate, Identification, Validation, identify, to_json
+from modelgen.identification.regression import Regression, Solution, Triangle
+
+__all__ = [
+    "METHODS",
+    "Estimate",
+    "Identification",
+    "Regression",
+    "Solution",
+    "Triangle",
+    "Validation",
+    "identify",
+    "to_json",
+]

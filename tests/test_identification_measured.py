@@ -1,0 +1,38 @@
+"""Measured logs through the command. Skipped where the logs are absent."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from modelgen.cli.app import app
+
+ROOT = Path(__file__).resolve().parents[1]
+STUDIES = ROOT / "examples" / "case_studies"
+DATA = ROOT.parent / "shared" / "data"
+
+pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="needs the measured logs beside the repository")
+
+
+def test_emps_meets_the_published_values_and_reaches_the_generated_code(tmp_path: Path) -> None:
+    # Janot, Gautier and Brunot (2019); 20 Hz, structure M, Fv, Fc, offset.
+    arm, out = STUDIES / "emps_arm.yaml", tmp_path / "out"
+    train, test = (f"{DATA}/emps/emps_{part}.csv" for part in ("train", "pulses"))
+    mapping = f"{STUDIES}/emps_mapping.yaml"
+    call = ["identify", str(arm), "--arm", "emps", "--train", train, "--test", test, "--mapping", mapping]
+    result = CliRunner().invoke(app, [*call, "--cutoff", "20", "--out", str(out), "--json"])
+    assert result.exit_code == 0, result.output
+    data = json.loads((out / "identification.json").read_text())
+    assert json.loads(result.stdout) == data
+    value = {p["name"]: p["value"] for p in data["parameters"]}
+    assert [value["M1"], value["FV1"], value["FC1"]] == pytest.approx([95.1, 203.5, 20.4], rel=0.02)
+    assert value["FO1"] == pytest.approx(-3.2, abs=0.2)
+    assert data["test"]["rmse"][0] <= 3.9
+    folder = tmp_path / "generated"
+    call = ["generate", str(arm), "--arm", "emps", "--parameters", str(out / "emps_parameters.yaml")]
+    result = CliRunner().invoke(app, [*call, "--out", str(folder), "-j", "1"])
+    assert result.exit_code == 0, result.output
+    assert "emps_inverse_dynamics_identified" in (folder / "emps/include/emps.h").read_text()
