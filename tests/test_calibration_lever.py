@@ -33,7 +33,8 @@ def triangle(lever: Lever, motor: np.ndarray) -> np.ndarray:
         middle = (a + b) / 2
         short = np.hypot(l1 - l2 * np.cos(middle), l2 * np.sin(middle)) < length
         a, b = np.where(short, middle, a), np.where(short, b, middle)
-    return lever.rev * (a + b) / 2 + offset
+    found: np.ndarray = lever.rev * (a + b) / 2 + offset
+    return found
 
 
 def experiment(lever: Lever, noise: float, seed: int, count: int = 2000) -> tuple[np.ndarray, np.ndarray]:
@@ -144,7 +145,7 @@ def test_refusals(tmp_path: Path) -> None:
         ((motor, np.where(motor == motor[5], np.nan, measured)), "not finite"),
     ):
         with pytest.raises(InputError, match=text):
-            calibrate(lever, 1, *bad, 0.01)
+            calibrate(lever, 1, bad[0], bad[1], 0.01)
     with pytest.raises(InputError, match="expected 1 to 3"):
         lever_of(ARMS["ariane4"], 4)
     with pytest.raises(InputError, match="no lever"):

@@ -142,7 +142,7 @@ ArmsAndLog = Annotated[
     list[str],
     typer.Argument(
         metavar="[ARMS] LOG",
-        help="The description, and the log with t, qm<J> and the measured q<J> [rad].",
+        help="The description, and the log with t, qm<J> and the measured q<J> in rad.",
         show_default=False,
     ),
 ]
