@@ -1,6 +1,7 @@
 """Excitation trajectories: limits, derivatives, condition number, what they gain over random ones."""
 
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.cli.app import app
+from modelgen.description import Limits
 from modelgen.errors import InputError
 from modelgen.excitation import Excitation, Settings, box, excite, random_conditions
 from modelgen.functions.nominal import nominal_base
@@ -124,6 +126,19 @@ def test_processes_make_no_difference() -> None:
     one, two = (excite(arm, Settings(**common, processes=k)) for k in (1, 2))
     assert (one.z == two.z).all()
     assert one.values == two.values
+
+
+def test_a_worker_keeps_no_other_arm_in_mind() -> None:
+    """The same names, other limits, one after the other in the same workers."""
+    arm = ARMS["gravity_link2"]
+    (i,) = arm.coordinates
+    for speed in (2.0, 0.5):
+        joints = list(arm.joints)
+        joints[i] = replace(joints[i], limits=Limits(velocity=speed))
+        slow = replace(arm, joints=tuple(joints))
+        one, two = (excite(slow, Settings(period=5.0, starts=2, iterations=10, processes=k)) for k in (1, 2))
+        assert (one.z == two.z).all()
+        assert np.abs(two.signals["dq"]).max() <= speed
 
 
 def run(tmp_path: Path, *arguments: str) -> tuple[int, str, str]:

@@ -94,10 +94,12 @@ def random_conditions(p: Problem, count: int, seed: int) -> Array:
     return np.array([condition(p.observation(feasible(p, rng), t)[0]) for _ in range(count)])
 
 
-_kept: list[Optimiser] = []
+_kept: list[tuple[tuple[str | bytes | Settings, ...], Optimiser]] = []
 
 
 def _one(p: Problem, k: int) -> tuple[int, Array | None]:
-    if not _kept or _kept[0].problem.settings != p.settings or _kept[0].problem.names != p.names:
-        _kept[:] = [Optimiser(p)]
-    return k, _kept[0].start(k)
+    # Of another arm the names may be the same: the programme itself is compared.
+    key = (p.settings, p.smooth.serialize(), p.middle.tobytes(), p.amplitude.tobytes())
+    if not _kept or _kept[0][0] != key:
+        _kept[:] = [(key, Optimiser(p))]
+    return k, _kept[0][1].start(k)
