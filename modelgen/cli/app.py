@@ -165,13 +165,7 @@ def identify(
 
     chosen = options(without, Gains.KNOWN, False, False, None)
     _, (found,) = selected(arms, [arm])
-    run(
-        *(found, train, test or [], out, chosen),
-        mapping=mapping,
-        cutoff=cutoff,
-        method=method,
-        as_json=as_json,
-    )
+    run(found, train, test or [], out, chosen, mapping, cutoff, method, as_json=as_json)
 
 
 @app.command()
@@ -192,17 +186,7 @@ def diagnose(
     from modelgen.cli.selecting import selected
 
     file, (found,) = selected(arms, [arm])
-    run(
-        Path(file),
-        found,
-        train,
-        test,
-        out,
-        mapping=mapping,
-        cutoff=cutoff,
-        period=period,
-        as_json=as_json,
-    )
+    run(Path(file), found, train, test, out, mapping=mapping, cutoff=cutoff, period=period, as_json=as_json)
 
 
 @app.command()
