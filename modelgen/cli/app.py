@@ -7,56 +7,7 @@ from pathlib import Path
 import typer
 
 from modelgen import __version__
-from modelgen.cli.arguments import (
-    Arms,
-    ArmsAndLog,
-    AssumedAcceleration,
-    AssumedVelocity,
-    Boxes,
-    Check,
-    Coordinates,
-    Criterion,
-    CutOff,
-    DriveGains,
-    ExcitationPeriod,
-    Folder,
-    Gains,
-    Harmonics,
-    Iterations,
-    JacobianLink,
-    Jobs,
-    Json,
-    LengthStd,
-    LeverJoint,
-    Mapping,
-    MaxFlash,
-    MaxStack,
-    Method,
-    NewName,
-    OfMapping,
-    OneArm,
-    OnlyArms,
-    OptionalTest,
-    OutFile,
-    OutFolder,
-    Pages,
-    Parameters,
-    Period,
-    Plant,
-    Rate,
-    Rest,
-    RuntimeGeometry,
-    Seed,
-    Serialised,
-    SinCos,
-    Starts,
-    Target,
-    Test,
-    Train,
-    TrajectoryFile,
-    Version,
-    Without,
-)
+from modelgen.cli import arguments as given
 from modelgen.cli.guard import guarded
 
 # ruff: noqa: PLC0415 - see above
@@ -72,7 +23,7 @@ app = typer.Typer(
 
 
 @app.callback(invoke_without_command=True)
-def _common(context: typer.Context, version: Version = False) -> None:
+def _common(context: typer.Context, version: given.Version = False) -> None:
     if version:
         typer.echo(f"modelgen {__version__}")
         raise typer.Exit
@@ -84,23 +35,23 @@ def _common(context: typer.Context, version: Version = False) -> None:
 @app.command()
 @guarded
 def generate(
-    arms: Arms = None,
-    arm: OnlyArms = None,
-    out: OutFolder = Path("generated"),
-    check: Check = False,
-    without: Without = "",
-    gains: DriveGains = Gains.KNOWN,
-    runtime_geometry: RuntimeGeometry = False,
-    sincos_inputs: SinCos = False,
-    jacobian_link: JacobianLink = None,
-    casadi: Serialised = False,
-    casadi_plant: Plant = False,
-    max_flash: MaxFlash = None,
-    max_stack: MaxStack = None,
-    target: Target = "cortex-m4f",
-    jobs: Jobs = None,
-    parameters: Parameters = None,
-    as_json: Json = False,
+    arms: given.Arms = None,
+    arm: given.OnlyArms = None,
+    out: given.OutFolder = Path("generated"),
+    check: given.Check = False,
+    without: given.Without = "",
+    gains: given.DriveGains = given.Gains.KNOWN,
+    runtime_geometry: given.RuntimeGeometry = False,
+    sincos_inputs: given.SinCos = False,
+    jacobian_link: given.JacobianLink = None,
+    casadi: given.Serialised = False,
+    casadi_plant: given.Plant = False,
+    max_flash: given.MaxFlash = None,
+    max_stack: given.MaxStack = None,
+    target: given.Target = "cortex-m4f",
+    jobs: given.Jobs = None,
+    parameters: given.Parameters = None,
+    as_json: given.Json = False,
 ) -> None:
     """Write C99 and CasADi functions of every arm, with identified parameters folded in where given."""
     from modelgen.cli.generating import budget_of, run
@@ -127,14 +78,14 @@ def generate(
 @app.command()
 @guarded
 def show(
-    arm: OneArm,
-    arms: Arms = None,
-    without: Without = "",
-    gains: DriveGains = Gains.KNOWN,
-    runtime_geometry: RuntimeGeometry = False,
-    sincos_inputs: SinCos = False,
-    jacobian_link: JacobianLink = None,
-    as_json: Json = False,
+    arm: given.OneArm,
+    arms: given.Arms = None,
+    without: given.Without = "",
+    gains: given.DriveGains = given.Gains.KNOWN,
+    runtime_geometry: given.RuntimeGeometry = False,
+    sincos_inputs: given.SinCos = False,
+    jacobian_link: given.JacobianLink = None,
+    as_json: given.Json = False,
 ) -> None:
     """Print base parameters, their grouping, and what the functions cost."""
     from modelgen.cli.selecting import options, selected
@@ -148,22 +99,22 @@ def show(
 @app.command()
 @guarded
 def identify(
-    arm: OneArm,
-    train: Train,
-    out: Folder,
-    test: OptionalTest = None,
-    arms: Arms = None,
-    mapping: Mapping = None,
-    cutoff: CutOff = None,
-    method: Method = "wls",
-    without: Without = "",
-    as_json: Json = False,
+    arm: given.OneArm,
+    train: given.Train,
+    out: given.Folder,
+    test: given.OptionalTest = None,
+    arms: given.Arms = None,
+    mapping: given.Mapping = None,
+    cutoff: given.CutOff = None,
+    method: given.Method = "wls",
+    without: given.Without = "",
+    as_json: given.Json = False,
 ) -> None:
     """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
     from modelgen.cli.identifying import run
     from modelgen.cli.selecting import options, selected
 
-    chosen = options(without, Gains.KNOWN, False, False, None)
+    chosen = options(without, given.Gains.KNOWN, False, False, None)
     _, (found,) = selected(arms, [arm])
     run(found, train, test or [], out, chosen, mapping, cutoff, method, as_json=as_json)
 
@@ -171,15 +122,15 @@ def identify(
 @app.command()
 @guarded
 def diagnose(
-    arm: OneArm,
-    train: Train,
-    test: Test,
-    out: Folder,
-    arms: Arms = None,
-    mapping: Mapping = None,
-    cutoff: CutOff = None,
-    period: Period = None,
-    as_json: Json = False,
+    arm: given.OneArm,
+    train: given.Train,
+    test: given.Test,
+    out: given.Folder,
+    arms: given.Arms = None,
+    mapping: given.Mapping = None,
+    cutoff: given.CutOff = None,
+    period: given.Period = None,
+    as_json: given.Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.cli.diagnosing import run
@@ -192,23 +143,23 @@ def diagnose(
 @app.command()
 @guarded
 def excite(
-    arm: OneArm,
-    arms: Arms = None,
-    out: TrajectoryFile = Path("trajectory.csv"),
-    period: ExcitationPeriod = 80.0,
-    harmonics: Harmonics = 5,
-    rate: Rate = 10.0,
-    criterion: Criterion = "cond",
-    coordinates: Coordinates = "motor",
-    starts: Starts = 8,
-    seed: Seed = 0,
-    rest: Rest = False,
-    velocity: AssumedVelocity = None,
-    acceleration: AssumedAcceleration = None,
-    box: Boxes = None,
-    iterations: Iterations = 150,
-    jobs: Jobs = None,
-    as_json: Json = False,
+    arm: given.OneArm,
+    arms: given.Arms = None,
+    out: given.TrajectoryFile = Path("trajectory.csv"),
+    period: given.ExcitationPeriod = 80.0,
+    harmonics: given.Harmonics = 5,
+    rate: given.Rate = 10.0,
+    criterion: given.Criterion = "cond",
+    coordinates: given.Coordinates = "motor",
+    starts: given.Starts = 8,
+    seed: given.Seed = 0,
+    rest: given.Rest = False,
+    velocity: given.AssumedVelocity = None,
+    acceleration: given.AssumedAcceleration = None,
+    box: given.Boxes = None,
+    iterations: given.Iterations = 150,
+    jobs: given.Jobs = None,
+    as_json: given.Json = False,
 ) -> None:
     """Compute a trajectory that determines the base parameters well, within the arm's limits."""
     from modelgen.cli.exciting import run
@@ -238,12 +189,12 @@ def excite(
 @app.command()
 @guarded
 def calibrate(
-    files: ArmsAndLog,
-    arm: OneArm,
-    joint: LeverJoint,
-    out: Folder = Path("calibration"),
-    length_std: LengthStd = 0.01,
-    as_json: Json = False,
+    files: given.ArmsAndLog,
+    arm: given.OneArm,
+    joint: given.LeverJoint,
+    out: given.Folder = Path("calibration"),
+    length_std: given.LengthStd = 0.01,
+    as_json: given.Json = False,
 ) -> None:
     """Fit a lever's geometry to motor counts and measured joint angles."""
     from modelgen.cli.calibrating import run
@@ -258,7 +209,7 @@ def calibrate(
 
 @app.command()
 @guarded
-def effects(as_json: Json = False, pages: Pages = None) -> None:
+def effects(as_json: given.Json = False, pages: given.Pages = None) -> None:
     """Print the catalogue of effects: names, parameters, units, bounds."""
     from modelgen.cli.catalogue import run, write_pages
 
@@ -272,7 +223,7 @@ def effects(as_json: Json = False, pages: Pages = None) -> None:
 
 @app.command()
 @guarded
-def schema(of_mapping: OfMapping = False) -> None:
+def schema(of_mapping: given.OfMapping = False) -> None:
     """Print a JSON Schema of the description, or of a mapping file, for editors."""
     import json
 
@@ -290,8 +241,8 @@ def schema(of_mapping: OfMapping = False) -> None:
 @app.command()
 @guarded
 def init(
-    name: NewName,
-    out: OutFile = Path("arms.yaml"),
+    name: given.NewName,
+    out: given.OutFile = Path("arms.yaml"),
 ) -> None:
     """Write a commented description that generates as it stands."""
     from modelgen.cli.starting import run
