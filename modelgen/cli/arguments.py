@@ -122,17 +122,17 @@ Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Of the random start
 Rest = Annotated[bool, typer.Option("--rest", help="Start and end with zero speed and acceleration.")]
 AssumedVelocity = Annotated[
     float | None,
-    typer.Option(metavar="V", help="Speed limit of joints that have none [rad/s, m/s].", show_default=False),
+    typer.Option(metavar="V", help="Speed limit of joints without one, rad/s or m/s.", show_default=False),
 ]
 AssumedAcceleration = Annotated[
     float | None,
-    typer.Option(metavar="A", help="Likewise the acceleration [rad/s2, m/s2].", show_default=False),
+    typer.Option(metavar="A", help="Likewise the acceleration, rad/s2 or m/s2.", show_default=False),
 ]
 Boxes = Annotated[
     list[str] | None,
     typer.Option(
         metavar="BOX",
-        help="LINK=x0:x1,y0:y1,z0:z1 [m], where the origin of its frame must stay; repeatable.",
+        help="LINK=x0:x1,y0:y1,z0:z1 in m, where the origin of its frame must stay; repeatable.",
         show_default=False,
     ),
 ]
