@@ -30,7 +30,7 @@ class Rows:
     def motion(self) -> Motion:
         """At full rate."""
         p = self.prepared
-        return Motion(p.time, p.q, p.dq, p.ddq)
+        return Motion(p.time, p.q, p.dq, p.ddq, p.record.motor_side)
 
     @property
     def gain(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import PRACTICAL, Selection, select
 from modelgen.diagnosis.system import mean_squares, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
+from modelgen.effects import described
 from modelgen.errors import InputError
 from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
@@ -199,12 +201,22 @@ def _extended(
         theta = weighted_fit(rows, [r.columns for r in rows])
         return bigger, model, theta, (model, rows, theta)
     prober = Prober(bigger)
-    own = _rows(prober, model, train)
+    own = _rows(prober, model, [_seen_by(p, bigger) for p in train])
     if any(effect == LATER for effect, _, _ in causes):
         # the first record is without it
         own = [rows[0], *own[1:]] if own[0].columns.shape == rows[0].columns.shape else own
     theta = weighted_fit(own, [r.columns for r in own])
     return bigger, model, theta, (model, own, theta)
+
+
+def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
+    """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
+    record = prepared.record
+    if not any(u.name == "lever_geometry" for j in arm.joints for u in j.effects) or not any(
+        record.motor_side
+    ):
+        return prepared
+    return prepare(replace(record, arm=described(arm)), prepared.settings)
 
 
 def _residuals(
@@ -229,7 +241,7 @@ def _residuals(
             table.append(found[1])
         left = held.effort - np.concatenate(table, axis=2) @ selection.system.theta
         return before, left * held.gain
-    rows = rows_of(Prober(bigger), model, held.prepared, theta)
+    rows = rows_of(Prober(bigger), model, _seen_by(held.prepared, bigger), theta)
     return before, (rows.effort - rows.columns @ theta) * held.gain
 
 

@@ -71,7 +71,7 @@ def select(
             if (candidate.effect, candidate.joint) in taken:
                 continue
             found = court.trial(candidate)
-            if found is not None and found.gain.delta_bic >= evidence and sensible(found):
+            if found is not None and found.gain.delta_bic >= evidence and sensible(found, prober.arm):
                 trials.append(found)
         eligible = [
             (t, gain)

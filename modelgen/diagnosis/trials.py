@@ -8,12 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import PERIODIC, Candidate
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import Gain, System
-from modelgen.effects import CATALOGUE
-from modelgen.probing import Prober
+from modelgen.effects import CATALOGUE, described
+from modelgen.errors import InputError
+from modelgen.probing import Prober, with_effect
 
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
 SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
@@ -60,8 +62,14 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
     return found
 
 
-def sensible(trial: Trial) -> bool:
-    """Whether the values have the sign that the effect must have."""
+def sensible(trial: Trial, arm: Arm) -> bool:
+    """Whether the values have the sign that the effect must have, and the arm admits them."""
+    c = trial.candidate
+    if c.effect in of.STEPS:
+        try:
+            described(with_effect(arm, c.effect, c.joint, trial.parameters))
+        except InputError:
+            return False
     if trial.candidate.effect in of.COMPLIANT:
         return bool(trial.gain.values[0] > 0.0)
     bounds = {p.name: p.bounds for p in CATALOGUE[trial.candidate.effect].accepted()}

@@ -12,12 +12,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates]."""
+    """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates].
+
+    motor_side: by coordinate, whether q was derived from a reading at the motor.
+    """
 
     t: Array
     q: Array
     dq: Array
     ddq: Array
+    motor_side: tuple[bool, ...] = ()
 
     @property
     def step(self) -> float:

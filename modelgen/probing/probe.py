@@ -16,6 +16,7 @@ from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
+from modelgen.probing.levers import reread
 from modelgen.probing.motion import Array, Motion
 from modelgen.probing.places import changes_description, with_effect
 from modelgen.probing.programs import (
@@ -146,6 +147,10 @@ class Prober:
         if changes_description(effect) or effect == "torque_constant_saturation":
             key = (effect, joint, tuple(sorted(values.items())))
             other = with_effect(self.arm, effect, joint, values)
+            read = joint is not None and motion.motor_side and motion.motor_side[joint - 1]
+            if effect == "lever_geometry" and joint is not None and read:
+                seen = reread(motion, described(self.arm), described(other), joint)
+                return self._inputs_of(key, other, seen, parameters) - self.inputs(motion, parameters)
             return self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
