@@ -117,12 +117,8 @@ def test_no_allocation_no_state_and_one_precision(folder: Path, tmp_path: Path, 
             name, kind = line.split()[:2]
             assert kind.upper() not in "BDCSG", f"{out.name}: {name} is writable data"
             called |= {name} if kind == "U" else set()
-    if real == "double":
-        assert called <= allowed
-        assert {"sin", "cos"} & called
-    else:
-        assert called <= allowed | {"planar_sincos"}
-        assert not {"sinf", "cosf"} & called
+    assert called <= allowed | {"planar_sincos"}
+    assert not {"sin", "cos", "sinf", "cosf"} & called
 
 
 @pytest.mark.parametrize("name", sorted(FUNCTIONS))

@@ -1,4 +1,4 @@
-"""The sine and cosine of float builds: accuracy over the bound of q, on the host and on a Cortex-M4F."""
+"""The arms' own sine and cosine: accuracy over the bound of q, on the host and on a Cortex-M4F."""
 
 import ctypes
 from pathlib import Path
@@ -98,6 +98,33 @@ def test_on_a_cortex_m4f_as_on_the_host(folder: Path) -> None:
             exact = mpmath.mpf(float(value))
             assert abs(s - float(mpmath.sin(exact))) <= 2e-7
             assert abs(c - float(mpmath.cos(exact))) <= 2e-7
+
+
+@pytest.mark.parametrize("contraction", ["off", "fast"])
+def test_in_double_the_error_stays_below_what_is_stated(folder: Path, contraction: str) -> None:
+    """Against the platform's extended precision, near multiples of pi/4 and small angles included."""
+    if np.finfo(np.longdouble).eps > 1e-18:
+        pytest.skip("long double is no more than double here")
+    text = PROBE.replace("float", "double")
+    (folder / "src" / f"{ARM}_probe_double.c").write_text(text)
+    out = folder / f"double_{contraction}.so"
+    flags = [f"-D{ARM.upper()}_REAL=double", "-O2", f"-ffp-contract={contraction}", "-std=c99", "-fPIC"]
+    files = [s for s in sources(folder) if s.endswith(("_probe_double.c", "_sincos.c"))]
+    run([C_COMPILERS[0], *flags, "-shared", "-I", str(folder / "include"), *files, "-o", str(out)])
+    (folder / "src" / f"{ARM}_probe_double.c").unlink()
+    rng = np.random.default_rng(5)
+    quarters = np.arange(-12732, 12733) * np.pi / 4
+    near = (quarters[:, None] + np.arange(-8, 9) * np.spacing(np.abs(quarters))[:, None]).ravel()
+    small = np.geomspace(1e-300, 1e-3, 1000)
+    x = np.concatenate([rng.uniform(-BOUND, BOUND, 1_000_000), rng.uniform(-7, 7, 1_000_000), near])
+    x = np.concatenate([x[np.abs(x) <= BOUND], small, -small])
+    s, c = np.empty_like(x), np.empty_like(x)
+    arrays = (ctypes.c_void_p(a.ctypes.data) for a in (x, s, c))
+    ctypes.CDLL(str(out)).many(*arrays, ctypes.c_long(x.size))
+    exact = x.astype(np.longdouble)
+    sine, cosine = np.abs(s - np.sin(exact)), np.abs(c - np.cos(exact))
+    assert 1e-17 < max(sine.max(), cosine.max()) <= 2e-16
+    assert (sine[-2000:] <= 2.3e-16 * np.abs(x[-2000:])).all()
 
 
 PLUGGED = """

@@ -38,9 +38,10 @@ def test_no_run_time_error(arm: str, name: str, tmp_path: Path) -> None:
         assert proof.alarms == 0, f"{proof}\n{proof.log[-3000:]}"
 
 
-def test_no_run_time_error_in_the_sine_and_cosine(tmp_path: Path) -> None:
+@pytest.mark.parametrize("real", ["float", "double"])
+def test_no_run_time_error_in_the_sine_and_cosine(tmp_path: Path, real: str) -> None:
     made = model("ur10e")
-    proof = prove_sincos("ur10e", written(made, tmp_path))
+    proof = prove_sincos("ur10e", written(made, tmp_path), real)
     assert proof.alarms == 0, proof.log[-3000:]
 
 

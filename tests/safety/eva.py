@@ -186,20 +186,23 @@ def prove(model: Model, function: Function, claim: Claim, folder: Path) -> Proof
     return _run(model.arm.name, function.name, claim, driver(model, function, claim), folder)
 
 
-def prove_sincos(arm: str, folder: Path) -> Proof:
-    """Run EVA on the arm's own sine and cosine in float, over two turns to each side, eighth by eighth."""
+def prove_sincos(arm: str, folder: Path, real: str) -> Proof:
+    """Run EVA on the arm's own sine and cosine, over two turns to each side, eighth by eighth."""
     step = math.pi / 16
     lines = ['#include "__fc_builtin.h"', f'#include "{arm}_sincos.c"', "", "int main(void)", "{"]
-    lines += ["    volatile float read;"]
+    lines += [f"    volatile {real} read;"]
+    suffix = "f" if real == "float" else ""
     for k in range(-64, 64):
         lines += [
-            f"    read = {arm}_sincos(Frama_C_float_interval({k * step!r}f, {(k + 1) * step!r}f)).sine;"
+            f"    read = {arm}_sincos(Frama_C_{real}_interval({k * step!r}{suffix}, "
+            f"{(k + 1) * step!r}{suffix})).sine;"
         ]
         lines += [
-            f"    read = {arm}_sincos(Frama_C_float_interval({k * step!r}f, {(k + 1) * step!r}f)).cosine;"
+            f"    read = {arm}_sincos(Frama_C_{real}_interval({k * step!r}{suffix}, "
+            f"{(k + 1) * step!r}{suffix})).cosine;"
         ]
     text = "\n".join([*lines, "    return 0;", "}", ""])
-    return _run(arm, "sincos", Claim("float", finite=True), text, folder)
+    return _run(arm, "sincos", Claim(real, finite=True), text, folder)
 
 
 def _run(arm: str, name: str, claim: Claim, text: str, folder: Path) -> Proof:
@@ -239,7 +242,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             model = build_model(arms[name])
             folder = written(model, Path(temporary) / name)
             if not given.function or "sincos" in given.function:
-                runs.append(pool.submit(prove_sincos, name, folder))
+                runs += [pool.submit(prove_sincos, name, folder, real) for real in ("float", "double")]
             for function in model.functions:
                 if not given.function or function.name in given.function:
                     for claim in claims(function):

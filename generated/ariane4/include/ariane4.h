@@ -60,7 +60,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0x6EDD9A6BUL
+#define ARIANE4_GENERATION 0xFD33349DUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_REAL

@@ -12,7 +12,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0x6EDD9A6BUL
+#if ARIANE4_GENERATION != 0xFD33349DUL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define ARIANE4_MATH(name) ARIANE4_JOIN(ARIANE4_MATH_, ARIANE4_REAL)(name)
 
 /*
- * Sine and cosine of one angle, ARIANE4_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DARIANE4_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, ARIANE4_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DARIANE4_SINCOS=my_sincos, or with both of
  * -DARIANE4_SIN=my_sin -DARIANE4_COS=my_cos; -include my_header.h declares it.
  */
 #define ARIANE4_SINGLE_float 1
 #define ARIANE4_SINGLE_double 0
+#define ARIANE4_SINGLE ARIANE4_JOIN(ARIANE4_SINGLE_, ARIANE4_REAL)
 #if !defined(ARIANE4_SINCOS) && !defined(ARIANE4_SIN) && !defined(ARIANE4_COS)
-#define ARIANE4_OWN_SINCOS ARIANE4_JOIN(ARIANE4_SINGLE_, ARIANE4_REAL)
+#define ARIANE4_OWN_SINCOS 1
 #else
 #define ARIANE4_OWN_SINCOS 0
 #endif

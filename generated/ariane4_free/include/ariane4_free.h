@@ -68,7 +68,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x0A7D8746UL
+#define ARIANE4_FREE_GENERATION 0x4F4B7123UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE4_FREE_REAL

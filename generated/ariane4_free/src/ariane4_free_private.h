@@ -12,7 +12,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x0A7D8746UL
+#if ARIANE4_FREE_GENERATION != 0x4F4B7123UL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define ARIANE4_FREE_MATH(name) ARIANE4_FREE_JOIN(ARIANE4_FREE_MATH_, ARIANE4_FREE_REAL)(name)
 
 /*
- * Sine and cosine of one angle, ARIANE4_FREE_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DARIANE4_FREE_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, ARIANE4_FREE_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DARIANE4_FREE_SINCOS=my_sincos, or with both of
  * -DARIANE4_FREE_SIN=my_sin -DARIANE4_FREE_COS=my_cos; -include my_header.h declares it.
  */
 #define ARIANE4_FREE_SINGLE_float 1
 #define ARIANE4_FREE_SINGLE_double 0
+#define ARIANE4_FREE_SINGLE ARIANE4_FREE_JOIN(ARIANE4_FREE_SINGLE_, ARIANE4_FREE_REAL)
 #if !defined(ARIANE4_FREE_SINCOS) && !defined(ARIANE4_FREE_SIN) && !defined(ARIANE4_FREE_COS)
-#define ARIANE4_FREE_OWN_SINCOS ARIANE4_FREE_JOIN(ARIANE4_FREE_SINGLE_, ARIANE4_FREE_REAL)
+#define ARIANE4_FREE_OWN_SINCOS 1
 #else
 #define ARIANE4_FREE_OWN_SINCOS 0
 #endif

@@ -85,7 +85,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x3B3EC5F5UL
+#define ARIANE6_GENERATION 0xBC5AAFE2UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef ARIANE6_REAL

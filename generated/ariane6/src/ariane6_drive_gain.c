@@ -21,7 +21,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x3B3EC5F5UL
+#if ARIANE6_GENERATION != 0xBC5AAFE2UL
 #error "ariane6.h and ariane6_drive_gain.c are of different generations: generate the arm again"
 #endif
 

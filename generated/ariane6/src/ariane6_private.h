@@ -12,7 +12,7 @@
 
 #include "ariane6.h"
 
-#if ARIANE6_GENERATION != 0x3B3EC5F5UL
+#if ARIANE6_GENERATION != 0xBC5AAFE2UL
 #error "ariane6.h and ariane6_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define ARIANE6_MATH(name) ARIANE6_JOIN(ARIANE6_MATH_, ARIANE6_REAL)(name)
 
 /*
- * Sine and cosine of one angle, ARIANE6_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DARIANE6_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, ARIANE6_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DARIANE6_SINCOS=my_sincos, or with both of
  * -DARIANE6_SIN=my_sin -DARIANE6_COS=my_cos; -include my_header.h declares it.
  */
 #define ARIANE6_SINGLE_float 1
 #define ARIANE6_SINGLE_double 0
+#define ARIANE6_SINGLE ARIANE6_JOIN(ARIANE6_SINGLE_, ARIANE6_REAL)
 #if !defined(ARIANE6_SINCOS) && !defined(ARIANE6_SIN) && !defined(ARIANE6_COS)
-#define ARIANE6_OWN_SINCOS ARIANE6_JOIN(ARIANE6_SINGLE_, ARIANE6_REAL)
+#define ARIANE6_OWN_SINCOS 1
 #else
 #define ARIANE6_OWN_SINCOS 0
 #endif

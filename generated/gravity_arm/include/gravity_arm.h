@@ -36,7 +36,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x25761C1AUL
+#define GRAVITY_ARM_GENERATION 0x1495714CUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_ARM_REAL

@@ -17,7 +17,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
+#if GRAVITY_ARM_GENERATION != 0x1495714CUL
 #error "gravity_arm.h and gravity_arm_jacobian.c are of different generations: generate the arm again"
 #endif
 

@@ -12,7 +12,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x25761C1AUL
+#if GRAVITY_ARM_GENERATION != 0x1495714CUL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define GRAVITY_ARM_MATH(name) GRAVITY_ARM_JOIN(GRAVITY_ARM_MATH_, GRAVITY_ARM_REAL)(name)
 
 /*
- * Sine and cosine of one angle, GRAVITY_ARM_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DGRAVITY_ARM_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, GRAVITY_ARM_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DGRAVITY_ARM_SINCOS=my_sincos, or with both of
  * -DGRAVITY_ARM_SIN=my_sin -DGRAVITY_ARM_COS=my_cos; -include my_header.h declares it.
  */
 #define GRAVITY_ARM_SINGLE_float 1
 #define GRAVITY_ARM_SINGLE_double 0
+#define GRAVITY_ARM_SINGLE GRAVITY_ARM_JOIN(GRAVITY_ARM_SINGLE_, GRAVITY_ARM_REAL)
 #if !defined(GRAVITY_ARM_SINCOS) && !defined(GRAVITY_ARM_SIN) && !defined(GRAVITY_ARM_COS)
-#define GRAVITY_ARM_OWN_SINCOS GRAVITY_ARM_JOIN(GRAVITY_ARM_SINGLE_, GRAVITY_ARM_REAL)
+#define GRAVITY_ARM_OWN_SINCOS 1
 #else
 #define GRAVITY_ARM_OWN_SINCOS 0
 #endif

@@ -28,7 +28,7 @@
 #define GRAVITY_LINK1_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_GENERATION 0xA2F1487BUL
+#define GRAVITY_LINK1_GENERATION 0x95278CD8UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_LINK1_REAL

@@ -12,7 +12,7 @@
 
 #include "gravity_link1.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xA2F1487BUL
+#if GRAVITY_LINK1_GENERATION != 0x95278CD8UL
 #error "gravity_link1.h and gravity_link1_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define GRAVITY_LINK1_MATH(name) GRAVITY_LINK1_JOIN(GRAVITY_LINK1_MATH_, GRAVITY_LINK1_REAL)(name)
 
 /*
- * Sine and cosine of one angle, GRAVITY_LINK1_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DGRAVITY_LINK1_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, GRAVITY_LINK1_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DGRAVITY_LINK1_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK1_SIN=my_sin -DGRAVITY_LINK1_COS=my_cos; -include my_header.h declares it.
  */
 #define GRAVITY_LINK1_SINGLE_float 1
 #define GRAVITY_LINK1_SINGLE_double 0
+#define GRAVITY_LINK1_SINGLE GRAVITY_LINK1_JOIN(GRAVITY_LINK1_SINGLE_, GRAVITY_LINK1_REAL)
 #if !defined(GRAVITY_LINK1_SINCOS) && !defined(GRAVITY_LINK1_SIN) && !defined(GRAVITY_LINK1_COS)
-#define GRAVITY_LINK1_OWN_SINCOS GRAVITY_LINK1_JOIN(GRAVITY_LINK1_SINGLE_, GRAVITY_LINK1_REAL)
+#define GRAVITY_LINK1_OWN_SINCOS 1
 #else
 #define GRAVITY_LINK1_OWN_SINCOS 0
 #endif

@@ -28,7 +28,7 @@
 #define GRAVITY_LINK1_LOADED_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_LOADED_GENERATION 0xFC76844FUL
+#define GRAVITY_LINK1_LOADED_GENERATION 0x0C126FCBUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_LINK1_LOADED_REAL

@@ -12,7 +12,7 @@
 
 #include "gravity_link1_loaded.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFC76844FUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x0C126FCBUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define GRAVITY_LINK1_LOADED_MATH(name) GRAVITY_LINK1_LOADED_JOIN(GRAVITY_LINK1_LOADED_MATH_, GRAVITY_LINK1_LOADED_REAL)(name)
 
 /*
- * Sine and cosine of one angle, GRAVITY_LINK1_LOADED_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DGRAVITY_LINK1_LOADED_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, GRAVITY_LINK1_LOADED_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DGRAVITY_LINK1_LOADED_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK1_LOADED_SIN=my_sin -DGRAVITY_LINK1_LOADED_COS=my_cos; -include my_header.h declares it.
  */
 #define GRAVITY_LINK1_LOADED_SINGLE_float 1
 #define GRAVITY_LINK1_LOADED_SINGLE_double 0
+#define GRAVITY_LINK1_LOADED_SINGLE GRAVITY_LINK1_LOADED_JOIN(GRAVITY_LINK1_LOADED_SINGLE_, GRAVITY_LINK1_LOADED_REAL)
 #if !defined(GRAVITY_LINK1_LOADED_SINCOS) && !defined(GRAVITY_LINK1_LOADED_SIN) && !defined(GRAVITY_LINK1_LOADED_COS)
-#define GRAVITY_LINK1_LOADED_OWN_SINCOS GRAVITY_LINK1_LOADED_JOIN(GRAVITY_LINK1_LOADED_SINGLE_, GRAVITY_LINK1_LOADED_REAL)
+#define GRAVITY_LINK1_LOADED_OWN_SINCOS 1
 #else
 #define GRAVITY_LINK1_LOADED_OWN_SINCOS 0
 #endif

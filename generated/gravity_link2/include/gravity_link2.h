@@ -28,7 +28,7 @@
 #define GRAVITY_LINK2_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK2_GENERATION 0xB0014BBEUL
+#define GRAVITY_LINK2_GENERATION 0xDC1687F7UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_LINK2_REAL

@@ -12,7 +12,7 @@
 
 #include "gravity_link2.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xB0014BBEUL
+#if GRAVITY_LINK2_GENERATION != 0xDC1687F7UL
 #error "gravity_link2.h and gravity_link2_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define GRAVITY_LINK2_MATH(name) GRAVITY_LINK2_JOIN(GRAVITY_LINK2_MATH_, GRAVITY_LINK2_REAL)(name)
 
 /*
- * Sine and cosine of one angle, GRAVITY_LINK2_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DGRAVITY_LINK2_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, GRAVITY_LINK2_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DGRAVITY_LINK2_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK2_SIN=my_sin -DGRAVITY_LINK2_COS=my_cos; -include my_header.h declares it.
  */
 #define GRAVITY_LINK2_SINGLE_float 1
 #define GRAVITY_LINK2_SINGLE_double 0
+#define GRAVITY_LINK2_SINGLE GRAVITY_LINK2_JOIN(GRAVITY_LINK2_SINGLE_, GRAVITY_LINK2_REAL)
 #if !defined(GRAVITY_LINK2_SINCOS) && !defined(GRAVITY_LINK2_SIN) && !defined(GRAVITY_LINK2_COS)
-#define GRAVITY_LINK2_OWN_SINCOS GRAVITY_LINK2_JOIN(GRAVITY_LINK2_SINGLE_, GRAVITY_LINK2_REAL)
+#define GRAVITY_LINK2_OWN_SINCOS 1
 #else
 #define GRAVITY_LINK2_OWN_SINCOS 0
 #endif

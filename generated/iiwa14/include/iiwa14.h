@@ -93,7 +93,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0xD03B4045UL
+#define IIWA14_GENERATION 0x07781CA7UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef IIWA14_REAL

@@ -12,7 +12,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0xD03B4045UL
+#if IIWA14_GENERATION != 0x07781CA7UL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define IIWA14_MATH(name) IIWA14_JOIN(IIWA14_MATH_, IIWA14_REAL)(name)
 
 /*
- * Sine and cosine of one angle, IIWA14_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DIIWA14_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, IIWA14_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DIIWA14_SINCOS=my_sincos, or with both of
  * -DIIWA14_SIN=my_sin -DIIWA14_COS=my_cos; -include my_header.h declares it.
  */
 #define IIWA14_SINGLE_float 1
 #define IIWA14_SINGLE_double 0
+#define IIWA14_SINGLE IIWA14_JOIN(IIWA14_SINGLE_, IIWA14_REAL)
 #if !defined(IIWA14_SINCOS) && !defined(IIWA14_SIN) && !defined(IIWA14_COS)
-#define IIWA14_OWN_SINCOS IIWA14_JOIN(IIWA14_SINGLE_, IIWA14_REAL)
+#define IIWA14_OWN_SINCOS 1
 #else
 #define IIWA14_OWN_SINCOS 0
 #endif

@@ -73,7 +73,7 @@
 #define IIWA14_BENCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_BENCH_GENERATION 0x5BBF4EB8UL
+#define IIWA14_BENCH_GENERATION 0x3D17B0A2UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef IIWA14_BENCH_REAL

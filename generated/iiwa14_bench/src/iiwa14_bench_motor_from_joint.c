@@ -26,7 +26,7 @@
  */
 #include "iiwa14_bench_private.h"
 
-#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
+#if IIWA14_BENCH_GENERATION != 0x3D17B0A2UL
 #error "iiwa14_bench.h and iiwa14_bench_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

@@ -12,7 +12,7 @@
 
 #include "iiwa14_bench.h"
 
-#if IIWA14_BENCH_GENERATION != 0x5BBF4EB8UL
+#if IIWA14_BENCH_GENERATION != 0x3D17B0A2UL
 #error "iiwa14_bench.h and iiwa14_bench_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define IIWA14_BENCH_MATH(name) IIWA14_BENCH_JOIN(IIWA14_BENCH_MATH_, IIWA14_BENCH_REAL)(name)
 
 /*
- * Sine and cosine of one angle, IIWA14_BENCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DIIWA14_BENCH_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, IIWA14_BENCH_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DIIWA14_BENCH_SINCOS=my_sincos, or with both of
  * -DIIWA14_BENCH_SIN=my_sin -DIIWA14_BENCH_COS=my_cos; -include my_header.h declares it.
  */
 #define IIWA14_BENCH_SINGLE_float 1
 #define IIWA14_BENCH_SINGLE_double 0
+#define IIWA14_BENCH_SINGLE IIWA14_BENCH_JOIN(IIWA14_BENCH_SINGLE_, IIWA14_BENCH_REAL)
 #if !defined(IIWA14_BENCH_SINCOS) && !defined(IIWA14_BENCH_SIN) && !defined(IIWA14_BENCH_COS)
-#define IIWA14_BENCH_OWN_SINCOS IIWA14_BENCH_JOIN(IIWA14_BENCH_SINGLE_, IIWA14_BENCH_REAL)
+#define IIWA14_BENCH_OWN_SINCOS 1
 #else
 #define IIWA14_BENCH_OWN_SINCOS 0
 #endif

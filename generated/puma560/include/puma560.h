@@ -84,7 +84,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0x83C4AF30UL
+#define PUMA560_GENERATION 0x0F130238UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef PUMA560_REAL

@@ -12,7 +12,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0x83C4AF30UL
+#if PUMA560_GENERATION != 0x0F130238UL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define PUMA560_MATH(name) PUMA560_JOIN(PUMA560_MATH_, PUMA560_REAL)(name)
 
 /*
- * Sine and cosine of one angle, PUMA560_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DPUMA560_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, PUMA560_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DPUMA560_SINCOS=my_sincos, or with both of
  * -DPUMA560_SIN=my_sin -DPUMA560_COS=my_cos; -include my_header.h declares it.
  */
 #define PUMA560_SINGLE_float 1
 #define PUMA560_SINGLE_double 0
+#define PUMA560_SINGLE PUMA560_JOIN(PUMA560_SINGLE_, PUMA560_REAL)
 #if !defined(PUMA560_SINCOS) && !defined(PUMA560_SIN) && !defined(PUMA560_COS)
-#define PUMA560_OWN_SINCOS PUMA560_JOIN(PUMA560_SINGLE_, PUMA560_REAL)
+#define PUMA560_OWN_SINCOS 1
 #else
 #define PUMA560_OWN_SINCOS 0
 #endif

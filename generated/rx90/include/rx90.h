@@ -81,7 +81,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x63462078UL
+#define RX90_GENERATION 0xE46EFB10UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef RX90_REAL

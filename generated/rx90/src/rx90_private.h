@@ -12,7 +12,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0x63462078UL
+#if RX90_GENERATION != 0xE46EFB10UL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define RX90_MATH(name) RX90_JOIN(RX90_MATH_, RX90_REAL)(name)
 
 /*
- * Sine and cosine of one angle, RX90_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DRX90_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, RX90_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DRX90_SINCOS=my_sincos, or with both of
  * -DRX90_SIN=my_sin -DRX90_COS=my_cos; -include my_header.h declares it.
  */
 #define RX90_SINGLE_float 1
 #define RX90_SINGLE_double 0
+#define RX90_SINGLE RX90_JOIN(RX90_SINGLE_, RX90_REAL)
 #if !defined(RX90_SINCOS) && !defined(RX90_SIN) && !defined(RX90_COS)
-#define RX90_OWN_SINCOS RX90_JOIN(RX90_SINGLE_, RX90_REAL)
+#define RX90_OWN_SINCOS 1
 #else
 #define RX90_OWN_SINCOS 0
 #endif

@@ -52,7 +52,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0x1AA87749UL
+#define SCARA_GENERATION 0x283E8186UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef SCARA_REAL

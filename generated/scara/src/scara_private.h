@@ -12,7 +12,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x1AA87749UL
+#if SCARA_GENERATION != 0x283E8186UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define SCARA_MATH(name) SCARA_JOIN(SCARA_MATH_, SCARA_REAL)(name)
 
 /*
- * Sine and cosine of one angle, SCARA_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DSCARA_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, SCARA_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DSCARA_SINCOS=my_sincos, or with both of
  * -DSCARA_SIN=my_sin -DSCARA_COS=my_cos; -include my_header.h declares it.
  */
 #define SCARA_SINGLE_float 1
 #define SCARA_SINGLE_double 0
+#define SCARA_SINGLE SCARA_JOIN(SCARA_SINGLE_, SCARA_REAL)
 #if !defined(SCARA_SINCOS) && !defined(SCARA_SIN) && !defined(SCARA_COS)
-#define SCARA_OWN_SINCOS SCARA_JOIN(SCARA_SINGLE_, SCARA_REAL)
+#define SCARA_OWN_SINCOS 1
 #else
 #define SCARA_OWN_SINCOS 0
 #endif

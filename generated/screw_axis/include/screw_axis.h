@@ -28,7 +28,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0x1622623BUL
+#define SCREW_AXIS_GENERATION 0xE24AA1A4UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef SCREW_AXIS_REAL

@@ -12,7 +12,7 @@
 
 #include "screw_axis.h"
 
-#if SCREW_AXIS_GENERATION != 0x1622623BUL
+#if SCREW_AXIS_GENERATION != 0xE24AA1A4UL
 #error "screw_axis.h and screw_axis_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define SCREW_AXIS_MATH(name) SCREW_AXIS_JOIN(SCREW_AXIS_MATH_, SCREW_AXIS_REAL)(name)
 
 /*
- * Sine and cosine of one angle, SCREW_AXIS_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DSCREW_AXIS_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, SCREW_AXIS_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DSCREW_AXIS_SINCOS=my_sincos, or with both of
  * -DSCREW_AXIS_SIN=my_sin -DSCREW_AXIS_COS=my_cos; -include my_header.h declares it.
  */
 #define SCREW_AXIS_SINGLE_float 1
 #define SCREW_AXIS_SINGLE_double 0
+#define SCREW_AXIS_SINGLE SCREW_AXIS_JOIN(SCREW_AXIS_SINGLE_, SCREW_AXIS_REAL)
 #if !defined(SCREW_AXIS_SINCOS) && !defined(SCREW_AXIS_SIN) && !defined(SCREW_AXIS_COS)
-#define SCREW_AXIS_OWN_SINCOS SCREW_AXIS_JOIN(SCREW_AXIS_SINGLE_, SCREW_AXIS_REAL)
+#define SCREW_AXIS_OWN_SINCOS 1
 #else
 #define SCREW_AXIS_OWN_SINCOS 0
 #endif

@@ -70,7 +70,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0x89097E82UL
+#define TWO_FINGERS_GENERATION 0x92121BF2UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef TWO_FINGERS_REAL

@@ -12,7 +12,7 @@
 
 #include "two_fingers.h"
 
-#if TWO_FINGERS_GENERATION != 0x89097E82UL
+#if TWO_FINGERS_GENERATION != 0x92121BF2UL
 #error "two_fingers.h and two_fingers_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define TWO_FINGERS_MATH(name) TWO_FINGERS_JOIN(TWO_FINGERS_MATH_, TWO_FINGERS_REAL)(name)
 
 /*
- * Sine and cosine of one angle, TWO_FINGERS_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DTWO_FINGERS_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, TWO_FINGERS_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DTWO_FINGERS_SINCOS=my_sincos, or with both of
  * -DTWO_FINGERS_SIN=my_sin -DTWO_FINGERS_COS=my_cos; -include my_header.h declares it.
  */
 #define TWO_FINGERS_SINGLE_float 1
 #define TWO_FINGERS_SINGLE_double 0
+#define TWO_FINGERS_SINGLE TWO_FINGERS_JOIN(TWO_FINGERS_SINGLE_, TWO_FINGERS_REAL)
 #if !defined(TWO_FINGERS_SINCOS) && !defined(TWO_FINGERS_SIN) && !defined(TWO_FINGERS_COS)
-#define TWO_FINGERS_OWN_SINCOS TWO_FINGERS_JOIN(TWO_FINGERS_SINGLE_, TWO_FINGERS_REAL)
+#define TWO_FINGERS_OWN_SINCOS 1
 #else
 #define TWO_FINGERS_OWN_SINCOS 0
 #endif

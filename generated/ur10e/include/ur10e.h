@@ -82,7 +82,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0x509D53D4UL
+#define UR10E_GENERATION 0x6EE4F4C1UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef UR10E_REAL

@@ -81,7 +81,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x509D53D4UL
+#if UR10E_GENERATION != 0x6EE4F4C1UL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 

@@ -12,7 +12,7 @@
 
 #include "ur10e.h"
 
-#if UR10E_GENERATION != 0x509D53D4UL
+#if UR10E_GENERATION != 0x6EE4F4C1UL
 #error "ur10e.h and ur10e_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define UR10E_MATH(name) UR10E_JOIN(UR10E_MATH_, UR10E_REAL)(name)
 
 /*
- * Sine and cosine of one angle, UR10E_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DUR10E_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, UR10E_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DUR10E_SINCOS=my_sincos, or with both of
  * -DUR10E_SIN=my_sin -DUR10E_COS=my_cos; -include my_header.h declares it.
  */
 #define UR10E_SINGLE_float 1
 #define UR10E_SINGLE_double 0
+#define UR10E_SINGLE UR10E_JOIN(UR10E_SINGLE_, UR10E_REAL)
 #if !defined(UR10E_SINCOS) && !defined(UR10E_SIN) && !defined(UR10E_COS)
-#define UR10E_OWN_SINCOS UR10E_JOIN(UR10E_SINGLE_, UR10E_REAL)
+#define UR10E_OWN_SINCOS 1
 #else
 #define UR10E_OWN_SINCOS 0
 #endif

@@ -65,7 +65,7 @@
 #define UR10E_BENCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_BENCH_GENERATION 0x4F969208UL
+#define UR10E_BENCH_GENERATION 0x635D1F70UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef UR10E_BENCH_REAL

@@ -25,7 +25,7 @@
  */
 #include "ur10e_bench_private.h"
 
-#if UR10E_BENCH_GENERATION != 0x4F969208UL
+#if UR10E_BENCH_GENERATION != 0x635D1F70UL
 #error "ur10e_bench.h and ur10e_bench_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

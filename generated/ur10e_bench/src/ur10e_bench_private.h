@@ -12,7 +12,7 @@
 
 #include "ur10e_bench.h"
 
-#if UR10E_BENCH_GENERATION != 0x4F969208UL
+#if UR10E_BENCH_GENERATION != 0x635D1F70UL
 #error "ur10e_bench.h and ur10e_bench_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define UR10E_BENCH_MATH(name) UR10E_BENCH_JOIN(UR10E_BENCH_MATH_, UR10E_BENCH_REAL)(name)
 
 /*
- * Sine and cosine of one angle, UR10E_BENCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DUR10E_BENCH_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, UR10E_BENCH_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DUR10E_BENCH_SINCOS=my_sincos, or with both of
  * -DUR10E_BENCH_SIN=my_sin -DUR10E_BENCH_COS=my_cos; -include my_header.h declares it.
  */
 #define UR10E_BENCH_SINGLE_float 1
 #define UR10E_BENCH_SINGLE_double 0
+#define UR10E_BENCH_SINGLE UR10E_BENCH_JOIN(UR10E_BENCH_SINGLE_, UR10E_BENCH_REAL)
 #if !defined(UR10E_BENCH_SINCOS) && !defined(UR10E_BENCH_SIN) && !defined(UR10E_BENCH_COS)
-#define UR10E_BENCH_OWN_SINCOS UR10E_BENCH_JOIN(UR10E_BENCH_SINGLE_, UR10E_BENCH_REAL)
+#define UR10E_BENCH_OWN_SINCOS 1
 #else
 #define UR10E_BENCH_OWN_SINCOS 0
 #endif

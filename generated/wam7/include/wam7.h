@@ -95,7 +95,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x416786FDUL
+#define WAM7_GENERATION 0x7907522BUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef WAM7_REAL

@@ -120,7 +120,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x416786FDUL
+#if WAM7_GENERATION != 0x7907522BUL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 

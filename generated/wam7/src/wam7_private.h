@@ -12,7 +12,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0x416786FDUL
+#if WAM7_GENERATION != 0x7907522BUL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define WAM7_MATH(name) WAM7_JOIN(WAM7_MATH_, WAM7_REAL)(name)
 
 /*
- * Sine and cosine of one angle, WAM7_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DWAM7_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, WAM7_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DWAM7_SINCOS=my_sincos, or with both of
  * -DWAM7_SIN=my_sin -DWAM7_COS=my_cos; -include my_header.h declares it.
  */
 #define WAM7_SINGLE_float 1
 #define WAM7_SINGLE_double 0
+#define WAM7_SINGLE WAM7_JOIN(WAM7_SINGLE_, WAM7_REAL)
 #if !defined(WAM7_SINCOS) && !defined(WAM7_SIN) && !defined(WAM7_COS)
-#define WAM7_OWN_SINCOS WAM7_JOIN(WAM7_SINGLE_, WAM7_REAL)
+#define WAM7_OWN_SINCOS 1
 #else
 #define WAM7_OWN_SINCOS 0
 #endif

@@ -49,7 +49,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0x413EB315UL
+#define YAW3PITCH_GENERATION 0xBDD95105UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef YAW3PITCH_REAL

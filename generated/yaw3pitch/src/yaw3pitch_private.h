@@ -12,7 +12,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0x413EB315UL
+#if YAW3PITCH_GENERATION != 0xBDD95105UL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -27,14 +27,15 @@
 #define YAW3PITCH_MATH(name) YAW3PITCH_JOIN(YAW3PITCH_MATH_, YAW3PITCH_REAL)(name)
 
 /*
- * Sine and cosine of one angle, YAW3PITCH_SINCOS(x, &s, &c): in double by <math.h>, in float by the arm's own
- * function. The target's own takes their place with -DYAW3PITCH_SINCOS=my_sincos, or with both of
+ * Sine and cosine of one angle, YAW3PITCH_SINCOS(x, &s, &c): by the arm's own function.
+ * The target's own takes its place with -DYAW3PITCH_SINCOS=my_sincos, or with both of
  * -DYAW3PITCH_SIN=my_sin -DYAW3PITCH_COS=my_cos; -include my_header.h declares it.
  */
 #define YAW3PITCH_SINGLE_float 1
 #define YAW3PITCH_SINGLE_double 0
+#define YAW3PITCH_SINGLE YAW3PITCH_JOIN(YAW3PITCH_SINGLE_, YAW3PITCH_REAL)
 #if !defined(YAW3PITCH_SINCOS) && !defined(YAW3PITCH_SIN) && !defined(YAW3PITCH_COS)
-#define YAW3PITCH_OWN_SINCOS YAW3PITCH_JOIN(YAW3PITCH_SINGLE_, YAW3PITCH_REAL)
+#define YAW3PITCH_OWN_SINCOS 1
 #else
 #define YAW3PITCH_OWN_SINCOS 0
 #endif
