@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 from modelgen.diagnosis.candidates import LATER
 from modelgen.diagnosis.objects import Diagnosis
@@ -38,6 +39,7 @@ def report(d: Diagnosis) -> str:
     text: str = template.render(
         arm=d.arm.name,
         verdict=d.verdict,
+        sentence=_sentence(d),
         reason=d.reason,
         causes=[_cause(d, k) for k in range(len(d.causes))],
         fit=_fit(d),
@@ -55,33 +57,51 @@ def report(d: Diagnosis) -> str:
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
 
 
+_SENTENCES = {
+    "nothing_missing": "Nothing is missing that these records could show.",
+    "outside_catalogue": "Something is missing that is not in the catalogue.",
+    "cannot_tell": "These records cannot tell.",
+}
+
+
+def _sentence(d: Diagnosis) -> Markup:
+    if d.verdict != "named":
+        return Markup(_SENTENCES[d.verdict])
+    found = [Markup("<b>{}</b> at {}").format(c.effect, _place(c.joint)) for c in d.causes]
+    return Markup("The model lacks {}.").format(Markup(" and ").join(found))
+
+
+def _place(joint: int | None) -> str:
+    return "the whole arm" if joint is None else f"joint {joint}"
+
+
 def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
     c = d.causes[k]
-    place = "the whole arm" if c.joint is None else f"joint {c.joint}"
     return {
         "effect": c.effect,
         "text": CATALOGUE[c.effect].text,
-        "place": place,
+        "place": _place(c.joint),
         "parameters": [
             (n, f"{e.value:.4g}", "" if np.isnan(e.std) else f"{e.std:.2g}", e.unit)
             for n, e in c.parameters.items()
         ],
         "delta_bic": f"{c.delta_bic:.1f}",
         "gain": f"{c.cross_gain:.1f}",
-        "aliases": [f"{e} ({'arm' if j is None else f'joint {j}'})" for e, j in c.aliases],
-        "rivals": [
-            (f"{e} ({'arm' if j is None else f'joint {j}'})", f"{b:.1f}") for e, j, b in c.ambiguous_with
-        ],
+        "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
+        "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
         "experiment": CATALOGUE[c.effect].experiment,
         "reference": CATALOGUE[c.effect].reference,
     }
 
 
-def _fit(d: Diagnosis) -> dict[str, str] | None:
+def _fit(d: Diagnosis) -> str:
     f = d.lack_of_fit
     if f is None:
-        return None
-    return {"statistic": f"{f.statistic:.2f}", "threshold": f"{f.threshold:.2f}", "periods": str(f.periods)}
+        return "No period repeats in the training records, so the noise could not be measured."
+    return (
+        f"Lack of fit over {f.periods} repeated periods: {f.statistic:.2f}, threshold {f.threshold:.2f} "
+        "(1 for a complete model)."
+    )
 
 
 def _errors(d: Diagnosis) -> list[Sequence[str]]:
@@ -116,7 +136,7 @@ def _simulation(d: Diagnosis) -> list[Sequence[str]]:
     ]
 
 
-def _over_time(d: Diagnosis) -> str:
+def _over_time(d: Diagnosis) -> Markup:
     return _inline(_effort(d))
 
 
@@ -145,7 +165,7 @@ def _effort(d: Diagnosis) -> str:
     return svg(made)
 
 
-def _residuals(d: Diagnosis) -> list[tuple[str, str]]:
+def _residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
     """What is left over against speed, position, load, motor angle and time, before and after."""
     held, p = d.test, d.test.prepared
     n = held.effort.shape[1]
@@ -186,16 +206,16 @@ def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
     return ((edges[1:] + edges[:-1]) / 2)[full], total[full] / count[full]
 
 
-def _replay(d: Diagnosis) -> str:
+def _replay(d: Diagnosis) -> Markup:
     """Measured and simulated positions of the first windows of the test record."""
     if d.simulation is None or any(c.effect == LATER for c in d.causes):
-        return ""
+        return Markup()
     plain = build_model(d.arm)
     names = [b.name for b in plain.grouping.base]
     values = np.array([d.parameters[n].value if n in d.parameters else 0.0 for n in names])
     found = replay(d.extended_model, d.extended_parameters, d.test), replay(plain, values, d.test)
     if found[0] is None:
-        return ""
+        return Markup()
     p = d.test.prepared
     n = p.q.shape[1]
     made, axes = figure(n, 1, (9.0, 1.7 * n))
@@ -219,6 +239,6 @@ def _replay(d: Diagnosis) -> str:
     return _inline(svg(made))
 
 
-def _inline(text: str) -> str:
-    """From the svg element on."""
-    return text[text.index("<svg") :]
+def _inline(text: str) -> Markup:
+    """From the svg element on, which stands in the page as it is."""
+    return Markup(text[text.index("<svg") :])
