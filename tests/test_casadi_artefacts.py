@@ -45,7 +45,9 @@ def functions(checkout: Path) -> dict[str, ca.Function]:
 def plant(folder: Path) -> ca.Function:
     """The plant, built by the command at the head of its file."""
     library = folder / "ariane4_plant.so"
-    sources = ["plant/ariane4_plant.c", "src/ariane4_forward_dynamics.c"]
+    sources = [
+        f"{f}/ariane4_{n}.c" for f, n in (("plant", "plant"), ("src", "forward_dynamics"), ("src", "sincos"))
+    ]
     command = [
         "cc",
         "-O1",
