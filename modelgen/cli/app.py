@@ -9,6 +9,7 @@ import typer
 from modelgen import __version__
 from modelgen.cli import arguments as given
 from modelgen.cli.guard import guarded
+from modelgen.cli.simulate_command import simulate
 
 # ruff: noqa: PLC0415 - see above
 
@@ -138,6 +139,9 @@ def diagnose(
 
     file, (found,) = selected(arms, [arm])
     run(Path(file), found, train, test, out, mapping=mapping, cutoff=cutoff, period=period, as_json=as_json)
+
+
+app.command()(simulate)
 
 
 @app.command()

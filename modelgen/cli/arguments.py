@@ -154,3 +154,69 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 OfMapping = Annotated[
     bool, typer.Option("--mapping", help="Of the files that say what the columns of a foreign log are.")
 ]
+Begin = Annotated[
+    str,
+    typer.Option(
+        metavar="Q", help='Initial positions: "20 deg", or one by joint: "0.1, 20 deg".', show_default=False
+    ),
+]
+BeginSpeed = Annotated[
+    str, typer.Option(metavar="DQ", help="Initial velocities, likewise, per second.", show_default=False)
+]
+Duration = Annotated[float | None, typer.Option(metavar="S", help="Length.", show_default=False)]
+SampleRate = Annotated[
+    float | None, typer.Option(metavar="HZ", help="Samples per second. Default: 1000.", show_default=False)
+]
+Lock = Annotated[
+    list[str] | None,
+    typer.Option(metavar="JOINT=Q", help="Hold a joint, j2=0 say; repeatable.", show_default=False),
+]
+Payload = Annotated[
+    str,
+    typer.Option(
+        metavar="M[,X,Y,Z]", help="Point mass at the last link [kg], in its frame [m].", show_default=False
+    ),
+]
+OptionalFile = Annotated[
+    Path | None, typer.Option("--out", metavar="FILE", help="CSV to write: t, q, dq.", show_default=False)
+]
+Log = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LOG", help="Measured log, FILE or FILE@t0:t1, to be held against.", show_default=False
+    ),
+]
+Controller = Annotated[
+    str,
+    typer.Option(
+        "--control",
+        metavar="NAME",
+        help="pi (cascade) or computed_torque, after --reference or the log.",
+        show_default=False,
+    ),
+]
+ReferenceFile = Annotated[
+    Path | None,
+    typer.Option("--reference", metavar="FILE", help="CSV with t and q<n> to follow.", show_default=False),
+]
+Bandwidth = Annotated[float, typer.Option(metavar="HZ", help="Of the controller.")]
+Integrator = Annotated[
+    str,
+    typer.Option(
+        "--method",
+        metavar="NAME",
+        help="fixed (compiled C), cvodes, DOP853, RK45, LSODA, Radau or BDF.",
+        show_default=False,
+    ),
+]
+FixedStep = Annotated[
+    float | None, typer.Option("--step", metavar="S", help="Longest fixed step.", show_default=False)
+]
+Window = Annotated[
+    float | None,
+    typer.Option(metavar="S", help="Start again from the measured state after so long.", show_default=False),
+]
+Plot = Annotated[Path | None, typer.Option(metavar="FILE", help="Picture, SVG.", show_default=False)]
+Animation = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="The moving arm, one HTML file.", show_default=False)
+]

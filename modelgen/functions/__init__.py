@@ -1,7 +1,7 @@
 """The functions of an arm, ready for any backend."""
 
 from modelgen.functions.build import build_model
-from modelgen.functions.nominal import nominal_base, nominal_standard
+from modelgen.functions.nominal import grouped, nominal_base, nominal_standard
 from modelgen.functions.objects import (
     STATUS_INPUT,
     STATUS_PIVOT,
@@ -29,6 +29,7 @@ __all__ = [
     "Output",
     "SparsityTable",
     "build_model",
+    "grouped",
     "nominal_base",
     "nominal_standard",
 ]

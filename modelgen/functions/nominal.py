@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
@@ -39,7 +39,11 @@ def nominal_standard(model: Model) -> dict[str, float]:
 
 def nominal_base(model: Model) -> dict[str, float]:
     """Nominal base parameters by name, in the order of `parameters`. Raises as nominal_standard does."""
-    standard = list(nominal_standard(model).values())
+    return grouped(model, list(nominal_standard(model).values()))
+
+
+def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
+    """Base parameters by name that the standard vector gives, both in the model's order."""
     return {
         base.name: float(sum(standard[i] * _number(factor, model.arm.symbols) for i, factor in base.terms))
         for base in model.grouping.base

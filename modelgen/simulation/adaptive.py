@@ -1,0 +1,164 @@
+"""Steps of variable length, ended where a joint comes to rest or tears loose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from modelgen.backends.casadi_function import casadi_function
+from modelgen.errors import InputError
+from modelgen.simulation.plant import Plant
+from modelgen.simulation.sticking import Modes, accelerated, hold, settled
+
+Array = NDArray[np.float64]
+METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
+_EVENTS = 10_000  # of one interval: more is no motion
+
+
+class Adaptive:
+    """An integrator of scipy over the smooth phases of an arm with dry friction.
+
+    States y = (q, dq, states of effects). The right-hand side is CasADi's, not the compiled one.
+    """
+
+    def __init__(self, plant: Plant, method: str, rtol: float, atol: float) -> None:
+        self.plant, self.method, self.rtol, self.atol = plant, method, rtol, atol
+        own = plant.slip
+        self._accelerations = casadi_function(own.accelerations)
+        self._rates = casadi_function(own.rates) if own.rates else None
+        self._names = [a.name for a in own.accelerations.arguments]
+        self._zeros = {a.name: np.zeros(a.size) for a in own.accelerations.arguments}
+        self.rows = own.contacts
+
+    @cached_property
+    def _own(self) -> list[int]:
+        return self.plant.own
+
+    def terms(self, t: float, y: Array, u: Array) -> tuple[Array, Array]:
+        """free (n,) and dry (n, c) at a state."""
+        n, c = self.plant.n, len(self.rows)
+        out = self._call(self._accelerations, t, y, np.zeros(n), u)
+        return out[:n], out[n:].reshape(n, c)
+
+    def rate(self, t: float, y: Array, u: Array, modes: Modes) -> Array:
+        """dy/dt while nothing changes its mode."""
+        n = self.plant.n
+        free, dry = self.terms(t, y, u)
+        ddq = accelerated(free, dry, hold(free, dry, self.rows, modes), modes, self._own)
+        drift = self._call(self._rates, t, y, ddq, u) if self._rates else np.zeros(0)
+        return np.concatenate([y[n : 2 * n], ddq, drift])
+
+    def begin(self, t: float, y: Array, u: Array) -> Modes:
+        """Modes at a state: of contacts at rest what the forces make of them."""
+        v = self.rows @ y[self.plant.n : 2 * self.plant.n]
+        modes = tuple(int(x) for x in np.sign(v))
+        return settled(*self.terms(t, y, u), self.rows, modes, [k for k, m in enumerate(modes) if m == 0])
+
+    def again(self, t: float, y: Array, u: Array, modes: Modes) -> Modes:
+        """Modes after a jump of the input: what sticks may tear loose."""
+        stuck = [k for k, mode in enumerate(modes) if mode == 0]
+        return settled(*self.terms(t, y, u), self.rows, modes, stuck) if stuck else modes
+
+    def run(
+        self, times: Sequence[float], y: Array, u: Array, modes: Modes, low: Array, high: Array
+    ) -> tuple[Array, Modes, float | None]:
+        """States at `times` (the first is where `y` holds), modes at the end, and when it left low..high.
+
+        Constant input. Raises InputError where the integrator gives up or friction never settles.
+        """
+        t, end, n = times[0], times[-1], self.plant.n
+        wanted = np.asarray(times)
+        path = np.empty((len(wanted), len(y)))
+        path[0] = y
+        filled = 1
+        for _ in range(_EVENTS):
+            events = [self._margin(k, t, u, modes) for k in range(len(modes))]
+            bounds = [_Left(n, low, high)] if np.isfinite(low).any() or np.isfinite(high).any() else []
+            found = solve_ivp(
+                lambda at, x, now=modes: self.rate(at, x, u, now),
+                (t, end),
+                y,
+                method=self.method,
+                rtol=self.rtol,
+                atol=self.atol,
+                events=[*events, *bounds] or None,
+                t_eval=wanted[filled:],
+                max_step=max(end - t, 1e-12),
+            )
+            if found.status < 0 or not np.isfinite(found.y).all():
+                raise InputError(f"the integrator gave up at {t:.6g} s: {found.message}")
+            if len(found.t):
+                path[filled : filled + len(found.t)] = found.y.T
+                filled += len(found.t)
+            if found.status == 0:
+                return path, modes, None
+            which = next(k for k, at in enumerate(found.t_events) if len(at))
+            t, y = float(found.t_events[which][0]), np.array(found.y_events[which][0])
+            if which >= len(modes):
+                return path[:filled], modes, t
+            modes, y = self._changed(t, y, u, modes, which)
+            if filled == len(wanted):
+                return path, modes, None
+        raise InputError(f"dry friction changes its direction without end at {t:.6g} s")
+
+    def _changed(self, t: float, y: Array, u: Array, modes: Modes, which: int) -> tuple[Modes, Array]:
+        """Modes and state after contact `which` has come to rest or torn loose."""
+        now = list(modes)
+        free, dry = self.terms(t, y, u)
+        if modes[which] == 0:
+            now[which] = 1 if hold(free, dry, self.rows, modes)[which] > 0 else -1
+        else:
+            now[which] = 0
+            if self._own[which] >= 0:
+                y[self.plant.n + self._own[which]] = 0.0
+            free, dry = self.terms(t, y, u)
+        stuck = [k for k, mode in enumerate(now) if mode == 0]
+        return settled(free, dry, self.rows, tuple(now), stuck), y
+
+    def _margin(self, k: int, begin: float, u: Array, modes: Modes) -> Callable[[float, Array], float]:
+        """Positive while contact k keeps its mode; at the beginning it is on its edge, which is no event."""
+        n, row = self.plant.n, self.rows[k]
+
+        def margin(t: float, y: Array) -> float:
+            if modes[k]:
+                value = float(modes[k] * (row @ y[n : 2 * n]))
+            else:
+                value = float(1.0 - abs(hold(*self.terms(t, y, u), self.rows, modes)[k]))
+            return value if t > begin else max(value, 1e-300)
+
+        margin.terminal = True  # type: ignore[attr-defined]
+        margin.direction = -1.0  # type: ignore[attr-defined]
+        return margin
+
+    def _call(self, function: ca.Function, t: float, y: Array, ddq: Array, u: Array) -> Array:
+        n = self.plant.n
+        given = self._zeros | {
+            "q": y[:n],
+            "dq": y[n : 2 * n],
+            "ddq": ddq,
+            "input": u,
+            "parameters": self.plant.parameters,
+            "time": np.array([t]),
+            "state": y[2 * n :],
+        }
+        names = [function.name_in(i) for i in range(function.n_in())]
+        return np.asarray(function(*(given.get(name, np.zeros(1)) for name in names)), dtype=float).ravel()
+
+
+class _Left:
+    """Distance from the nearest bound; it ends the integration at zero."""
+
+    terminal = True
+    direction = -1.0
+
+    def __init__(self, n: int, low: Array, high: Array) -> None:
+        self.n, self.low, self.high = n, low, high
+
+    def __call__(self, t: float, y: Array) -> float:
+        q = y[: self.n]
+        return float(min((q - self.low).min(), (self.high - q).min()))

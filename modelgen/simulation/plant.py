@@ -1,0 +1,136 @@
+"""An arm with values for its parameters, ready to move."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.description.objects import Arm
+from modelgen.errors import InputError
+from modelgen.functions import Model, grouped, nominal_base
+from modelgen.simulation.slip import Slip, slip
+from modelgen.transmission import STROKE_MARGIN, of_joint
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Plant:
+    """slip: the functions. parameters: base parameters (p,) in the model's order."""
+
+    slip: Slip
+    parameters: Array
+
+    @property
+    def model(self) -> Model:
+        """The arm's functions, without smoothing of dry friction."""
+        return self.slip.model
+
+    @property
+    def arm(self) -> Arm:
+        """The arm as described."""
+        return self.model.arm
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.arm.coordinates)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the joints that move."""
+        return [self.arm.joints[i].name for i in self.arm.coordinates]
+
+    @cached_property
+    def strokes(self) -> tuple[Array, Array]:
+        """Lowest and highest q (n,) at which the levers exist; infinite for other drives."""
+        low, high = np.full(self.n, -np.inf), np.full(self.n, np.inf)
+        for k, i in enumerate(self.arm.coordinates):
+            span = of_joint(self.arm, self.arm.joints[i]).joint_range()
+            if span is not None:
+                low[k], high[k] = span[0] - STROKE_MARGIN, span[1] + STROKE_MARGIN
+        return low, high
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """Lowest and highest q (n,) of the description's limits; infinite where it gives none."""
+        low, high = np.full(self.n, -np.inf), np.full(self.n, np.inf)
+        for k, i in enumerate(self.arm.coordinates):
+            span = self.arm.joints[i].limits.position
+            if span is not None:
+                low[k], high[k] = span
+        return low, high
+
+    @cached_property
+    def own(self) -> list[int]:
+        """For every contact the coordinate whose speed it is, -1 where it is of several."""
+        rows = self.slip.contacts
+        return [int(np.flatnonzero(r)[0]) if np.count_nonzero(r) == 1 else -1 for r in rows]
+
+
+def plant(
+    arm: Arm,
+    parameters: Mapping[str, float] | None = None,
+    *,
+    lock: Mapping[str, float] | None = None,
+    payload: Sequence[float] = (),
+) -> Plant:
+    """The plant of `arm`.
+
+    parameters: base parameters by name, as `modelgen identify` gives them; by default the description's
+    nominal values. lock: joints held at a coordinate [rad, m] by name. payload: mass [kg] and, if wanted,
+    place x, y, z [m] in the frame of the last link, of a point that the arm carries in addition. Raises
+    InputError for unknown joints, missing nominal values, and parameters that are not the arm's.
+    """
+    for name in lock or {}:
+        if name not in [j.name for j in arm.joints]:
+            raise InputError(f"--lock {name}: found no such joint, expected one of {_names(arm)}")
+    joints = tuple(replace(j, locked=dict(lock or {}).get(j.name, j.locked)) for j in arm.joints)
+    made = slip(replace(arm, joints=joints))
+    model = made.model
+    if parameters is None:
+        values = nominal_base(model)
+    else:
+        if lock:
+            raise InputError("--lock with --parameters: identify the arm with the joint locked instead")
+        values = dict(parameters)
+        names = {b.name for b in model.grouping.base}
+        missing, extra = sorted(names - values.keys()), sorted(values.keys() - names)
+        if missing or extra:
+            what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
+            raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
+    vector = np.array([values[b.name] for b in model.grouping.base])
+    return Plant(made, vector + _payload(model, payload) if len(payload) else vector)
+
+
+def _payload(model: Model, payload: Sequence[float]) -> Array:
+    """What a point mass at the last link adds to the base parameters."""
+    if len(payload) not in (1, 4) or not all(np.isfinite(payload)):
+        raise InputError(f"--payload: found {len(payload)} numbers, expected MASS or MASS,X,Y,Z")
+    m, x, y, z = (*payload, 0.0, 0.0, 0.0)[:4]
+    last = len(model.arm.joints)
+    added = {
+        "XX": m * (y * y + z * z),
+        "XY": -m * x * y,
+        "XZ": -m * x * z,
+        "YY": m * (x * x + z * z),
+        "YZ": -m * y * z,
+        "ZZ": m * (x * x + y * y),
+        "MX": m * x,
+        "MY": m * y,
+        "MZ": m * z,
+        "M": m,
+    }
+    index = {p.name: i for i, p in enumerate(model.standard)}
+    standard = np.zeros(len(model.standard))
+    for name, value in added.items():
+        standard[index[f"{name}{last}"]] = value
+    return np.array(list(grouped(model, standard.tolist()).values()))
+
+
+def _names(arm: Arm) -> str:
+    return ", ".join(joint.name for joint in arm.joints)

@@ -1,0 +1,109 @@
+"""A measured log and the motion that the model makes of its inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset import Prepared
+from modelgen.errors import InputError
+from modelgen.simulation.control import Control, Reference, controller
+from modelgen.simulation.metrics import Scores, scores
+from modelgen.simulation.plant import Plant
+from modelgen.simulation.simulate import simulate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Replay:
+    """t (S,) [s], measured and simulated positions (S, n), window by window with NaN where none ran.
+
+    scores: of what was simulated. windows: how many. ended: why the last one stopped early, if it did.
+    """
+
+    t: Array
+    measured: Array
+    simulated: Array
+    velocities: Array
+    scores: Scores
+    windows: int
+    ended: str = ""
+
+
+def replay(
+    plant: Plant,
+    prepared: Prepared,
+    *,
+    window: float | None = None,
+    control: str = "",
+    bandwidth: float = 5.0,
+    method: str = "",
+    step: float | None = None,
+    start: tuple[Array, Array] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Replay:
+    """The record simulated from its measured initial state with its measured inputs.
+
+    A record without effort is a free motion. window: length [s] after which the simulation starts again
+    from the measured state (multiple shooting; Bock 1983), so that an unstable arm remains comparable; by
+    default the record is one window. control: "pi" or "computed_torque" follow the measured positions as
+    their reference instead of the measured inputs (closed loop). start: q, dq (n,) at the beginning in
+    place of the measured ones. Raises InputError where a window holds fewer than two samples.
+    """
+    p = prepared
+    rate = 1.0 / p.record.step
+    count = len(p.time)
+    length = count if window is None else max(2, round(window * rate) + 1)
+    if window is not None and (not np.isfinite(window) or window * rate < 1):
+        raise InputError(f"--window {window:g}: found less than a sample of {1 / rate:g} s")
+    inputs = np.zeros_like(p.q) if p.input is None else np.asarray(p.input)
+    simulated, velocities = np.full_like(p.q, np.nan), np.full_like(p.q, np.nan)
+    ended = ""
+    begins = list(range(0, count - 1, length - 1))
+    for begin in begins:
+        last = min(count, begin + length)
+        first = (p.q[begin], p.dq[begin]) if begin else start or beginning(p)
+        given: Control | Array = inputs[begin:last]
+        if control:
+            reference = Reference(p.time[begin:last] - p.time[begin], p.q[begin:last])
+            given = controller(plant, control, reference, bandwidth, rate)
+        free = p.input is None and not control
+        low, high = plant.strokes
+        found = simulate(
+            plant,
+            np.clip(first[0], low, high),
+            first[1],
+            (last - 1 - begin) / rate,
+            rate,
+            None if free else given,
+            method=method,
+            step=step,
+        )
+        end = begin + len(found.t)
+        simulated[begin:end], velocities[begin:end] = found.q, found.dq
+        ended = found.ended or ended
+        if progress is not None:
+            progress(float(p.time[last - 1] - p.time[0]))
+    ran = np.isfinite(simulated).all(axis=1)
+    return Replay(p.time, p.q, simulated, velocities, scores(p.q[ran], simulated[ran]), len(begins), ended)
+
+
+def beginning(prepared: Prepared) -> tuple[Array, Array]:
+    """q, dq (n,) where a record begins: measured rates where the log has them, else a parabola's.
+
+    There a filter of both sides knows one side only; the parabola is fitted to the first samples as
+    measured, over the time that the filter of the positions takes to respond, ten samples at least.
+    """
+    record = prepared.record
+    if record.dq is not None:
+        return record.q[0].copy(), record.dq[0].copy()
+    cutoff = prepared.settings.position_cutoff
+    span = 10 if not cutoff else max(10, round(0.5 / cutoff / record.step))
+    span = min(span, len(record.t))
+    t = record.t[:span] - record.t[0]
+    fit = np.linalg.lstsq(np.vander(t, 3, increasing=True), record.q[:span], rcond=None)[0]
+    return fit[0], fit[1]
