@@ -56,6 +56,25 @@ def test_intervals_cover_the_truth_with_white_and_coloured_noise(rho: float) -> 
     assert np.all((ratio > 0.7) & (ratio < 1.5))
 
 
+@pytest.mark.parametrize("rho", [0.0, 0.7])
+def test_claimed_deviations_hold_where_the_fit_takes_much_of_the_noise_in_its_band(rho: float) -> None:
+    # 150 rows, ten columns in the lowest 3 % of the frequencies: the fit takes all of the noise there, and
+    # the residuals' own autocovariance would claim 0.63 and 0.50 of the scatter.
+    t = np.arange(150.0)
+    waves = [f(2 * np.pi * k * t / 160) for k in range(1, 6) for f in (np.sin, np.cos)]
+    table = np.column_stack(waves)[:, None, :]
+    theta, std = [], []
+    for seed in range(200):
+        noise = np.random.default_rng(seed).normal(size=(len(t) + 50, 1))
+        noise = lfilter([np.sqrt(1.0 - rho**2)], [1.0, -rho], noise, axis=0)[50:]
+        found = Regression([noise], [table], [np.ones((len(t), 1), dtype=bool)]).solve()
+        theta.append(found.theta)
+        std.append(np.sqrt(np.diag(found.covariance)))
+    ratio = np.mean(std, axis=0) / np.std(theta, axis=0)
+    assert 0.9 < ratio.mean() < 1.1
+    assert np.all((ratio > 0.7) & (ratio < 1.5))
+
+
 def test_robust_weights_hold_against_outliers() -> None:
     plain, robust = (
         np.abs(regression(3, 0.0, outliers=80).solve(m).theta - TRUTH).max() for m in ("ols", "robust")

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr, solve_toeplitz, solve_triangular
-from scipy.signal import lfilter
+from scipy.linalg import qr, solve_triangular
+
+from modelgen.identification.autocovariance import sandwich
 
 Array = NDArray[np.float64]
 DEPENDENT = 1e-8  # part of a column, of unit length, that the others leave over where it depends on them
 HUBER = 1.345  # 95 % efficient for normal residuals (Huber 1981)
 ROUNDS = 20
-ORDER = 12  # of the residuals' autoregressive model
 
 
 class Triangle:
@@ -115,47 +115,12 @@ class Regression:
         return np.array(found)
 
     def _covariance(self, theta: Array, known: NDArray[np.bool_], weights: Sequence[Array]) -> Array:
-        """Sandwich with the residuals' autocovariance, an autoregressive model by joint.
-
-        X' G X with G the covariance of e = w / A(z) is the Gram matrix of X filtered by 1 / A(z) backwards
-        in time (Ljung 1999, appendix II). Residuals of different joints are taken as independent.
-        """
-        k = int(known.sum())
-        bread, meat = np.zeros((k, k)), np.zeros((k, k))
-        rows = sum(int((w > 0).sum()) for w in weights)
-        left = [e * w for e, w in zip(self.residuals(theta), weights, strict=True)]
-        for j in range(left[0].shape[1]):
-            taps, power = _autoregression([e[:, j] for e in left], [w[:, j] > 0 for w in weights])
-            for table, w in zip(self.columns, weights, strict=True):
-                weighted = table[:, j, known] * w[:, j, None]
-                bread += weighted.T @ weighted
-                coloured = lfilter([1.0], taps, weighted[::-1], axis=0)
-                meat += power * (coloured.T @ coloured)
-        size = np.sqrt(np.diag(bread))
-        inverse = np.linalg.inv(bread / np.outer(size, size)) / np.outer(size, size)
         result = np.zeros((len(known), len(known)))
-        result[np.ix_(known, known)] = inverse @ meat @ inverse * (rows / max(1, rows - k))
+        columns = [c[:, :, known] for c in self.columns]
+        result[np.ix_(known, known)] = sandwich(columns, self.residuals(theta), weights)
         return result
 
 
 def _huber(e: Array) -> Array:
     """Square roots of Huber's weights of residuals of unit size."""
     return np.asarray(np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(e), 1e-300))))
-
-
-def _autoregression(left: Sequence[Array], used: Sequence[NDArray[np.bool_]]) -> tuple[Array, float]:
-    """Taps (1, a1, ...) and power of the innovations of one joint's residuals, zero where not used.
-
-    Yule and Walker's equations: always stable.
-    """
-    count = sum(int(u.sum()) for u in used)
-    order = min(ORDER, count // 20)
-    none = np.concatenate([[1.0], np.zeros(order)])
-    if not order:
-        power = float(sum(np.sum(e**2) for e in left)) / max(1, count)
-        return none, power
-    r = np.array([sum(float(e[lag:] @ e[: len(e) - lag]) for e in left) for lag in range(order + 1)]) / count
-    if r[0] <= 0.0:
-        return none, 0.0
-    a = solve_toeplitz(r[:-1] + np.eye(order)[0] * 1e-9 * r[0], r[1:])
-    return np.concatenate([[1.0], -a]), float(r[0] - a @ r[1:])

@@ -1,0 +1,98 @@
+"""Covariance of least-squares parameters whose residuals hang together from row to row.
+
+A sandwich B (sum of X' G X) B: B the inverse of the weighted normal matrix, G the covariance of each joint's
+noise, an autoregressive model. Residuals are not the noise: the fit has taken a part of it, most of it at the
+slow frequencies at which the columns live, and their autocovariance alone claims too much. What the fit takes
+follows from the model of the noise itself; it is added to what is seen, by fixed-point iteration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_toeplitz
+from scipy.signal import lfilter
+
+Array = NDArray[np.float64]
+ORDER = 12  # of the autoregressive models
+ROUNDS = 30  # of the iteration, at most
+CHANGE = 1e-3  # of the power, at which it ends
+MANY = 1000  # rows per parameter, beyond which the fit has taken nothing that counts
+
+
+def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequence[Array]) -> Array:
+    """Covariance (p, p) of the parameters.
+
+    By record: columns (M, n, p), residuals (M, n), weights (M, n), zero where a row does not count.
+    Residuals of different joints are taken as independent.
+    """
+    n, p = columns[0].shape[1:]
+    x = [[c[:, j] * w[:, j, None] for c, w in zip(columns, weights, strict=True)] for j in range(n)]
+    e = [[r[:, j] * w[:, j] for r, w in zip(residuals, weights, strict=True)] for j in range(n)]
+    count = [sum(int((w[:, j] > 0).sum()) for w in weights) for j in range(n)]
+    normal = sum((part.T @ part for own in x for part in own), np.zeros((p, p)))
+    size = np.sqrt(np.diag(normal))
+    bread = np.linalg.inv(normal / np.outer(size, size)) / np.outer(size, size)
+    seen = [autocovariance(own, number) for own, number in zip(e, count, strict=True)]
+    noise = list(seen)
+    for _ in range(ROUNDS if sum(count) < MANY * p else 0):
+        taken = _taken(x, noise, bread, count)
+        before, noise = noise, [a + b for a, b in zip(seen, taken, strict=True)]
+        if all(abs(a[0] - b[0]) <= CHANGE * a[0] for a, b in zip(noise, before, strict=True)):
+            break
+    return bread @ _meat(x, noise)[0] @ bread
+
+
+def autocovariance(parts: Sequence[Array], count: int) -> Array:
+    """Of one joint's residuals by lag; parts (M,), zero where a row does not count; `count` rows that do."""
+    order = min(ORDER, count // 20)
+    return np.array(
+        [sum(float(e[lag:] @ e[: len(e) - lag]) for e in parts) for lag in range(order + 1)]
+    ) / max(1, count)
+
+
+def autoregression(r: Array) -> tuple[Array, float]:
+    """Taps (1, a1, ...) and power of the innovations by Yule and Walker's equations: always stable."""
+    if len(r) == 1 or r[0] <= 0.0:
+        return np.eye(len(r))[0], max(0.0, float(r[0]))
+    a = solve_toeplitz(r[:-1] + np.eye(len(r) - 1)[0] * 1e-9 * r[0], r[1:])
+    return np.concatenate([[1.0], -a]), max(0.0, float(r[0] - a @ r[1:]))
+
+
+def _meat(x: Sequence[Sequence[Array]], noise: Sequence[Array]) -> tuple[Array, list[list[Array]]]:
+    """Sum of X' G X, and G X by joint and record.
+
+    G of e = w / A(z) is power (1/A)(1/A)', filters run forwards and backwards (Ljung 1999, appendix II).
+    """
+    p = x[0][0].shape[1]
+    meat, coloured = np.zeros((p, p)), []
+    for own, r in zip(x, noise, strict=True):
+        taps, power = autoregression(r)
+        back = [lfilter([1.0], taps, part[::-1], axis=0)[::-1] for part in own]
+        meat += power * sum((b.T @ b for b in back), np.zeros((p, p)))
+        coloured.append([power * lfilter([1.0], taps, b, axis=0) for b in back])
+    return meat, coloured
+
+
+def _taken(
+    x: Sequence[Sequence[Array]], noise: Sequence[Array], bread: Array, count: Sequence[int]
+) -> list[Array]:
+    """What the fit takes off each joint's autocovariance: lags of G - E[e e'],
+
+    e = noise - X B sum(X' noise).
+    """
+    meat, coloured = _meat(x, noise)
+    spread = bread @ meat @ bread
+    result = []
+    for own, own_coloured, r, number in zip(x, coloured, noise, count, strict=True):
+        lost = np.zeros(len(r))
+        for part, gx in zip(own, own_coloured, strict=True):
+            xb, gb = part @ bread, gx @ bread
+            left = gb - part @ spread
+            for lag in range(len(r)):
+                now, later = slice(0, len(part) - lag), slice(lag, None)
+                lost[lag] += np.vdot(left[now], part[later]) + np.vdot(xb[now], gx[later])
+        result.append(lost / max(1, number))
+    return result
