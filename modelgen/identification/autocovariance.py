@@ -42,7 +42,7 @@ def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequ
         before, noise = noise, [a + b for a, b in zip(seen, taken, strict=True)]
         if all(abs(a[0] - b[0]) <= CHANGE * a[0] for a, b in zip(noise, before, strict=True)):
             break
-    return bread @ _meat(x, noise)[0] @ bread
+    return np.asarray(bread @ _meat(x, noise)[0] @ bread)
 
 
 def autocovariance(parts: Sequence[Array], count: int) -> Array:
