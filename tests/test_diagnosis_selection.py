@@ -75,7 +75,7 @@ def test_what_was_put_in_is_named_and_the_gain_measured(effect: str, joint: int,
     if name:
         estimate = found.causes[0].parameters[name]
         assert abs(estimate.value - size) < 4 * estimate.std + 0.05 * size
-    uses = found.extended.joints[joint - 1].effects
+    uses = found.after.arm.joints[joint - 1].effects
     assert effect in {use.name for use in uses}
     assert to_json(found)["causes"][0]["evidence"]["delta_bic"] > 15
 

@@ -22,15 +22,15 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     longest = max(2, round(settings.rest_time * rate))
     for k, gate in enumerate(settings.gates):
         slow = np.abs(dq[:, k]) < gate
-        rest = _long_runs(slow, longest).astype(np.float64)
+        rest = long_runs(slow, longest).astype(np.float64)
         if settings.cutoff and rest.any():
             rest = low_pass(rest[:, None], settings.cutoff, rate, settings.order)[:, 0]
         result[:, k] = ~slow[rows] & (rest[rows] < SHARE)
     return result
 
 
-def _long_runs(flags: np.ndarray, longest: int) -> np.ndarray:
-    """The flags, without runs of True shorter than `longest`."""
+def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:
+    """The flags (N,), without runs of True shorter than `longest`."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(np.int8), [0]))))
     kept = np.zeros(len(flags), dtype=bool)
     for begin, end in edges.reshape(-1, 2):

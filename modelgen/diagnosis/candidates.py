@@ -33,6 +33,8 @@ RIGID = 3e3  # stiffness of a contact, in the scale of stiffness
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
 PERIODIC = "torque_ripple"
+# About what the drives are given, or what working warms: of no meaning in a free motion.
+DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", "friction_warm_up", *COMPLIANT)
 LATER = "payload_change"
 
 
@@ -74,7 +76,7 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
     for name, effect in CATALOGUE.items():
         if name == LATER and len(rows) < 2:
             continue
-        if free and name in ("drive_gain_error", "torque_constant_saturation", "time_delay"):
+        if free and name in DRIVEN:
             continue
         for joint in places(arm, name):
             searched = tuple(p for p in effect.nonlinear if p.grid)

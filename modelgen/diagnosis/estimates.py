@@ -61,12 +61,12 @@ def _units(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
     return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
 
 
-def base_estimates(model: Model, fitted: tuple[Model, Sequence[Rows], Array]) -> Mapping[str, Estimate]:
-    """Base parameters of the extended model."""
-    _, rows, theta = fitted
+def base_estimates(model: Model, rows: Sequence[Rows], theta: Array) -> Mapping[str, Estimate]:
+    """Base parameters of a model from its fit to rows; those that were known have no deviation."""
     system = System(rows, [r.columns for r in rows])
-    spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
+    baseline = rows[0].baseline
+    spread = np.sqrt(np.maximum(0.0, np.diag(baseline.lift @ covariance(system) @ baseline.lift.T)))
     return {
         b.name: Estimate(float(v), float(s), b.unit)
-        for b, v, s in zip(model.grouping.base, theta, spread, strict=True)
+        for b, v, s in zip(model.grouping.base, baseline.base(theta), spread, strict=True)
     }

@@ -10,9 +10,10 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.diagnosis.lack_of_fit import LackOfFit
+from modelgen.diagnosis.outcome import Fitted
+from modelgen.diagnosis.replay import Scores
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
-from modelgen.functions import Model
 
 VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
 
@@ -54,19 +55,10 @@ class Errors:
 
 
 @dataclass(frozen=True)
-class Scores:
-    """Of simulated against measured motion, by joint (n,): F_gof [%], MAE and RMSE [rad, m]."""
-
-    f_gof: Array
-    mae: Array
-    rmse: Array
-
-
-@dataclass(frozen=True)
 class Diagnosis:
-    """Everything that was found. extended: the description with the causes, the arm itself without any.
-
-    test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts.
+    """Everything that was found. before, after: the arm as described and the arm with the causes, fitted to
+    the training records; simulation: of the test record with either; test: rows of the test record;
+    residuals: (M, n) before and after, as the log has its efforts.
     """
 
     arm: Arm
@@ -76,10 +68,9 @@ class Diagnosis:
     not_identifiable: tuple[tuple[str, str], ...]
     lack_of_fit: LackOfFit | None
     errors: Errors
-    simulation: tuple[Scores, Scores] | None
-    extended: Arm
-    extended_model: Model
-    extended_parameters: Array
+    simulation: tuple[Scores | None, Scores | None]
+    before: Fitted
+    after: Fitted
     parameters: Mapping[str, Estimate]
     next_experiment: Mapping[str, Any] | None
     test: Rows
@@ -117,13 +108,9 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         },
         "simulation": {
             name: {"f_gof": [], "mae": [], "rmse": []}
-            if d.simulation is None
-            else {
-                "f_gof": numbers(d.simulation[k].f_gof),
-                "mae": numbers(d.simulation[k].mae),
-                "rmse": numbers(d.simulation[k].rmse),
-            }
-            for k, name in enumerate(("before", "after"))
+            if scores is None
+            else {"f_gof": numbers(scores.f_gof), "mae": numbers(scores.mae), "rmse": numbers(scores.rmse)}
+            for name, scores in zip(("before", "after"), d.simulation, strict=True)
         },
         "next_experiment": d.next_experiment,
         "settings": dict(d.settings),

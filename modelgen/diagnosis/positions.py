@@ -72,7 +72,7 @@ def blur(
     for p, r in zip(train, rows, strict=True):
         count += r.moving.sum(axis=0)
         if counts(p.record).any():
-            again = rows_of(prober, model, prepare(blurred(p.record), p.settings), theta)
+            again = rows_of(prober, model, prepare(blurred(p.record), p.settings), theta, r.baseline)
             change = (again.effort - r.effort) - (again.columns - r.columns) @ theta
             total += (change**2 * r.moving).sum(axis=0)
     return np.asarray(total / np.maximum(count, 1.0))

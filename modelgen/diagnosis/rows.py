@@ -9,22 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
+from modelgen.diagnosis.baseline import Array, Baseline, estimated
 from modelgen.functions import Model
 from modelgen.probing import Motion, Prober
 
-Array = NDArray[np.float64]
+__all__ = ["Array", "Rows", "rows_of"]
 
 
 @dataclass(frozen=True)
 class Rows:
-    """M rows of n joints. effort: (M, n) as the model has its inputs; columns: (M, n, p), one for each base
-    parameter; moving: (M, n), rows that count.
+    """M rows of n joints. effort: (M, n) as the model has its inputs, less what is known of them; columns:
+    (M, n, p), one for each unknown of the baseline; moving: (M, n), rows that count.
     """
 
     prepared: Prepared
     effort: Array
     columns: Array
     moving: NDArray[np.bool_]
+    baseline: Baseline
 
     @cached_property
     def motion(self) -> Motion:
@@ -51,14 +53,26 @@ class Rows:
         return result
 
 
-def rows_of(prober: Prober, model: Model, prepared: Prepared, parameters: Array) -> Rows:
-    """The equations of a record. `parameters`: for what of the regressor depends on them (loads).
+def rows_of(
+    prober: Prober,
+    model: Model,
+    prepared: Prepared,
+    theta: Array | None = None,
+    baseline: Baseline | None = None,
+) -> Rows:
+    """The equations of a record. theta: unknowns, for what of the regressor depends on them (loads).
 
-    A free motion has the effort 0: its model is about 0 = regressor parameters.
+    A free motion has no effort: its equations are 0 = regressor parameters.
     """
+    known = baseline or estimated(model)
+    parameters = known.base(np.zeros(known.lift.shape[1]) if theta is None else theta)
     motion = Motion(prepared.time, prepared.q, prepared.dq, prepared.ddq)
     columns = prober.regressor(model, motion, parameters)
     given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
-    ideal = prober.ideal(model, motion, given)
-    empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving)
-    return Rows(prepared, np.asarray(prepared.parallel(ideal)), empty.filtered(columns), prepared.moving)
+    effort = prober.ideal(model, motion, given)
+    if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
+        effort = effort - columns @ known.fixed
+        columns = columns @ known.lift
+    empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving, known)
+    effort = np.asarray(prepared.parallel(effort))
+    return Rows(prepared, effort, empty.filtered(columns), prepared.moving, known)

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Record, Settings, check_separate, choose, prepare, read, split
+from modelgen.dataset import Record, Settings, check_separate, choose, prepare, read, split
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, candidates, columns
-from modelgen.diagnosis.errors import errors
+from modelgen.diagnosis.baseline import estimated, held
+from modelgen.diagnosis.candidates import LATER, Candidate, candidates
+from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
+from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.objects import Diagnosis, Named
+from modelgen.diagnosis.outcome import extended, fitted, residuals, rows_twice, unit_of_efforts
 from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.replay import replay
@@ -24,14 +26,13 @@ from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import PRACTICAL, Selection, select
 from modelgen.diagnosis.system import mean_squares, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
-from modelgen.effects import described
 from modelgen.errors import InputError
-from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober
 
 Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
+FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
 
 
@@ -50,9 +51,16 @@ def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path |
 
 
 def settings_for(found: Sequence[Record], cutoff: float | None) -> Settings:
-    """A wide band: what friction and backlash do lies far above the motion's own frequencies."""
-    rate = 1.0 / found[0].step
-    return Settings(cutoff=min(CUTOFF, rate / SAMPLES) if cutoff is None else cutoff)
+    """A wide band: what friction and backlash do lies far above the motion's own frequencies.
+
+    Narrower for free motions, which lack what drives do and whose noise is all in the positions.
+    """
+    rate, free = 1.0 / found[0].step, found[0].input is None
+    widest = FREE_CUTOFF if free else CUTOFF
+    chosen = Settings(cutoff=min(widest, rate / SAMPLES) if cutoff is None else cutoff)
+    if not free:
+        return chosen
+    return settings_of_swings(found, chosen)
 
 
 def diagnose(
@@ -67,31 +75,34 @@ def diagnose(
 
     Raises InputError where the records cannot answer.
     """
-    lengths = [period_of(record, period) for record in found[:-1]]
-    chosen = with_whole_rows(choose(list(found), settings_for(found, cutoff)), lengths)
+    free = found[0].input is None
+    settings = settings_for(found, cutoff)
+    if free:
+        found = [released(record, settings) for record in found]
+    lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
+    chosen = with_whole_rows(choose(list(found), settings), lengths)
     periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
     prepared = [prepare(record, chosen) for record in found]
+    if free:
+        prepared = [away_from_rest(p) for p in prepared]
     model, prober = build_model(arm), Prober(arm)
     train, test = prepared[:-1], prepared[-1]
-    rows = _rows(prober, model, train)
+    rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
     _check_motion(arm, rows)
     pool = candidates(arm, prober, rows)
     first = weighted_fit(rows, [r.columns for r in rows])
     blurs = blur(train, rows, prober, model, first)
     selection = select(rows, prober, pool, periods, progress, blur=blurs)
-    base = selection.system.theta[: rows[0].columns.shape[2]]
+    baseline = rows[0].baseline
+    base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit = lack_of_fit(selection.system)
     verdict, reason = _verdict(selection, fit, feigned(blurs, mean_squares(selection.system)))
     named = _named(selection, pool, prober, model, base, rows)
-    after = _extended(arm, selection, rows, train)
-    plain = weighted_fit(rows, [r.columns for r in rows])
-    held = rows_of(prober, model, test, plain)
-    pair = _residuals(held, plain, selection, after, prober, base)
-    unit = _unit(test)
-    simulated = None
-    if verdict == "named":
-        one, two = replay(model, plain, held), replay(after[1], after[2], held)
-        simulated = None if one is None or two is None else (one[0], two[0])
+    before = fitted(arm, model, rows)
+    after = extended(arm, before, selection, train)
+    last = rows_of(prober, model, test, before.theta, baseline)
+    pair = residuals(last, before, selection, after, prober, base)
+    played = (replay(before, last), replay(after, last)) if verdict == "named" or free else (None, None)
     return Diagnosis(
         arm,
         verdict,
@@ -99,27 +110,17 @@ def diagnose(
         named,
         _absorbed(arm, rows, selection),
         fit,
-        errors(held, pair[0], pair[1], unit),
-        simulated,
-        *after[:3],
-        base_estimates(after[1], after[3]),
+        motion_errors(found[-1], *played) if free else errors(last, *pair, unit_of_efforts(test)),
+        played,
+        before,
+        after,
+        base_estimates(after.model, after.rows, after.theta),
         next_experiment(named),
-        held,
+        last,
         pair,
         selection,
         {"cutoff_hz": chosen.cutoff, "position_cutoff_hz": chosen.position_cutoff, "factor": chosen.factor},
     )
-
-
-def _rows(prober: Prober, model: Model, prepared: Sequence[Prepared]) -> list[Rows]:
-    """Twice where columns depend on the parameters."""
-    theta = np.zeros(len(model.grouping.base))
-    rows = [rows_of(prober, model, p, theta) for p in prepared]
-    (regressor,) = [f for f in model.functions if f.name == "regressor"]
-    if {"load", "state"} & {a.name for a in regressor.arguments}:
-        theta = weighted_fit(rows, [r.columns for r in rows])
-        rows = [rows_of(prober, model, p, theta) for p in prepared]
-    return rows
 
 
 def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
@@ -186,68 +187,6 @@ def _named(
         )
         result.append(Named(c.effect, c.joint, values, cause.delta_bic, cause.cross_gain, alias, rivals))
     return tuple(result)
-
-
-def _extended(
-    arm: Arm, selection: Selection, rows: Sequence[Rows], train: Sequence[Prepared]
-) -> tuple[Arm, Model, Array, tuple[Model, Sequence[Rows], Array]]:
-    """The arm with the causes, its model, its base parameters fitted anew, and what they were fitted to."""
-    causes = [
-        (c.trial.candidate.effect, c.trial.candidate.joint, c.trial.parameters) for c in selection.causes
-    ]
-    bigger = extended_arm(arm, causes)
-    model = build_model(bigger)
-    if not causes:
-        theta = weighted_fit(rows, [r.columns for r in rows])
-        return bigger, model, theta, (model, rows, theta)
-    prober = Prober(bigger)
-    own = _rows(prober, model, [_seen_by(p, bigger) for p in train])
-    if any(effect == LATER for effect, _, _ in causes):
-        # the first record is without it
-        own = [rows[0], *own[1:]] if own[0].columns.shape == rows[0].columns.shape else own
-    theta = weighted_fit(own, [r.columns for r in own])
-    return bigger, model, theta, (model, own, theta)
-
-
-def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
-    """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
-    record = prepared.record
-    if not any(u.name == "lever_geometry" for j in arm.joints for u in j.effects) or not any(
-        record.motor_side
-    ):
-        return prepared
-    return prepare(replace(record, arm=described(arm)), prepared.settings)
-
-
-def _residuals(
-    held: Rows,
-    plain: Array,
-    selection: Selection,
-    after: tuple[Arm, Model, Array, object],
-    prober: Prober,
-    base: Array,
-) -> tuple[Array, Array]:
-    """On the test record, in the unit of its efforts: of the arm as described, and of the extended one."""
-    before = (held.effort - held.columns @ plain) * held.gain
-    if not selection.causes:
-        return before, before
-    bigger, model, theta, _ = after
-    if any(c.trial.candidate.effect in (*COMPLIANT, LATER) for c in selection.causes):
-        table = [held.columns]
-        for cause in selection.causes:
-            # a payload that came between the records stays
-            found = columns(cause.trial.candidate, cause.trial.values, [held, held], prober, base)
-            assert found is not None
-            table.append(found[1])
-        left = held.effort - np.concatenate(table, axis=2) @ selection.system.theta
-        return before, left * held.gain
-    rows = rows_of(Prober(bigger), model, _seen_by(held.prepared, bigger), theta)
-    return before, (rows.effort - rows.columns @ theta) * held.gain
-
-
-def _unit(test: Prepared) -> str:
-    units = list(dict.fromkeys(test.effort_unit)) if test.input is not None else []
-    return ", ".join(units) if units else "A"
 
 
 def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tuple[str, str], ...]:

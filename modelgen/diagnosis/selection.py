@@ -62,7 +62,7 @@ def select(
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
     for turn in range(MOST):
-        court = Court(system, rows, prober, system.theta[:p])
+        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]))
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
         for k, candidate in enumerate(pool):
@@ -177,6 +177,6 @@ def _masked(rows: Sequence[Rows], half: int) -> tuple[list[Rows], list[Rows]]:
     for r in rows:
         flags = np.zeros(len(r.effort), dtype=bool)
         flags[: len(flags) // 2] = True
-        first.append(Rows(r.prepared, r.effort, r.columns, r.moving & flags[:, None]))
-        second.append(Rows(r.prepared, r.effort, r.columns, r.moving & ~flags[:, None]))
+        first.append(replace(r, moving=r.moving & flags[:, None]))
+        second.append(replace(r, moving=r.moving & ~flags[:, None]))
     return (first, second) if half == 0 else (second, first)

@@ -212,6 +212,8 @@ def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
     n = rows[0].effort.shape[1]
     weights = np.ones(n)
     theta = np.zeros(columns[0].shape[2])
+    if not len(theta):
+        return theta
     for turn in range(3):
         left, right = stacked(rows, columns, weights)
         norms = np.linalg.norm(left, axis=0)

@@ -20,6 +20,8 @@ from modelgen.probing import Prober, with_effect
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
 SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
 ONE_SIGNED = (
+    "drive_inertia",
+    "spring",
     "load_dependent_friction",
     "stribeck_friction",
     "fluid_drag",

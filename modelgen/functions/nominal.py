@@ -20,11 +20,7 @@ def nominal_standard(model: Model) -> dict[str, float]:
     for an effect without a nominal value, and for an arm in a fluid, whose volumes have none.
     """
     arm = model.arm
-    values: dict[str, float] = {}
-    for i, link in enumerate(arm.links):
-        if link is None:
-            raise InputError(f"{arm.name}: link {arm.joints[i].name} has no nominal inertials", arm.where)
-        values |= {f"{name}{i + 1}": value for name, value in _about_origin(link).items()}
+    values = nominal_links(model)
     for effect in applied_effects(arm):
         for parameter, symbol in effect.parameters:
             if parameter.name in effect.nominal:
@@ -37,6 +33,17 @@ def nominal_standard(model: Model) -> dict[str, float]:
     return {p.name: values[p.name] for p in model.standard}
 
 
+def nominal_links(model: Model) -> dict[str, float]:
+    """Nominal standard parameters of the links alone, by name. Raises InputError where a link has none."""
+    arm = model.arm
+    values: dict[str, float] = {}
+    for i, link in enumerate(arm.links):
+        if link is None:
+            raise InputError(f"{arm.name}: link {arm.joints[i].name} has no nominal inertials", arm.where)
+        values |= {f"{name}{i + 1}": value for name, value in _about_origin(link).items()}
+    return values
+
+
 def nominal_base(model: Model) -> dict[str, float]:
     """Nominal base parameters by name, in the order of `parameters`. Raises as nominal_standard does."""
     return grouped(model, list(nominal_standard(model).values()))
@@ -45,7 +52,9 @@ def nominal_base(model: Model) -> dict[str, float]:
 def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
     """Base parameters by name that the standard vector gives, both in the model's order."""
     return {
-        base.name: float(sum(standard[i] * _number(factor, model.arm.symbols) for i, factor in base.terms))
+        base.name: float(
+            sum(standard[i] * factor_value(factor, model.arm.symbols) for i, factor in base.terms)
+        )
         for base in model.grouping.base
     }
 
@@ -67,7 +76,7 @@ def _about_origin(link: Inertial) -> Mapping[str, float]:
     }
 
 
-def _number(factor: float | sp.Expr, symbols: Mapping[str, float]) -> float:
+def factor_value(factor: float | sp.Expr, symbols: Mapping[str, float]) -> float:
     """A factor of the grouping with the values of its symbols."""
     if isinstance(factor, sp.Expr):
         factor = factor.subs({symbol: symbols[str(symbol)] for symbol in factor.free_symbols})

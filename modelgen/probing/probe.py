@@ -103,6 +103,10 @@ class Prober:
         known = {"input": given, "state": states}
         return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
 
+    def states(self, motion: Motion, parameters: Array) -> Array:
+        """States of the arm's own effects at every sample (N, s), from zero at the first."""
+        return self._states(self._own, motion, (), parameters)
+
     @cached_property
     def _own(self) -> Equations:
         """Equations of the arm with its own effects."""

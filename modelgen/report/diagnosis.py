@@ -9,13 +9,10 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.diagnosis.candidates import LATER
 from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.replay import WINDOW, replay
 from modelgen.diagnosis.rows import Array
 from modelgen.effects import CATALOGUE
 from modelgen.figures import COLOURS, figure, svg
-from modelgen.functions import build_model
 from modelgen.resources import templates_folder
 
 _SECONDS = 10.0  # of the test record that the pictures over time show
@@ -119,9 +116,9 @@ def _errors(d: Diagnosis) -> list[Sequence[str]]:
 
 
 def _simulation(d: Diagnosis) -> list[Sequence[str]]:
-    if d.simulation is None:
-        return []
     one, two = d.simulation
+    if one is None or two is None:
+        return []
     return [
         (
             str(j + 1),
@@ -207,32 +204,24 @@ def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
 
 
 def _replay(d: Diagnosis) -> Markup:
-    """Measured and simulated positions of the first windows of the test record."""
-    if d.simulation is None or any(c.effect == LATER for c in d.causes):
+    """Measured and simulated positions of the first windows of the test record, before and after."""
+    shown = [s for s in d.simulation if s is not None]
+    if not shown:
         return Markup()
-    plain = build_model(d.arm)
-    names = [b.name for b in plain.grouping.base]
-    values = np.array([d.parameters[n].value if n in d.parameters else 0.0 for n in names])
-    found = replay(d.extended_model, d.extended_parameters, d.test), replay(plain, values, d.test)
-    if found[0] is None:
-        return Markup()
-    p = d.test.prepared
-    n = p.q.shape[1]
-    made, axes = figure(n, 1, (9.0, 1.7 * n))
-    path = found[0][1][:12]
-    length = path.shape[1]
-    trim, step = int(p.rows[0]), p.record.step
+    n = shown[0].measured.shape[2]
+    made, axes = figure(n, 1, (9.0, 2.1 * n))
+    labels = (("model as described", COLOURS[0]), ("extended model", COLOURS[1]))
     for j in range(n):
-        t = p.time[trim : trim + length * len(path)]
-        axes[j, 0].plot(t, p.q[trim : trim + len(t), j], color="#999999", label="measured")
-        for w in range(len(path)):
-            begin = p.time[trim + w * length]
-            axes[j, 0].plot(
-                begin + step * np.arange(length),
-                path[w, :, j],
-                color=COLOURS[1],
-                label=f"extended model, windows of {WINDOW:g} s" if w == 0 else None,
-            )
+        for scores, (label, colour) in zip(d.simulation, labels, strict=True):
+            if scores is None or (label == "extended model" and not d.causes):
+                continue
+            for w in range(min(12, len(scores.t))):
+                t = scores.t[w]
+                if colour == COLOURS[0]:
+                    first = "measured" if w == 0 else None
+                    axes[j, 0].plot(t, scores.measured[w, :, j], color="#999999", linewidth=2.2, label=first)
+                text = label if w == 0 else None
+                axes[j, 0].plot(t, scores.simulated[w, :, j], color=colour, linewidth=0.9, label=text)
         axes[j, 0].set_ylabel(f"joint {j + 1}")
     axes[0, 0].legend(loc="upper right", fontsize=7)
     axes[-1, 0].set_xlabel("time [s]")

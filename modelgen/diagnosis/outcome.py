@@ -1,0 +1,105 @@
+"""The model as described and the extended one, fitted, and what either leaves of the test record."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.dataset import Prepared, prepare
+from modelgen.description import Arm
+from modelgen.diagnosis.baseline import Baseline, estimated, held
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns
+from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.system import weighted_fit
+from modelgen.effects import described
+from modelgen.extension import extended_arm
+from modelgen.functions import Model, build_model
+from modelgen.probing import Prober
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model fitted to the training records. theta: (k,) unknowns of the rows' baseline."""
+
+    arm: Arm
+    model: Model
+    rows: Sequence[Rows]
+    theta: Array
+
+    @property
+    def parameters(self) -> Array:
+        """Base parameters (p,)."""
+        return self.rows[0].baseline.base(self.theta)
+
+
+def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> Fitted:
+    """The model with the parameters that explain the rows best."""
+    return Fitted(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
+
+
+def rows_twice(prober: Prober, model: Model, prepared: Sequence[Prepared], baseline: Baseline) -> list[Rows]:
+    """The records' equations; made twice where columns depend on the parameters."""
+    rows = [rows_of(prober, model, p, None, baseline) for p in prepared]
+    (regressor,) = [f for f in model.functions if f.name == "regressor"]
+    if {"load", "state"} & {a.name for a in regressor.arguments}:
+        theta = weighted_fit(rows, [r.columns for r in rows])
+        rows = [rows_of(prober, model, p, theta, baseline) for p in prepared]
+    return rows
+
+
+def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Prepared]) -> Fitted:
+    """The arm with the causes, everything else fitted anew."""
+    causes = [
+        (c.trial.candidate.effect, c.trial.candidate.joint, c.trial.parameters) for c in selection.causes
+    ]
+    if not causes:
+        return before
+    bigger = extended_arm(arm, causes)
+    model = build_model(bigger)
+    known = held(model) if train[0].input is None else estimated(model)
+    own = rows_twice(Prober(bigger), model, [_seen_by(p, bigger) for p in train], known)
+    if (
+        any(effect == LATER for effect, _, _ in causes)
+        and own[0].columns.shape == before.rows[0].columns.shape
+    ):
+        own = [before.rows[0], *own[1:]]  # the first record is without it
+    return fitted(bigger, model, own)
+
+
+def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
+    """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
+    record = prepared.record
+    if not any(u.name == "lever_geometry" for j in arm.joints for u in j.effects) or not any(
+        record.motor_side
+    ):
+        return prepared
+    return prepare(replace(record, arm=described(arm)), prepared.settings)
+
+
+def residuals(
+    test: Rows, before: Fitted, selection: Selection, after: Fitted, prober: Prober, base: Array
+) -> tuple[Array, Array]:
+    """On the test record (M, n), in the unit of its efforts: before and after. base: of `prober`'s arm."""
+    old = (test.effort - test.columns @ before.theta) * test.gain
+    if not selection.causes:
+        return old, old
+    if any(c.trial.candidate.effect in (*COMPLIANT, LATER) for c in selection.causes):
+        table = [test.columns]
+        for cause in selection.causes:
+            # a payload that came between the records stays
+            found = columns(cause.trial.candidate, cause.trial.values, [test, test], prober, base)
+            assert found is not None
+            table.append(found[1])
+        left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
+        return old, left * test.gain
+    seen = _seen_by(test.prepared, after.arm)
+    rows = rows_of(Prober(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
+    return old, (rows.effort - rows.columns @ after.theta) * test.gain
+
+
+def unit_of_efforts(test: Prepared) -> str:
+    """Of the log's efforts; several where joints differ."""
+    return ", ".join(dict.fromkeys(test.effort_unit)) or "A"

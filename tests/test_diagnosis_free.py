@@ -1,0 +1,87 @@
+"""Free swings, whose logs have no effort: the scale is that of the described links."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+from witness.free_swings import Link
+
+from modelgen.cli.app import app
+from modelgen.description import Arm, load
+from modelgen.diagnosis.objects import Diagnosis
+from modelgen.diagnosis.run import diagnose, records
+from modelgen.effects import known_effects
+
+ANGLES = (20, 30, 40)  # deg
+# Link 2 of the shipped gravity arm: 6.743220 kg at 0.193949 m, 0.056052 kg m^2 about its centre of mass.
+MOMENT = 6.743220 * 0.193949 * 9.81
+BARE = Link(0.056052 + 6.743220 * 0.193949**2, MOMENT, 0.235819, 0.187307)
+STIFF = 0.1 * MOMENT
+
+
+@pytest.fixture(scope="module")
+def arm(checkout: Path) -> Arm:
+    return load(checkout / "arms.yaml", known_effects())["gravity_link2"]
+
+
+def swings(link: Link, folder: Path) -> tuple[list[str], str]:
+    files: list[str] = []
+    for angle in (*ANGLES, *ANGLES, 30):
+        file = folder / f"{len(files)}.csv"
+        table = link.swing(radians(angle), len(files))
+        np.savetxt(file, table, delimiter=",", header="t,q1", comments="", fmt="%.6g")
+        files.append(str(file))
+    return files[:-1], files[-1]
+
+
+def diagnosed(arm: Arm, link: Link, folder: Path) -> Diagnosis:
+    train, test = swings(link, folder)
+    return diagnose(arm, records(arm, train, [test], None))
+
+
+def test_nothing_is_named_where_the_arm_is_as_described(arm: Arm, tmp_path: Path) -> None:
+    found = diagnosed(arm, BARE, tmp_path)
+    assert found.causes == ()
+    assert found.errors.unit == "rad"
+    # the swing as a whole follows the description, with friction fitted: a tenth of a degree
+    assert found.errors.before[0] < radians(0.2)
+    assert found.parameters["FC1"].value == pytest.approx(BARE.coulomb, rel=0.05)
+    assert found.parameters["FV1"].value == pytest.approx(BARE.viscous, rel=0.05)
+
+
+def test_spring_with_shifted_rest_and_stiction(arm: Arm, tmp_path: Path) -> None:
+    link = replace(BARE, stiffness=STIFF, rest=radians(15), excess=0.15, velocity=0.15)
+    found = diagnosed(arm, link, tmp_path)
+    assert [(c.effect, c.joint) for c in found.causes] == [("spring", 1), ("stribeck_friction", 1)]
+    spring = found.causes[0].parameters
+    assert spring["stiffness"].value == pytest.approx(STIFF, rel=0.05)
+    assert -spring["preload"].value / spring["stiffness"].value == pytest.approx(radians(15), rel=0.05)
+    assert found.errors.gain[0] > 85.0
+    before, after = found.simulation
+    assert before is not None
+    assert after is not None
+    assert after.f_gof[0] > 95.0 > before.f_gof[0]
+
+
+def test_links_without_inertials_give_no_scale(checkout: Path, tmp_path: Path) -> None:
+    text = (checkout / "examples/case_studies/dfki_arm.yaml").read_text(encoding="utf-8")
+    (tmp_path / "arm.yaml").write_text(text, encoding="utf-8")
+    files: list[str] = []
+    for k in range(3):
+        swing = BARE.swing(0.5, k, length=3.0)
+        table = np.column_stack([swing, 0.5 * swing[:, 1]])
+        np.savetxt(tmp_path / f"{k}.csv", table, delimiter=",", header="t,q1,q2", comments="", fmt="%.6g")
+        files.append(str(tmp_path / f"{k}.csv"))
+    call = ["diagnose", str(tmp_path / "arm.yaml"), "--arm", "double_pendulum", "--train", files[0]]
+    call += ["--train", files[1], "--test", files[2], "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 2
+    said = " ".join(result.stderr.split())
+    assert "link shoulder has no nominal inertials" in said
+    assert "no effort column" in said
+    assert not (tmp_path / "out").exists()
