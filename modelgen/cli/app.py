@@ -107,6 +107,7 @@ def identify(
     arms: given.Arms = None,
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
+    preset: given.Preset = "default",
     method: given.Method = "wls",
     without: given.Without = "",
     as_json: given.Json = False,
@@ -117,7 +118,7 @@ def identify(
 
     chosen = options(without, given.Gains.KNOWN, False, False, None)
     _, (found,) = selected(arms, [arm])
-    run(found, train, test or [], out, chosen, mapping, cutoff, method, as_json=as_json)
+    run(found, train, test or [], out, chosen, mapping, cutoff, method, preset=preset, as_json=as_json)
 
 
 @app.command()

@@ -60,6 +60,9 @@ CutOff = Annotated[
     float | None,
     typer.Option(metavar="HZ", help="Low-pass of effort and regressor.", show_default=False),
 ]
+Preset = Annotated[
+    str, typer.Option(metavar="NAME", help="Processing: default, paper or paper_parallel, see docs/logs.md.")
+]
 Period = Annotated[
     float | None,
     typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),

@@ -11,7 +11,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 from modelgen.cli.output import print_json, print_table
-from modelgen.dataset import Settings, choose, gather, prepare, split
+from modelgen.dataset import Prepared, Settings, choose, described, gather, prepare, spectra_svg, split
+from modelgen.dataset import preset as processing
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
@@ -29,6 +30,7 @@ def run(
     cutoff: float | None,
     method: str,
     *,
+    preset: str,
     as_json: bool,
 ) -> None:
     """Identify and write everything into `out`. Raises InputError."""
@@ -45,17 +47,21 @@ def run(
                 raise InputError("found no test record, expected one: --test LOG")
             first, second = split(training[0])
             training, testing = [first], [second]
-        chosen = choose(training, Settings(cutoff=cutoff))
+        if cutoff is not None and preset != "default":
+            raise InputError(f"--cutoff {cutoff:g}: --preset {preset} has its own, expected one of both")
+        asked = Settings(cutoff=cutoff) if preset == "default" else processing(preset, 1 / training[0].step)
+        chosen = choose(training, asked)
         bar.update(task, description="identifying")
+        prepared = [prepare(r, chosen) for r in training]
         found = identify(
-            [prepare(r, chosen) for r in training],
+            prepared,
             arm,
             options,
             test=[prepare(r, chosen) for r in testing],
             method=method,
         )
-    data = to_json(found) | {"cutoff_hz": chosen.cutoff}
-    _write(found, data, out)
+    data = to_json(found) | {"cutoff_hz": chosen.cutoff, "processing": described(prepared[0])}
+    _write(found, data, prepared[0], out)
     if as_json:
         print_json(data)
         return
@@ -78,7 +84,7 @@ def run(
         [str(j + 1), f"{t.rmse[j]:.4g}", t.unit[j], f"{t.nrmse_percent[j]:.1f}"] for j in range(len(t.rmse))
     ]
     print_table("test records", dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right"), table)
-    typer.echo(data["verdict"])
+    typer.echo("\n".join([*data["processing"], data["verdict"]]))
 
 
 def picture(found: Validation) -> str:
@@ -94,13 +100,14 @@ def picture(found: Validation) -> str:
     return svg(made)
 
 
-def _write(found: Identification, data: object, out: Path) -> None:
+def _write(found: Identification, data: object, first: Prepared, out: Path) -> None:
     """Every file whole: written beside its place, then moved."""
     values = "".join(f"  {e.name}: {e.value:.12g}\n" for e in found.estimates)
     files = {
         "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
         f"{found.arm.name}_parameters.yaml": f"schema: 1\narm: {found.arm.name}\nparameters:\n{values}",
     }
+    files["spectra.svg"] = spectra_svg(first)
     if found.test is not None:
         files["test.svg"] = picture(found.test)
     try:
