@@ -195,7 +195,7 @@ def _energy(p: Plant, found: Trajectory) -> tuple[float, float]:
         given = {
             "q": found.q[k],
             "dq": found.dq[k],
-            "parameters": p.parameters,
+            "parameters": p.base,
             "state": found.states[k],
             "time": np.array([found.t[k]]),
         }

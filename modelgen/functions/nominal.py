@@ -40,7 +40,7 @@ def nominal_links(model: Model) -> dict[str, float]:
     for i, link in enumerate(arm.links):
         if link is None:
             raise InputError(f"{arm.name}: link {arm.joints[i].name} has no nominal inertials", arm.where)
-        values |= {f"{name}{i + 1}": value for name, value in _about_origin(link).items()}
+        values |= {f"{name}{i + 1}": value for name, value in about_origin(link).items()}
     return values
 
 
@@ -59,7 +59,8 @@ def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
     }
 
 
-def _about_origin(link: Inertial) -> Mapping[str, float]:
+def about_origin(link: Inertial) -> Mapping[str, float]:
+    """The ten standard parameters of a link by name, about the origin of its frame."""
     m, (x, y, z) = link.mass, link.com
     xx, xy, xz, yy, yz, zz = link.inertia
     return {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -11,13 +12,23 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from modelgen.backends.casadi_function import casadi_function
-from modelgen.errors import InputError
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sticking import Modes, accelerated, hold, settled
 
 Array = NDArray[np.float64]
 METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
+LEFT = -1  # the event of a coordinate that leaves its range
 _EVENTS = 10_000  # of one interval: more is no motion
+
+
+@dataclass(frozen=True)
+class Phase:
+    """States (k, 2n + z) at the samples reached, and where it ended: contact `event`, LEFT or None."""
+
+    path: Array
+    t: float
+    y: Array
+    event: int | None
 
 
 class Adaptive:
@@ -50,6 +61,8 @@ class Adaptive:
         n = self.plant.n
         free, dry = self.terms(t, y, u)
         ddq = accelerated(free, dry, hold(free, dry, self.rows, modes), modes, self._own)
+        if not np.isfinite(ddq).all():
+            raise FloatingPointError("its state is not finite")
         drift = self._call(self._rates, t, y, ddq, u) if self._rates else np.zeros(0)
         return np.concatenate([y[n : 2 * n], ddq, drift])
 
@@ -66,45 +79,68 @@ class Adaptive:
 
     def run(
         self, times: Sequence[float], y: Array, u: Array, modes: Modes, low: Array, high: Array
-    ) -> tuple[Array, Modes, float | None]:
-        """States at `times` (the first is where `y` holds), modes at the end, and when it left low..high.
+    ) -> tuple[Array, Modes, str, float]:
+        """States at `times` (the first is where `y` holds), modes at the end, why it ended early and when.
 
-        Constant input. Raises InputError where the integrator gives up or friction never settles.
+        Constant input. The reason is empty where all is well, and "left" at the edge of low..high.
         """
-        t, end, n = times[0], times[-1], self.plant.n
+        t, end = times[0], times[-1]
         wanted = np.asarray(times)
         path = np.empty((len(wanted), len(y)))
         path[0] = y
         filled = 1
         for _ in range(_EVENTS):
-            events = [self._margin(k, t, u, modes) for k in range(len(modes))]
-            bounds = [_Left(n, low, high)] if np.isfinite(low).any() or np.isfinite(high).any() else []
-            found = solve_ivp(
-                lambda at, x, now=modes: self.rate(at, x, u, now),
-                (t, end),
-                y,
-                method=self.method,
-                rtol=self.rtol,
-                atol=self.atol,
-                events=[*events, *bounds] or None,
-                t_eval=wanted[filled:],
-                max_step=max(end - t, 1e-12),
-            )
-            if found.status < 0 or not np.isfinite(found.y).all():
-                raise InputError(f"the integrator gave up at {t:.6g} s: {found.message}")
-            if len(found.t):
-                path[filled : filled + len(found.t)] = found.y.T
-                filled += len(found.t)
-            if found.status == 0:
-                return path, modes, None
-            which = next(k for k, at in enumerate(found.t_events) if len(at))
-            t, y = float(found.t_events[which][0]), np.array(found.y_events[which][0])
-            if which >= len(modes):
-                return path[:filled], modes, t
-            modes, y = self._changed(t, y, u, modes, which)
+            try:
+                found = self._phase(t, end, y, u, modes, wanted[filled:], low, high)
+            except (FloatingPointError, RuntimeError) as error:
+                return path[:filled], modes, str(error), t
+            path[filled : filled + len(found.path)] = found.path
+            filled += len(found.path)
+            if found.event is None:
+                return path, modes, "", end
+            t, y = found.t, found.y
+            if found.event == LEFT:
+                return path[:filled], modes, "left", t
+            modes, y = self._changed(t, y, u, modes, found.event)
             if filled == len(wanted):
-                return path, modes, None
-        raise InputError(f"dry friction changes its direction without end at {t:.6g} s")
+                return path, modes, "", end
+        return path[:filled], modes, "dry friction changes its direction without end", t
+
+    def _phase(
+        self,
+        t: float,
+        end: float,
+        y: Array,
+        u: Array,
+        modes: Modes,
+        times: Array,
+        low: Array,
+        high: Array,
+    ) -> Phase:
+        """From t until a contact changes its mode, a coordinate leaves low..high, or to the end."""
+        events: list[Callable[[float, Array], float]] = [
+            self._margin(k, t, u, modes) for k in range(len(modes))
+        ]
+        if np.isfinite(low).any() or np.isfinite(high).any():
+            events.append(_Left(self.plant.n, low, high))
+        found = solve_ivp(
+            lambda at, x: self.rate(at, x, u, modes),
+            (t, end),
+            y,
+            method=self.method,
+            rtol=self.rtol,
+            atol=self.atol,
+            events=events or None,
+            t_eval=times,
+        )
+        if found.status < 0:
+            raise RuntimeError(f"the integrator gave up: {found.message}")
+        path = found.y.T if len(found.t) else np.empty((0, len(y)))
+        if found.status == 0:
+            return Phase(path, end, path[-1], None)
+        which = next(k for k, at in enumerate(found.t_events) if len(at))
+        at, state = float(found.t_events[which][0]), np.array(found.y_events[which][0])
+        return Phase(path, at, state, which if which < len(modes) else LEFT)
 
     def _changed(self, t: float, y: Array, u: Array, modes: Modes, which: int) -> tuple[Modes, Array]:
         """Modes and state after contact `which` has come to rest or torn loose."""

@@ -81,7 +81,7 @@ class _Cascade:
         self.functions = _Functions(plant, "motor_from_joint", "mass_matrix", "drive_gain")
         self.limit = current_limits(plant)
         q = reference.q[0]
-        mass = self.functions.call("mass_matrix", q=q, parameters=plant.parameters)[0]
+        mass = self.functions.call("mass_matrix", q=q, parameters=plant.base)[0]
         gain = self.functions.call("drive_gain", q=q)[0]
         motor = self.functions.call("motor_from_joint", q=q, dq=np.ones(plant.n))
         # dq_m = k1 dq, and an input u accelerates the motor by k1 K u / M.
@@ -138,9 +138,7 @@ def computed_torque(
     bandwidth: of the critically damped error [Hz]. parameters: base parameters that the controller
     believes in (p,), by default the plant's own.
     """
-    return _ComputedTorque(
-        plant, reference, bandwidth, plant.parameters if parameters is None else parameters
-    )
+    return _ComputedTorque(plant, reference, bandwidth, plant.base if parameters is None else parameters)
 
 
 def controller(plant: Plant, name: str, reference: Reference, bandwidth: float, rate: float) -> Control:

@@ -127,9 +127,16 @@ static int evaluate(double t, const double *y, const double *u, const double *p,
 static int settle(const double *out, const int *open, int *mode)
 {
     double s[AT_LEAST_1(C)], ddq[N];
+    int able[AT_LEAST_1(C)];
     for (int c = 0; c < C; ++c) {
-        if (open[c]) {
-            mode[c] = 0;
+        double own = 0.0, pull = 0.0;
+        for (int n = 0; n < N; ++n) {
+            own += ROWS[c][n] * out[N + n * C + c];
+            pull += ROWS[c][n] * out[n];
+        }
+        able[c] = open[c] && own < 0.0;
+        if (open[c]) { /* without friction of its own a contact cannot stick */
+            mode[c] = able[c] ? 0 : (pull >= 0.0 ? 1 : -1);
         }
     }
     for (int turn = 0; turn < 40 * AT_LEAST_1(C); ++turn) {
@@ -140,12 +147,12 @@ static int settle(const double *out, const int *open, int *mode)
         }
         accelerate(out, mode, s, ddq);
         for (int c = 0; c < C; ++c) {
-            if (open[c] && mode[c] != 0 && speed(c, ddq) * mode[c] < 0.0) {
+            if (able[c] && mode[c] != 0 && speed(c, ddq) * mode[c] < 0.0) {
                 mode[c] = 0;
                 worst = -2;
                 break;
             }
-            if (mode[c] == 0 && fabs(s[c]) > most) {
+            if (able[c] && mode[c] == 0 && fabs(s[c]) > most) {
                 most = fabs(s[c]);
                 worst = c;
             }
@@ -299,20 +306,19 @@ static int advance(double t, double h, double *y, const double *u, const double 
         for (int c = 0; c < C; ++c) {
             open[c] = mode[c] == 0;
         }
+        if (slip(t, y, y + N, u, p, y + 2 * N, now.out) != 0) {
+            return NOT_FINITE;
+        }
         if (mode[which] != 0) { /* come to rest */
             stop(which, y);
             mode[which] = 0;
             open[which] = 1;
         } else { /* torn loose */
-            mode[which] = 0;
-            if ((status = evaluate(t, y, u, p, mode, &now)) != DONE) {
+            if ((status = hold(now.out, mode, now.s)) != DONE) {
                 return status;
             }
             mode[which] = now.s[which] > 0.0 ? 1 : -1;
             open[which] = 0;
-        }
-        if ((status = evaluate(t, y, u, p, mode, &now)) != DONE) {
-            return status;
         }
         if ((status = settle(now.out, open, mode)) != DONE
             || (status = evaluate(t, y, u, p, mode, &now)) != DONE) {

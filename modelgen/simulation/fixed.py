@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 # How a run may end: enumeration of driver.c.
 ENDS = {
     1: "left its stroke or its limits",
-    2: "its state is not finite",
+    2: "its state is not finite: the steps are too long, or the motion unstable",
     3: "a joint that sticks has no friction",
     4: "dry friction changes its direction without end",
 }
@@ -96,10 +96,10 @@ def _library(plant: Plant) -> ctypes.CDLL:
     driver = Path(__file__).with_name("driver.c").read_text(encoding="utf-8")
     lines = [f'#include "{source}"' for source in sources]
     lines += _definitions(plant)
-    lines += [_call("slip", f"{name}_accelerations", own.accelerations, acceleration=False)]
+    lines += [_call("slip", f"{name}_{own.accelerations.name}", own.accelerations, acceleration=False)]
     rates = own.rates
     lines += [
-        _call("drift", f"{name}_state_rates", rates)
+        _call("drift", f"{name}_{rates.name}", rates)
         if rates
         else "static int drift(double t, const double *q, const double *dq, const double *ddq, "
         "const double *u, const double *p, const double *z, double *out) { return 0; }"

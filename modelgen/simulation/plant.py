@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.description.objects import Arm
+from modelgen.description.objects import Arm, Inertial
 from modelgen.errors import InputError
-from modelgen.functions import Model, grouped, nominal_base
-from modelgen.simulation.slip import Slip, slip
+from modelgen.functions import Model, grouped, nominal_standard
+from modelgen.functions.nominal import about_origin
+from modelgen.simulation.slip import Slip, elastic, slip
 from modelgen.transmission import STROKE_MARGIN, of_joint
 
 Array = NDArray[np.float64]
@@ -20,10 +21,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Plant:
-    """slip: the functions. parameters: base parameters (p,) in the model's order."""
+    """slip: the functions. parameters: what they take (p,). base: base parameters; in the model's order."""
 
     slip: Slip
     parameters: Array
+    base: Array
 
     @property
     def model(self) -> Model:
@@ -90,46 +92,45 @@ def plant(
         if name not in [j.name for j in arm.joints]:
             raise InputError(f"--lock {name}: found no such joint, expected one of {_names(arm)}")
     joints = tuple(replace(j, locked=dict(lock or {}).get(j.name, j.locked)) for j in arm.joints)
-    made = slip(replace(arm, joints=joints))
-    model = made.model
+    changed = replace(arm, joints=joints)
     if parameters is None:
-        values = nominal_base(model)
-    else:
-        if lock:
-            raise InputError("--lock with --parameters: identify the arm with the joint locked instead")
-        values = dict(parameters)
-        names = {b.name for b in model.grouping.base}
-        missing, extra = sorted(names - values.keys()), sorted(values.keys() - names)
-        if missing or extra:
-            what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
-            raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
-    vector = np.array([values[b.name] for b in model.grouping.base])
-    return Plant(made, vector + _payload(model, payload) if len(payload) else vector)
+        made = slip(changed, standard=elastic(changed))
+        standard = np.array(list(nominal_standard(made.model).values()))
+        standard += _payload(made.model, payload)
+        base = _grouped(made.model, standard)
+        return Plant(made, standard if made.standard else base, base)
+    if lock:
+        raise InputError("--lock with --parameters: identify the arm with the joint locked instead")
+    made = slip(changed)
+    names = [b.name for b in made.model.grouping.base]
+    missing = [name for name in names if name not in parameters]
+    extra = [name for name in parameters if name not in names]
+    if missing or extra:
+        what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
+        raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
+    base = np.array([parameters[name] for name in names])
+    base += _grouped(made.model, _payload(made.model, payload))
+    return Plant(made, base, base)
+
+
+def _grouped(model: Model, standard: Array) -> Array:
+    return np.array(list(grouped(model, standard.tolist()).values()))
 
 
 def _payload(model: Model, payload: Sequence[float]) -> Array:
-    """What a point mass at the last link adds to the base parameters."""
-    if len(payload) not in (1, 4) or not all(np.isfinite(payload)):
+    """What a point mass at the last link adds to the standard parameters."""
+    standard = np.zeros(len(model.standard))
+    if not payload:
+        return standard
+    if len(payload) not in (1, 4):
         raise InputError(f"--payload: found {len(payload)} numbers, expected MASS or MASS,X,Y,Z")
     m, x, y, z = (*payload, 0.0, 0.0, 0.0)[:4]
+    added = about_origin(Inertial(m, (x, y, z), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
     last = len(model.arm.joints)
-    added = {
-        "XX": m * (y * y + z * z),
-        "XY": -m * x * y,
-        "XZ": -m * x * z,
-        "YY": m * (x * x + z * z),
-        "YZ": -m * y * z,
-        "ZZ": m * (x * x + y * y),
-        "MX": m * x,
-        "MY": m * y,
-        "MZ": m * z,
-        "M": m,
-    }
     index = {p.name: i for i, p in enumerate(model.standard)}
-    standard = np.zeros(len(model.standard))
     for name, value in added.items():
         standard[index[f"{name}{last}"]] = value
-    return np.array(list(grouped(model, standard.tolist()).values()))
+    return standard
 
 
 def _names(arm: Arm) -> str:

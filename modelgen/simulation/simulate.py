@@ -14,10 +14,12 @@ from modelgen.simulation.adaptive import METHODS, Adaptive
 from modelgen.simulation.control import Control
 from modelgen.simulation.fixed import ENDS, Stepper
 from modelgen.simulation.plant import Plant
+from modelgen.simulation.sundials import Sundials
 from modelgen.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 STEP = 1e-3  # s, longest fixed step
+STIFF = 2e4  # 1/s, beyond which explicit steps are too many
 
 
 def simulate(
@@ -56,16 +58,21 @@ def simulate(
         if given.shape != (count, plant.n):
             raise InputError(f"found inputs of shape {given.shape}, expected ({count}, {plant.n})")
         inputs = given.copy()
-    name = method or _default(plant, control is not None)
     low, high = plant.strokes
     if stop_at_limits:
         low, high = np.maximum(low, plant.limits[0]), np.minimum(high, plant.limits[1])
     y = np.concatenate([q, dq, np.zeros(len(plant.model.states))])
+    if not np.isfinite(Adaptive(plant, METHODS[0], rtol, atol).terms(0.0, y, inputs[0])[0]).all():
+        raise InputError(
+            f"{plant.arm.name}: the accelerations at the beginning are not finite; a joint with play or "
+            "elasticity needs a drive with inertia of its own, in the description's nominal values"
+        )
+    name = method or _default(plant, y, control is not None)
     path = np.empty((count, len(y)))
     path[0] = y
     feedback = held if callable(held) else None
     if name == "fixed":
-        run = _fixed(plant, low, high, rate, step)
+        run = _fixed(plant, low, high, rate, step, y)
     else:
         run = _adaptive(plant, low, high, name, rtol, atol)
     ended = ""
@@ -105,12 +112,19 @@ def _until(done: int, count: int, feedback: bool, free: bool, name: str) -> int:
     return min(count - 1, done + 999)
 
 
-def _fixed(plant: Plant, low: Array, high: Array, rate: float, step: float | None) -> _Run:
+def _fixed(plant: Plant, low: Array, high: Array, rate: float, step: float | None, y: Array) -> _Run:
     try:
         stepper = Stepper(plant, low, high)
     except RuntimeError as error:
         raise InputError(f"fixed steps: {error}; or choose a method of variable steps") from None
-    substeps = max(1, ceil(1.0 / rate / min(step or STEP, STEP if step is None else step) - 1e-9))
+    # A step of 1 over the fastest rate is well inside where the method is stable (2.8).
+    longest = step or min(STEP, 1.0 / max(fastest(plant, y), 1e-9))
+    substeps = max(1, ceil(1.0 / rate / longest - 1e-9))
+    if substeps * rate > 1e7:
+        raise InputError(
+            f"{plant.arm.name}: fixed steps of {longest:.1g} s would be needed; expected a method for stiff "
+            "arms, LSODA, Radau, BDF or cvodes"
+        )
     modes: list[NDArray[np.intc]] = []
 
     def run(times: Array, y: Array, inputs: Array) -> tuple[Array, str]:
@@ -127,19 +141,20 @@ def _fixed(plant: Plant, low: Array, high: Array, rate: float, step: float | Non
 
 
 def _adaptive(plant: Plant, low: Array, high: Array, name: str, rtol: float, atol: float) -> _Run:
-    if name not in METHODS:
-        raise InputError(f"--method {name}: expected fixed, {', '.join(METHODS)}")
-    integrator = Adaptive(plant, name, rtol, atol)
+    if name not in (*METHODS, "cvodes"):
+        raise InputError(f"--method {name}: expected fixed, cvodes, {', '.join(METHODS)}")
+    integrator = Sundials(plant, rtol, atol) if name == "cvodes" else Adaptive(plant, name, rtol, atol)
     modes: list[tuple[int, ...]] = []
 
     def run(times: Array, y: Array, inputs: Array) -> tuple[Array, str]:
         u = inputs[0]
         now = integrator.again(times[0], y, u, modes[0]) if modes else integrator.begin(times[0], y, u)
-        path, now, left = integrator.run(list(times), y, u, now, low, high)
+        path, now, why, at = integrator.run(list(times), y, u, now, low, high)
         modes[:] = [now]
         y[:] = path[-1]
-        if left is not None:
-            return path, f"{_who(plant, path[-1], low, high, ENDS[1])} at {left:.6g} s"
+        if why:
+            reason = ENDS[1] if why == "left" else why
+            return path, f"{_who(plant, path[-1], low, high, reason)} at {at:.6g} s"
         return path, ""
 
     return run
@@ -155,10 +170,24 @@ def _who(plant: Plant, y: Array, low: Array, high: Array, what: str) -> str:
     return f"joint {plant.names[k]} left its {stroke} ({low[k]:.6g} to {high[k]:.6g})"
 
 
-def _default(plant: Plant, controlled: bool) -> str:
-    if controlled and compiler() is not None:
+def _default(plant: Plant, y: Array, controlled: bool) -> str:
+    stiff = fastest(plant, y) > STIFF
+    if controlled and compiler() is not None and not stiff:
         return "fixed"
-    return "LSODA" if plant.model.states else "DOP853"
+    return "LSODA" if plant.model.states or stiff else "DOP853"
+
+
+def fastest(plant: Plant, y: Array) -> float:
+    """Largest magnitude of an eigenvalue [1/s] of the equations at a state (2n + z,), friction sliding."""
+    integrator = Adaptive(plant, "DOP853", 1e-9, 1e-9)
+    modes = (1,) * len(plant.slip.contacts)
+    u, size = np.zeros(plant.n), len(y)
+    jacobian = np.empty((size, size))
+    for k in range(size):
+        step = 1e-6 * max(1.0, abs(y[k])) * np.eye(size)[k]
+        ahead, back = (integrator.rate(0.0, y + s * step, u, modes) for s in (1, -1))
+        jacobian[:, k] = (ahead - back) / (2 * step[k])
+    return float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
 
 
 def _check(plant: Plant, q: Array, dq: Array, duration: float, rate: float) -> None:

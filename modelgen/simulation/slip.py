@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from modelgen.backends import NumpyFunction
 from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm, EffectUse
-from modelgen.effects import TIME_STEP, AppliedEffect, Part, Variables
+from modelgen.effects import TIME_STEP, AppliedEffect, Part, Variables, applied_effects
 from modelgen.functions import Function, Model, Options, build_model
 from modelgen.functions.dynamics import Dynamics
-from modelgen.functions.parametric import base_values
+from modelgen.functions.parametric import base_values, standard_values
 from modelgen.graph import Expr
 from modelgen.model.composite import solve
 from modelgen.model.effect_forces import EffectForces
@@ -40,6 +40,7 @@ class Slip:
     model: the arm without smoothing of dry friction. contacts: (c, n), a contact's velocity is its row times
     dq. names: of the contacts. accelerations: outputs free (n), then dry (n x c, row by row), of q, dq,
     input, parameters and what else the arm's effects read. rates: of the states, where there are any.
+    standard: whether `parameters` are the standard ones.
     """
 
     model: Model
@@ -47,13 +48,19 @@ class Slip:
     names: tuple[str, ...]
     accelerations: Function
     rates: Function | None
+    standard: bool = False
 
 
-def slip(arm: Arm) -> Slip:
-    """The functions of `arm`, drives and effects included. Raises InputError as build_model does."""
+def slip(arm: Arm, *, standard: bool = False) -> Slip:
+    """The functions of `arm`, drives and effects included. Raises InputError as build_model does.
+
+    standard: they take the standard parameters in place of the base parameters, which do not tell the
+    inertia of an elastic joint's drive from that of its link.
+    """
     model = build_model(unsmoothed(arm), Options())
-    e = Equations(slid(model.arm))
-    values = base_values(e, model.grouping)
+    e = Equations(model.arm if standard else slid(model.arm))
+    values = standard_values(e) if standard else base_values(e, model.grouping)
+    suffix = "_standard" if standard else ""
     whole = list(e.effects)
     signs = _signs(e)
     rest, dry = _split(whole, e, signs)
@@ -67,14 +74,14 @@ def slip(arm: Arm) -> Slip:
         e.effects = effects
         efforts = EffectForces(e, rates, values).efforts()
         columns.append(solve(matrix, [-x for x in efforts])[0])
-    count = len(model.grouping.base)
+    count = len(model.standard) if standard else len(model.grouping.base)
     outputs = [*outputs, *(column[n] for n in range(e.n) for column in columns)]
     e.effects = whole
-    accelerations = bare("accelerations", e, count, outputs)
-    own = _state_rates(e, values, count) if e.state_names() else None
+    accelerations = bare(f"accelerations{suffix}", e, count, outputs)
+    own = _state_rates(e, values, count, suffix) if e.state_names() else None
     rows = np.array([_row(key, e.n) for key in dry]).reshape(len(dry), e.n)
     names = tuple(_name(key, model.arm) for key in dry)
-    return Slip(model, rows, names, accelerations, own)
+    return Slip(model, rows, names, accelerations, own, standard)
 
 
 def unsmoothed(arm: Arm) -> Arm:
@@ -131,7 +138,7 @@ def _signs(e: Equations) -> list[float]:
     return [float(x) for x in np.sign(values(**given))]
 
 
-def _state_rates(e: Equations, values: Sequence[Expr], count: int) -> Function:
+def _state_rates(e: Equations, values: Sequence[Expr], count: int, suffix: str) -> Function:
     """Time derivatives of the states: slopes of their steps where the step begins."""
     whole = e.effects
     e.effects = [
@@ -142,7 +149,7 @@ def _state_rates(e: Equations, values: Sequence[Expr], count: int) -> Function:
         for effect in whole
     ]
     forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), values)
-    function = bare("state_rates", e, count, forces.steps(e.graph.input("dt", 0)))
+    function = bare(f"state_rates{suffix}", e, count, forces.steps(e.graph.input("dt", 0)))
     e.effects = whole
     return function
 
@@ -156,3 +163,8 @@ def _row(key: _Key, n: int) -> list[float]:
 
 def _name(key: _Key, arm: Arm) -> str:
     return " and ".join(arm.joints[arm.coordinates[n]].name for n, _ in key)
+
+
+def elastic(arm: Arm) -> bool:
+    """Whether a joint has play or bends."""
+    return any(part.place == "transmission" for e in applied_effects(arm) for part in e.parts)

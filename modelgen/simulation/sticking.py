@@ -47,17 +47,19 @@ def settled(free: Array, dry: Array, rows: Array, modes: Modes, at_rest: list[in
     positive magnitudes, so that the solution is one (Cottle, Pang and Stone 1992); found by pivoting.
     """
     found = list(modes)
+    able = [k for k in at_rest if rows[k] @ dry[:, k] < 0.0]
     for k in at_rest:
-        found[k] = 0
+        # Without friction of its own a contact cannot stick.
+        found[k] = 0 if k in able else (1 if rows[k] @ free >= 0.0 else -1)
     for _ in range(40 * max(1, len(found))):
         now = tuple(found)
         s = hold(free, dry, rows, now)
         a = rows @ (free + dry @ s)
-        back = [k for k in at_rest if found[k] and a[k] * found[k] < 0.0]
+        back = [k for k in able if found[k] and a[k] * found[k] < 0.0]
         if back:
             found[back[0]] = 0
             continue
-        over = [k for k in at_rest if not found[k] and abs(s[k]) > 1.0]
+        over = [k for k in able if not found[k] and abs(s[k]) > 1.0]
         if not over:
             break
         k = max(over, key=lambda k: abs(s[k]))

@@ -1,0 +1,78 @@
+"""Effects with states, against the differential equations that they come from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from simulation_support import pendulum, slider
+
+from modelgen.description import EffectUse
+from modelgen.simulation import plant, simulate
+
+MASS = 2.0
+METHODS = ["fixed", "LSODA", "cvodes"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_presliding_moves_as_dahls_equation(method: str) -> None:
+    """A mass on a spring in Dahl's friction, integrated anew."""
+    distance, friction, stiffness = 0.02, 3.0, 60.0
+    arm = slider(
+        EffectUse("presliding", {"distance": distance, "magnitude": friction}),
+        EffectUse("spring", {"stiffness": stiffness, "rest": 0.0}),
+        mass=MASS,
+    )
+
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        x, v, z = y
+        return [v, (-stiffness * x - friction * z) / MASS, (v - abs(v) * z) / distance]
+
+    times = np.arange(601) / 200
+    expected = solve_ivp(rate, (0, 3), [0.4, 0, 0], "DOP853", times, rtol=1e-11, atol=1e-12).y
+    found = simulate(plant(arm), 0.4, 0.0, 3.0, 200.0, method=method, step=2e-4, rtol=1e-10, atol=1e-11)
+    # |v| has a corner, which costs every integrator an order.
+    np.testing.assert_allclose(found.q[:, 0], expected[0], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(found.states[:, 0], expected[2], rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_elastic_joint_is_two_masses(method: str) -> None:
+    """Rotor and pendulum with a spring between them; the coordinate is the rotor's."""
+    inertia, stiffness, damping, length = 0.4, 300.0, 0.5, 0.3
+    arm = pendulum(
+        EffectUse("drive_inertia", {"inertia": inertia}),
+        EffectUse("viscous_friction", {"coefficient": 0.3}),
+        EffectUse("joint_flexibility", {"stiffness": stiffness, "damping": damping}),
+        mass=MASS,
+        length=length,
+    )
+    link = MASS * length**2
+
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        rotor, load, v, w = y
+        spring = stiffness * (rotor - load) + damping * (v - w)
+        weight = MASS * 9.81 * length * np.sin(load)
+        return [v, w, (-0.3 * v - spring) / inertia, (spring - weight) / link]
+
+    times = np.arange(401) / 200
+    expected = solve_ivp(rate, (0, 2), [0.8, 0.8, 0, 0], "DOP853", times, rtol=1e-11, atol=1e-12).y
+    found = simulate(plant(arm), 0.8, 0.0, 2.0, 200.0, method=method, step=5e-4, rtol=1e-10, atol=1e-11)
+    assert np.abs(expected[0] - expected[1]).max() > 0.005  # the spring bends
+    # The lag's gravity and centrifugal terms are taken where the link is: exact but for its own speed.
+    np.testing.assert_allclose(found.q[:, 0], expected[0], rtol=0, atol=1e-3 * np.ptp(expected[0]))
+
+
+@pytest.mark.parametrize("method", ["fixed", "LSODA"])
+def test_play_lets_the_rotor_run_free(method: str) -> None:
+    """Inside its play the rotor accelerates as if it were alone."""
+    inertia, push, play = 0.01, 0.5, 0.2
+    arm = pendulum(
+        EffectUse("drive_inertia", {"inertia": inertia}),
+        EffectUse("backlash", {"play": play, "stiffness": 500.0, "damping": 0.5}),
+        mass=MASS,
+    )
+    count = round(0.5 * np.sqrt(play * inertia / push) * 5000)
+    effort = np.full((count + 1, 1), push)
+    found = simulate(plant(arm), 0.0, 0.0, count / 5000, 5000.0, effort, method=method)
+    np.testing.assert_allclose(found.q[:, 0], push / inertia * found.t**2 / 2, rtol=1e-6, atol=1e-9)
