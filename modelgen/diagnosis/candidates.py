@@ -125,6 +125,13 @@ def scale(kind: str, name: str, joint: int | None, rows: Sequence[Rows], prober:
     return float(np.quantile(np.concatenate(efforts), 0.95)) / max(span, 1e-12)
 
 
+def unchanging(candidate: Candidate, prober: Prober) -> bool:
+    """Whether its columns are the same whatever the arm's parameters are."""
+    if candidate.effect in (*STEPS, LATER, *COMPLIANT):
+        return False
+    return not prober.needs_load(candidate.effect, candidate.joint, candidate.fixed)
+
+
 def columns(
     candidate: Candidate, values: Values, rows: Sequence[Rows], prober: Prober, base: Array
 ) -> list[Array] | None:

@@ -93,6 +93,29 @@ def lack_of_fit(system: System) -> LackOfFit | None:
     return LackOfFit(statistic, limit, np.array([s for s, _ in found[:n]]), most)
 
 
+def repeating(system: System) -> Array:
+    """Mean square of what repeats from period to period in the residuals of each joint (n,), less noise."""
+    n = system.n
+    found = np.zeros(n)
+    for j in range(n):
+        between, within, means, scatter = 0.0, 0.0, 0, 0
+        for residual, r, rows in zip(system.residuals, system.rows, system.periods, strict=True):
+            if rows is None:
+                continue
+            table = folded(np.where(r.moving[:, j], residual[:, j], np.nan), rows)
+            count = np.isfinite(table).sum(axis=0)
+            part, k = table[:, count >= 2], count[count >= 2]
+            if not len(k):
+                continue
+            mean = np.nanmean(part, axis=0)
+            between += float((k * mean**2).sum())
+            within += float(np.nansum((part - mean) ** 2))
+            means, scatter = means + len(k), scatter + int((k - 1).sum())
+        if scatter:
+            found[j] = max(0.0, (between - means * within / scatter) / (means + scatter))
+    return found
+
+
 def independent_rows(table: Array) -> float:
     """Share of a record's rows that count as independent, from what differs between its periods."""
     there = np.isfinite(table)

@@ -23,7 +23,8 @@ from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import PRACTICAL, Selection, select
+from modelgen.diagnosis.selection import PRACTICAL, Cause, Selection, select
+from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
 from modelgen.errors import InputError
@@ -92,11 +93,11 @@ def diagnose(
     pool = candidates(arm, prober, rows)
     first = weighted_fit(rows, [r.columns for r in rows])
     blurs = blur(train, rows, prober, model, first)
-    selection = select(rows, prober, pool, periods, progress, blur=blurs)
+    selection, beside = standing(select(rows, prober, pool, periods, progress, blur=blurs), rows)
     baseline = rows[0].baseline
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit = lack_of_fit(selection.system)
-    verdict, reason = _verdict(selection, fit, feigned(blurs, mean_squares(selection.system)))
+    verdict, reason = _verdict(selection, beside, fit, feigned(blurs, mean_squares(selection.system)))
     named = _named(selection, pool, prober, model, base, rows)
     before = fitted(arm, model, rows)
     after = extended(arm, before, selection, train)
@@ -143,8 +144,12 @@ def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
         )
 
 
-def _verdict(selection: Selection, fit: LackOfFit | None, noisy: Array) -> tuple[str, str]:
-    """noisy: percent of the RMSE by joint that errors of the positions could feign."""
+def _verdict(
+    selection: Selection, beside: Sequence[Cause], fit: LackOfFit | None, noisy: Array
+) -> tuple[str, str]:
+    """beside: what gained something and left most of what repeats; noisy: percent of the RMSE by joint that
+    errors of the positions could feign.
+    """
     if selection.causes:
         left = "" if fit is None or not fit.found else "; something deterministic remains beside it"
         return "named", f"a cause passed every gate{left}"
@@ -160,8 +165,17 @@ def _verdict(selection: Selection, fit: LackOfFit | None, noisy: Array) -> tuple
             "two or more identical periods (--period gives their length where it is not found)"
         )
     if fit.found:
-        return "outside_catalogue", "something deterministic remains that no effect of the catalogue explains"
+        near = ", ".join(_title(c.trial.candidate) for c in beside)
+        more = f"; {near} comes nearest and leaves most of it" if near else ""
+        return (
+            "outside_catalogue",
+            f"something deterministic remains that no effect of the catalogue explains{more}",
+        )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _title(c: Candidate) -> str:
+    return c.effect if c.joint is None else f"{c.effect} at joint {c.joint}"
 
 
 def _named(

@@ -61,8 +61,9 @@ def select(
     p = baseline[0].shape[2]
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
+    known: dict[object, list[Array] | None] = {}
     for turn in range(MOST):
-        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]))
+        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
         for k, candidate in enumerate(pool):

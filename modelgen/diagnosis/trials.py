@@ -82,10 +82,18 @@ def sensible(trial: Trial, arm: Arm) -> bool:
 
 
 class Court:
-    """Tries candidates against one system."""
+    """Tries candidates against one system. known: columns that stay for these rows, by cause."""
 
-    def __init__(self, system: System, rows: Sequence[Rows], prober: Prober, base: Array) -> None:
+    def __init__(
+        self,
+        system: System,
+        rows: Sequence[Rows],
+        prober: Prober,
+        base: Array,
+        known: dict[object, list[Array] | None] | None = None,
+    ) -> None:
         self.system = system
+        self.known = {} if known is None else known
         self.rows = rows
         self.prober = prober
         self.base = base
@@ -112,11 +120,20 @@ class Court:
         return self._refined(candidate, parameter.name, low, high, best, 1.0)
 
     def _at(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
-        columns = of.columns(candidate, values, self.rows, self.prober, self.base)
+        columns = self._columns(candidate, values)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra)
         return None if gain is None else Trial(candidate, dict(values), columns, gain)
+
+    def _columns(self, candidate: Candidate, values: Mapping[str, float]) -> list[Array] | None:
+        if not of.unchanging(candidate, self.prober):
+            return of.columns(candidate, values, self.rows, self.prober, self.base)
+        given = {**candidate.fixed, **values}
+        key = candidate.effect, candidate.joint, tuple(sorted(given.items()))
+        if key not in self.known:
+            self.known[key] = of.columns(candidate, values, self.rows, self.prober, self.base)
+        return self.known[key]
 
     def _refined(
         self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float

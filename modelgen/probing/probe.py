@@ -64,6 +64,10 @@ class Prober:
         """Its other parameters."""
         return CATALOGUE[effect].nonlinear
 
+    def needs_load(self, effect: str, joint: int | None, values: Values) -> bool:
+        """Whether its columns depend on the arm's base parameters."""
+        return any(e.depends_on("load") for e in self._of_effect(effect, joint, values).effects)
+
     def inputs(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the arm as described, (N, n), for its base parameters."""
         return self._inputs_of("described", self.arm, motion, parameters)

@@ -1,0 +1,40 @@
+"""Causes that stand for something else: they pass the gates, and most of what repeats is left.
+
+An effect outside the catalogue has a share in common with those inside, and the most similar of them gains
+something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
+explained half of what repeats from period to period at the joints that it acts on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from modelgen.diagnosis.lack_of_fit import lack_of_fit, repeating
+from modelgen.diagnosis.rows import Rows
+from modelgen.diagnosis.selection import Cause, Selection, with_causes
+from modelgen.diagnosis.system import System, mean_squares
+
+LEAST = 2 / 3  # of what repeats, explained
+MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
+
+
+def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, list[Cause]]:
+    """The selection without the causes that leave most of what repeats, and those causes."""
+    system = selection.system
+    fit = lack_of_fit(system)
+    if not selection.causes or fit is None or not fit.found:
+        return selection, []
+    old = System(rows, [r.columns for r in rows], system.periods)
+    sizes = mean_squares(old)
+    first, last = repeating(old) / sizes, repeating(system) / sizes
+    much = repeating(system) > MUCH * mean_squares(system)
+    dropped = []
+    for cause in selection.causes:
+        joints = cause.trial.candidate.joints(system.n)
+        if much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum():
+            dropped.append(cause)
+    if not dropped:
+        return selection, []
+    kept = [cause for cause in selection.causes if cause not in dropped]
+    system = System(rows, with_causes(rows, [c.trial for c in kept]), system.periods)
+    return Selection(kept, system, selection.tried), dropped
