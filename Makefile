@@ -57,6 +57,8 @@ run-examples: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[examples]'
 	$(BIN)/python examples/firmware/run.py
 	$(BIN)/python examples/mpc/mpc_run.py
+	$(BIN)/python examples/ariane_experiment/twin_run.py
+	$(BIN)/python examples/ariane_experiment/twin_coverage.py
 
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from dataset_support import AXIS, DRIVEN, FREE, counts_of, motion, times, write_csv
 
-from modelgen.dataset import read
+from modelgen.dataset import described, prepare, read
 from modelgen.dataset.formula import FormulaError, formula
 from modelgen.dataset.mapping import load_mapping
 from modelgen.dataset.mapping_schema import mapping_json_schema
@@ -266,3 +266,20 @@ def test_the_schema_accepts_the_case_studies_and_refuses_a_misspelt_key(checkout
     document["joints"][0]["effort"]["units"] = "A"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(document, schema)
+
+
+def test_a_column_that_stands_there_twice_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text(AXIS_MAPPING)
+    rows = [",".join(["stamp", "pos", "load", "vin", "temp", "pos"])]
+    table = np.column_stack([*AXIS_LOG.values(), AXIS_LOG["pos"]])
+    rows += [",".join(f"{x:.9g}" for x in row) for row in table]
+    (tmp_path / "log.csv").write_text("\n".join(rows))
+    with pytest.raises(InputError, match=r"the log's column pos stands there 2 times, expected once"):
+        read(str(tmp_path / "log.csv"), AXIS, mapping=tmp_path / "map.yaml")
+
+
+def test_the_report_says_what_a_voltage_puts_into_the_viscous_friction(tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text(AXIS_MAPPING)
+    write_csv(tmp_path / "log.csv", AXIS_LOG)
+    lines = described(prepare(read(str(tmp_path / "log.csv"), AXIS, mapping=tmp_path / "map.yaml")))
+    assert lines[-1].startswith("slide: the effort is a voltage [V]: back-EMF sits in the viscous friction")

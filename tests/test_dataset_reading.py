@@ -143,7 +143,7 @@ ONES = np.linspace(0, 1, len(T))
         (setting("i2", slice(None), 0.0), "the effort i2 is 0 in all 1600 samples.*leave the effort columns"),
         (scaled("q1", 180 / np.pi), "these look like degrees; declare `unit: deg`"),
         (scaled("q1", 1000.0), "q1 runs from .* correct unit, sign or offset"),
-        (scaled("qm2", 2.0), "qm2 runs from .* joint knee from 0 to 20000 unit"),
+        (scaled("qm2", 2.0), "qm2 runs from .* joint knee from 0 to 20000 motor units"),
     ],
 )
 def test_a_log_that_cannot_be_meant_is_refused(

@@ -97,8 +97,9 @@ def check_range(
         found = float(columns[:, k].min()), float(columns[:, k].max())
         excess = max(low - found[0], found[1] - high)
         unit = drive.unit if motor_side else ("m" if joint.type == "prismatic" else "rad")
-        shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {unit}"
-        limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {unit}"
+        printed = "motor units" if unit == "unit" else unit
+        shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {printed}"
+        limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"
         if excess > MARGIN * (high - low) or not np.isfinite(q[:, k]).all():
             hint = _unit_hint(found, (low, high), unit)
             raise InputError(f"{file}: {shown}, {limits}{hint}")

@@ -75,6 +75,15 @@ class MappedReader:
         if self._coupling is not None:
             self._couple(n)
         self.names = ("t", *self._signals)
+        for name in (
+            *self._time.formula.names,
+            *(x for s in self._signals.values() for x in s.formula.names),
+        ):
+            original = self._aliases.get(name, name)
+            if (count := reader.names.count(original)) > 1:
+                raise foreign.error(
+                    f"the log's column {original} stands there {count} times, expected once", []
+                )
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""

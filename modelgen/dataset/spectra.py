@@ -17,7 +17,7 @@ POINTS = 300  # of a curve, at most: the picture stays small
 
 
 def described(prepared: Prepared) -> list[str]:
-    """The processing in words, a line per step."""
+    """The processing in words, a line per step; then the reader's remarks."""
     s, rate = prepared.settings, 1.0 / prepared.record.step
     passes = "forwards and backwards (zero phase)"
     lines = [f"record: {len(prepared.time)} samples at {rate:.6g} Hz"]
@@ -40,7 +40,7 @@ def described(prepared: Prepared) -> list[str]:
     lines.append(f"rows: every {_ordinal(s.factor)} sample, {s.trim:.3g} s cut off at both ends: {rows} rows")
     moving = ", ".join(f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0))
     lines.append(f"rows in which the joints move: {moving}")
-    return lines
+    return [*lines, *prepared.record.remarks]
 
 
 def _ordinal(n: int) -> str:
