@@ -1,8 +1,8 @@
 """Sixty seconds of ariane6 in steps of 1 ms: python benchmarks/simulation.py.
 
 The compiled path of `modelgen simulate` (classical Runge-Kutta, dry friction as a set, lever drives) beside
-MuJoCo's mj_step on the same links, masses and joints without gravity, with constant armature, damping and frictionloss in
-place of the levers, both on one core in one run. Needs mujoco.
+MuJoCo's mj_step on the same links without gravity, constant armature, damping and frictionloss in place of
+the levers, both on one core in one run. Needs mujoco.
 """
 
 from __future__ import annotations
