@@ -9,15 +9,15 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from twin_body import LEVERS, MOTORS, model
+from twin_body import LEVERS, MOTORS, Lever, model
 from twin_coverage import coverage
 from twin_plant import Recording, reference
-from twin_records import ARM, ARMS, HERE, recorded, set_points, truth, write_log
+from twin_records import ARM, ARMS, HERE, recorded, set_points, truth, write_calibration, write_log
 from typer.testing import CliRunner
 
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.cli.app import app
-from modelgen.description import load
+from modelgen.description import LeveredDrive, load
 from modelgen.functions import build_model
 
 pytestmark = pytest.mark.xdist_group("ariane_experiment")
@@ -145,3 +145,19 @@ def test_presets_that_do_not_fit_are_refused(
     assert result.exit_code == 2
     assert message in result.output
     assert not (tmp_path / "out").exists()
+
+
+def test_the_tutorials_lever_is_found_from_marker_angles(recording: Recording, tmp_path: Path) -> None:
+    write_calibration(recording, tmp_path)
+    call = ["calibrate", str(tmp_path / "measured_arms.yaml"), str(tmp_path / "marker.csv"), "--arm", ARM]
+    result = CliRunner().invoke(app, [*call, "--joint", "3", "--out", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.output
+    drive = load(tmp_path / "out" / "ariane4_calibrated.yaml")[ARM].joints[2].drive
+    assert isinstance(drive, LeveredDrive)
+    # The common scale is not seen by angles: the transmission ratio is.
+    low, high = (float(x) for x in drive.length)
+    found = Lever(float(drive.l1), float(drive.l2), low, (high - low) / 26750, float(drive.offset))
+    for m in (3000.0, 13000.0, 24000.0):
+        angle = LEVERS[2].joint(m)
+        assert found.joint(m) == pytest.approx(angle, abs=0.005)
+        assert found.ratio(found.joint(m))[0] == pytest.approx(LEVERS[2].ratio(angle)[0], rel=0.05)

@@ -17,7 +17,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from twin_pictures import comparison, predictions, tracking
-from twin_records import ARM, ARMS, HERE, recorded, set_points, write_log
+from twin_records import ARM, ARMS, HERE, recorded, set_points, write_calibration, write_log
 
 from modelgen.description import load
 
@@ -65,6 +65,7 @@ def main() -> None:
             recordings[part] = recorded(points[part], seed)
             write_log(recordings[part], BUILD / f"{part}.csv", recordings[part].sample)
             bar.advance(task)
+        write_calibration(recordings["train"], BUILD)
         found = {}
         for kind, options in (
             ("paper_without", ["--preset", "paper", "--without", "effects"]),

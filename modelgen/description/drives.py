@@ -143,7 +143,8 @@ def within_stroke(context: Context, joint: str, position: Range | None, stroke: 
     if excess >= DISAGREEMENT:
         raise context.error(
             f"found the joint range {shown}, but the actuator's stroke allows {allowed}; "
-            "correct the range, or the drive's length, rev or offset",
+            "correct the range, or the drive's length, rev or offset; where these are not known well, leave "
+            "the range out until modelgen calibrate has found them",
             steps,
         )
     cut = max(position[0], stroke[0]), min(position[1], stroke[1])
