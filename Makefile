@@ -59,6 +59,7 @@ run-examples: $(INSTALLED)
 	$(BIN)/python examples/mpc/mpc_run.py
 	$(BIN)/python examples/ariane_experiment/twin_run.py
 	$(BIN)/python examples/ariane_experiment/twin_coverage.py
+	$(BIN)/python examples/gravity_test/gravity_run.py
 
 prove: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva
