@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from ruamel.yaml import YAML
-from twin_body import LINKS, MOTORS
+from twin_body import LEVERS, LINKS, MOTORS
 from twin_plant import Recording, record
 
 from modelgen.dataset import Record, drives_of
@@ -80,6 +81,23 @@ def as_record(recording: Recording, arm: Arm) -> Record:
     )
 
 
+def classical() -> Arm:
+    """The description without levers: each drive's ratio constant, viscous and dry friction at the joint.
+
+    What is usual where motors turn joints through gears; the ratio is that of the whole strokes.
+    """
+    yaml = YAML(typ="safe")
+    document = yaml.load(ARMS.read_text(encoding="utf-8"))
+    arm = document["arms"][ARM]
+    document["arms"] = {ARM: arm}
+    for joint, lever, motor in zip(arm["joints"], LEVERS, MOTORS, strict=False):  # the fourth is locked
+        end = joint["drive"]["motor"][1]
+        ratio = end / (lever.joint(end) - lever.joint(0.0))
+        joint["drive"] = {"type": "direct", "ratio": ratio, "torque_constant": motor.constant}
+        joint["effects"], joint["limits"] = ["viscous_friction", "coulomb_friction"], {}
+    return _loaded(document)
+
+
 def truth() -> dict[str, float]:
     """Base parameters of the simulated arm: its inertials and frictions put into the description."""
     yaml = YAML(typ="safe")
@@ -96,6 +114,10 @@ def truth() -> dict[str, float]:
             {"coulomb_friction": {"magnitude": motor.dry}},
             {"drive_inertia": {"inertia": motor.inertia}},
         ]
+    return nominal_base(build_model(_loaded(document)))
+
+
+def _loaded(document: Any) -> Arm:
     text = io.StringIO()
-    yaml.dump(document, text)
-    return nominal_base(build_model(loads(text.getvalue())[ARM]))
+    YAML(typ="safe").dump(document, text)
+    return loads(text.getvalue())[ARM]

@@ -10,16 +10,33 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from twin_pictures import comparison, predictions, tracking
-from twin_records import ARM, ARMS, HERE, recorded, set_points, write_calibration, write_log
+from twin_plant import Recording
+from twin_records import (
+    ARM,
+    ARMS,
+    HERE,
+    as_record,
+    classical,
+    recorded,
+    set_points,
+    write_calibration,
+    write_log,
+)
 
+from modelgen.dataset import prepare, preset
 from modelgen.description import load
+from modelgen.identification import identify
+
+Array = NDArray[np.float64]
 
 BUILD = HERE / "build"
 SEEDS = {"train": 1, "test": 2}  # of the trajectory and of the noise
@@ -51,6 +68,16 @@ def identified(kind: str, *options: str) -> dict[str, Any]:
     return found
 
 
+def without_levers(recordings: dict[str, Recording]) -> Array:
+    """RMSE by joint (3,) [A] of the classical model, from the same records processed as in the paper."""
+    arm, shipped = classical(), load(ARMS)[ARM]
+    records = [replace(as_record(recordings[part], shipped), arm=arm, motor_side=()) for part in SEEDS]
+    train, test = (prepare(r, preset("paper", 1 / r.step)) for r in records)
+    validation = identify([train], arm, test=[test]).test
+    assert validation is not None
+    return validation.rmse
+
+
 def main() -> None:
     """Run, print, draw."""
     console = Console(stderr=True)
@@ -66,7 +93,7 @@ def main() -> None:
             write_log(recordings[part], BUILD / f"{part}.csv", recordings[part].sample)
             bar.advance(task)
         write_calibration(recordings["train"], BUILD)
-        found = {}
+        found: dict[str, Any] = {"classical": without_levers(recordings)}
         for kind, options in (
             ("paper_without", ["--preset", "paper", "--without", "effects"]),
             ("paper_with", ["--preset", "paper"]),
@@ -86,13 +113,16 @@ def main() -> None:
         print(f"wrote {HERE / name}")
 
 
-def _print(found: dict[str, dict[str, Any]]) -> None:
+def _print(found: dict[str, Any]) -> None:
     for title, kind in (("current not filtered", "paper"), ("current and regressor below 1 Hz", "filtered")):
         without, own = (np.array(found[f"{kind}_{x}"]["test"]["rmse"]) for x in ("without", "with"))
         print(f"RMSE of the current on the test record [A], {title}:")
         print("  without the drives' dynamics  " + "  ".join(f"{x:.3f}" for x in without))
         print("  with                          " + "  ".join(f"{x:.3f}" for x in own))
         print("  improvement [%]               " + "  ".join(f"{x:.1f}" for x in 100 * (1 - own / without)))
+        if kind == "paper":
+            classic = "  ".join(f"{x:.3f}" for x in found["classical"])
+            print(f"  constant ratios, friction at the joints  {classic}")
     for kind, values in PAPER.items():
         print(f"  the paper's, {kind:7s}          " + "  ".join(f"{x:.3f}" for x in values))
     print(found["filtered_with"]["verdict"])

@@ -32,6 +32,7 @@ def picture(e: Excitation) -> str:
             axis = axes[k, column]
             axis.plot(e.t, y, color=COLOURS[k % len(COLOURS)])
             axis.set_ylabel(text.format(q=units["q"], m=units["m"]))
-            axis.set_title(f"{joint.name}, condition number {e.condition:.3g}" if not column else "")
+            axis.set_title(joint.name if not column else "")
             axis.set_xlabel("t [s]" if k == n - 1 else "")
+    made.suptitle(f"{e.arm.name}, condition number {e.condition:.3g}")
     return svg(made)
