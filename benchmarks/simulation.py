@@ -57,7 +57,9 @@ def main() -> None:
     )
     peer.model.opt.timestep = STEP
     simulate(made, q0, 0.0, 0.1, 1 / STEP, effort[:101] / gain, method="fixed", step=STEP)  # compiles
-    ours, euler, rk4 = [], [], []
+    ours: list[float] = []
+    euler: list[float] = []
+    rk4: list[float] = []
     for _ in range(RUNS):
         begin = time.perf_counter()
         found = simulate(made, q0, 0.0, SECONDS, 1 / STEP, effort / gain, method="fixed", step=STEP)

@@ -75,6 +75,48 @@ def test_a_log_of_the_same_motion_fits(swing: Path) -> None:
     assert windowed["joints"][0]["rmse"] < other["rmse"] / 3
 
 
+def test_repeated_runs_are_averaged(swing: Path) -> None:
+    """Noise of known size: it is the scatter, and the mean of the runs fits better than any of them."""
+    data = np.loadtxt(swing / "sim.csv", delimiter=",", skiprows=1)[::10]
+    rng = np.random.default_rng(4)
+    words = []
+    for k in range(4):
+        noisy = np.column_stack([data[:, 0], data[:, 1] + 0.003 * rng.normal(size=len(data))])
+        path = swing / f"run_{k}.csv"
+        np.savetxt(path, noisy, delimiter=",", header="t,q1", comments="")
+        words += ["--log", str(path)]
+    code, out, _ = call("--arm", "gravity_link1", *words, "--q0", "20 deg", "--json")
+    assert code == 0
+    found = json.loads(out)
+    assert len(found["runs"]) == 4
+    # The processing's low-pass takes a part of white noise away.
+    assert 0.0002 < found["joints"][0]["scatter"] < 0.003
+    assert found["joints"][0]["rmse"] < min(run["joints"][0]["rmse"] for run in found["runs"])
+    code, out, _ = call("--arm", "gravity_link1", *words, "--q0", "20 deg")
+    assert "mean of all" in out
+    assert "scatter" in out
+
+
+def test_given_inputs_move_the_arm_as_a_function_does(tmp_path: Path) -> None:
+    """Held between their samples; here against the same efforts through Python."""
+    path = tmp_path / "efforts.csv"
+    t = np.arange(101) / 50
+    tau = np.column_stack([8 * np.sin(3 * t), 2 * np.cos(5 * t)])
+    np.savetxt(path, np.column_stack([t, tau]), delimiter=",", header="t,tau1,tau2", comments="")
+    out = tmp_path / "sim.csv"
+    code, _, _ = call("--arm", "gravity_arm", "--input", str(path), "--rate", "500", "--out", str(out))
+    assert code == 0
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
+    assert table[-1, 0] == 2.0
+
+    def efforts(now: float, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
+        return tau[int(now * 50 + 1e-6)]
+
+    made = plant(ARMS["gravity_arm"])
+    found = simulate(made, 0.0, 0.0, 2.0, 500.0, efforts)
+    np.testing.assert_allclose(table[:, 1:3], found.q, rtol=0, atol=1e-9)
+
+
 def test_scores_by_their_definitions() -> None:
     y = np.array([[0.0], [1.0], [2.0], [3.0]])
     found = scores(y, y + np.array([[0.1], [-0.1], [0.1], [-0.1]]))

@@ -183,10 +183,19 @@ Payload = Annotated[
 OptionalFile = Annotated[
     Path | None, typer.Option("--out", metavar="FILE", help="CSV to write: t, q, dq.", show_default=False)
 ]
-Log = Annotated[
-    str | None,
+Logs = Annotated[
+    list[str] | None,
     typer.Option(
-        metavar="LOG", help="Measured log, FILE or FILE@t0:t1, to be held against.", show_default=False
+        "--log",
+        metavar="LOG",
+        help="Measured log, FILE or FILE@t0:t1, to be held against; repeatable for repeated runs.",
+        show_default=False,
+    ),
+]
+InputFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--input", metavar="FILE", help="CSV with t and i<n> (tau<n> where undriven).", show_default=False
     ),
 ]
 Controller = Annotated[

@@ -17,13 +17,13 @@ from rich.progress import Progress
 
 from modelgen.cli.files import check_writable, write_together
 from modelgen.cli.output import print_json, print_table
-from modelgen.dataset import prepare, read, read_columns
-from modelgen.description import Arm
+from modelgen.dataset import read_columns
+from modelgen.description import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
-from modelgen.simulation import Plant, Reference, Replay, Trajectory, plant, replay, simulate
+from modelgen.simulation import Plant, Reference, Trajectory, plant, simulate
 from modelgen.simulation.animation import animation
-from modelgen.simulation.control import controller
+from modelgen.simulation.control import Control, controller
 from modelgen.simulation.values import by_joint, locks, numbers
 
 Array = NDArray[np.float64]
@@ -40,10 +40,11 @@ class Request:
     lock: Sequence[str]
     payload: str
     out: Path | None
-    log: str | None
+    logs: Sequence[str]
     mapping: Path | None
     control: str
     reference: Path | None
+    inputs: Path | None
     bandwidth: float
     method: str
     step: float | None
@@ -59,10 +60,12 @@ def run(arm: Arm, parameters: Mapping[str, float] | None, r: Request) -> None:
         if path is not None:
             check_writable(option, path)
     made = plant(arm, parameters, lock=locks(r.lock), payload=numbers("--payload", r.payload))
-    if r.log is None:
-        _alone(made, r)
+    if r.logs:
+        from modelgen.cli.replaying import against  # noqa: PLC0415 - it imports this module
+
+        against(made, r)
     else:
-        _against(made, r, r.log)
+        _alone(made, r)
 
 
 def _alone(p: Plant, r: Request) -> None:
@@ -72,15 +75,22 @@ def _alone(p: Plant, r: Request) -> None:
     reference = None if r.reference is None else _reference(p, r.reference)
     if bool(r.control) != (reference is not None):
         raise InputError("--control and --reference belong together: found one without the other")
+    given = None if r.inputs is None else _inputs(p, r.inputs)
+    if given is not None and reference is not None:
+        raise InputError("--input and --control: the inputs are given or controlled, not both")
     duration = r.duration
     if duration is None:
-        if reference is None:
-            raise InputError("--duration: found none, expected seconds, or a --log or --reference")
-        duration = float(reference.t[-1] - reference.t[0])
+        axis = reference.t if reference is not None else None if given is None else given[0]
+        if axis is None:
+            raise InputError("--duration: found none, expected seconds, or --log, --input or --reference")
+        duration = float(axis[-1] - axis[0])
     rate = 1000.0 if r.rate is None else r.rate
     begin = np.zeros(p.n) if reference is None else reference.at(reference.t[0])[0]
     q0 = by_joint("--q0", r.q0, p.names) if r.q0 else begin
-    control = None
+    control: Control | Array | None = None
+    if given is not None:
+        at = given[0][0] + np.arange(round(duration * rate) + 1) / rate
+        control = given[1][np.searchsorted(given[0], at + 1e-9 / rate, side="right") - 1]
     if reference is not None:
         control = controller(p, r.control, reference, r.bandwidth, rate)
     console = Console(stderr=True)
@@ -95,10 +105,10 @@ def _alone(p: Plant, r: Request) -> None:
             control,
             method=r.method,
             step=r.step,
-            stop_at_limits=control is not None,
+            stop_at_limits=reference is not None,
             progress=lambda t: bar.update(task, completed=t),
         )
-    _write(p, found.t, found.q, found.dq, r, None)
+    write(p, found.t, found.q, found.dq, r, None)
     data = _facts(p, found)
     if r.as_json:
         print_json(data)
@@ -109,63 +119,25 @@ def _alone(p: Plant, r: Request) -> None:
         raise InputError(f"{p.arm.name}: {found.ended}{kept}")
 
 
-def _against(p: Plant, r: Request, log: str) -> None:
-    """The log's inputs, and how well the positions agree."""
-    for option, value in (("--duration", r.duration), ("--rate", r.rate), ("--reference", r.reference)):
-        if value is not None:
-            raise InputError(f"{option}: the log has its own; use FILE@t0:t1 for a part of it")
-    record = read(log, p.arm, r.mapping)
-    prepared = prepare(record)
-    start = None
-    if r.q0:
-        start = by_joint("--q0", r.q0, p.names), by_joint("--dq0", r.dq0, p.names)
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("simulating", total=float(record.t[-1] - record.t[0]))
-        found = replay(
-            p,
-            prepared,
-            window=r.window,
-            control=r.control,
-            bandwidth=r.bandwidth,
-            method=r.method,
-            step=r.step,
-            start=start,
-            progress=lambda t: bar.update(task, completed=t),
-        )
-    ran = np.isfinite(found.simulated).all(axis=1)
-    _write(p, found.t[ran], found.simulated[ran], found.velocities[ran], r, found.measured[ran])
-    data = _fit(p, found)
-    if r.as_json:
-        print_json(data)
-    else:
-        rows = [
-            [
-                str(j["joint"]),
-                _cell(j["f_gof_percent"], 2),
-                _cell(j["mae"], 6),
-                _cell(j["rmse"], 6),
-                j["unit"],
-            ]
-            for j in data["joints"]
-        ]
-        print_table("", dict.fromkeys(("joint", "F_gof %", "MAE", "RMSE", "unit"), "right"), rows)
-    if found.ended:
-        raise InputError(f"{p.arm.name}: {found.ended}; the scores are those of the samples before it")
-
-
-def _cell(value: float | None, digits: int) -> str:
-    return "" if value is None else f"{value:.{digits}f}"
-
-
 def _reference(p: Plant, path: Path) -> Reference:
     """t and q<n> of a table, of modelgen excite say."""
     names = ["t", *(f"q{k + 1}" for k in range(p.n))]
+    return Reference(*_table("--reference", path, names))
+
+
+def _inputs(p: Plant, path: Path) -> tuple[Array, Array]:
+    """t (S,) and inputs (S, n): i<n> [A] of driven joints, tau<n> [N m, N] of the others."""
+    drives = [p.arm.joints[i].drive for i in p.arm.coordinates]
+    names = [f"{'tau' if isinstance(d, NoDrive) else 'i'}{k + 1}" for k, d in enumerate(drives)]
+    return _table("--input", path, ["t", *names])
+
+
+def _table(option: str, path: Path, names: list[str]) -> tuple[Array, Array]:
     columns = read_columns(str(path), names)
-    t, *q = (np.asarray(columns[name], dtype=float) for name in names)
-    if len(t) < 4 or not (np.diff(t) > 0).all() or not np.isfinite(np.array([t, *q])).all():
-        raise InputError(f"--reference {path}: expected four finite samples at least, with t growing")
-    return Reference(t, np.stack(q, axis=1))
+    t, *rest = (np.asarray(columns[name], dtype=float) for name in names)
+    if len(t) < 4 or not (np.diff(t) > 0).all() or not np.isfinite(np.array([t, *rest])).all():
+        raise InputError(f"{option} {path}: expected four finite samples at least, with t growing")
+    return t, np.stack(rest, axis=1)
 
 
 def _facts(p: Plant, found: Trajectory) -> dict[str, Any]:
@@ -205,25 +177,8 @@ def _energy(p: Plant, found: Trajectory) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-def _fit(p: Plant, found: Replay) -> dict[str, Any]:
-    def number(x: float) -> float | None:
-        return float(x) if np.isfinite(x) else None
-
-    s = found.scores
-    joints = [
-        {
-            "joint": k + 1,
-            "f_gof_percent": number(s.f_gof[k]),
-            "mae": number(s.mae[k]),
-            "rmse": number(s.rmse[k]),
-            "unit": _units(p)[k],
-        }
-        for k in range(p.n)
-    ]
-    return {"arm": p.arm.name, "windows": found.windows, "joints": joints, "ended": found.ended or None}
-
-
-def _units(p: Plant) -> list[str]:
+def units(p: Plant) -> list[str]:
+    """rad or m, joint by joint."""
     return ["m" if p.arm.joints[i].type == "prismatic" else "rad" for i in p.arm.coordinates]
 
 
@@ -231,7 +186,7 @@ def _print(p: Plant, found: Trajectory, data: dict[str, Any]) -> None:
     rows = [
         [name, f"{q0:.6g}", f"{q1:.6g}", f"{low:.6g}", f"{high:.6g}", unit]
         for name, q0, q1, low, high, unit in zip(
-            p.names, found.q[0], found.q[-1], found.q.min(axis=0), found.q.max(axis=0), _units(p), strict=True
+            p.names, found.q[0], found.q[-1], found.q.min(axis=0), found.q.max(axis=0), units(p), strict=True
         )
     ]
     headings = {"joint": "left"} | dict.fromkeys(("q begin", "q end", "lowest", "highest"), "right")
@@ -242,7 +197,7 @@ def _print(p: Plant, found: Trajectory, data: dict[str, Any]) -> None:
     typer.echo(f"energy {data['energy']['begin']:.6g} J at the beginning, {change:+.6g} J since")
 
 
-def _write(p: Plant, t: Array, q: Array, dq: Array, r: Request, measured: Array | None) -> None:
+def write(p: Plant, t: Array, q: Array, dq: Array, r: Request, measured: Array | None) -> None:
     """The table, the picture, the animation."""
     if r.out is not None:
         text = io.StringIO()
@@ -259,7 +214,7 @@ def _write(p: Plant, t: Array, q: Array, dq: Array, r: Request, measured: Array 
 def _picture(p: Plant, t: Array, q: Array, dq: Array, measured: Array | None) -> str:
     """Position and speed of every joint over time."""
     made, axes = figure(p.n, 2, (9.0, 1.7 * p.n + 0.3))
-    for k, (name, unit) in enumerate(zip(p.names, _units(p), strict=True)):
+    for k, (name, unit) in enumerate(zip(p.names, units(p), strict=True)):
         if measured is not None:
             axes[k, 0].plot(t, measured[:, k], color="#999999", label="measured")
         axes[k, 0].plot(t, q[:, k], color=COLOURS[0], label="simulated")
