@@ -37,12 +37,26 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Ranked:
+    """A candidate's evidence at one turn, and why it was not taken: empty for what passed every gate.
+
+    cross_gain: percent of the RMSE on rows that its fit had not seen, None where that was not asked.
+    """
+
+    effect: str
+    joint: int | None
+    delta_bic: float
+    cross_gain: float | None
+    refused: str
+
+
+@dataclass(frozen=True)
 class Selection:
-    """The causes and the final system."""
+    """The causes and the final system. turns: all candidates with evidence, best first, by turn."""
 
     causes: list[Cause]
     system: System
-    tried: int
+    turns: list[list[Ranked]]
 
 
 def select(
@@ -62,23 +76,33 @@ def select(
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
     known: dict[object, list[Array] | None] = {}
+    turns: list[list[Ranked]] = []
     for turn in range(MOST):
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
+        ranking: list[Ranked] = []
         for k, candidate in enumerate(pool):
             if report is not None:
                 report(f"cause {turn + 1}", k, len(pool))
             if (candidate.effect, candidate.joint) in taken:
                 continue
             found = court.trial(candidate)
-            if found is not None and found.gain.delta_bic >= evidence and sensible(found, prober.arm):
+            if found is None:
+                continue
+            if found.gain.delta_bic < evidence:
+                ranking.append(_ranked(found, None, "evidence"))
+            elif not sensible(found, prober.arm):
+                ranking.append(_ranked(found, None, "values"))
+            else:
                 trials.append(found)
-        eligible = [
-            (t, gain)
-            for t in sorted(trials, key=lambda t: -t.gain.delta_bic)
-            if (gain := passes(t, rows, [c.trial for c in causes], blur)) is not None
-        ]
+        eligible: list[tuple[Trial, float]] = []
+        for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
+            gain, refused = judged(t, rows, [c.trial for c in causes], blur)
+            ranking.append(_ranked(t, gain, refused))
+            if not refused:
+                eligible.append((t, gain))
+        turns.append(sorted(ranking, key=lambda r: -r.delta_bic))
         if not eligible:
             break
         best, gain = eligible[0]
@@ -91,7 +115,11 @@ def select(
         causes.append(Cause(best, best.gain.delta_bic, gain, rivals))
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     causes, system = _eliminated(causes, rows, system, evidence)
-    return Selection(causes, system, len(pool))
+    return Selection(causes, system, turns)
+
+
+def _ranked(t: Trial, gain: float | None, refused: str) -> Ranked:
+    return Ranked(t.candidate.effect, t.candidate.joint, t.gain.delta_bic, gain, refused)
 
 
 def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> float:
@@ -133,10 +161,10 @@ def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
     return -np.inf if gain is None else gain.delta_bic
 
 
-def passes(
+def judged(
     trial: Trial, rows: Sequence[Rows], before: Sequence[Trial], blur: Array | None = None
-) -> float | None:
-    """Percent of the RMSE gained on rows that the cause's fit has not seen; None where a gate stays shut.
+) -> tuple[float, str]:
+    """Percent of the RMSE gained on rows that the cause's fit has not seen, and the gate that stays shut.
 
     The cause is fitted on one part and carried to the other, where the rest of the model is fitted anew
     with and without it; then the other way round. The squares of all parts count together.
@@ -168,8 +196,11 @@ def passes(
     least = np.full(len(judged), DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL)
     if blur is not None:
         least = np.maximum(least, feigned(blur[judged], sums[0, judged] / counts[judged]))
-    gain = float(gains[gains >= least].max(initial=-np.inf))
-    return gain if np.isfinite(gain) and float((ratio**2).mean()) < 1.0 else None
+    best = float(gains[gains >= least].max(initial=-np.inf))
+    if not np.isfinite(best):
+        most = float(gains.max(initial=-np.inf))
+        return most, "gain" if (gains < PRACTICAL).all() or blur is None else "positions"
+    return best, "" if float((ratio**2).mean()) < 1.0 else "other joints"
 
 
 def _masked(rows: Sequence[Rows], half: int) -> tuple[list[Rows], list[Rows]]:
