@@ -82,12 +82,14 @@ def _path(fitted: Fitted, rows: Rows, starts: Array, length: int) -> Array:
         prober = Prober(fitted.arm)
         state = prober.states(rows.motion, fitted.parameters)[starts]
     inputs = np.zeros(p.q.shape) if p.input is None else p.input
+    ddq = np.zeros(q.shape)
     path = np.empty((len(starts), length, q.shape[1]))
 
     def given(call: NumpyFunction, q: Array, dq: Array, k: int) -> dict[str, Array]:
         known = {
             "q": q,
             "dq": dq,
+            "ddq": ddq,
             "input": inputs[starts + k],
             "parameters": fitted.parameters,
             "time": p.time[starts + k][:, None],
@@ -98,7 +100,8 @@ def _path(fitted: Fitted, rows: Rows, starts: Array, length: int) -> Array:
 
     for k in range(length):
         path[:, k] = q
-        half = dq + step / 2 * np.asarray(forward(**given(forward, q, dq, k)))
+        ddq = np.asarray(forward(**given(forward, q, dq, k)))
+        half = dq + step / 2 * ddq
         middle = np.asarray(forward(**given(forward, q + step / 2 * dq, half, k)))
         if stepped is not None:
             state = np.asarray(stepped(**given(stepped, q, dq, k)))

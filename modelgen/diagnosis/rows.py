@@ -74,5 +74,10 @@ def rows_of(
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift
     empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving, known)
-    effort = np.asarray(prepared.parallel(effort))
-    return Rows(prepared, effort, empty.filtered(columns), prepared.moving, known)
+    effort, columns = np.asarray(prepared.parallel(effort)), empty.filtered(columns)
+    # states of a law that does not hold along this motion may leave all bounds
+    good = np.isfinite(effort) & np.isfinite(columns).all(axis=2)
+    if good.all():
+        return Rows(prepared, effort, columns, prepared.moving, known)
+    effort, columns = np.where(good, effort, 0.0), np.where(good[:, :, None], columns, 0.0)
+    return Rows(prepared, effort, columns, prepared.moving & good, known)

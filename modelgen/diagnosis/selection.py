@@ -19,6 +19,7 @@ PRACTICAL = 1.5  # percent of the RMSE on a record that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample
 AMBIGUOUS = 10.0  # delta BIC behind the winner
 MOST = 4  # causes
+FEW = 4  # records that are tried one by one
 
 Report = Callable[[str, int, int], None]
 
@@ -167,18 +168,22 @@ def judged(
     """Percent of the RMSE gained on rows that the cause's fit has not seen, and the gate that stays shut.
 
     The cause is fitted on one part and carried to the other, where the rest of the model is fitted anew
-    with and without it; then the other way round. The squares of all parts count together.
+    with and without it; then the other way round. The squares of all parts count together. A part is a
+    record, or every other one of many: a short record alone cannot hold the rest of the model.
     """
     later = trial.candidate.effect == LATER  # shows between records: halves of all are tried instead
     n = rows[0].effort.shape[1]
     sums, counts = np.zeros((2, n)), np.zeros(n)
-    for k in range(2 if later else len(rows)):
+    parts = [[i] for i in range(len(rows))]
+    if len(rows) > FEW:
+        parts = [list(range(k, len(rows), 2)) for k in range(2)]
+    for k in range(2 if later else len(parts)):
         if later:
             fitted, tried = _masked(rows, k)
             places = list(range(len(rows))), list(range(len(rows)))
         else:
-            others = [i for i in range(len(rows)) if i != k]
-            fitted, tried, places = [rows[i] for i in others], [rows[k]], (others, [k])
+            others = [i for i in range(len(rows)) if i not in parts[k]]
+            fitted, tried, places = [rows[i] for i in others], [rows[i] for i in parts[k]], (others, parts[k])
         old, new = with_causes(rows, before), with_causes(rows, [*before, trial])
         theta = weighted_fit(fitted, [new[i] for i in places[0]])[old[0].shape[2] :]
         carried = [
