@@ -41,7 +41,10 @@ def _means(stamps: Array, values: Array, t: Array, step: float) -> Array:
     line = _columns(knots, stamps, values)
     pieces = 0.5 * (line[1:] + line[:-1]) * np.diff(knots)[:, None]
     area = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(pieces, axis=0)])
-    return np.asarray((_columns(high, knots, area) - _columns(low, knots, area)) / (high - low)[:, None])
+    width = (high - low)[:, None]
+    inside = width > 1e-9 * step  # beyond the stamps the last value stays
+    mean = (_columns(high, knots, area) - _columns(low, knots, area)) / np.where(inside, width, 1.0)
+    return np.where(inside, mean, _columns(low, stamps, values))
 
 
 def _columns(x: Array, knots: Array, values: Array) -> Array:

@@ -13,7 +13,7 @@ from modelgen.diagnosis.lack_of_fit import LackOfFit
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.replay import Scores
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.selection import Ranked, Selection
 
 VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
 
@@ -113,7 +113,19 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             for name, scores in zip(("before", "after"), d.simulation, strict=True)
         },
         "next_experiment": d.next_experiment,
+        "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
         "settings": dict(d.settings),
+    }
+
+
+def _rank(r: Ranked) -> dict[str, Any]:
+    gain = None if r.cross_gain is None else rounded(r.cross_gain)
+    return {
+        "effect": r.effect,
+        "joint": r.joint,
+        "delta_bic": rounded(r.delta_bic),
+        "cross_gain_percent": gain,
+        "refused": r.refused or None,
     }
 
 

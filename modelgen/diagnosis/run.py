@@ -23,7 +23,7 @@ from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import PRACTICAL, Cause, Selection, select
+from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, select
 from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
@@ -120,7 +120,20 @@ def diagnose(
         last,
         pair,
         selection,
-        {"cutoff_hz": chosen.cutoff, "position_cutoff_hz": chosen.position_cutoff, "factor": chosen.factor},
+        {
+            "train": [record.name for record in found[:-1]],
+            "test": found[-1].name,
+            "cutoff_hz": chosen.cutoff,
+            "position_cutoff_hz": chosen.position_cutoff,
+            "factor": chosen.factor,
+            "rest_gates": [float(f"{gate:.6g}") for gate in chosen.gates],
+            "period_s": [
+                None if p is None else float(f"{p * r.step:.9g}")
+                for p, r in zip(lengths, found[:-1], strict=True)
+            ],
+            "evidence_threshold": EVIDENCE,
+            "practical_gain_percent": PRACTICAL,
+        },
     )
 
 

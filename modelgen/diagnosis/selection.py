@@ -18,7 +18,7 @@ EVIDENCE = 15.0  # delta BIC
 PRACTICAL = 1.5  # percent of the RMSE on a record that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample
 AMBIGUOUS = 10.0  # delta BIC behind the winner
-MOST = 4  # causes
+MOST = 6  # causes
 FEW = 4  # records that are tried one by one
 
 Report = Callable[[str, int, int], None]

@@ -8,6 +8,7 @@ explained half of what repeats from period to period at the joints that it acts 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from modelgen.diagnosis.lack_of_fit import lack_of_fit, repeating
 from modelgen.diagnosis.rows import Rows
@@ -37,4 +38,4 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
         return selection, []
     kept = [cause for cause in selection.causes if cause not in dropped]
     system = System(rows, with_causes(rows, [c.trial for c in kept]), system.periods)
-    return Selection(kept, system, selection.tried), dropped
+    return replace(selection, causes=kept, system=system), dropped

@@ -9,12 +9,16 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from modelgen.description import DirectDrive, LeveredDrive
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.selection import Ranked
 from modelgen.effects import CATALOGUE
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.resources import templates_folder
 
+DRIVEN = (DirectDrive, LeveredDrive)
+_WINDOWS = 12  # that the picture of the simulation shows
 _SECONDS = 10.0  # of the test record that the pictures over time show
 
 
@@ -46,10 +50,12 @@ def report(d: Diagnosis) -> str:
         effort_picture=_over_time(d),
         residual_pictures=_residuals(d),
         replay_picture=_replay(d),
+        ranking=[_ranked(turn) for turn in d.selection.turns],
+        free=d.test.prepared.input is None,
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
         missing=d.not_identifiable,
         experiment=d.next_experiment,
-        settings=[(name, str(value)) for name, value in d.settings.items()],
+        settings=[(name, _said(value)) for name, value in d.settings.items()],
     )
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
 
@@ -66,6 +72,36 @@ def _sentence(d: Diagnosis) -> Markup:
         return Markup(_SENTENCES[d.verdict])
     found = [Markup("<b>{}</b> at {}").format(c.effect, _place(c.joint)) for c in d.causes]
     return Markup("The model lacks {}.").format(Markup(" and ").join(found))
+
+
+# Why a candidate was not taken, by the gate that stayed shut.
+_REFUSED = {
+    "evidence": "too little evidence",
+    "values": "values that the effect cannot have",
+    "gain": "gains too little on records that its fit has not seen",
+    "positions": "gains no more than errors of the positions could feign",
+    "other joints": "makes other joints worse",
+}
+_SHOWN = 12  # candidates of a turn
+
+
+def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
+    """The candidates of one turn with their evidence, the losing ones too."""
+    rows: list[Sequence[str]] = []
+    taken = False
+    for r in turn[:_SHOWN]:
+        word = _REFUSED.get(r.refused, "passes every gate too" if taken else "taken")
+        taken = taken or not r.refused
+        gain = "" if r.cross_gain is None else f"{r.cross_gain:.1f}"
+        rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", gain, word))
+    return rows
+
+
+def _said(value: object) -> str:
+    """A setting for a person."""
+    if isinstance(value, list):
+        return ", ".join(_said(v) for v in value)
+    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _place(joint: int | None) -> str:
@@ -144,14 +180,16 @@ def _effort(d: Diagnosis) -> str:
     n = held.effort.shape[1]
     made, axes = figure(n, 2, (9.0, 1.9 * n))
     measured = held.effort * held.gain
+    free = held.prepared.input is None
+    units = _units(d)
     for j in range(n):
         before, after = (measured - r for r in d.residuals)
         left, right = axes[j]
-        left.plot(t[shown], measured[shown, j], color="#999999", label="measured")
+        left.plot(t[shown], measured[shown, j], color="#999999", label="of the links" if free else "measured")
         left.plot(t[shown], before[shown, j], color=COLOURS[0], label="model as described")
         if d.causes:
             left.plot(t[shown], after[shown, j], color=COLOURS[1], label="extended model")
-        left.set_ylabel(f"joint {j + 1} [{d.errors.unit}]")
+        left.set_ylabel(f"joint {j + 1} [{units[j]}]")
         right.plot(t[shown], d.residuals[0][shown, j], color=COLOURS[0], linewidth=0.8)
         if d.causes:
             right.plot(t[shown], d.residuals[1][shown, j], color=COLOURS[1], linewidth=0.8)
@@ -160,6 +198,15 @@ def _effort(d: Diagnosis) -> str:
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
     return svg(made)
+
+
+def _units(d: Diagnosis) -> list[str]:
+    """Of the efforts that are left over, by joint."""
+    if d.test.prepared.input is not None:
+        return list(d.test.prepared.effort_unit) or ["A"] * len(d.arm.coordinates)
+    joints = [d.arm.joints[i] for i in d.arm.coordinates]
+    forces = ["N" if j.type == "prismatic" else "N m" for j in joints]
+    return ["A" if isinstance(j.drive, DRIVEN) else u for j, u in zip(joints, forces, strict=True)]
 
 
 def _residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
@@ -182,11 +229,11 @@ def _residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
         for j in range(n):
             m = held.moving[:, j]
             for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
-                centre, mean = _binned(x[m, j], r[m, j])
+                centre, mean = _binned(x[m, j], r[m, j], 120 if name == "motor position" else 24)
                 axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
             axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
             axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
-        axes[0, 0].set_ylabel(f"left over [{d.errors.unit}]", fontsize=7)
+        axes[0, 0].set_ylabel(f"left over [{_units(d)[0]}]", fontsize=7)
         pictures.append((name.split(" [")[0], _inline(svg(made))))
     return pictures
 
@@ -204,27 +251,30 @@ def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
 
 
 def _replay(d: Diagnosis) -> Markup:
-    """Measured and simulated positions of the first windows of the test record, before and after."""
+    """Measured and simulated positions of the first windows of the test record, and their difference."""
     shown = [s for s in d.simulation if s is not None]
     if not shown:
         return Markup()
     n = shown[0].measured.shape[2]
-    made, axes = figure(n, 1, (9.0, 2.1 * n))
+    made, axes = figure(n, 2, (9.0, 2.1 * n))
     labels = (("model as described", COLOURS[0]), ("extended model", COLOURS[1]))
+    unit = ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
     for j in range(n):
+        left, right = axes[j]
         for scores, (label, colour) in zip(d.simulation, labels, strict=True):
             if scores is None or (label == "extended model" and not d.causes):
                 continue
-            for w in range(min(12, len(scores.t))):
-                t = scores.t[w]
+            for w in range(min(_WINDOWS, len(scores.t))):
+                t, path, truth = scores.t[w], scores.simulated[w, :, j], scores.measured[w, :, j]
                 if colour == COLOURS[0]:
-                    first = "measured" if w == 0 else None
-                    axes[j, 0].plot(t, scores.measured[w, :, j], color="#999999", linewidth=2.2, label=first)
-                text = label if w == 0 else None
-                axes[j, 0].plot(t, scores.simulated[w, :, j], color=colour, linewidth=0.9, label=text)
-        axes[j, 0].set_ylabel(f"joint {j + 1}")
+                    left.plot(t, truth, color="#999999", linewidth=2.2, label="measured" if w == 0 else None)
+                left.plot(t, path, color=colour, linewidth=0.9, label=label if w == 0 else None)
+                right.plot(t, path - truth, color=colour, linewidth=0.9)
+        left.set_ylabel(f"joint {j + 1} [{unit[j]}]")
+        right.set_ylabel("off by")
     axes[0, 0].legend(loc="upper right", fontsize=7)
-    axes[-1, 0].set_xlabel("time [s]")
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]")
     return _inline(svg(made))
 
 
