@@ -109,6 +109,7 @@ def identify(
     cutoff: given.CutOff = None,
     preset: given.Preset = "default",
     method: given.Method = "wls",
+    consistent: given.Consistent = False,
     without: given.Without = "",
     as_json: given.Json = False,
 ) -> None:
@@ -118,7 +119,8 @@ def identify(
 
     chosen = options(without, given.Gains.KNOWN, False, False, None)
     _, (found,) = selected(arms, [arm])
-    run(found, train, test or [], out, chosen, mapping, cutoff, method, preset=preset, as_json=as_json)
+    how = {"method": method, "physical": consistent}
+    run(found, train, test or [], out, chosen, mapping, cutoff, how, preset=preset, as_json=as_json)
 
 
 @app.command()

@@ -72,6 +72,9 @@ OptionalTest = Annotated[
     typer.Option("--test", metavar="LOG", help="A record not fitted; repeatable.", show_default=False),
 ]
 Method = Annotated[str, typer.Option(metavar="NAME", help="ols, wls (weights by joint) or robust.")]
+Consistent = Annotated[
+    bool, typer.Option("--consistent", help="The closest parameters of links that could exist.")
+]
 Parameters = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="<arm>_parameters.yaml of modelgen identify.", show_default=False),

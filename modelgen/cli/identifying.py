@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import typer
 from rich.console import Console
@@ -28,12 +29,12 @@ def run(
     options: Options,
     mapping: Path | None,
     cutoff: float | None,
-    method: str,
+    how: Mapping[str, Any],
     *,
     preset: str,
     as_json: bool,
 ) -> None:
-    """Identify and write everything into `out`. Raises InputError."""
+    """Identify and write everything into `out`. how: options of `identify`. Raises InputError."""
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out}: found a file, expected a folder")
     if "drives" in options.without:
@@ -58,7 +59,7 @@ def run(
             arm,
             options,
             test=[prepare(r, chosen) for r in testing],
-            method=method,
+            **how,
         )
     data = to_json(found) | {"cutoff_hz": chosen.cutoff, "processing": described(prepared[0])}
     _write(found, data, prepared[0], out)

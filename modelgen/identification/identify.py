@@ -14,6 +14,7 @@ from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.consistent import Consistent, consistent
 from modelgen.identification.regression import Array, Regression, Solution
 from modelgen.probing import Motion, Prober
 
@@ -63,6 +64,7 @@ class Identification:
     solution: Solution
     estimates: tuple[Estimate, ...]
     test: Validation | None
+    consistent: Consistent | None = None
 
 
 def identify(
@@ -72,8 +74,11 @@ def identify(
     *,
     test: Sequence[Prepared] = (),
     method: str = "wls",
+    physical: bool = False,
 ) -> Identification:
     """Base parameters from `train`, validated on `test`. method: one of METHODS.
+
+    physical: the physically consistent ones closest to those; standard deviations stay those of the others.
 
     Raises InputError for free motions, an unknown method, and records with too few moving rows.
     """
@@ -95,20 +100,22 @@ def identify(
         # Columns that depend on the load are evaluated anew with the load that was found.
         regression = _regression(prober, model, train, solution.theta)
         solution = regression.solve(method)
+    found = consistent(model, solution.theta, solution.precision) if physical else None
+    theta = solution.theta if found is None else found.base
     needed = essential(solution)
     estimates = tuple(
         Estimate(b.name, float(v), float(np.sqrt(c)) if known else None, b.unit, bool(e))
         for b, v, c, known, e in zip(
             model.grouping.base,
-            solution.theta,
+            theta,
             np.maximum(np.diag(solution.covariance), 0.0),
             solution.determined,
             needed,
             strict=True,
         )
     )
-    validation = validate(prober, model, test, solution.theta) if test else None
-    return Identification(arm, model, method, solution, estimates, validation)
+    validation = validate(prober, model, test, theta) if test else None
+    return Identification(arm, model, method, solution, estimates, validation, found)
 
 
 def essential(solution: Solution) -> NDArray[np.bool_]:
@@ -173,6 +180,13 @@ def verdict(found: Identification) -> str:
         text.append(f"Poorly determined: {', '.join(poor)}.")
     if lost:
         text.append(f"Not determined by these records, set to zero: {', '.join(lost)}.")
+    if found.consistent is not None:
+        wrong = found.consistent.violated
+        text.append(
+            f"Physically consistent; the plain solution closest to the prior is not: {'; '.join(wrong)}."
+            if wrong
+            else "Physically consistent, as the plain solution is."
+        )
     if poor or lost:
         text.append("Faster motion of the joints they belong to would help; see modelgen excite.")
     return " ".join(text)
@@ -205,4 +219,19 @@ def to_json(found: Identification) -> dict[str, Any]:
             "nrmse_percent": [float(x) for x in test.nrmse_percent],
         },
         "verdict": verdict(found),
+        **_physical(found),
+    }
+
+
+def _physical(found: Identification) -> dict[str, Any]:
+    """Standard parameters that could exist, and what was wrong with the plain ones."""
+    if found.consistent is None:
+        return {}
+    c = found.consistent
+    return {
+        "standard_parameters": [
+            {"name": p.name, "value": float(x), "unit": p.unit}
+            for p, x in zip(found.model.standard, c.standard, strict=True)
+        ],
+        "consistency": {"plain_solution": list(c.violated), "chi_square_per_parameter": c.distance},
     }

@@ -54,7 +54,8 @@ class Triangle:
 @dataclass(frozen=True)
 class Solution:
     """theta: (p,); covariance: (p, p), zero for what is not determined; determined: (p,); condition: of
-    the weighted columns at unit length; sigma: (n,) residuals' size by joint.
+    the weighted columns at unit length; sigma: (n,) residuals' size by joint; precision: (p, p), normal
+    matrix of the weighted rows.
     """
 
     theta: Array
@@ -62,6 +63,7 @@ class Solution:
     determined: NDArray[np.bool_]
     condition: float
     sigma: Array
+    precision: Array
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,8 @@ class Regression:
             if np.allclose(theta, before, rtol=1e-9, atol=1e-12):
                 break
         assert len(sigma) == n
-        return Solution(theta, self._covariance(theta, known, weights), known, condition, sigma)
+        covariance = self._covariance(theta, known, weights)
+        return Solution(theta, covariance, known, condition, sigma, self._precision(sigma))
 
     def residuals(self, theta: Array) -> list[Array]:
         """Effort minus prediction, (M, n) of each record."""
@@ -113,6 +116,15 @@ class Regression:
                 size = 1.4826 * np.median(np.abs(e)) if robust else np.sqrt(np.mean(e**2))
             found.append(float(size) or 1.0)
         return np.array(found)
+
+    def _precision(self, sigma: Array) -> Array:
+        """Normal matrix of the rows by joint over its residuals' variance."""
+        total = np.zeros((self.columns[0].shape[2],) * 2)
+        for table, m in zip(self.columns, self.moving, strict=True):
+            for j, size in enumerate(sigma):
+                rows = table[m[:, j], j] / size
+                total += rows.T @ rows
+        return total
 
     def _covariance(self, theta: Array, known: NDArray[np.bool_], weights: Sequence[Array]) -> Array:
         result = np.zeros((len(known), len(known)))
