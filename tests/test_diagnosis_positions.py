@@ -7,6 +7,7 @@ import pytest
 from test_diagnosis_selection import ARM, three
 
 from modelgen.dataset import Record
+from modelgen.diagnosis.instruments import other_period
 from modelgen.diagnosis.positions import blurred, counts, feigned
 from modelgen.diagnosis.run import diagnose
 
@@ -45,3 +46,28 @@ def test_a_large_cause_is_among_those_named(effect: str) -> None:
     found = diagnose(ARM, [coarse(r) for r in three(effect, 1, 1.5, seed=5)])
     first = found.causes[0]
     assert (effect, 1) in {(first.effect, first.joint), *(rival[:2] for rival in first.ambiguous_with)}
+
+
+def noisy(record: Record, size: float, seed: int) -> Record:
+    """Seen by encoders whose noise has no steps, another one in every period."""
+    q = record.q + size * np.random.default_rng(seed).normal(size=record.q.shape)
+    return replace(record, q=q, motor=q * np.array([80.0, 60.0]), motor_side=(False, False))
+
+
+def test_noise_without_steps_is_seen_by_instruments() -> None:
+    exact = diagnose(ARM, three(None, 1, 0.0, seed=6))
+    assert exact.positions is not None
+    assert exact.positions.endogeneity is not None
+    assert not exact.positions.endogeneity.found
+    found = diagnose(ARM, [noisy(r, 2e-4, k) for k, r in enumerate(three(None, 1, 0.0, seed=6))])
+    assert found.positions is not None
+    assert found.positions.endogeneity is not None
+    assert found.positions.endogeneity.found
+    assert not found.positions.feigned.any()
+    assert found.verdict == "cannot_tell", (found.verdict, found.causes)
+    assert "too noisy" in found.reason
+
+
+def test_the_other_period_has_the_same_phase() -> None:
+    assert list(other_period(7, 3)) == [3, 4, 5, 6, 1, 2, 3]
+    assert list(other_period(4, 3)) == [3, -1, -1, 0]

@@ -24,7 +24,7 @@ def cause(effect: str, joint: int | None, *also: tuple[str, int], alias: bool = 
 
 def test_a_single_effect() -> None:
     truth = label(("spring", 2))
-    found = judge(answer(cause("spring", 2)), truth)
+    found = judge(answer(cause("spring", 2)), truth, [0.2, 0.2])
     assert (found.result, found.in_set, found.size) == (FOUND, True, 1.0)
     # 0.26 holds 0.06 that the effect costs, of which 0.054 are gone.
     assert found.recovered == pytest.approx(0.9)

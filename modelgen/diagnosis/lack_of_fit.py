@@ -58,17 +58,30 @@ class _Sums:
         self.free_within += share * float((k - 1).sum())
 
     def ratio(self, taken: float, tests: int) -> tuple[float, float]:
-        """F and its threshold; the fit has taken `taken` degrees of freedom from the means."""
+        """F and its quantile; the fit has taken `taken` degrees of freedom from the means."""
         if self.free_within < 10 or self.within <= 0:
             return 0.0, np.inf
         free = max(5.0, self.free_between - taken)
         statistic = (self.between / free) / (self.within / self.free_within)
-        limit = INFLATION * float(stats.f.ppf(1 - SIGNIFICANCE / tests, free, self.free_within))
-        return statistic, limit
+        return statistic, float(stats.f.ppf(1 - SIGNIFICANCE / tests, free, self.free_within))
 
 
 def lack_of_fit(system: System) -> LackOfFit | None:
     """Of the training records; None where nothing repeats."""
+    found, most = _tests(system)
+    if not any(np.isfinite(limit) for _, limit in found):
+        return None
+    statistic, quantile = max(found, key=lambda pair: pair[0] / pair[1])
+    return LackOfFit(statistic, INFLATION * quantile, np.array([s for s, _ in found[: system.n]]), most)
+
+
+def ratios(system: System) -> list[float]:
+    """Statistic over the quantile of F, of every joint's residuals as they are, then whitened (2 n,)."""
+    return [statistic / quantile for statistic, quantile in _tests(system)[0]]
+
+
+def _tests(system: System) -> tuple[list[tuple[float, float]], int]:
+    """Statistic and quantile of F of every joint, plain, then whitened; and the most periods of a record."""
     n = system.n
     plain, white = [_Sums() for _ in range(n)], [_Sums() for _ in range(n)]
     most = 0
@@ -86,11 +99,7 @@ def lack_of_fit(system: System) -> LackOfFit | None:
             left[system.usable[i][:, j]] = system.left[(system.record == i) & (system.joint == j)]
             white[j].add(folded(left, rows), 1.0)
     taken = system.basis.shape[1] / n
-    found = [s.ratio(taken * share, 2 * n) for share, part in ((0.0, plain), (1.0, white)) for s in part]
-    if not any(np.isfinite(limit) for _, limit in found):
-        return None
-    statistic, limit = max(found, key=lambda pair: pair[0] / pair[1])
-    return LackOfFit(statistic, limit, np.array([s for s, _ in found[:n]]), most)
+    return [s.ratio(taken * share, 2 * n) for share, part in ((0.0, plain), (1.0, white)) for s in part], most
 
 
 def repeating(system: System) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from modelgen.description import Arm
+from modelgen.diagnosis.endogeneity import Endogeneity
 from modelgen.diagnosis.lack_of_fit import LackOfFit
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.replay import Scores
@@ -55,6 +56,16 @@ class Errors:
 
 
 @dataclass(frozen=True)
+class Positions:
+    """Errors of the positions. feigned: percent of the RMSE by joint (n,) that they could feign; endogeneity:
+    test of Durbin, Wu and Hausman, None where nothing repeats.
+    """
+
+    feigned: Array
+    endogeneity: Endogeneity | None
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """Everything that was found. before, after: the arm as described and the arm with the causes, fitted to
     the training records; simulation: of the test record with either; test: rows of the test record;
@@ -77,6 +88,7 @@ class Diagnosis:
     residuals: tuple[Array, Array]
     selection: Selection
     settings: Mapping[str, Any] = field(default_factory=dict)
+    positions: Positions | None = None
 
 
 def to_json(d: Diagnosis) -> dict[str, Any]:
@@ -114,6 +126,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         },
         "next_experiment": d.next_experiment,
         "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
+        "positions": None if d.positions is None else _positions(d.positions),
         "settings": dict(d.settings),
     }
 
@@ -126,6 +139,21 @@ def _rank(r: Ranked) -> dict[str, Any]:
         "delta_bic": rounded(r.delta_bic),
         "cross_gain_percent": gain,
         "refused": r.refused or None,
+    }
+
+
+def _positions(p: Positions) -> dict[str, Any]:
+    test = p.endogeneity
+    return {
+        "feigned_percent": numbers(p.feigned),
+        "durbin_wu_hausman": None
+        if test is None
+        else {
+            "statistic": rounded(test.statistic),
+            "threshold": rounded(test.threshold),
+            "degrees": test.degrees,
+            "share_percent": numbers(test.share),
+        },
     }
 
 

@@ -12,12 +12,13 @@ from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.baseline import estimated, held
 from modelgen.diagnosis.candidates import LATER, Candidate, candidates
+from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
-from modelgen.diagnosis.objects import Diagnosis, Named
+from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, residuals, rows_twice, unit_of_efforts
 from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.positions import blur, feigned
@@ -96,8 +97,9 @@ def diagnose(
     selection, beside = standing(select(rows, prober, pool, periods, progress, blur=blurs), rows)
     baseline = rows[0].baseline
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
-    fit = lack_of_fit(selection.system)
-    verdict, reason = _verdict(selection, beside, fit, feigned(blurs, mean_squares(selection.system)))
+    fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
+    share = feigned(blurs, mean_squares(selection.system))
+    verdict, reason = _verdict(selection, beside, fit, share, noisy)
     named = _named(selection, pool, prober, model, base, rows)
     before = fitted(arm, model, rows)
     after = extended(arm, before, selection, train)
@@ -134,6 +136,7 @@ def diagnose(
             "evidence_threshold": EVIDENCE,
             "practical_gain_percent": PRACTICAL,
         },
+        Positions(share, noisy),
     )
 
 
@@ -158,7 +161,11 @@ def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
 
 
 def _verdict(
-    selection: Selection, beside: Sequence[Cause], fit: LackOfFit | None, noisy: Array
+    selection: Selection,
+    beside: Sequence[Cause],
+    fit: LackOfFit | None,
+    noisy: Array,
+    correlated: Endogeneity | None,
 ) -> tuple[str, str]:
     """beside: what gained something and left most of what repeats; noisy: percent of the RMSE by joint that
     errors of the positions could feign.
@@ -183,6 +190,13 @@ def _verdict(
         return (
             "outside_catalogue",
             f"something deterministic remains that no effect of the catalogue explains{more}",
+        )
+    if correlated is not None and correlated.found and correlated.share.max() > PRACTICAL:
+        joint = int(np.argmax(correlated.share)) + 1
+        return "cannot_tell", (
+            "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
+            f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
+            f"costs {correlated.share.max():.1f} % at joint {joint}; better encoders can tell"
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 

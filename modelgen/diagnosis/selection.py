@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from modelgen.diagnosis.candidates import LATER, Candidate
+from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
@@ -20,6 +21,7 @@ DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a
 AMBIGUOUS = 10.0  # delta BIC behind the winner
 MOST = 6  # causes
 FEW = 4  # records that are tried one by one
+SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 
 Report = Callable[[str, int, int], None]
 
@@ -99,7 +101,7 @@ def select(
                 trials.append(found)
         eligible: list[tuple[Trial, float]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
-            gain, refused = judged(t, rows, [c.trial for c in causes], blur)
+            gain, refused = judged(t, rows, [c.trial for c in causes], blur, system)
             ranking.append(_ranked(t, gain, refused))
             if not refused:
                 eligible.append((t, gain))
@@ -163,13 +165,19 @@ def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
 
 
 def judged(
-    trial: Trial, rows: Sequence[Rows], before: Sequence[Trial], blur: Array | None = None
+    trial: Trial,
+    rows: Sequence[Rows],
+    before: Sequence[Trial],
+    blur: Array | None = None,
+    system: System | None = None,
 ) -> tuple[float, str]:
     """Percent of the RMSE gained on rows that the cause's fit has not seen, and the gate that stays shut.
 
     The cause is fitted on one part and carried to the other, where the rest of the model is fitted anew
     with and without it; then the other way round. The squares of all parts count together. A part is a
     record, or every other one of many: a short record alone cannot hold the rest of the model.
+    A gain must be more than errors of the positions could feign (`blur`), or the estimate by instruments
+    not zero.
     """
     later = trial.candidate.effect == LATER  # shows between records: halves of all are tried instead
     n = rows[0].effort.shape[1]
@@ -199,13 +207,25 @@ def judged(
     judged = [j for j in trial.candidate.joints(n) if counts[j] > 0]
     gains = 100.0 * (1.0 - np.sqrt(sums[1, judged] / np.maximum(sums[0, judged], 1e-300)))
     least = np.full(len(judged), DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL)
-    if blur is not None:
+    if blur is not None and (gains >= least).any() and not (system and instrumented(trial, system)):
         least = np.maximum(least, feigned(blur[judged], sums[0, judged] / counts[judged]))
     best = float(gains[gains >= least].max(initial=-np.inf))
     if not np.isfinite(best):
         most = float(gains.max(initial=-np.inf))
         return most, "gain" if (gains < PRACTICAL).all() or blur is None else "positions"
     return best, "" if float((ratio**2).mean()) < 1.0 else "other joints"
+
+
+def instrumented(trial: Trial, system: System) -> bool:
+    """Whether the cause's estimate differs from zero where instruments keep errors of the positions out."""
+    if trial.candidate.effect in (LATER, "friction_warm_up"):  # do not repeat
+        return False
+    table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
+    pairs = Pairs(system.rows, table, system.periods, system.plain.sizes)
+    if not pairs.enough:
+        return False
+    values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]
+    return bool(np.abs(values).max(initial=0.0) > SIGNIFICANT)
 
 
 def _masked(rows: Sequence[Rows], half: int) -> tuple[list[Rows], list[Rows]]:

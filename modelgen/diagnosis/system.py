@@ -123,7 +123,9 @@ class _Plain:
         right = self.stacked([r.effort[:, :, None] for r in self.rows])[:, 0]
         self.left = right - self.basis @ (self.basis.T @ right)
         rows = np.bincount(self.joint, minlength=self.n)
-        self.counts = rows * np.array([_independent(system, j) for j in range(self.n)])
+        shares = np.array([_independent(system, j) for j in range(self.n)])
+        self.counts = rows * shares
+        self.share = float(self.counts.sum() / max(1, rows.sum()))
 
     def stacked(self, columns: Sequence[Array]) -> Array:
         """Moving rows, weighted, record after record, joint after joint."""

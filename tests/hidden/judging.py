@@ -57,8 +57,8 @@ def truths(label: Label) -> list[set[Cause]]:
     return out
 
 
-def judge(answer: dict[str, Any], label: Label) -> Outcome:
-    """Compares a diagnosis.json with the label."""
+def judge(answer: dict[str, Any], label: Label, reachable: list[float] | None = None) -> Outcome:
+    """Compares a diagnosis.json with the label. reachable: RMSE (n,) on test without the effect."""
     causes = [
         (_pair(cause), {_pair(alias) for alias in cause.get("aliases", [])}, cause)
         for cause in answer["causes"]
@@ -93,15 +93,16 @@ def judge(answer: dict[str, Any], label: Label) -> Outcome:
     in_set = all(any(names & members for members in sets) for names in wanted)
     result = compare(False)
     return Outcome(
-        what, verdict, result, compare(True), in_set, size, named, _recovered(answer, label, result)
+        what, verdict, result, compare(True), in_set, size, named, _recovered(answer, reachable, result)
     )
 
 
-def _recovered(answer: dict[str, Any], label: Label, result: str) -> float | None:
-    if result != FOUND or not answer.get("error"):
+def _recovered(answer: dict[str, Any], reachable: list[float] | None, result: str) -> float | None:
+    """At the joint where the effect costs most."""
+    if result != FOUND or reachable is None or not answer.get("error"):
         return None
-    excess = [found / floor for found, floor in zip(label.with_effect, label.floor, strict=True)]
-    joint = excess.index(max(excess))
-    before, after = answer["error"]["before"][joint], answer["error"]["after"][joint]
-    recoverable = before * (1.0 - 1.0 / excess[joint])
-    return float((before - after) / recoverable) if recoverable > 0 else None
+    before, after = answer["error"]["before"], answer["error"]["after"]
+    excess = [found / floor for found, floor in zip(before, reachable, strict=True)]
+    j = excess.index(max(excess))
+    recoverable = before[j] - reachable[j]
+    return float((before[j] - after[j]) / recoverable) if recoverable > 0 else None

@@ -10,8 +10,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+from hidden.arms import FREE
 from hidden.cases import Case, make, seal, unseal
 from hidden.judging import Outcome, judge
+from hidden.recovery import reachable
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
@@ -43,4 +45,6 @@ def run(case: Case, folder: Path) -> tuple[Outcome, list[float], float]:
     seal(make(case, folder), sealed)
     answer, seconds = diagnose(folder, case.name)
     label = unseal(sealed)
-    return judge(answer, label), label.strength, seconds
+    free = case.arm in FREE
+    floor = reachable(case, folder) if case.hidden and answer["causes"] and not free else None
+    return judge(answer, label, floor), label.strength, seconds

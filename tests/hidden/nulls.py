@@ -1,0 +1,83 @@
+"""python -m hidden.nulls [--count N] [--seed N] [--jobs N]
+
+The lack of fit of complete models: statistic over the quantile of F of every joint and test, the largest of
+each null, sorted. Writes modelgen/diagnosis/null_distribution.py. Run from the repository with tests/ on the
+path.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from joblib import Parallel, delayed
+from numpy.random import default_rng
+
+from hidden.blind import SMALL
+from hidden.cases import Case, make
+from modelgen.dataset import choose, prepare
+from modelgen.description import load
+from modelgen.diagnosis.baseline import estimated
+from modelgen.diagnosis.lack_of_fit import ratios
+from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.periods import period_of, with_whole_rows
+from modelgen.diagnosis.run import records, settings_for
+from modelgen.diagnosis.system import System
+from modelgen.functions import build_model
+from modelgen.probing import Prober
+
+OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
+HEAD = '''\
+"""Lack of fit of complete models, over its nominal threshold: the largest of all joints and tests of a null.
+
+Simulated records of {count} arms with nothing hidden (tests/hidden/nulls.py, seed {seed}), sorted. Above one
+where coloured residuals have fewer degrees of freedom than were counted, and where errors that repeat with
+the motion, as those of encoders, stand out of little noise.
+"""
+
+NULLS: tuple[float, ...] = (
+'''
+
+
+def ratio(arm: str, seed: int) -> float:
+    """Of one null: the largest statistic over its quantile of F."""
+    with tempfile.TemporaryDirectory(prefix="null-") as name:
+        folder = Path(name)
+        make(Case(arm, seed), folder)
+        described = load(folder / "arms.yaml")["arm"]
+        paths = [str(folder / f"{record}.csv") for record in ("train_a", "train_b", "test")]
+        found = records(described, paths[:2], paths[2:], None)[:2]
+    lengths = [period_of(record, None) for record in found]
+    chosen = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
+    model, prober = build_model(described), Prober(described)
+    rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
+    periods = [None if p is None else p // chosen.factor for p in lengths]
+    return max(ratios(System(rows, [r.columns for r in rows], periods)))
+
+
+def main() -> int:
+    """Exit status 0."""
+    assert __doc__ is not None
+    parser = argparse.ArgumentParser(prog="hidden.nulls", description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--jobs", type=int, default=-1)
+    given = parser.parse_args()
+    random = default_rng(given.seed)
+    drawn = [
+        (SMALL[int(random.integers(len(SMALL)))], int(random.integers(10**6))) for _ in range(given.count)
+    ]
+    found = Parallel(n_jobs=given.jobs)(delayed(ratio)(arm, seed) for arm, seed in drawn)
+    values = [f"{value:.3f}" for value in sorted(found)]
+    lines = [", ".join(values[k : k + 15]) for k in range(0, len(values), 15)]
+    text = (
+        HEAD.format(count=given.count, seed=given.seed) + "".join(f"    {line},\n" for line in lines) + ")\n"
+    )
+    OUT.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

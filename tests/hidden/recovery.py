@@ -1,0 +1,38 @@
+"""What is left of a case's test record where the effect is absent: what a complete model could reach."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hidden import logs
+from hidden.cases import RECORDS, Bench, Case
+from modelgen.dataset import choose, prepare
+from modelgen.description import load
+from modelgen.diagnosis.baseline import estimated
+from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.periods import period_of, with_whole_rows
+from modelgen.diagnosis.run import records, settings_for
+from modelgen.diagnosis.system import weighted_fit
+from modelgen.functions import build_model
+from modelgen.probing import Prober
+
+
+def reachable(case: Case, folder: Path) -> list[float]:
+    """RMSE (n,) [A] on `test`, of the model fitted to the training records, all without the effect: same arm,
+    motions and noise, and the filters of the diagnosis. folder: where the case was made.
+    """
+    bench, arm = Bench(case), load(folder / "arms.yaml")[case.name]
+    paths = [folder / f"{name}_without.csv" for name in RECORDS[:3]]
+    for k, path in enumerate(paths):
+        logs.write(path, bench.record(k, {}))
+    found = records(arm, [str(path) for path in paths[:2]], [str(paths[2])], None)
+    lengths = [period_of(record, None) for record in found[:-1]]
+    settings = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
+    model, prober = build_model(arm), Prober(arm)
+    *train, test = rows_twice(prober, model, [prepare(r, settings) for r in found], estimated(model))
+    theta = weighted_fit(train, [r.columns for r in train])
+    left = (test.effort - test.columns @ theta) * test.gain
+    n = left.shape[1]
+    return [float(np.sqrt(np.mean(left[test.moving[:, j], j] ** 2))) for j in range(n)]
