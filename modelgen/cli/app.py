@@ -110,6 +110,7 @@ def identify(
     preset: given.Preset = "default",
     method: given.Method = "wls",
     consistent: given.Consistent = False,
+    stream: given.Streamed = False,
     without: given.Without = "",
     as_json: given.Json = False,
 ) -> None:
@@ -120,7 +121,19 @@ def identify(
     chosen = options(without, given.Gains.KNOWN, False, False, None)
     _, (found,) = selected(arms, [arm])
     how = {"method": method, "physical": consistent}
-    run(found, train, test or [], out, chosen, mapping, cutoff, how, preset=preset, as_json=as_json)
+    run(
+        found,
+        train,
+        test or [],
+        out,
+        chosen,
+        mapping,
+        cutoff,
+        how,
+        preset=preset,
+        stream=stream,
+        as_json=as_json,
+    )
 
 
 @app.command()

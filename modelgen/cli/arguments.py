@@ -72,6 +72,9 @@ OptionalTest = Annotated[
     typer.Option("--test", metavar="LOG", help="A record not fitted; repeatable.", show_default=False),
 ]
 Method = Annotated[str, typer.Option(metavar="NAME", help="ols, wls (weights by joint) or robust.")]
+Streamed = Annotated[
+    bool, typer.Option("--stream", help="Read block by block, as logs above 512 MB always are.")
+]
 Consistent = Annotated[
     bool, typer.Option("--consistent", help="The closest parameters of links that could exist.")
 ]

@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import typer
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import BarColumn, Progress, TaskID, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 from modelgen.cli.output import print_json, print_table
-from modelgen.dataset import Prepared, Settings, choose, described, gather, prepare, spectra_svg, split
+from modelgen.dataset import (
+    Chosen,
+    Prepared,
+    Settings,
+    Stream,
+    check_separate,
+    choose,
+    described,
+    gather,
+    parse,
+    prepare,
+    read,
+    spectra_svg,
+    split,
+)
 from modelgen.dataset import preset as processing
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.functions import Options
-from modelgen.identification import Identification, Validation, identify, to_json
+from modelgen.identification import Identification, Validation, identify, identify_streamed, to_json
+
+STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streamed
 
 
 def run(
@@ -32,6 +48,7 @@ def run(
     how: Mapping[str, Any],
     *,
     preset: str,
+    stream: bool,
     as_json: bool,
 ) -> None:
     """Identify and write everything into `out`. how: options of `identify`. Raises InputError."""
@@ -39,30 +56,32 @@ def run(
         raise InputError(f"--out {out}: found a file, expected a folder")
     if "drives" in options.without:
         raise InputError("--without drives: the input is the drives' own; expected --without effects")
+    if cutoff is not None and preset != "default":
+        raise InputError(f"--cutoff {cutoff:g}: --preset {preset} has its own, expected one of both")
     console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("reading", total=None)
-        training, testing = gather(train, test, arm, mapping)
-        if not testing:
-            if len(training) > 1:
-                raise InputError("found no test record, expected one: --test LOG")
-            first, second = split(training[0])
-            training, testing = [first], [second]
-        if cutoff is not None and preset != "default":
-            raise InputError(f"--cutoff {cutoff:g}: --preset {preset} has its own, expected one of both")
-        asked = Settings(cutoff=cutoff) if preset == "default" else processing(preset, 1 / training[0].step)
-        chosen = choose(training, asked)
-        bar.update(task, description="identifying")
-        prepared = [prepare(r, chosen) for r in training]
-        found = identify(
-            prepared,
-            arm,
-            options,
-            test=[prepare(r, chosen) for r in testing],
-            **how,
-        )
-    data = to_json(found) | {"cutoff_hz": chosen.cutoff, "processing": described(prepared[0])}
-    _write(found, data, prepared[0], out)
+
+        def asked(rate: float) -> Settings | Chosen:
+            return Settings(cutoff=cutoff) if preset == "default" else processing(preset, rate)
+
+        if stream or sum(Path(parse(s).path).stat().st_size for s in train if _exists(s)) > STREAMED:
+            found, first, chosen = _streamed(arm, train, test, options, mapping, asked, how, bar, task)
+        else:
+            training, testing = gather(train, test, arm, mapping)
+            if not testing:
+                if len(training) > 1:
+                    raise InputError("found no test record, expected one: --test LOG")
+                one, two = split(training[0])
+                training, testing = [one], [two]
+            chosen = choose(training, asked(1 / training[0].step))
+            bar.update(task, description="identifying")
+            prepared = [prepare(r, chosen) for r in training]
+            found = identify(prepared, arm, options, test=[prepare(r, chosen) for r in testing], **how)
+            first = prepared[0]
+    data = to_json(found) | {"cutoff_hz": chosen.cutoff, "processing": described(first)}
+    _write(found, data, first, out)
     if as_json:
         print_json(data)
         return
@@ -86,6 +105,41 @@ def run(
     ]
     print_table("test records", dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right"), table)
     typer.echo("\n".join([*data["processing"], data["verdict"]]))
+
+
+def _exists(spec: str) -> bool:
+    return Path(parse(spec).path).is_file()
+
+
+def _streamed(
+    arm: Arm,
+    train: Sequence[str],
+    test: Sequence[str],
+    options: Options,
+    mapping: Path | None,
+    asked: Callable[[float], Settings | Chosen],
+    how: Mapping[str, Any],
+    bar: Progress,
+    task: TaskID,
+) -> tuple[Identification, Prepared, Chosen]:
+    """The same block by block; the first block stands for the record in pictures."""
+    if not test:
+        raise InputError("a streamed log is not split: found no test record, expected --test LOG")
+    check_separate(train, test)
+    head = Stream(train[0], arm, None, mapping)
+    chosen = Stream(train[0], arm, asked(1 / head.axis.step), mapping).settings
+    streams = [Stream(spec, arm, chosen, mapping) for spec in train]
+    testing = [prepare(read(spec, arm, mapping), chosen) for spec in test]
+    bar.update(task, description=f"identifying, {sum(s.samples for s in streams):,} samples")
+    found = identify_streamed(
+        streams,
+        arm,
+        options,
+        test=testing,
+        progress=lambda done, total: bar.update(task, completed=done, total=total),
+        **how,
+    )
+    return found, next(iter(streams[0])), chosen
 
 
 def picture(found: Validation) -> str:

@@ -2,6 +2,7 @@
 
 from modelgen.identification.identify import METHODS, Estimate, Identification, Validation, identify, to_json
 from modelgen.identification.regression import Regression, Solution, Triangle
+from modelgen.identification.streamed import identify_streamed
 
 __all__ = [
     "METHODS",
@@ -12,5 +13,6 @@ __all__ = [
     "Triangle",
     "Validation",
     "identify",
+    "identify_streamed",
     "to_json",
 ]

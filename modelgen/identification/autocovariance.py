@@ -61,6 +61,12 @@ def autoregression(r: Array) -> tuple[Array, float]:
     return np.concatenate([[1.0], -a]), max(0.0, float(r[0] - a @ r[1:]))
 
 
+def meat_of(rows: Array, taps: Array, power: float) -> Array:
+    """rows' G rows (p, p) of one record of one joint, G that of the noise power / |A(z)|^2."""
+    back = lfilter([1.0], taps, rows[::-1], axis=0)
+    return np.asarray(power * (back.T @ back))
+
+
 def _meat(x: Sequence[Sequence[Array]], noise: Sequence[Array]) -> tuple[Array, list[list[Array]]]:
     """Sum of X' G X, and G X by joint and record.
 

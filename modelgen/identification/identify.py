@@ -100,6 +100,20 @@ def identify(
         # Columns that depend on the load are evaluated anew with the load that was found.
         regression = _regression(prober, model, train, solution.theta)
         solution = regression.solve(method)
+    return concluded(arm, model, prober, method, solution, test, physical=physical)
+
+
+def concluded(
+    arm: Arm,
+    model: Model,
+    prober: Prober,
+    method: str,
+    solution: Solution,
+    test: Sequence[Prepared],
+    *,
+    physical: bool,
+) -> Identification:
+    """Estimates and validation of a solution."""
     found = consistent(model, solution.theta, solution.precision) if physical else None
     theta = solution.theta if found is None else found.base
     needed = essential(solution)
@@ -159,15 +173,18 @@ def validate(prober: Prober, model: Model, records: Sequence[Prepared], theta: A
     return Validation(unit, np.array(rmse), np.array(share), t, measured, measured - wrong)
 
 
+def rows_of(prober: Prober, model: Model, p: Prepared, theta: Array) -> tuple[Array, Array]:
+    """Effort (M, n) and columns (M, n, p) of a record, through its filter. Raises InputError."""
+    if p.input is None:
+        raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
+    motion = Motion(p.time, p.q, p.dq, p.ddq)
+    columns = p.parallel(np.asarray(prober.regressor(model, motion, theta)))
+    return np.asarray(p.parallel(prober.ideal(model, motion, p.input))), columns
+
+
 def _regression(prober: Prober, model: Model, records: Sequence[Prepared], theta: Array) -> Regression:
-    effort, columns = [], []
-    for p in records:
-        if p.input is None:
-            raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
-        motion = Motion(p.time, p.q, p.dq, p.ddq)
-        columns.append(p.parallel(np.asarray(prober.regressor(model, motion, theta))))
-        effort.append(np.asarray(p.parallel(prober.ideal(model, motion, p.input))))
-    return Regression(effort, columns, [p.moving for p in records])
+    rows = [rows_of(prober, model, p, theta) for p in records]
+    return Regression([y for y, _ in rows], [w for _, w in rows], [p.moving for p in records])
 
 
 def verdict(found: Identification) -> str:
