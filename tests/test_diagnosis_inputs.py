@@ -7,6 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from modelgen.description import load
+from modelgen.effects import known_effects
+from modelgen.probing import places
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -56,6 +60,25 @@ def test_one_record_for_everything(logs: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_one_record_and_none_to_measure_the_gain_on(logs: Path, tmp_path: Path) -> None:
+    answer = ask(logs, tmp_path / "out", train=(str(logs / "train_a.csv"),), test=())
+    assert answer.code == 2
+    assert "the gain cannot be measured" in answer.said
+    assert "record the arm once more" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def test_records_with_and_without_efforts(logs: Path, tmp_path: Path) -> None:
+    head, *lines = table(logs / "test.csv")
+    kept = [k for k, name in enumerate(head) if not name.startswith(("i", "tau"))]
+    free = written(tmp_path / "free.csv", [[line[k] for k in kept] for line in [head, *lines]])
+    train = str(logs / "train_a.csv"), str(logs / "train_b.csv")
+    answer = ask(logs, tmp_path / "out", train=train, test=(free,))
+    assert answer.code == 2
+    assert "found no effort" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
 def test_test_record_also_given_for_training(logs: Path, tmp_path: Path) -> None:
     a, b = str(logs / "train_a.csv"), str(logs / "train_b.csv")
     answer = ask(logs, tmp_path / "out", train=(a, b), test=(b,))
@@ -90,3 +113,9 @@ def test_records_too_short(logs: Path, tmp_path: Path) -> None:
     assert answer.code == 2
     assert "too short a record" in answer.said
     assert not (tmp_path / "out").exists()
+
+
+def test_an_effect_that_the_arm_has_already_is_no_candidate(logs: Path) -> None:
+    arm = next(iter(load(logs / "arms.yaml", known_effects()).values()))
+    assert places(arm, "coulomb_friction") == []
+    assert 2 in places(arm, "load_dependent_friction")

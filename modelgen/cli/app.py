@@ -141,8 +141,8 @@ def identify(
 def diagnose(
     arm: given.OneArm,
     train: given.Train,
-    test: given.Test,
     out: given.Folder,
+    test: given.DiagnosisTest = None,
     arms: given.Arms = None,
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
@@ -154,7 +154,17 @@ def diagnose(
     from modelgen.cli.selecting import selected
 
     file, (found,) = selected(arms, [arm])
-    run(Path(file), found, train, test, out, mapping=mapping, cutoff=cutoff, period=period, as_json=as_json)
+    run(
+        Path(file),
+        found,
+        train,
+        test or [],
+        out,
+        mapping=mapping,
+        cutoff=cutoff,
+        period=period,
+        as_json=as_json,
+    )
 
 
 app.command()(simulate)

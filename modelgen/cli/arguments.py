@@ -51,6 +51,9 @@ Train = Annotated[
 Test = Annotated[
     list[str], typer.Option(metavar="LOG", help="The record that nothing but the final errors looks at.")
 ]
+DiagnosisTest = Annotated[
+    list[str] | None, typer.Option("--test", metavar="LOG", help="The record for the final errors alone.")
+]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
 Mapping = Annotated[
     Path | None,

@@ -19,7 +19,7 @@ EVIDENCE = 15.0  # delta BIC
 PRACTICAL = 1.5  # percent of the RMSE on a record that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample
 AMBIGUOUS = 10.0  # delta BIC behind the winner
-MOST = 6  # causes
+MOST = 4  # causes
 FEW = 4  # records that are tried one by one
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 

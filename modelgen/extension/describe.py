@@ -71,4 +71,10 @@ def _listed(owner: CommentedMap, present: Sequence[str]) -> CommentedSeq:
         made.fa.set_flow_style()
         owner["effects"] = made
     found: CommentedSeq = owner["effects"]
+    if found.anchor.value is not None:
+        # the list is that of other joints as well: this one gets its own
+        own = CommentedSeq(list(found))
+        if found.fa.flow_style():
+            own.fa.set_flow_style()
+        owner["effects"] = found = own
     return found

@@ -1,0 +1,143 @@
+"""Pictures of a diagnosis: efforts, what is left over, simulated motion."""
+
+from __future__ import annotations
+
+import numpy as np
+from markupsafe import Markup
+
+from modelgen.description import DirectDrive, LeveredDrive
+from modelgen.diagnosis.objects import Diagnosis
+from modelgen.diagnosis.rows import Array
+from modelgen.figures import COLOURS, figure, svg
+
+DRIVEN = (DirectDrive, LeveredDrive)
+_WINDOWS = 12  # that the picture of the simulation shows
+_SECONDS = 10.0  # of the test record that the pictures over time show
+
+
+def effort(d: Diagnosis) -> str:
+    """Measured and predicted effort, and what is left, over the first seconds of the test record."""
+    held, t = d.test, d.test.prepared.t
+    shown = t <= t[0] + _SECONDS
+    n = held.effort.shape[1]
+    made, axes = figure(n, 2, (9.0, 1.9 * n))
+    measured = held.effort * held.gain
+    free = held.prepared.input is None
+    units = units_of(d)
+    for j in range(n):
+        before, after = (measured - r for r in d.residuals)
+        left, right = axes[j]
+        left.plot(t[shown], measured[shown, j], color="#999999", label="of the links" if free else "measured")
+        left.plot(t[shown], before[shown, j], color=COLOURS[0], label="model as described")
+        if d.causes:
+            left.plot(t[shown], after[shown, j], color=COLOURS[1], label="extended model")
+        left.set_ylabel(f"joint {j + 1} [{units[j]}]")
+        right.plot(t[shown], d.residuals[0][shown, j], color=COLOURS[0], linewidth=0.8)
+        if d.causes:
+            right.plot(t[shown], d.residuals[1][shown, j], color=COLOURS[1], linewidth=0.8)
+        right.set_ylabel("left over")
+    axes[0, 0].legend(loc="upper right", fontsize=7)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]")
+    return svg(made)
+
+
+def units_of(d: Diagnosis) -> list[str]:
+    """Of the efforts that are left over, by joint."""
+    if d.test.prepared.input is not None:
+        return list(d.test.prepared.effort_unit) or ["A"] * len(d.arm.coordinates)
+    joints = [d.arm.joints[i] for i in d.arm.coordinates]
+    forces = ["N" if j.type == "prismatic" else "N m" for j in joints]
+    return ["A" if isinstance(j.drive, DRIVEN) else u for j, u in zip(joints, forces, strict=True)]
+
+
+def residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
+    """What is left over against speed, position, load, motor angle and time, before and after."""
+    held, p = d.test, d.test.prepared
+    n = held.effort.shape[1]
+    load = np.abs(held.effort * held.gain)
+    against: list[tuple[str, Array]] = [
+        ("joint velocity", p.picked(p.dq)),
+        ("joint position", p.picked(p.q)),
+        ("size of the effort", load),
+        ("motor position", p.picked(p.motor)),
+        ("time [s]", np.tile(p.t[:, None], (1, n))),
+    ]
+    if p.temperature is not None:
+        against.append(("temperature [deg C]", p.picked(p.temperature)))
+    pictures = []
+    for name, x in against:
+        made, axes = figure(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
+        for j in range(n):
+            m = held.moving[:, j]
+            for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
+                centre, mean = _binned(x[m, j], r[m, j], 120 if name == "motor position" else 24)
+                axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
+            axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
+            axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
+        axes[0, 0].set_ylabel(f"left over [{units_of(d)[0]}]", fontsize=7)
+        pictures.append((name.split(" [")[0], inline(svg(made))))
+    return pictures
+
+
+def left_over(d: Diagnosis) -> str:
+    """Means of what is left over by speed, motor position and effort, before and after."""
+    held, p = d.test, d.test.prepared
+    n = held.effort.shape[1]
+    made, axes = figure(n, 3, (9.0, 1.9 * n))
+    against = (p.picked(p.dq), p.picked(p.motor), np.abs(held.effort * held.gain))
+    for j in range(n):
+        m = held.moving[:, j]
+        for axis, x, bins in zip(axes[j], against, (24, 120, 24), strict=True):
+            for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
+                axis.plot(*_binned(x[m, j], r[m, j], bins), color=COLOURS[k], linewidth=0.9)
+            axis.axhline(0.0, color="#999999", linewidth=0.6)
+        axes[j, 0].set_ylabel(f"joint {j + 1} [{units_of(d)[j]}]", fontsize=7)
+    for axis, name in zip(axes[-1], ("speed", "motor position", "size of the effort"), strict=True):
+        axis.set_xlabel(name, fontsize=7)
+    return svg(made)
+
+
+def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
+    """Means over bins of equal width that hold five samples at least."""
+    if len(x) < 5:
+        return np.zeros(0), np.zeros(0)
+    edges = np.linspace(x.min(), x.max() + 1e-12, bins + 1)
+    place = np.clip(np.digitize(x, edges) - 1, 0, bins - 1)
+    count = np.bincount(place, minlength=bins)
+    total = np.bincount(place, weights=y, minlength=bins)
+    full = count >= 5
+    return ((edges[1:] + edges[:-1]) / 2)[full], total[full] / count[full]
+
+
+def replayed(d: Diagnosis) -> Markup:
+    """Measured and simulated positions of the first windows of the test record, and their difference."""
+    shown = [s for s in d.simulation if s is not None]
+    if not shown:
+        return Markup()
+    n = shown[0].measured.shape[2]
+    made, axes = figure(n, 2, (9.0, 2.1 * n))
+    labels = (("model as described", COLOURS[0]), ("extended model", COLOURS[1]))
+    unit = ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
+    for j in range(n):
+        left, right = axes[j]
+        for scores, (label, colour) in zip(d.simulation, labels, strict=True):
+            if scores is None or (label == "extended model" and not d.causes):
+                continue
+            for w in range(min(_WINDOWS, len(scores.t))):
+                t, path, truth = scores.t[w], scores.simulated[w, :, j], scores.measured[w, :, j]
+                if colour == COLOURS[0]:
+                    left.plot(t, truth, color="#999999", linewidth=2.2, label="measured" if w == 0 else None)
+                left.plot(t, path, color=colour, linewidth=0.9, label=label if w == 0 else None)
+                right.plot(t, path - truth, color=colour, linewidth=0.9)
+        left.set_ylabel(f"joint {j + 1} [{unit[j]}]")
+        right.set_ylabel("off by")
+    axes[0, 0].legend(loc="upper right", fontsize=7)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]")
+    return inline(svg(made))
+
+
+def inline(text: str) -> Markup:
+    """From the svg element on, which stands in the page as it is."""
+    return Markup(text[text.index("<svg") :])
