@@ -45,8 +45,8 @@ def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path |
     """
     if not test:
         raise InputError(
-            "found no test record: the gain cannot be measured on what was fitted; record the arm once more, or "
-            f"hold a part out: --train {train[0]}@0:45 --test {train[0]}@45:60 (times in seconds)"
+            "found no test record: the gain cannot be measured on what was fitted; record the arm once more, "
+            f"or hold a part out: --train {train[0]}@0:45 --test {train[0]}@45:60 (times in seconds)"
         )
     check_separate(train, test)
     if len(test) != 1:
@@ -85,10 +85,8 @@ def diagnose(
     free = found[0].input is None
     other = next((r for r in found if (r.input is None) != free), None)
     if other is not None:
-        kinds = ("an effort", "none") if free else ("no effort", "one")
-        raise InputError(
-            f"{other.name}: found {kinds[0]}, {found[0].name} has {kinds[1]}; expected all alike"
-        )
+        here, there = ("an effort", "none") if free else ("no effort", "one")
+        raise InputError(f"{other.name}: found {here}, {found[0].name} has {there}; expected all alike")
     settings = settings_for(found, cutoff)
     if free:
         found = [released(record, settings) for record in found]
