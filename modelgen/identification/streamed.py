@@ -1,7 +1,8 @@
 """Identification of logs of any length: triangles and sums that do not grow with the rows.
 
-Three passes over the blocks: one triangle per joint, which holds every weighting of the joints; then the
-residuals' autocovariance; then the sandwich that it makes. Blocks count as records of their own there.
+One pass over the blocks makes one triangle per joint, which holds every weighting of the joints. Two passes
+over a part of them, spread evenly, give the residuals' autocovariance and the sandwich that it makes; blocks
+count as records of their own there.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset import Prepared, Stream
+from modelgen.dataset import Prepared, Stream, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, Options, build_model
@@ -23,6 +24,8 @@ from modelgen.probing import Prober
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
+Block = tuple[Array, Array, NDArray[np.bool_]]
+PART = 32  # blocks that the standard deviations are made of, at least where there are as many
 
 
 def identify_streamed(
@@ -76,12 +79,23 @@ class _Blocks:
         self, streams: Sequence[Stream], model: Model, prober: Prober, progress: Progress | None
     ) -> None:
         self.streams, self.model, self.prober, self.progress = streams, model, prober, progress
-        self.done, self.total = 0, 3 * sum(len(s) for s in streams)
+        self.count = sum(len(s) for s in streams)
+        self.step = max(1, self.count // PART)  # of the blocks that `part` takes
+        self.done, self.total = 0, self.count + 2 * len(range(0, self.count, self.step))
 
-    def __iter__(self) -> Iterator[tuple[Array, Array, NDArray[np.bool_]]]:
+    def __iter__(self) -> Iterator[Block]:
+        return self.part(1)
+
+    def part(self, step: int) -> Iterator[Block]:
+        """Every block whose number is a multiple of `step`."""
         zero = np.zeros(len(self.model.grouping.base))
+        number = -1
         for stream in self.streams:
-            for p in stream:
+            for record in stream.records():
+                number += 1
+                if number % step:
+                    continue
+                p = prepare(record, stream.settings)
                 effort, columns = rows_of(self.prober, self.model, p, zero)
                 yield effort, columns, p.moving
                 self.done += 1
@@ -114,7 +128,7 @@ def _sandwich(
     """Covariance of the determined parameters, as `autocovariance.sandwich` has it for many rows."""
     n = len(weights)
     sums, count = np.zeros((n, ORDER + 1)), np.zeros(n)
-    for effort, columns, moving in blocks:
+    for effort, columns, moving in blocks.part(blocks.step):
         e = (effort - columns @ theta) * moving * weights
         count += moving.sum(axis=0)
         for lag in range(min(ORDER + 1, len(e))):
@@ -126,9 +140,10 @@ def _sandwich(
         if t.count:
             table = t.r[:, :-1][:, known] * w
             normal += table.T @ table
-    for _, columns, moving in blocks:
+    for _, columns, moving in blocks.part(blocks.step):
         for j, (taps, power) in enumerate(models):
             meat += meat_of(columns[:, j][:, known] * (moving[:, j, None] * weights[j]), taps, power)
+    meat *= sum(t.count for t in triangles) / max(1.0, float(count.sum()))
     scale = np.sqrt(np.diag(normal))
     bread = np.linalg.inv(normal / np.outer(scale, scale)) / np.outer(scale, scale)
     return np.asarray(bread @ meat @ bread)
