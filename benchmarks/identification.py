@@ -1,9 +1,9 @@
 """Identification of a long log of ur10e: python benchmarks/identification.py [samples].
 
 Writes a Parquet log of a periodic motion with noise (ten million samples by default), identifies it block by
-block in a process of its own, and prints its peak memory and samples per second; beside it, in the same run and
-on one core, the regressor of Pinocchio called in a loop from Python over noise-free samples in memory, summed
-and solved, without a file, filters, derivatives or uncertainties. Needs pin and pyarrow.
+block in a process of its own, and prints its peak memory and samples per second; beside it, in the same run
+and on one core, the regressor of Pinocchio called in a loop from Python over noise-free samples in memory,
+summed and solved, without a file, filters, derivatives or uncertainties. Needs pin and pyarrow.
 """
 
 from __future__ import annotations
