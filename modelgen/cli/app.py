@@ -9,6 +9,7 @@ import typer
 from modelgen import __version__
 from modelgen.cli import arguments as given
 from modelgen.cli.guard import guarded
+from modelgen.cli.refine_command import refine
 from modelgen.cli.simulate_command import simulate
 
 # ruff: noqa: PLC0415 - see above
@@ -168,6 +169,7 @@ def diagnose(
 
 
 app.command()(simulate)
+app.command()(refine)
 
 
 @app.command()

@@ -1,0 +1,133 @@
+"""Output-error refinement: exact derivatives, values found again, what motions alone cannot tell."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arms_support import ARMS
+from plant import PUBLISHED
+from typer.testing import CliRunner
+
+from modelgen.cli.app import app
+from modelgen.simulation import plant, simulate
+from modelgen.simulation.sensitivities import Sensitive
+
+pytestmark = pytest.mark.xdist_group("gravity_test")
+TRUTH = replace(PUBLISHED, viscous=0.3, coulomb=0.12)
+
+
+def invoked(*words: str) -> tuple[int, str, str]:
+    done = CliRunner().invoke(app, ["refine", *words])
+    return done.exit_code, done.stdout, " ".join(done.stderr.split())
+
+
+@pytest.fixture(scope="module")
+def swings(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Two swings of another link 2, of the independent plant: the second held by a hand for half a second."""
+    folder, files = tmp_path_factory.mktemp("swings"), []
+    random = np.random.default_rng(3)
+    t = np.arange(1001) / 200
+    for degrees, held in ((25, 0), (40, 100)):
+        q = np.concatenate([np.full(held, np.radians(degrees)), TRUTH.swing(np.radians(degrees), t)])
+        table = np.column_stack([np.arange(len(q)) / 200, q + 2e-4 * random.standard_normal(len(q))])
+        files.append(str(folder / f"{degrees}.csv"))
+        np.savetxt(files[-1], table, delimiter=",", header="t,q1", comments="", fmt="%.7g")
+    return files
+
+
+@pytest.mark.parametrize(("name", "q0"), [("gravity_link2", [0.5]), ("gravity_arm", [0.5, 0.3])])
+def test_derivatives_through_stick_and_slip(name: str, q0: list[float]) -> None:
+    """Against central differences of the same motion, and the motion against variable steps."""
+    made = plant(ARMS[name])
+    n, t = made.n, np.arange(600) / 200
+    s = Sensitive(made, range(len(made.parameters)))
+    y0, u = np.concatenate([q0, np.zeros(n)]), np.zeros((len(t), n))
+    path, slopes = s.run(y0, t, u, made.parameters)
+    exact = simulate(made, q0, 0.0, t[-1], 200.0)
+    np.testing.assert_allclose(path[:, :n], exact.q, atol=1e-6)
+    assert (np.diff(np.sign(path[:, n])) != 0).sum() > 3
+    for k, value in enumerate(made.parameters):
+        change = np.zeros(len(made.parameters))
+        change[k] = h = 1e-6 * max(1.0, abs(value))
+        ahead, back = (s.run(y0, t, u, made.parameters + e * change)[0] for e in (1, -1))
+        slope = (ahead - back)[:, :n] / (2 * h)
+        np.testing.assert_allclose(slopes[:, :n, 2 * n + k], slope, atol=1e-5 * np.abs(slope).max())
+
+
+def test_friction_is_found_from_motion_alone(swings: list[str], tmp_path: Path) -> None:
+    logs = [word for file in swings for word in ("--log", file)]
+    status, out, said = invoked("--arm", "gravity_link2", *logs, "--out", str(tmp_path / "r"), "--json")
+    assert status == 0, said
+    data = json.loads(out)
+    found = {x["name"]: x for x in data["parameters"]}
+    for name, truth in (("FV1", 0.3), ("FC1", 0.12)):
+        assert abs(found[name]["value"] - truth) < 4 * found[name]["std"] < 0.01 * truth
+    assert all(found[name]["std"] is None for name in ("ZZ1", "MX1", "MY1"))
+    (joint,) = data["joints"]
+    # what remains is the noise
+    assert joint["rmse"] == pytest.approx(2e-4, rel=0.1)
+    assert joint["f_gof_before"] < 95 < 99.5 < joint["f_gof"]
+    assert data["converged"]
+    assert sorted(p.name for p in (tmp_path / "r").iterdir()) == [
+        "gravity_link2_parameters.yaml",
+        "refinement.json",
+        "refinement.svg",
+    ]
+    call = ["simulate", "--arm", "gravity_link2", "--log", swings[0], "--json"]
+    call += ["--parameters", str(tmp_path / "r/gravity_link2_parameters.yaml")]
+    done = CliRunner().invoke(app, call)
+    assert json.loads(done.stdout)["joints"][0]["f_gof_percent"] > 98
+
+
+def test_inertia_is_found_where_friction_is_held(swings: list[str], tmp_path: Path) -> None:
+    """The user's choice: with friction held, it gives the scale, and ZZ1 is free."""
+    words = ["--arm", "gravity_link2", "--log", swings[1], "--free", "ZZ1", "--free", "FV1", "--free", "FC1"]
+    status, out, said = invoked(*words, "--out", str(tmp_path / "r"), "--json")
+    assert status == 0, said
+    found = {x["name"]: x for x in json.loads(out)["parameters"]}
+    assert abs(found["ZZ1"]["value"] - TRUTH.inertia) < 4 * found["ZZ1"]["std"] < 0.01 * TRUTH.inertia
+    assert found["MX1"]["std"] is None
+
+
+def test_with_efforts_everything_is_tuned(tmp_path: Path) -> None:
+    """Given efforts fix the scale: the links' parameters come back from values that are 15 % off."""
+    made = plant(ARMS["gravity_link2"])
+    t = np.arange(801) / 200
+    effort = (4.0 * np.sin(3.0 * t) + 2.0 * np.sin(7.3 * t + 1.0))[:, None]
+    run = simulate(made, 0.3, 0.0, 4.0, 200.0, effort)
+    random = np.random.default_rng(0)
+    table = np.column_stack([t, run.q + 1e-4 * random.standard_normal(run.q.shape), effort])
+    log, start = tmp_path / "log.csv", tmp_path / "start.yaml"
+    np.savetxt(log, table, delimiter=",", header="t,q1,tau1", comments="", fmt="%.8g")
+    names = [b.name for b in made.model.grouping.base]
+    values = dict(zip(names, made.parameters, strict=True))
+    text = "".join(f"  {k}: {1.15 * v!s}\n" for k, v in values.items())
+    start.write_text(f"schema: 1\narm: gravity_link2\nparameters:\n{text}", encoding="utf-8")
+    words = ["--arm", "gravity_link2", "--log", str(log), "--parameters", str(start)]
+    status, out, said = invoked(*words, "--out", str(tmp_path / "r"), "--json")
+    assert status == 0, said
+    for x in json.loads(out)["parameters"]:
+        assert abs(x["value"] - values[x["name"]]) < max(5 * x["std"], 2e-3), x
+        assert x["std"] < 0.02
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["--free", "FX9"], "--free FX9: found no such base parameter"),
+        (["--free=ZZ1", "--free=MX1", "--free=FV1", "--free=FC1"], "do not tell"),
+        (["--window", "0.01"], "samples in a window"),
+        (["--log", "missing.csv"], "missing.csv"),
+    ],
+)
+def test_bad_input_is_one_line(words: list[str], expected: str, swings: list[str], tmp_path: Path) -> None:
+    out = tmp_path / "r"
+    status, _, said = invoked("--arm", "gravity_link2", "--log", swings[0], *words, "--out", str(out))
+    assert status == 2
+    assert expected in said
+    assert "Traceback" not in said
+    assert not out.exists()
