@@ -12,6 +12,7 @@ from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.simulation.control import Control, Reference, controller
 from modelgen.simulation.metrics import Scores, scores
+from modelgen.simulation.parts import held_inputs
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.simulate import simulate
 
@@ -60,7 +61,7 @@ def replay(
     length = count if window is None else max(2, round(window * rate) + 1)
     if window is not None and (not np.isfinite(window) or window * rate < 1):
         raise InputError(f"--window {window:g}: found less than a sample of {1 / rate:g} s")
-    inputs = np.zeros_like(p.q) if p.input is None else np.asarray(p.input)
+    inputs = held_inputs(p)
     simulated, velocities = np.full_like(p.q, np.nan), np.full_like(p.q, np.nan)
     ended = ""
     begins = list(range(0, count - 1, length - 1))
