@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from arms_support import ARMS
 from plant import PUBLISHED
+from simulation_support import middle
 from typer.testing import CliRunner
 
 from modelgen.cli.app import app
 from modelgen.dataset import prepare, read
-from modelgen.simulation import plant, replay, simulate
+from modelgen.simulation import Reference, computed_torque, plant, replay, simulate
 from modelgen.simulation.sensitivities import Sensitive
 
 pytestmark = pytest.mark.xdist_group("gravity_test")
@@ -114,6 +115,32 @@ def test_with_efforts_everything_is_tuned(tmp_path: Path) -> None:
     for x in json.loads(out)["parameters"]:
         assert abs(x["value"] - values[x["name"]]) < max(5 * x["std"], 2e-3), x
         assert x["std"] < 0.02
+
+
+def test_friction_of_levered_drives_by_windows(tmp_path: Path) -> None:
+    """Under currents, with windows of half a second, from values 30 % too high."""
+    made = plant(ARMS["ariane4"])
+    t, q0 = np.arange(401) / 200, middle(made)
+    sway = np.stack([np.sin(3 * t), np.sin(2 * t), np.sin(4 * t)], axis=1)
+    run = simulate(made, q0, 0.0, 2.0, 200.0, computed_torque(made, Reference(t, q0 + 0.1 * sway), 5.0))
+    assert not run.ended
+    q = run.q + 1e-5 * np.random.default_rng(0).standard_normal(run.q.shape)
+    log, start = tmp_path / "log.csv", tmp_path / "start.yaml"
+    table = np.column_stack([t, q, run.input])
+    np.savetxt(log, table, delimiter=",", header="t,q1,q2,q3,i1,i2,i3", comments="", fmt="%.9g")
+    names = [b.name for b in made.model.grouping.base]
+    truth = dict(zip(names, made.parameters, strict=True))
+    free = [name for name in names if name[:2] in ("FC", "FV")]
+    text = "".join(f"  {k}: {v * (1.3 if k in free else 1.0)!s}\n" for k, v in truth.items())
+    start.write_text(f"schema: 1\narm: ariane4\nparameters:\n{text}", encoding="utf-8")
+    words = ["--arm", "ariane4", "--log", str(log), "--parameters", str(start), "--window", "0.5"]
+    words += [word for name in free for word in ("--free", name)]
+    status, out, said = invoked(*words, "--out", str(tmp_path / "r"), "--json")
+    assert status == 0, said
+    found = {x["name"]: x["value"] for x in json.loads(out)["parameters"]}
+    assert len(free) == 6
+    for name in free:
+        assert found[name] == pytest.approx(truth[name], rel=0.01)
 
 
 def test_a_replay_holds_the_efforts_as_they_were_held(tmp_path: Path) -> None:

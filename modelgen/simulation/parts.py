@@ -73,7 +73,7 @@ def parts(p: Prepared, window: float | None, interval: float) -> list[Part]:
         if last - first < 10:
             continue
         length = max(5, round(interval / step))
-        edges = [*range(0, last - first - length // 2, length), last - first]
+        edges = [*range(0, max(1, last - first - length // 2), length), last - first]
         take = slice(first, last + 1)
         cut = tuple(pairwise(edges))
         found.append(Part(p.record.name, t[take], q[take], dq[take], u[take], cut))
