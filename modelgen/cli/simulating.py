@@ -85,7 +85,7 @@ def _alone(p: Plant, r: Request) -> None:
             raise InputError("--duration: found none, expected seconds, or --log, --input or --reference")
         duration = float(axis[-1] - axis[0])
     rate = 1000.0 if r.rate is None else r.rate
-    begin = np.zeros(p.n) if reference is None else reference.at(reference.t[0])[0]
+    begin = _somewhere(p) if reference is None else reference.at(reference.t[0])[0]
     q0 = by_joint("--q0", r.q0, p.names) if r.q0 else begin
     control: Control | Array | None = None
     if given is not None:
@@ -117,6 +117,14 @@ def _alone(p: Plant, r: Request) -> None:
     if found.ended:
         kept = f"; the {len(found.t)} samples before it are in {r.out}" if r.out else ""
         raise InputError(f"{p.arm.name}: {found.ended}{kept}")
+
+
+def _somewhere(p: Plant) -> Array:
+    """0 where the stroke has it, else the stroke's middle."""
+    low, high = p.strokes
+    inside = (low <= 0) & (high >= 0)
+    with np.errstate(invalid="ignore"):
+        return np.where(inside, 0.0, (low + high) / 2)
 
 
 def _reference(p: Plant, path: Path) -> Reference:

@@ -95,7 +95,7 @@ def plant(
     changed = replace(arm, joints=joints)
     if parameters is None:
         made = slip(changed, standard=elastic(changed))
-        standard = np.array(list(nominal_standard(made.model).values()))
+        standard = np.array(list(_nominal(made.model).values()))
         standard += _payload(made.model, payload)
         base = _grouped(made.model, standard)
         return Plant(made, standard if made.standard else base, base)
@@ -111,6 +111,16 @@ def plant(
     base = np.array([parameters[name] for name in names])
     base += _grouped(made.model, _payload(made.model, payload))
     return Plant(made, base, base)
+
+
+def _nominal(model: Model) -> dict[str, float]:
+    try:
+        return nominal_standard(model)
+    except InputError as error:
+        raise InputError(
+            f"{error.message}; expected it there, --parameters of modelgen identify, or --without effects",
+            error.where,
+        ) from None
 
 
 def _grouped(model: Model, standard: Array) -> Array:
