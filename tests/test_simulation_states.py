@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -76,3 +78,38 @@ def test_play_lets_the_rotor_run_free(method: str) -> None:
     effort = np.full((count + 1, 1), push)
     found = simulate(plant(arm), 0.0, 0.0, count / 5000, 5000.0, effort, method=method)
     np.testing.assert_allclose(found.q[:, 0], push / inertia * found.t**2 / 2, rtol=1e-6, atol=1e-9)
+
+
+def test_play_closes_at_events() -> None:
+    """Rotor, gap, mass on a level rail: before, in and after contact as three masses' equations say."""
+    inertia, play, stiffness, damping = 0.5, 0.1, 400.0, 0.0
+    arm = slider(
+        EffectUse("drive_inertia", {"inertia": inertia}),
+        EffectUse("backlash", {"play": play, "stiffness": stiffness, "damping": damping}),
+        mass=MASS,
+    )
+
+    def rate(push: float, y: np.ndarray) -> list[float]:
+        rotor, load, v, w = y
+        gap = rotor - load
+        force = stiffness * (gap - np.clip(gap, -play / 2, play / 2))
+        return [v, w, (push - force) / inertia, force / MASS]
+
+    times = np.arange(501) / 250
+    tight = {"rtol": 1e-11, "atol": 1e-12, "max_step": 1e-3}
+    # Inputs are held over a sample; so the witness holds them too.
+    path = [np.zeros(4)]
+    for begin, end in pairwise(times):
+        held = 2.0 * np.sin(4 * begin)
+
+        def steady(t: float, y: np.ndarray, held: float = held) -> list[float]:
+            return rate(held, y)
+
+        path.append(solve_ivp(steady, (begin, end), path[-1], "DOP853", **tight).y[:, -1])
+    expected = np.array(path)
+    effort = 2.0 * np.sin(4 * times)[:, None]
+    found = simulate(plant(arm), 0.0, 0.0, 2.0, 250.0, effort, method="DOP853", rtol=1e-10, atol=1e-12)
+    assert np.abs(expected[:, 0] - expected[:, 1]).max() > play / 2  # it has touched
+    assert np.abs(expected[:, 0] - expected[:, 1]).min() < play / 2
+    np.testing.assert_allclose(found.q[:, 0], expected[:, 0], rtol=0, atol=1e-7)
+    np.testing.assert_allclose(found.states[:, 0], expected[:, 0] - expected[:, 1], rtol=0, atol=1e-7)

@@ -80,7 +80,7 @@ class EffectForces:
         total = self.graph.zero
         for effect in self.e.effects:
             if effect.potential != 0:
-                total = total + self._in_graph(effect, effect.parts[0], effect.potential)
+                total = total + self.in_graph(effect, effect.parts[0], effect.potential)
         return total
 
     def required(self, inputs: Sequence[Expr]) -> list[Expr]:
@@ -96,7 +96,7 @@ class EffectForces:
         found = []
         for effect in self.e.effects:
             for name in effect.states:
-                found.append(self._in_graph(effect, effect.parts[0], effect.steps[name], {TIME_STEP: dt}))
+                found.append(self.in_graph(effect, effect.parts[0], effect.steps[name], {TIME_STEP: dt}))
         return found
 
     # -- one part of an effect --------------------------------------------------------------
@@ -131,7 +131,7 @@ class EffectForces:
         for row, force in zip(port.rows, forces, strict=True):
             if force == 0:
                 continue
-            value = self._in_graph(effect, part, force)
+            value = self.in_graph(effect, part, force)
             for n, x in row.items():
                 term = value if part.place == "motor" else x * value
                 found[n] = found[n] + term if n in found else term
@@ -156,7 +156,7 @@ class EffectForces:
                 slope = sp.diff(force, acceleration)
                 if slope == 0:
                     continue
-                mass = self._in_graph(effect, part, slope)
+                mass = self.in_graph(effect, part, slope)
                 found += [(n, m, mass * (x * y)) for n, x in row.items() for m, y in other.items()]
         return found
 
@@ -168,10 +168,10 @@ class EffectForces:
                     n = self._number(part)
                     assert n is not None
                     bound = {part.variables.input: total[n]}
-                    total[n] = self._in_graph(effect, part, part.forces[which], bound)
+                    total[n] = self.in_graph(effect, part, part.forces[which], bound)
         return total
 
-    def _in_graph(
+    def in_graph(
         self,
         effect: AppliedEffect,
         part: Part,

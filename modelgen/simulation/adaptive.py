@@ -18,6 +18,7 @@ from modelgen.simulation.sticking import Modes, accelerated, hold, settled
 Array = NDArray[np.float64]
 METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
 LEFT = -1  # the event of a coordinate that leaves its range
+BENT = -2  # that of a law that bends: play that closes or opens
 _EVENTS = 10_000  # of one interval: more is no motion
 
 
@@ -42,6 +43,7 @@ class Adaptive:
         own = plant.slip
         self._accelerations = casadi_function(own.accelerations)
         self._rates = casadi_function(own.rates) if own.rates else None
+        self._kinks = casadi_function(own.kinks) if own.kinks else None
         self._names = [a.name for a in own.accelerations.arguments]
         self._zeros = {a.name: np.zeros(a.size) for a in own.accelerations.arguments}
         self.rows = own.contacts
@@ -101,6 +103,8 @@ class Adaptive:
             t, y = found.t, found.y
             if found.event == LEFT:
                 return path[:filled], modes, "left", t
+            if found.event == BENT:
+                continue
             modes, y = self._changed(t, y, u, modes, found.event)
             if filled == len(wanted):
                 return path, modes, "", end
@@ -121,6 +125,8 @@ class Adaptive:
         events: list[Callable[[float, Array], float]] = [
             self._margin(k, t, u, modes) for k in range(len(modes))
         ]
+        bends = 0 if self._kinks is None else self._kinks.size1_out(0)
+        events += [self._bend(k, t, y, u, modes) for k in range(bends)]
         if np.isfinite(low).any() or np.isfinite(high).any():
             events.append(_Left(self.plant.n, low, high))
         found = solve_ivp(
@@ -140,7 +146,9 @@ class Adaptive:
             return Phase(path, end, path[-1], None)
         which = next(k for k, at in enumerate(found.t_events) if len(at))
         at, state = float(found.t_events[which][0]), np.array(found.y_events[which][0])
-        return Phase(path, at, state, which if which < len(modes) else LEFT)
+        if which >= len(modes):
+            return Phase(path, at, state, BENT if which < len(modes) + bends else LEFT)
+        return Phase(path, at, state, which)
 
     def _changed(self, t: float, y: Array, u: Array, modes: Modes, which: int) -> tuple[Modes, Array]:
         """Modes and state after contact `which` has come to rest or torn loose."""
@@ -170,6 +178,28 @@ class Adaptive:
         margin.terminal = True  # type: ignore[attr-defined]
         margin.direction = -1.0  # type: ignore[attr-defined]
         return margin
+
+    def _bend(
+        self, k: int, begin: float, y: Array, u: Array, modes: Modes
+    ) -> Callable[[float, Array], float]:
+        """Zero where law k bends; a phase that begins there goes the way that its rate says."""
+        zero, kinks = np.zeros(self.plant.n), self._kinks
+        assert kinks is not None
+
+        def value(t: float, y: Array) -> float:
+            return float(self._call(kinks, t, y, zero, u)[k])
+
+        side = value(begin, y)
+        if abs(side) < 1e-12:
+            step = 1e-9
+            side = value(begin, y + step * self.rate(begin, y, u, modes)) - side
+
+        def bend(t: float, y: Array) -> float:
+            now = value(t, y)
+            return now if t > begin else float(np.sign(side)) * max(abs(now), 1e-300)
+
+        bend.terminal = True  # type: ignore[attr-defined]
+        return bend
 
     def _call(self, function: ca.Function, t: float, y: Array, ddq: Array, u: Array) -> Array:
         n = self.plant.n

@@ -40,7 +40,7 @@ class Slip:
     model: the arm without smoothing of dry friction. contacts: (c, n), a contact's velocity is its row times
     dq. names: of the contacts. accelerations: outputs free (n), then dry (n x c, row by row), of q, dq,
     input, parameters and what else the arm's effects read. rates: of the states, where there are any.
-    standard: whether `parameters` are the standard ones.
+    standard: whether `parameters` are the standard ones. kinks: zero where a law bends: where play closes.
     """
 
     model: Model
@@ -49,6 +49,7 @@ class Slip:
     accelerations: Function
     rates: Function | None
     standard: bool = False
+    kinks: Function | None = None
 
 
 def slip(arm: Arm, *, standard: bool = False) -> Slip:
@@ -81,7 +82,7 @@ def slip(arm: Arm, *, standard: bool = False) -> Slip:
     own = _state_rates(e, values, count, suffix) if e.state_names() else None
     rows = np.array([_row(key, e.n) for key in dry]).reshape(len(dry), e.n)
     names = tuple(_name(key, model.arm) for key in dry)
-    return Slip(model, rows, names, accelerations, own, standard)
+    return Slip(model, rows, names, accelerations, own, standard, _kinks(e, values, count, suffix))
 
 
 def unsmoothed(arm: Arm) -> Arm:
@@ -152,6 +153,17 @@ def _state_rates(e: Equations, values: Sequence[Expr], count: int, suffix: str) 
     function = bare(f"state_rates{suffix}", e, count, forces.steps(e.graph.input("dt", 0)))
     e.effects = whole
     return function
+
+
+def _kinks(e: Equations, values: Sequence[Expr], count: int, suffix: str) -> Function | None:
+    """Differences of what the smaller or larger one is taken of, in laws with states: a contact of play."""
+    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), values)
+    found: list[Expr] = []
+    for effect in e.effects:
+        for part in effect.parts if effect.states else ():
+            choices = sorted({a for f in part.forces for a in f.atoms(sp.Max, sp.Min)}, key=str)
+            found += [forces.in_graph(effect, part, a.args[0] - a.args[1]) for a in choices]
+    return bare(f"kinks{suffix}", e, count, found) if found else None
 
 
 def _row(key: _Key, n: int) -> list[float]:
