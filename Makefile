@@ -10,7 +10,7 @@
 #   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
-#   make hidden  diagnose two dozen simulated recordings with hidden effects, a quarter of an hour
+#   make hidden  diagnose two dozen simulated recordings with hidden effects (a part of make test)
 #   make blind   diagnose the full matrix of hidden effects (SEED=n; hours), write docs/diagnosis.md
 #   make clean   remove the environment and the caches
 
@@ -70,7 +70,7 @@ fuzz: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
 
 hidden: $(INSTALLED)
-	MODELGEN_HIDDEN=1 $(BIN)/python -m pytest -n auto tests/test_hidden_suite.py
+	$(BIN)/python -m pytest -n auto tests/test_hidden_suite.py
 
 blind: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import statistics
 import subprocess
 import sys
 import time
@@ -13,11 +14,8 @@ from hidden.cases import Case
 from hidden.running import run
 from hidden.suite import NULLS, OUTSIDE, PAIRS, SINGLES
 
-# All cases take a quarter of an hour of two cores: `make hidden` runs them, every test run these.
-WHOLE = os.environ.get("MODELGEN_HIDDEN") == "1"
-whole = pytest.mark.skipif(not WHOLE, reason="all hidden cases: make hidden")
-SHORT = ("load_dependent_friction", "position_dependent_friction", "torque_ripple")
-WAIT = 600.0  # s, for a case that another worker has begun
+RECOVERED = 0.9  # of the recoverable error, median
+WAIT = 900.0  # s, for a case that another worker has begun
 
 
 def command_exists() -> bool:
@@ -63,20 +61,13 @@ def title(case: Case) -> str:
     return "+".join(f"{item.effect}.{item.joint}" for item in case.hidden) + f"@{case.arm}"
 
 
-@pytest.mark.parametrize("case", NULLS if WHOLE else NULLS[:3], ids=title)
+@pytest.mark.parametrize("case", NULLS, ids=title)
 def test_nothing_is_named_where_nothing_is_hidden(case: Case, outcome: Any) -> None:
     found = outcome(case)
     assert found["named"] == []
     assert found["verdict"] == "nothing_missing"
 
 
-@pytest.mark.parametrize("case", [c for c in SINGLES if c.hidden[0].effect in SHORT], ids=title)
-def test_a_hidden_effect_is_named(case: Case, outcome: Any) -> None:
-    found = outcome(case)
-    assert found["result"] == "found", (found["verdict"], found["named"])
-
-
-@whole
 @pytest.mark.parametrize("case", SINGLES, ids=title)
 def test_a_hidden_effect_is_answered(case: Case, outcome: Any) -> None:
     found = outcome(case)
@@ -84,7 +75,6 @@ def test_a_hidden_effect_is_answered(case: Case, outcome: Any) -> None:
     assert found["verdict"] in ("named", "outside_catalogue", "cannot_tell", "nothing_missing")
 
 
-@whole
 def test_at_least_13_of_14_hidden_effects_are_named_with_their_joint(outcome: Any) -> None:
     found = {title(case): outcome(case) for case in SINGLES}
     wrong = {
@@ -94,7 +84,12 @@ def test_at_least_13_of_14_hidden_effects_are_named_with_their_joint(outcome: An
     assert len(wrong) <= 1, wrong
 
 
-@whole
+def test_what_an_effect_costs_is_recovered_on_a_third_record(outcome: Any) -> None:
+    shares = {title(case): outcome(case)["recovered"] for case in SINGLES}
+    known = [share for share in shares.values() if share is not None]
+    assert statistics.median(known) >= RECOVERED, shares
+
+
 @pytest.mark.parametrize("case", OUTSIDE, ids=title)
 def test_what_no_entry_of_the_catalogue_explains_is_said_so(case: Case, outcome: Any) -> None:
     found = outcome(case)
@@ -102,7 +97,6 @@ def test_what_no_entry_of_the_catalogue_explains_is_said_so(case: Case, outcome:
     assert found["verdict"] == "outside_catalogue"
 
 
-@whole
 @pytest.mark.parametrize("case", PAIRS, ids=title)
 def test_two_hidden_effects_come_out_one_after_the_other(case: Case, outcome: Any) -> None:
     found = outcome(case)
