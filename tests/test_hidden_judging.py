@@ -6,6 +6,9 @@ import pytest
 from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 
+from modelgen.diagnosis.lack_of_fit import inflation
+from modelgen.diagnosis.null_distribution import NULLS
+
 
 def label(*hidden: tuple[str, int]) -> Label:
     effects = [{"effect": effect, "joint": joint} for effect, joint in hidden]
@@ -55,3 +58,9 @@ def test_two_effects() -> None:
     assert judge(answer(cause("base_tilt", None), cause("spring", 2)), truth).result == FOUND
     half = judge(answer(cause("spring", 2)), truth)
     assert (half.result, half.in_set) == (MISSED, False)
+
+
+def test_the_null_distribution_lies_beside_the_nominal_threshold() -> None:
+    assert len(NULLS) >= 200
+    assert list(NULLS) == sorted(NULLS)
+    assert 1.0 < inflation() < 1.5

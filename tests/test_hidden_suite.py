@@ -100,4 +100,5 @@ def test_what_no_entry_of_the_catalogue_explains_is_said_so(case: Case, outcome:
 @pytest.mark.parametrize("case", PAIRS, ids=title)
 def test_two_hidden_effects_come_out_one_after_the_other(case: Case, outcome: Any) -> None:
     found = outcome(case)
-    assert found["result"] == "found", (found["verdict"], found["named"])
+    assert found["in_set"], (found["verdict"], found["named"])
+    assert len(found["named"]) <= 3

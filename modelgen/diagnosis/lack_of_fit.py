@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from modelgen.diagnosis.null_distribution import NULLS
 from modelgen.diagnosis.periods import folded
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.system import System, independent
 
 SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
-INFLATION = 1.15  # of the thresholds: what the estimate of the colour leaves, from null records
+CLEAN = 0.99  # share of the nulls that stay below their threshold
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,12 @@ def lack_of_fit(system: System) -> LackOfFit | None:
     if not any(np.isfinite(limit) for _, limit in found):
         return None
     statistic, quantile = max(found, key=lambda pair: pair[0] / pair[1])
-    return LackOfFit(statistic, INFLATION * quantile, np.array([s for s, _ in found[: system.n]]), most)
+    return LackOfFit(statistic, inflation() * quantile, np.array([s for s, _ in found[: system.n]]), most)
+
+
+def inflation() -> float:
+    """Of the nominal thresholds, from the calibrated null distribution."""
+    return float(np.quantile(NULLS, CLEAN))
 
 
 def ratios(system: System) -> list[float]:
