@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from modelgen.diagnosis.candidates import LATER, Candidate
+from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows
@@ -79,6 +80,8 @@ def select(
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
     known: dict[object, list[Array] | None] = {}
+    correlated = endogeneity(system)
+    noisy = correlated is not None and correlated.found and float(correlated.share.max()) > PRACTICAL
     turns: list[list[Ranked]] = []
     for turn in range(MOST):
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
@@ -102,6 +105,8 @@ def select(
         eligible: list[tuple[Trial, float]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
             gain, refused = judged(t, rows, [c.trial for c in causes], blur, system)
+            if noisy and not refused and not instrumented(t, system):
+                refused = "positions"
             ranking.append(_ranked(t, gain, refused))
             if not refused:
                 eligible.append((t, gain))

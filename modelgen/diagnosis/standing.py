@@ -22,10 +22,12 @@ MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explaine
 def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, list[Cause]]:
     """The selection without the causes that leave most of what repeats, and those causes."""
     system = selection.system
-    fit = lack_of_fit(system)
-    if not selection.causes or fit is None or not fit.found:
+    if not selection.causes:
         return selection, []
     old = System(rows, [r.columns for r in rows], system.periods)
+    fit = lack_of_fit(old)
+    if fit is None or not fit.found:
+        return selection, []
     sizes = mean_squares(old)
     first, last = repeating(old) / sizes, repeating(system) / sizes
     much = repeating(system) > MUCH * mean_squares(system)
