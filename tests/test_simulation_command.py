@@ -259,3 +259,13 @@ def test_a_log_without_the_effort_that_a_driven_arm_needs(tmp_path: Path) -> Non
     assert code == 2
     assert "expected i<n> or tau<n>" in error
     assert len(error.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("duration", ["nan", "inf", "1e12"])
+def test_given_inputs_of_no_length_get_one_line(duration: str, tmp_path: Path) -> None:
+    table = tmp_path / "in.csv"
+    table.write_text("t,i1\n0,0.1\n0.1,0.2\n0.2,0.1\n0.3,0\n")
+    code, _, error = call("--arm", "screw_axis", "--input", str(table), "--duration", duration)
+    assert code == 2
+    assert len(error.strip().splitlines()) == 1
+    assert "--duration" in error

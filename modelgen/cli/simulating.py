@@ -24,6 +24,7 @@ from modelgen.figures import COLOURS, figure, svg
 from modelgen.simulation import Plant, Reference, Trajectory, plant, simulate
 from modelgen.simulation.animation import animation
 from modelgen.simulation.control import Control, controller
+from modelgen.simulation.simulate import check_length
 from modelgen.simulation.values import by_joint, locks, numbers
 
 Array = NDArray[np.float64]
@@ -88,6 +89,7 @@ def _alone(p: Plant, r: Request) -> None:
     begin = _somewhere(p) if reference is None else reference.at(reference.t[0])[0]
     q0 = by_joint("--q0", r.q0, p.names) if r.q0 else begin
     control: Control | Array | None = None
+    check_length(duration, rate)
     if given is not None:
         at = given[0][0] + np.arange(round(duration * rate) + 1) / rate
         control = given[1][np.searchsorted(given[0], at + 1e-9 / rate, side="right") - 1]

@@ -190,14 +190,19 @@ def fastest(plant: Plant, y: Array) -> float:
     return float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
 
 
-def _check(plant: Plant, q: Array, dq: Array, duration: float, rate: float) -> None:
-    if not (np.isfinite(q).all() and np.isfinite(dq).all()):
-        raise InputError("the initial state is not finite")
+def check_length(duration: float, rate: float) -> None:
+    """Raises InputError for a length [s] or a rate [Hz] that gives no motion, or one without end."""
     for text, value in (("--duration", duration), ("--rate", rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{text}: found {value:g}, expected more than 0")
     if not 1 <= duration * rate < 1e9:
         raise InputError(f"--duration {duration:g} s at --rate {rate:g} Hz: {duration * rate:g} samples")
+
+
+def _check(plant: Plant, q: Array, dq: Array, duration: float, rate: float) -> None:
+    if not (np.isfinite(q).all() and np.isfinite(dq).all()):
+        raise InputError("the initial state is not finite")
+    check_length(duration, rate)
     low, high = plant.strokes
     for k, name in enumerate(plant.names):
         if not low[k] <= q[k] <= high[k]:
