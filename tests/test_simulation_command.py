@@ -234,6 +234,8 @@ def test_an_unstable_loop_is_reported_and_what_ran_is_kept(tmp_path: Path) -> No
         (("--arm", "gravity_arm", "--duration", "1", "--lock", "j9=0"), "no such joint"),
         (("--arm", "gravity_arm", "--duration", "1", "--lock", "j2"), "JOINT=COORDINATE"),
         (("--arm", "gravity_arm", "--duration", "1", "--payload", "1,2"), "MASS,X,Y,Z"),
+        (("--arm", "gravity_arm", "--duration", "1", "--payload", "-1"), "0 or more"),
+        (("--arm", "gravity_arm", "--duration", "1", "--step", "0"), "--step"),
         (("--arm", "gravity_arm", "--duration", "1", "--method", "euler"), "cvodes"),
         (("--arm", "gravity_arm", "--duration", "1", "--window", "1"), "--log"),
         (("--arm", "gravity_arm", "--duration", "1", "--control", "pi"), "--reference"),

@@ -143,6 +143,8 @@ def computed_torque(
 
 def controller(plant: Plant, name: str, reference: Reference, bandwidth: float, rate: float) -> Control:
     """The controller of a name: "pi" for `cascade`, or "computed_torque". Raises InputError for another."""
+    if not (np.isfinite(bandwidth) and bandwidth > 0):
+        raise InputError(f"--bandwidth: found {bandwidth:g}, expected more than 0 Hz")
     if name == "pi":
         return cascade(plant, reference, bandwidth, rate)
     if name == "computed_torque":

@@ -132,6 +132,8 @@ def _payload(model: Model, payload: Sequence[float]) -> Array:
     standard = np.zeros(len(model.standard))
     if not payload:
         return standard
+    if payload[0] < 0:
+        raise InputError(f"--payload: found a mass of {payload[0]:g} kg, expected 0 or more")
     if len(payload) not in (1, 4):
         raise InputError(f"--payload: found {len(payload)} numbers, expected MASS or MASS,X,Y,Z")
     m, x, y, z = (*payload, 0.0, 0.0, 0.0)[:4]

@@ -18,6 +18,7 @@ from modelgen.simulation.sundials import Sundials
 from modelgen.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
+MOST = 2e7  # samples: all are kept in memory
 STEP = 1e-3  # s, longest fixed step
 STIFF = 2e4  # 1/s, beyond which explicit steps are too many
 
@@ -49,6 +50,8 @@ def simulate(
     """
     q, dq = (np.broadcast_to(np.asarray(x, dtype=float), (plant.n,)).copy() for x in (q0, dq0))
     _check(plant, q, dq, duration, rate)
+    if step is not None and not (np.isfinite(step) and step > 0):
+        raise InputError(f"--step: found {step:g}, expected more than 0")
     count = round(duration * rate) + 1
     times = np.arange(count) / rate
     inputs = np.zeros((count, plant.n))
@@ -195,8 +198,10 @@ def check_length(duration: float, rate: float) -> None:
     for text, value in (("--duration", duration), ("--rate", rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{text}: found {value:g}, expected more than 0")
-    if not 1 <= duration * rate < 1e9:
-        raise InputError(f"--duration {duration:g} s at --rate {rate:g} Hz: {duration * rate:g} samples")
+    if not 1 <= duration * rate <= MOST:
+        raise InputError(
+            f"--duration {duration:g} s at --rate {rate:g} Hz: {duration * rate:g} samples, expected 1 to {MOST:g}"
+        )
 
 
 def _check(plant: Plant, q: Array, dq: Array, duration: float, rate: float) -> None:
