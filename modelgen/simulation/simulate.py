@@ -200,7 +200,7 @@ def check_length(duration: float, rate: float) -> None:
             raise InputError(f"{text}: found {value:g}, expected more than 0")
     if not 1 <= duration * rate <= MOST:
         raise InputError(
-            f"--duration {duration:g} s at --rate {rate:g} Hz: {duration * rate:g} samples, expected 1 to {MOST:g}"
+            f"--duration {duration:g} s at --rate {rate:g} Hz: {duration * rate:g} samples, expected 1 to 2e7"
         )
 
 
