@@ -87,26 +87,31 @@ class _Cascade:
         # dq_m = k1 dq, and an input u accelerates the motor by k1 K u / M.
         w = 2 * pi * bandwidth
         self.speed = w * np.diag(mass.reshape(plant.n, plant.n)) / (motor[1] * gain)
-        self.position, self.integral = w / 4, w / 4
-        self.sum = np.zeros(plant.n)
+        self.position, self.integral, self.slow = w / 4, w / 4, w / 40
+        self.sum, self.way = np.zeros(plant.n), np.zeros(plant.n)
 
     def __call__(self, t: float, q: Array, dq: Array) -> Array:
         q_r, dq_r, _ = self.reference.at(t)
         now, wanted = (self.functions.call("motor_from_joint", q=x, dq=v) for x, v in ((q, dq), (q_r, dq_r)))
-        error = self.position * (wanted[0] - now[0]) + wanted[1] - now[1]
-        whole = self.speed * (error + self.integral * (self.sum + error * self.period))
+        behind = wanted[0] - now[0]
+        way = self.way + behind * self.period
+        error = self.position * (behind + self.slow * way) + wanted[1] - now[1]
+        total = self.sum + error * self.period
+        whole = self.speed * (error + self.integral * total)
         given = np.clip(whole, -self.limit, self.limit)
-        # The integral stands still where the current is at its limit.
-        self.sum = np.where(given == whole, self.sum + error * self.period, self.sum)
+        # The integrals stand still where the current is at its limit.
+        free = given == whole
+        self.sum, self.way = np.where(free, total, self.sum), np.where(free, way, self.way)
         return np.asarray(given)
 
 
 def cascade(plant: Plant, reference: Reference, bandwidth: float, rate: float) -> _Cascade:
-    """Position P around velocity PI in the motor coordinates, the currents within the drives' limits.
+    """Position PI around velocity PI in the motor coordinates, the currents within the drives' limits.
 
-    bandwidth: of the velocity loop [Hz], from the diagonal of the mass matrix where the reference begins;
-    the position loop has a quarter of it, as drive makers tune such cascades (Leonhard 2001, section 15).
-    rate: of the samples [Hz]. The current loop counts as ideal.
+    As on the arm of Leborne, Creuze, Chemori and Brignone (2018). bandwidth: of the velocity loop [Hz], from
+    the diagonal of the mass matrix where the reference begins; the position loop has a quarter of it, as
+    drive makers tune such cascades (Leonhard 2001, section 15). rate: of the samples [Hz]. The current loop, a
+    PI too, counts as ideal: the model has no inductance.
     """
     return _Cascade(plant, reference, bandwidth, 1.0 / rate)
 
