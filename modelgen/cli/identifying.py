@@ -28,6 +28,7 @@ from modelgen.dataset import (
     split,
 )
 from modelgen.dataset import preset as processing
+from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
@@ -75,7 +76,9 @@ def run(
                     raise InputError("found no test record, expected one: --test LOG")
                 one, two = split(training[0])
                 training, testing = [one], [two]
-            chosen = choose(training, asked(1 / training[0].step))
+            chosen = with_whole_rows(
+                choose(training, asked(1 / training[0].step)), [period_of(r, None) for r in training]
+            )
             bar.update(task, description="identifying")
             prepared = [prepare(r, chosen) for r in training]
             found = identify(prepared, arm, options, test=[prepare(r, chosen) for r in testing], **how)

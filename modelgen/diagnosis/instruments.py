@@ -12,16 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
+from modelgen.dataset.periods import other_period
 from modelgen.diagnosis.rows import Array, Rows
 
 FEWEST = 10  # equations for an unknown
-
-
-def other_period(count: int, rows: int) -> NDArray[np.int64]:
-    """For each of `count` rows one at the same phase of the next period, else of the one before, else -1."""
-    i = np.arange(count)
-    behind = np.where(i >= rows, i - rows, -1)
-    return np.where(i + rows < count, i + rows, behind)
 
 
 class Pairs:

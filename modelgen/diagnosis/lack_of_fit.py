@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from modelgen.dataset.periods import folded
 from modelgen.diagnosis.null_distribution import NULLS
-from modelgen.diagnosis.periods import folded
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.system import System, independent
 

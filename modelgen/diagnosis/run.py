@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset import Record, Settings, check_separate, choose, prepare, read, split
+from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.baseline import estimated, held
@@ -20,7 +21,6 @@ from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, residuals, rows_twice, unit_of_efforts
-from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
-from modelgen.diagnosis.periods import noise_of
+from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
 

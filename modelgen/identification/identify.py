@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
+from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.consistent import Consistent, consistent
+from modelgen.identification.instrumental import Comparison, compared, needed
 from modelgen.identification.regression import Array, Regression, Solution
 from modelgen.probing import Motion, Prober
 
-METHODS = ("ols", "wls", "robust")
+METHODS = ("ols", "wls", "robust", "iv")
 NEEDED = 2.0  # standard deviations that a parameter of the data's support is away from zero
 POOR = 30.0  # % of relative standard deviation from which a parameter is called poorly determined
 
@@ -65,6 +67,7 @@ class Identification:
     estimates: tuple[Estimate, ...]
     test: Validation | None
     consistent: Consistent | None = None
+    comparison: Comparison | None = None
 
 
 def identify(
@@ -94,13 +97,25 @@ def identify(
             f"{arm.name}: {count} moving rows for {len(theta)} parameters: the records are too short or move "
             "too little, expected at least three times as many; see modelgen excite"
         )
-    solution = regression.solve(method)
+    plain = "wls" if method == "iv" else method
+    solution = regression.solve(plain)
     (function,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in function.arguments}:
         # Columns that depend on the load are evaluated anew with the load that was found.
         regression = _regression(prober, model, train, solution.theta)
-        solution = regression.solve(method)
-    return concluded(arm, model, prober, method, solution, test, physical=physical)
+        solution = regression.solve(plain)
+    both = compared(regression, solution, [_rows_in_period(p) for p in train])
+    if method == "iv":
+        solution = needed(both).solution
+    found = concluded(arm, model, prober, method, solution, test, physical=physical)
+    return replace(found, comparison=both)
+
+
+def _rows_in_period(p: Prepared) -> int | None:
+    """Rows in a period of the motion; None where it does not repeat, or not on whole rows."""
+    samples = period_of(p.record, None)
+    whole = samples is not None and samples % p.settings.factor == 0
+    return samples // p.settings.factor if whole and samples is not None else None
 
 
 def concluded(
@@ -197,6 +212,11 @@ def verdict(found: Identification) -> str:
         text.append(f"Poorly determined: {', '.join(poor)}.")
     if lost:
         text.append(f"Not determined by these records, set to zero: {', '.join(lost)}.")
+    if found.comparison is not None and found.comparison.biased:
+        text.append(
+            "Errors of the positions bias least squares (test of Durbin, Wu and Hausman)"
+            + ("; these are by instruments." if found.method == "iv" else ": use --method iv.")
+        )
     if found.consistent is not None:
         wrong = found.consistent.violated
         text.append(
@@ -236,7 +256,20 @@ def to_json(found: Identification) -> dict[str, Any]:
             "nrmse_percent": [float(x) for x in test.nrmse_percent],
         },
         "verdict": verdict(found),
+        "least_squares": _least_squares(found.comparison),
         **_physical(found),
+    }
+
+
+def _least_squares(c: Comparison | None) -> dict[str, Any] | None:
+    """The test of Durbin, Wu and Hausman; None where no motion repeats."""
+    if c is None or not c.degrees:
+        return None
+    return {
+        "biased": c.biased,
+        "statistic": c.statistic,
+        "degrees": c.degrees,
+        "threshold": c.threshold,
     }
 
 

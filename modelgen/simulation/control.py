@@ -110,8 +110,8 @@ def cascade(plant: Plant, reference: Reference, bandwidth: float, rate: float) -
 
     As on the arm of Leborne, Creuze, Chemori and Brignone (2018). bandwidth: of the velocity loop [Hz], from
     the diagonal of the mass matrix where the reference begins; the position loop has a quarter of it, as
-    drive makers tune such cascades (Leonhard 2001, section 15). rate: of the samples [Hz]. The current loop, a
-    PI too, counts as ideal: the model has no inductance.
+    drive makers tune such cascades (Leonhard 2001, section 15). rate: of the samples [Hz]. The current loop,
+    a PI too, counts as ideal: the model has no inductance.
     """
     return _Cascade(plant, reference, bandwidth, 1.0 / rate)
 

@@ -18,11 +18,11 @@ from numpy.random import default_rng
 from hidden.blind import SMALL
 from hidden.cases import Case, make
 from modelgen.dataset import choose, prepare
+from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.lack_of_fit import ratios
 from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.run import records, settings_for
 from modelgen.diagnosis.system import System
 from modelgen.functions import build_model

@@ -9,10 +9,10 @@ import numpy as np
 from hidden import logs
 from hidden.cases import RECORDS, Bench, Case
 from modelgen.dataset import choose, prepare
+from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.periods import period_of, with_whole_rows
 from modelgen.diagnosis.run import records, settings_for
 from modelgen.diagnosis.system import weighted_fit
 from modelgen.functions import build_model

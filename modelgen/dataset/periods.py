@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset import Record
 from modelgen.dataset.choice import Chosen
+from modelgen.dataset.objects import Record
 
 Array = NDArray[np.float64]
 REPEATS = 2e-3  # of the positions' power may differ from one period to the next
@@ -78,3 +78,10 @@ def noise_of(values: Array, usable: NDArray[np.bool_], rows: int) -> tuple[Array
         left = (table - mean) * scale
     flags = there & (count >= 2)
     return np.where(flags, left, 0.0).ravel()[: len(values)], flags.ravel()[: len(values)]
+
+
+def other_period(count: int, rows: int) -> NDArray[np.int64]:
+    """For each of `count` rows one at the same phase of the next period, else of the one before, else -1."""
+    i = np.arange(count)
+    behind = np.where(i >= rows, i - rows, -1)
+    return np.where(i + rows < count, i + rows, behind)

@@ -1,0 +1,121 @@
+"""Instrumental variables: parameters that errors of the positions do not bias.
+
+Least squares takes the regressor as exact. Where the motion repeats, the regressor at the same phase of
+another period has the same truth and other errors: it is the instrument (Reiersoel 1945; for robots Janot,
+Vandanjon and Gautier 2014, who take theirs from a simulation). The difference of both estimates, over the
+covariance that noise of the effort alone would give it, is the test of Durbin, Wu and Hausman (Hausman 1978).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from modelgen.dataset.periods import other_period
+from modelgen.errors import InputError
+from modelgen.identification.autocovariance import autocovariance, autoregression, meat_of
+from modelgen.identification.regression import Regression, Solution
+
+Array = NDArray[np.float64]
+SIGNIFICANCE = 1e-3
+FEWEST = 10  # rows with a partner, per parameter
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Least squares beside instrumental variables.
+
+    solution: by instruments. statistic: chi-squared with `degrees` where least squares is not biased.
+    """
+
+    solution: Solution
+    statistic: float
+    degrees: int
+    threshold: float
+
+    @property
+    def biased(self) -> bool:
+        """Whether errors of the positions bias least squares."""
+        return self.statistic > self.threshold
+
+
+def compared(regression: Regression, least: Solution, periods: Sequence[int | None]) -> Comparison | None:
+    """Both estimates on the rows that have a partner; None where too few have one.
+
+    periods: rows in a period of each record, None where it does not repeat.
+    """
+    known, p = least.determined, least.determined.size
+    rows = _rows(regression, periods, known, least.sigma)
+    if sum(len(y) for y, _, _, _ in rows) < FEWEST * p:
+        return None
+    size = int(known.sum())
+    zw, ww = np.zeros((size, size)), np.zeros((size, size))
+    zy, wy = np.zeros(size), np.zeros(size)
+    for y, w, z, _ in rows:
+        zw, ww, zy, wy = zw + z.T @ w, ww + w.T @ w, zy + z.T @ y, wy + w.T @ y
+    by_instruments, by_squares = np.linalg.pinv(zw, rcond=1e-12), np.linalg.pinv(ww, rcond=1e-12)
+    theta, plain = by_instruments @ zy, by_squares @ wy
+    covariance, difference = np.zeros((size, size)), np.zeros((size, size))
+    for joint in sorted({j for *_, j in rows}):
+        own = [(y, w, z) for y, w, z, j in rows if j == joint]
+        left = [y - w @ theta for y, w, _ in own]
+        taps, power = autoregression(autocovariance(left, sum(len(e) for e in left)))
+        for _, w, z in own:
+            covariance += by_instruments @ meat_of(z, taps, power) @ by_instruments.T
+            difference += meat_of(z @ by_instruments.T - w @ by_squares, taps, power)
+    statistic, degrees = _statistic(theta - plain, difference)
+    whole, spread = np.zeros(p), np.zeros((p, p))
+    whole[known] = theta
+    spread[np.ix_(known, known)] = covariance
+    threshold = float(stats.chi2.ppf(1 - SIGNIFICANCE, degrees)) if degrees else float("inf")
+    return Comparison(replace(least, theta=whole, covariance=spread), statistic, degrees, threshold)
+
+
+def needed(found: Comparison | None) -> Comparison:
+    """The comparison; InputError where there is none."""
+    if found is None:
+        raise InputError(
+            "--method iv: found no motion that repeats, expected two identical periods or more in a record; "
+            "see modelgen excite"
+        )
+    return found
+
+
+_Rows = tuple[Array, Array, Array, int]
+
+
+def _rows(
+    regression: Regression, periods: Sequence[int | None], known: NDArray[np.bool_], sigma: Array
+) -> list[_Rows]:
+    """Effort, columns, instruments of every record and joint, over the joint's residuals; the joint."""
+    found: list[_Rows] = []
+    for y, table, moving, period in zip(
+        regression.effort, regression.columns, regression.moving, periods, strict=True
+    ):
+        if period is None:
+            continue
+        partner = other_period(len(y), period)
+        there = moving & (partner >= 0)[:, None] & moving[partner]
+        for j in range(y.shape[1]):
+            k = there[:, j]
+            own, other = table[k, j][:, known], table[partner[k], j][:, known]
+            found.append((y[k, j] / sigma[j], own / sigma[j], other / sigma[j], j))
+    return found
+
+
+def _statistic(difference: Array, covariance: Array) -> tuple[float, int]:
+    """difference' covariance^+ difference, and the rank; parameters in units of their own spread."""
+    scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    kept = scale > 1e-12 * np.maximum(np.abs(difference), 1e-300)
+    if not kept.any():
+        return 0.0, 0
+    d = difference[kept] / scale[kept]
+    correlation = covariance[np.ix_(kept, kept)] / np.outer(scale[kept], scale[kept])
+    values, vectors = np.linalg.eigh(correlation)
+    large = values > 1e-6 * values[-1]
+    turned = vectors[:, large].T @ d
+    return float((turned**2 / values[large]).sum()), int(large.sum())
