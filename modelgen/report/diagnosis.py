@@ -31,6 +31,7 @@ def report(d: Diagnosis) -> str:
         lstrip_blocks=True,
     )
     template = environment.get_template("report/diagnosis.html.j2")
+    free = d.test.prepared.input is None
     text: str = template.render(
         arm=d.arm.name,
         verdict=d.verdict,
@@ -44,8 +45,9 @@ def report(d: Diagnosis) -> str:
         effort_picture=inline(effort(d)),
         residual_pictures=residuals(d),
         replay_picture=replayed(d),
-        ranking=[_ranked(turn) for turn in d.selection.turns],
-        free=d.test.prepared.input is None,
+        ranking=_rankings(d),
+        error_text=_ERRORS[free],
+        simulation_text=_SIMULATED[free],
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
         missing=d.not_identifiable,
         experiment=d.next_experiment,
@@ -58,6 +60,17 @@ _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
     "outside_catalogue": "Something is missing that is not in the catalogue.",
     "cannot_tell": "These records cannot tell.",
+}
+
+
+# By whether the test record is a free motion.
+_ERRORS = {
+    True: "RMSE of the simulated free motion, from the release on,",
+    False: "RMSE of the effort",
+}
+_SIMULATED = {
+    True: "The test record simulated from its release on",
+    False: "Windows of the test record simulated from their measured initial states with the measured inputs",
 }
 
 
@@ -77,6 +90,13 @@ _REFUSED = {
     "other joints": "makes other joints worse",
 }
 _SHOWN = 12  # candidates of a turn
+
+
+def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
+    """Heading and rows of every turn that had candidates."""
+    headings = ["Candidates", *["Candidates, with what was taken before"] * len(d.selection.turns)]
+    ranked = zip(headings, map(_ranked, d.selection.turns), strict=False)
+    return [(heading, rows) for heading, rows in ranked if rows]
 
 
 def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
