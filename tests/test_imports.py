@@ -13,6 +13,7 @@ ORDER = (
     "__init__",
     "errors",
     "resources",
+    "jobs",
     "figures",
     "graph",
     "description",

@@ -191,6 +191,7 @@ def excite(
     box: given.Boxes = None,
     iterations: given.Iterations = 150,
     jobs: given.Jobs = None,
+    dask: given.Dask = None,
     as_json: given.Json = False,
 ) -> None:
     """Compute a trajectory that determines the base parameters well, within the arm's limits."""
@@ -213,6 +214,7 @@ def excite(
         boxes=tuple(parsed(text) for text in box or []),
         iterations=iterations,
         processes=jobs,
+        dask=dask,
     )
     _, (found,) = selected(arms, [arm])
     run(found, settings, out, as_json=as_json)

@@ -121,6 +121,15 @@ Jobs = Annotated[
         "-j", "--jobs", metavar="N", min=1, help="Processes. Default: one per processor.", show_default=False
     ),
 ]
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        "--dask",
+        metavar="ADDRESS",
+        help="Scheduler of a Dask cluster that has the work: tcp://host:8786.",
+        show_default=False,
+    ),
+]
 TrajectoryFile = Annotated[
     Path, typer.Option("--out", metavar="FILE", help="Table to write; its companions lie beside it.")
 ]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -16,6 +14,7 @@ from modelgen.excitation.problem import SIGNALS, Problem, problem
 from modelgen.excitation.random_motion import feasible
 from modelgen.excitation.settings import Array, Settings
 from modelgen.excitation.spectrum import condition
+from modelgen.jobs import Where, run
 
 Progress = Callable[[int, int], None]
 
@@ -43,30 +42,20 @@ class Excitation:
 
 
 def excite(arm: Arm, settings: Settings, progress: Progress | None = None) -> Excitation:
-    """The best trajectory of all starts; the same for any number of processes.
+    """The best trajectory of all starts; the same wherever they run, in any number of processes.
 
-    Raises InputError for settings that make no trajectory, missing limits, and limits that exclude
-    each other.
+    Raises InputError for settings that make no trajectory, missing limits, limits that exclude each
+    other, and a cluster that cannot be reached.
     """
     p = problem(arm, settings)
-    processes = min(settings.processes or os.cpu_count() or 1, settings.starts)
     found: list[Array | None] = [None] * settings.starts
-    done = 0
-    if processes == 1:
-        optimiser = Optimiser(p)
-        for k in range(settings.starts):
-            found[k] = optimiser.start(k)
-            done += 1
-            if progress:
-                progress(done, settings.starts)
-    else:
-        # One job per start, so that progress is seen; a worker keeps the programme that it has built.
-        jobs = Parallel(n_jobs=processes, return_as="generator_unordered")
-        for k, z in jobs(delayed(_one)(p, k) for k in range(settings.starts)):
-            found[k] = z
-            done += 1
-            if progress:
-                progress(done, settings.starts)
+    where = Where(settings.processes, settings.dask)
+    # One job per start, so that progress is seen; a worker keeps the programme that it has built.
+    starts = [(p, k) for k in range(settings.starts)]
+    for done, (k, z) in enumerate(run(_one, starts, where), 1):
+        found[k] = z
+        if progress:
+            progress(done, settings.starts)
     merits = [np.inf if z is None else merit(p, z) for z in found]
     best = found[int(np.argmin(merits))]
     if best is None or not np.isfinite(min(merits)):
@@ -97,9 +86,10 @@ def random_conditions(p: Problem, count: int, seed: int) -> Array:
 _kept: list[tuple[tuple[str | bytes | Settings, ...], Optimiser]] = []
 
 
-def _one(p: Problem, k: int) -> tuple[int, Array | None]:
+def _one(start: tuple[Problem, int]) -> Array | None:
+    p, k = start
     # Of another arm the names may be the same: the programme itself is compared.
     key = (p.settings, p.smooth.serialize(), p.middle.tobytes(), p.amplitude.tobytes())
     if not _kept or _kept[0][0] != key:
         _kept[:] = [(key, Optimiser(p))]
-    return k, _kept[0][1].start(k)
+    return _kept[0][1].start(k)

@@ -32,8 +32,9 @@ class Settings:
     period [s]; harmonics: of 1/period; rate [Hz] of the samples. criterion: one of CRITERIA.
     coordinates: in which of COORDINATES the Fourier series is written. starts: random starts of the
     optimisation; seed: of their draws. rest: start and end with zero speed and acceleration.
-    iterations: most of one start. processes: None for one per processor. velocity, acceleration: limits
-    [rad/s, m/s and per s^2] for joints that have none. boxes: for frame origins.
+    iterations: most of one start. processes: None for one per processor; dask: address of a scheduler
+    that has the starts instead. velocity, acceleration: limits [rad/s, m/s and per s^2] for joints that
+    have none. boxes: for frame origins.
     """
 
     period: float = 80.0
@@ -46,6 +47,7 @@ class Settings:
     rest: bool = False
     iterations: int = 150
     processes: int | None = None
+    dask: str | None = None
     velocity: float | None = None
     acceleration: float | None = None
     boxes: tuple[Box, ...] = ()
