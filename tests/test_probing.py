@@ -11,7 +11,7 @@ from witness.mechanism import states
 from modelgen.backends.casadi_function import casadi_function
 from modelgen.effects import CATALOGUE
 from modelgen.functions import Options
-from modelgen.probing import Motion, Prober, places, with_effect
+from modelgen.probing import Motion, Prober, places, series, with_effect
 
 VALUES = {
     "stribeck_friction": {"velocity": 4e3},
@@ -144,3 +144,11 @@ def test_a_function_in_memory_is_the_emitted_one() -> None:
                 strict=True,
             ):
                 np.testing.assert_allclose(np.squeeze(np.array(a)), np.squeeze(b[k]), rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("effect", ["presliding", "backlash"])
+def test_without_a_compiler_the_states_are_the_same(effect: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    m, parameters = motion("ariane4"), np.ones(len(prober("ariane4").base.base))
+    compiled = prober("ariane4").contribution(effect, 2, m, VALUES[effect], parameters)
+    monkeypatch.setattr(series, "compiler", lambda: None)
+    agree(Prober(ARMS["ariane4"]).contribution(effect, 2, m, VALUES[effect], parameters), compiled, 1e-12)

@@ -1,5 +1,6 @@
 """A value-numbered expression graph and the straight-line programs made from it."""
 
+from modelgen.graph.cut import cut
 from modelgen.graph.graph import Expr, Graph, Number
 from modelgen.graph.lowering import Program, Statement, Term, lower
 from modelgen.graph.operations import OPERATION_KINDS, count_operations
@@ -13,5 +14,6 @@ __all__ = [
     "Statement",
     "Term",
     "count_operations",
+    "cut",
     "lower",
 ]

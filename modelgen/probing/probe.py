@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 
-import casadi as ca
 import numpy as np
 
-from modelgen.backends.casadi_function import casadi_function
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm
@@ -25,8 +23,8 @@ from modelgen.probing.programs import (
     inputs_of,
     links_and_effect,
     loads_of,
-    steps_of,
 )
+from modelgen.probing.series import Series
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]
@@ -47,8 +45,9 @@ class Prober:
         self.base = grouping(arm)
         self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
         self._made: dict[object, NumpyFunction] = {}
+        self._arms: dict[object, tuple[NumpyFunction, Equations]] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
-        self._series: dict[tuple[Equations, int], tuple[Function, ca.Function]] = {}
+        self._series: dict[Equations, Series] = {}
         self._inputs: dict[tuple[int, bytes], tuple[Motion, Array]] = {}
 
     @cached_property
@@ -182,22 +181,22 @@ class Prober:
     # -- inside -----------------------------------------------------------------------------
 
     def _inputs_of(self, key: object, arm: Arm, motion: Motion, parameters: Array) -> Array:
-        if key not in self._made:
-            self._made[key] = NumpyFunction(inputs_of(arm, self.base))
-        call = self._made[key]
+        if key not in self._arms:
+            made = Equations(slid(described(arm)))
+            self._arms[key] = NumpyFunction(inputs_of(made, self.base)), made
+        call, e = self._arms[key]
         if key != "described":
-            return self._along(call, arm, motion, parameters)
+            return self._along(call, e, motion, parameters)
         at = (id(motion), np.asarray(parameters).tobytes())
         if at not in self._inputs:
             if len(self._inputs) > 20:
                 self._inputs.clear()
             # the motion is kept: its place in memory is the key
-            self._inputs[at] = motion, self._along(call, arm, motion, parameters)
+            self._inputs[at] = motion, self._along(call, e, motion, parameters)
         return self._inputs[at][1]
 
-    def _along(self, call: NumpyFunction, arm: Arm, motion: Motion, parameters: Array) -> Array:
+    def _along(self, call: NumpyFunction, e: Equations, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
-        e = Equations(slid(described(arm)))
         states = self._states(e, motion, (), parameters) if e.state_names() else None
         return np.asarray(call(**self._given(call.function, motion, (), parameters, None, states)))
 
@@ -248,19 +247,11 @@ class Prober:
         return tuple(float(value) for value in given if value is not None)
 
     def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
-        """States at every sample, (N, s), from zero, stepped by CasADi's virtual machine."""
-        count = len(motion.t)
-        if (e, count) not in self._series:
-            self._series[e, count] = _series(steps_of(e, self.base), count)
-        function, series = self._series[e, count]
-        given = self._given(function, motion, free, parameters, None, np.zeros((count, len(e.state_names()))))
-        given["dt"] = np.full((count, 1), motion.step)
-        names = [a.name for a in function.arguments if a.name != "state"]
-        columns = [
-            np.ascontiguousarray(np.broadcast_to(given[k], (count, given[k].shape[-1])).T) for k in names
-        ]
-        after = np.array(series(np.zeros(len(e.state_names())), *columns)).T
-        return np.vstack([np.zeros((1, after.shape[1])), after[:-1]])
+        """States at every sample, (N, s), from zero."""
+        if e not in self._series:
+            self._series[e] = Series(e, self.base)
+        series, count = self._series[e], len(motion.t)
+        return series(self._given(series.heads.function, motion, free, parameters, None, None), count)
 
     def _given(
         self,
@@ -285,13 +276,3 @@ class Prober:
             "input": np.zeros((count, self.n)),
         }
         return {a.name: known[a.name] for a in function.arguments}
-
-
-def _series(function: Function, count: int) -> tuple[Function, ca.Function]:
-    """`function`, and its state stepped `count` times: inputs state, then the others in their order."""
-    step = casadi_function(function)
-    x = {a.name: ca.SX.sym(a.name, a.size) for a in function.arguments}
-    others = [x[a.name] for a in function.arguments if a.name != "state"]
-    # mapaccum feeds the first output back into the first input
-    ordered = ca.Function("ordered", [x["state"], *others], [step(*x.values())])
-    return function, ordered.mapaccum("series", count, {"base": 4})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from modelgen.base_parameters import Grouping, group
 from modelgen.base_parameters.analytic import slid
@@ -11,7 +12,7 @@ from modelgen.effects import described
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.objects import Argument, Function, Output
 from modelgen.functions.parametric import base_values
-from modelgen.graph import Expr, lower
+from modelgen.graph import Expr, cut, lower
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates
@@ -39,9 +40,8 @@ def bare(name: str, e: Equations, count: int, expressions: Sequence[Expr]) -> Fu
     return Function(name, "", tuple(arguments), (output,), program, {})
 
 
-def inputs_of(arm: Arm, base: Grouping) -> Function:
-    """Inputs of the arm, with the base parameters of another description of it: {q, dq, ddq, parameters}."""
-    e = Equations(slid(described(arm)))
+def inputs_of(e: Equations, base: Grouping) -> Function:
+    """Inputs of an arm, with the base parameters of another description of it: {q, dq, ddq, parameters}."""
     values = base_values(e, base)
     dynamics = Dynamics(e, values)
     return bare("inputs", e, len(base.base), dynamics.inverse_dynamics(e.vector("dq"), e.vector("ddq")))
@@ -62,10 +62,16 @@ def columns_of(e: Equations) -> tuple[Function, list[tuple[str, int]]]:
     return function, [(name, n) for name, n, _ in entries]
 
 
-def steps_of(e: Equations, base: Grouping) -> Function:
-    """States of the only effect of `e` after dt."""
+def steps_of(e: Equations, base: Grouping) -> tuple[Function, Function]:
+    """States after dt: what needs no state, and from {state, head} the rest."""
     forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), _values(e, base))
-    return bare("steps", e, len(base.base), forces.steps(e.graph.input("dt", 0)))
+    heads, tails = cut(forces.steps(e.graph.input("dt", 0)), ["state"], "head")
+    sizes = {"state": len(tails), "head": len(heads)}
+    arguments = tuple(Argument(a, size, "", "", float("inf")) for a, size in sizes.items())
+    output = Output("out", len(tails), 1, "", "")
+    rest = Function("step", "", arguments, (output,), lower({"out": tails}), {})
+    found = bare("heads", e, len(base.base), heads)
+    return replace(found, arguments=tuple(a for a in found.arguments if a.name != "state")), rest
 
 
 def links_and_effect(e: Equations, base: Grouping) -> Function:

@@ -10,7 +10,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
+from typing import Any
 
 import sympy as sp
 
@@ -33,6 +36,7 @@ class Transmission(ABC):
 
     def __init__(self, torque_constant: float) -> None:
         self.torque_constant = torque_constant
+        self._kept: dict[str, sp.Expr] = {}
 
     driven = True
     unit = "unit"  # of the motor coordinate; a lever's may be anything, increments usually
@@ -47,11 +51,17 @@ class Transmission(ABC):
 
     def k1(self) -> sp.Expr:
         """dq_m/dq."""
-        return sp.diff(self.motor(), self.q)
+        return self._once("k1", lambda: sp.diff(self.motor(), self.q))
 
     def slope(self) -> sp.Expr:
         """d^2 q_m/dq^2: k2 is this times dq^2."""
-        return sp.diff(self.motor(), self.q, 2)
+        return self._once("slope", lambda: sp.diff(self.motor(), self.q, 2))
+
+    def _once(self, name: str, make: Callable[[], sp.Expr]) -> sp.Expr:
+        """What symbolic differentiation gives, made when first asked for."""
+        if name not in self._kept:
+            self._kept[name] = make()
+        return self._kept[name]
 
     def inverse_gain(self) -> sp.Expr:
         """1/K [A per N m or N]."""
@@ -170,11 +180,30 @@ STROKE_MARGIN = math.radians(0.05)  # [rad] beyond a lever's stroke before the s
 
 
 def of_joint(arm: Arm, joint: Joint) -> Transmission:
-    """The transmission that a joint's drive describes."""
-    if isinstance(joint.drive, DirectDrive):
-        return Direct(joint.drive)
-    if isinstance(joint.drive, LeveredDrive):
-        return Levered(joint.drive, {geometry_symbol(n): v for n, v in arm.symbols.items()})
+    """The transmission that a joint's drive describes; the same object for the same figures."""
+    return _made(_Text(joint.drive), _Text(tuple(arm.symbols.items())))
+
+
+class _Text:
+    """A value told from others by its text: 1 and 1.0 are equal, and make other expressions."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+        self.text = repr(value)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Text) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+
+@lru_cache(maxsize=1024)
+def _made(drive: _Text, symbols: _Text) -> Transmission:
+    if isinstance(drive.value, DirectDrive):
+        return Direct(drive.value)
+    if isinstance(drive.value, LeveredDrive):
+        return Levered(drive.value, {geometry_symbol(n): v for n, v in symbols.value})
     return Undriven()
 
 
