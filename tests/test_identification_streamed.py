@@ -6,9 +6,11 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from simulation_support import middle, shipped
 from typer.testing import CliRunner
 
+import modelgen.identification.rows
 from modelgen.cli.app import app
 from modelgen.dataset import Stream, prepare, read
 from modelgen.identification import identify, identify_streamed
@@ -51,7 +53,15 @@ def test_blocks_give_the_parameters_of_the_whole(tmp_path: Path) -> None:
     ours = np.array([e.std or np.inf for e in blocks.estimates])
     # Blocks cut the autocorrelation at their seams, and many rows need no correction for what the fit takes.
     np.testing.assert_allclose(ours, size, rtol=0.15)
-    assert calls[-1] == (3 * len(stream), 3 * len(stream))  # so few blocks are all taken
+    assert calls[-1] == (len(stream), len(stream))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(modelgen.identification.rows, "compiler", lambda: None)
+        patch.setattr(modelgen.identification.streamed, "KEPT", 0)
+        calls.clear()
+        slow = identify_streamed([stream], arm, test=test, progress=lambda *x: calls.append(x))
+    assert calls[-1] == (3 * len(stream), 3 * len(stream))  # so few blocks are all a part
+    for a, b in zip(blocks.estimates, slow.estimates, strict=True):
+        assert (a.value, a.std) == pytest.approx((b.value, b.std), rel=1e-9)
     out = tmp_path / "out"
     done = CliRunner().invoke(
         app,

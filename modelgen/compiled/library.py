@@ -15,6 +15,8 @@ from pathlib import Path
 
 # No contraction to fused operations: the same results wherever doubles are IEEE 754.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
+# Whatever this processor has, and no errno: for what is rounded by libraries of linear algebra anyway.
+_FAST = ("-std=gnu99", "-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
 
 
 @cache
@@ -27,8 +29,10 @@ def compiler() -> str | None:
     return None
 
 
-def shared_library(files: Mapping[str, str], main: str) -> ctypes.CDLL:
+def shared_library(files: Mapping[str, str], main: str, *, fast: bool = False) -> ctypes.CDLL:
     """The library of the source `main`, which includes what it needs of `files` (text by path).
+
+    fast: for this processor alone, with fused operations: last digits may differ from machine to machine.
 
     Libraries lie in $XDG_CACHE_HOME/modelgen (default ~/.cache/modelgen) under a digest of text, flags and
     compiler; a folder that cannot be written is replaced by a temporary one. Raises RuntimeError without a
@@ -37,15 +41,19 @@ def shared_library(files: Mapping[str, str], main: str) -> ctypes.CDLL:
     tool = compiler()
     if tool is None:
         raise RuntimeError("found no C compiler, expected cc, gcc or clang in PATH, or its name in CC")
-    text = "\0".join([tool, _version(tool), *_FLAGS, main, *(f"{k}\0{v}" for k, v in sorted(files.items()))])
+    flags = _FAST if fast else _FLAGS
+    own = _processor(tool) if fast else ""
+    text = "\0".join(
+        [tool, _version(tool), own, *flags, main, *(f"{k}\0{v}" for k, v in sorted(files.items()))]
+    )
     name = f"{hashlib.sha256(text.encode()).hexdigest()[:24]}.so"
     path = _folder() / name
     if not path.exists():
-        _build(tool, files, main, path)
+        _build(tool, flags, files, main, path)
     return ctypes.CDLL(str(path))
 
 
-def _build(tool: str, files: Mapping[str, str], main: str, path: Path) -> None:
+def _build(tool: str, flags: tuple[str, ...], files: Mapping[str, str], main: str, path: Path) -> None:
     """Compile beside its place, then move: two processes may build the same library."""
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
         for name, text in files.items():
@@ -53,7 +61,7 @@ def _build(tool: str, files: Mapping[str, str], main: str, path: Path) -> None:
             source.parent.mkdir(parents=True, exist_ok=True)
             source.write_text(text, encoding="utf-8")
         built = Path(scratch) / "library.so"
-        command = [tool, *_FLAGS, "-I", f"{scratch}/include", f"{scratch}/{main}", "-o", str(built), "-lm"]
+        command = [tool, *flags, "-I", f"{scratch}/include", f"{scratch}/{main}", "-o", str(built), "-lm"]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
             complaint = next(
@@ -66,6 +74,13 @@ def _build(tool: str, files: Mapping[str, str], main: str, path: Path) -> None:
 @cache
 def _version(tool: str) -> str:
     return subprocess.run([tool, "--version"], capture_output=True, text=True, check=False).stdout
+
+
+@cache
+def _processor(tool: str) -> str:
+    """What the compiler takes this processor to have, as its predefined macros."""
+    command = [tool, "-march=native", "-dM", "-E", "-x", "c", os.devnull]
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
 
 @cache

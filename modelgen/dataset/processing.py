@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.dataset.choice import Chosen, Settings, choose
+from modelgen.dataset.decimation import Decimation, decimation, kept
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.filters import advanced, differences, low_pass
 from modelgen.dataset.objects import Array, Record
@@ -65,6 +66,12 @@ class Prepared:
         """Rows per second [Hz]."""
         return 1.0 / (self.record.step * self.settings.factor)
 
+    @property
+    def decimation(self) -> Decimation | None:
+        """The parallel filter at the rows alone; None where all samples are filtered, or none."""
+        chosen = self.settings
+        return decimation(len(self.time), self.rows, chosen.cutoff, 1.0 / self.record.step, chosen.order)
+
     def parallel(self, columns: Array) -> Array:
         """Columns (N,) or (N, k) at full rate, low-passed, decimated and trimmed: (M,) or (M, k).
 
@@ -76,9 +83,7 @@ class Prepared:
         # Some columns at a time: what the filter takes along stays small.
         for k in range(0, table.shape[1], COLUMNS):
             part = table[:, k : k + COLUMNS]
-            result[:, k : k + COLUMNS] = (
-                low_pass(part, chosen.cutoff, rate, chosen.order) if chosen.cutoff else part
-            )[self.rows]
+            result[:, k : k + COLUMNS] = kept(part, self.rows, chosen.cutoff, rate, chosen.order)
         return result.reshape((len(self.rows), *columns.shape[1:]))
 
     def picked(self, columns: Array) -> Array:

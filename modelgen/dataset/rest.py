@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.dataset.choice import Chosen
-from modelgen.dataset.filters import low_pass
+from modelgen.dataset.decimation import kept
 from modelgen.dataset.objects import Array
 
 SHARE = 0.02  # of the filter's weight that may lie on samples at rest
@@ -23,9 +23,10 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     for k, gate in enumerate(settings.gates):
         slow = np.abs(dq[:, k]) < gate
         rest = long_runs(slow, longest).astype(np.float64)
+        share = rest[rows]
         if settings.cutoff and rest.any():
-            rest = low_pass(rest[:, None], settings.cutoff, rate, settings.order)[:, 0]
-        result[:, k] = ~slow[rows] & (rest[rows] < SHARE)
+            share = kept(rest[:, None], rows, settings.cutoff, rate, settings.order)[:, 0]
+        result[:, k] = ~slow[rows] & (share < SHARE)
     return result
 
 

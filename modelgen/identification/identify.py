@@ -18,7 +18,8 @@ from modelgen.functions.options import prepared as reduced
 from modelgen.identification.consistent import Consistent, consistent
 from modelgen.identification.instrumental import Comparison, compared, needed
 from modelgen.identification.regression import Array, Regression, Solution
-from modelgen.probing import Motion, Prober
+from modelgen.identification.rows import Rows
+from modelgen.probing import Prober
 
 METHODS = ("ols", "wls", "robust", "iv")
 NEEDED = 2.0  # standard deviations that a parameter of the data's support is away from zero
@@ -188,18 +189,10 @@ def validate(prober: Prober, model: Model, records: Sequence[Prepared], theta: A
     return Validation(unit, np.array(rmse), np.array(share), t, measured, measured - wrong)
 
 
-def rows_of(prober: Prober, model: Model, p: Prepared, theta: Array) -> tuple[Array, Array]:
-    """Effort (M, n) and columns (M, n, p) of a record, through its filter. Raises InputError."""
-    if p.input is None:
-        raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
-    motion = Motion(p.time, p.q, p.dq, p.ddq)
-    columns = p.parallel(np.asarray(prober.regressor(model, motion, theta)))
-    return np.asarray(p.parallel(prober.ideal(model, motion, p.input))), columns
-
-
 def _regression(prober: Prober, model: Model, records: Sequence[Prepared], theta: Array) -> Regression:
-    rows = [rows_of(prober, model, p, theta) for p in records]
-    return Regression([y for y, _ in rows], [w for _, w in rows], [p.moving for p in records])
+    made = Rows(model, prober)
+    rows = [made.of(p, theta) for p in records]
+    return Regression([y for y, _ in rows], [made.whole(w) for _, w in rows], [p.moving for p in records])
 
 
 def verdict(found: Identification) -> str:

@@ -1,8 +1,8 @@
 """Identification of logs of any length: triangles and sums that do not grow with the rows.
 
-One pass over the blocks makes one triangle per joint, which holds every weighting of the joints. Two passes
-over a part of them, spread evenly, give the residuals' autocovariance and the sandwich that it makes; blocks
-count as records of their own there.
+One pass over the blocks makes one triangle per joint, which holds every weighting of the joints. A part of
+them, spread evenly, gives the residuals' autocovariance and the sandwich that it makes; blocks count as
+records of their own there.
 """
 
 from __future__ import annotations
@@ -15,17 +15,19 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared, Stream, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.functions import Model, Options, build_model
+from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.autocovariance import ORDER, autoregression, meat_of
-from modelgen.identification.identify import Identification, concluded, rows_of
+from modelgen.identification.identify import Identification, concluded
 from modelgen.identification.regression import ROUNDS, Solution, Triangle
+from modelgen.identification.rows import Rows
 from modelgen.probing import Prober
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Block = tuple[Array, Array, NDArray[np.bool_]]
 PART = 32  # blocks that the standard deviations are made of, at least where there are as many
+KEPT = 128 * 1024**2  # bytes of them that are kept
 
 
 def identify_streamed(
@@ -47,19 +49,23 @@ def identify_streamed(
         raise InputError(f"--method {method}: a streamed log knows ols and wls only; give a part, FILE@t0:t1")
     options = options or Options()
     model, prober = build_model(arm, options), Prober(reduced(arm, options))
+    rows = Rows(model, prober)
     (function,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in function.arguments}:
         raise InputError(f"{arm.name}: an effect with states or loads needs the whole log; give a part of it")
-    n, p = len(arm.coordinates), len(model.grouping.base)
-    blocks = _Blocks(train, model, prober, progress)
-    triangles = [Triangle(p) for _ in range(n)]
+    n, p = rows.n, rows.p
+    blocks = _Blocks(train, rows, progress)
+    own = [Triangle(s.stop - s.start) for s in rows.of_joint]
     for effort, columns, moving in blocks:
-        for j, triangle in enumerate(triangles):
-            rows = moving[:, j]
-            if rows.any():
-                triangle.add(columns[rows, j], effort[rows, j])
-    if sum(t.count for t in triangles) < 3 * p:
+        for j, triangle in enumerate(own):
+            table, right = columns[:, rows.of_joint[j]], effort[:, j]
+            if not moving[:, j].all():
+                table, right = table[moving[:, j]], right[moving[:, j]]
+            if len(right):
+                triangle.add(table, right)
+    if sum(t.count for t in own) < 3 * p:
         raise InputError(f"{arm.name}: too few moving rows for {p} parameters; see modelgen excite")
+    triangles = [_spread(t, rows.parameter[s], p) for t, s in zip(own, rows.of_joint, strict=True)]
     theta, known, condition, sigma = _weighted(triangles, method)
     precision = np.zeros((p, p))
     for t, size in zip(triangles, sigma, strict=True):
@@ -73,22 +79,38 @@ def identify_streamed(
 
 
 class _Blocks:
-    """Efforts (M, n), columns (M, n, p) and moving rows (M, n) of block after block, as often as wanted."""
+    """Efforts (M, n), columns (M, c) and moving rows (M, n) of block after block, as often as wanted.
 
-    def __init__(
-        self, streams: Sequence[Stream], model: Model, prober: Prober, progress: Progress | None
-    ) -> None:
-        self.streams, self.model, self.prober, self.progress = streams, model, prober, progress
+    Those of `part` are kept from the first time on where they fit into KEPT bytes, else computed again.
+    """
+
+    def __init__(self, streams: Sequence[Stream], rows: Rows, progress: Progress | None) -> None:
+        self.streams, self.rows, self.progress = streams, rows, progress
         self.count = sum(len(s) for s in streams)
         self.step = max(1, self.count // PART)  # of the blocks that `part` takes
-        self.done, self.total = 0, self.count + 2 * len(range(0, self.count, self.step))
+        self.done, self.total = 0, self.count
+        self.kept: list[Block] | None = []
 
     def __iter__(self) -> Iterator[Block]:
-        return self.part(1)
+        """Every block."""
+        for number, block in self._blocks(1):
+            if self.kept is not None and number % self.step == 0:
+                self.kept.append(block)
+                if sum(array.nbytes for one in self.kept for array in one) > KEPT:
+                    self.kept = None
+            yield block
+        if self.kept is None:
+            self.total += 2 * len(range(0, self.count, self.step))
 
-    def part(self, step: int) -> Iterator[Block]:
-        """Every block whose number is a multiple of `step`."""
-        zero = np.zeros(len(self.model.grouping.base))
+    def part(self) -> Iterator[Block]:
+        """Every block whose number is a multiple of `step`, after all of them."""
+        if self.kept is not None:
+            yield from self.kept
+        else:
+            yield from (block for _, block in self._blocks(self.step))
+
+    def _blocks(self, step: int) -> Iterator[tuple[int, Block]]:
+        zero = np.zeros(self.rows.p)
         number = -1
         for stream in self.streams:
             for record in stream.records():
@@ -96,11 +118,20 @@ class _Blocks:
                 if number % step:
                     continue
                 p = prepare(record, stream.settings)
-                effort, columns = rows_of(self.prober, self.model, p, zero)
-                yield effort, columns, p.moving
+                effort, columns = self.rows.of(p, zero)
+                yield number, (effort, columns, p.moving)
                 self.done += 1
                 if self.progress is not None:
                     self.progress(self.done, self.total)
+
+
+def _spread(triangle: Triangle, places: NDArray[np.intp], size: int) -> Triangle:
+    """A triangle of some columns as one of all `size`: the others are zero."""
+    result = Triangle(size)
+    result.count = triangle.count
+    result.r = np.zeros((len(triangle.r), size + 1))
+    result.r[:, [*places, size]] = triangle.r
+    return result
 
 
 def _weighted(triangles: Sequence[Triangle], method: str) -> tuple[Array, NDArray[np.bool_], float, Array]:
@@ -127,23 +158,27 @@ def _sandwich(
 ) -> Array:
     """Covariance of the determined parameters, as `autocovariance.sandwich` has it for many rows."""
     n = len(weights)
+    rows = blocks.rows
     sums, count = np.zeros((n, ORDER + 1)), np.zeros(n)
-    for effort, columns, moving in blocks.part(blocks.step):
-        e = (effort - columns @ theta) * moving * weights
+    for effort, columns, moving in blocks.part():
         count += moving.sum(axis=0)
-        for lag in range(min(ORDER + 1, len(e))):
-            sums[:, lag] += np.einsum("ij,ij->j", e[lag:], e[: len(e) - lag])
+        for j, own in enumerate(rows.of_joint):
+            e = (effort[:, j] - columns[:, own] @ theta[rows.parameter[own]]) * moving[:, j] * weights[j]
+            for lag in range(min(ORDER + 1, len(e))):
+                sums[j, lag] += e[lag:] @ e[: len(e) - lag]
     models = [autoregression(s / max(1.0, c)) for s, c in zip(sums, count, strict=True)]
-    size = int(known.sum())
+    size = len(known)
     meat, normal = np.zeros((size, size)), np.zeros((size, size))
     for t, w in zip(triangles, weights, strict=True):
         if t.count:
-            table = t.r[:, :-1][:, known] * w
+            table = t.r[:, :-1] * w
             normal += table.T @ table
-    for _, columns, moving in blocks.part(blocks.step):
-        for j, (taps, power) in enumerate(models):
-            meat += meat_of(columns[:, j][:, known] * (moving[:, j, None] * weights[j]), taps, power)
+    for _, columns, moving in blocks.part():
+        for own, (taps, power), move, w in zip(rows.of_joint, models, moving.T, weights, strict=True):
+            places = rows.parameter[own]
+            meat[np.ix_(places, places)] += meat_of(columns[:, own] * (move[:, None] * w), taps, power)
     meat *= sum(t.count for t in triangles) / max(1.0, float(count.sum()))
+    meat, normal = meat[np.ix_(known, known)], normal[np.ix_(known, known)]
     scale = np.sqrt(np.diag(normal))
     bread = np.linalg.inv(normal / np.outer(scale, scale)) / np.outer(scale, scale)
     return np.asarray(bread @ meat @ bread)

@@ -1,0 +1,153 @@
+"""Columns of a regressor, filtered and decimated by C that is compiled for this machine."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.compiled.lanes import LANES, text_of
+from modelgen.compiled.library import compiler, shared_library
+from modelgen.functions.objects import Function
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+LARGEST = 1e5  # rad, up to which sine and cosine are exact
+
+
+class Columns:
+    """What a function of q, dq, ddq or t computes of its output, at full rate and through a filter.
+
+    elements: (c,), numbers of the computed elements of the output, in order. Raises RuntimeError where
+    there is no C compiler.
+    """
+
+    def __init__(self, function: Function) -> None:
+        self.function = function
+        self.text, elements = text_of(function)
+        self.elements = np.array(elements, dtype=np.intp)
+        self._libraries: dict[int, ctypes.CDLL] = {}
+        self._kept: dict[str, Array] = {}
+        if compiler() is None:
+            raise RuntimeError("found no C compiler")
+
+    @staticmethod
+    def fit(q: Array) -> bool:
+        """Whether sine and cosine of these coordinates are exact."""
+        return bool(max(-q.min(), q.max()) <= LARGEST)
+
+    def filtered(
+        self,
+        inputs: Mapping[str, Array],
+        *,
+        first: int,
+        factor: int,
+        steps: int,
+        poles: Complex,
+        gains: Complex,
+        direct: float,
+        begin: int,
+        ahead: Complex,
+        after: int,
+        behind: Complex,
+        inner: Complex,
+    ) -> Array:
+        """Filtered columns (steps + 1, c) at the samples first, first + factor, ...
+
+        inputs: by argument (N, size). The rest: fields of modelgen.dataset.decimation.Decimation.
+        """
+        table = [np.ascontiguousarray(inputs[a.name].T, dtype=np.float64) for a in self.function.arguments]
+        samples, m, c = table[0].shape[1], len(poles), len(self.elements)
+        library = self._library(m)
+        rows = [row.ctypes.data for part in table for row in part]
+        x = (ctypes.c_void_p * len(rows))(*rows)
+        scratch = self._memory("scratch", library.scratch_size() // 8)
+
+        def sums(place: NDArray[np.int_], weights: Array) -> tuple[Array, Array]:
+            """Sums (c, 4 m, lanes) and last columns (c, lanes) of pieces from `place` (lanes,) on."""
+            at = np.ascontiguousarray(place, dtype=np.int_)
+            library.add_up(
+                x, ctypes.c_long(samples), _at(at), ctypes.c_long(len(weights)), _at(weights), _at(scratch)
+            )
+            even = c + c % 2
+            start = 16 * even * LANES
+            found = scratch[start : start + even * 4 * m * LANES].reshape(even, 4 * m, LANES)[:c]
+            start += even * 4 * m * LANES
+            return found, scratch[start : start + c * LANES].reshape(c, LANES)
+
+        def end(start: int, given: Complex) -> Array:
+            """Sums over an end of the record (c, m, 2)."""
+            piece = -(-len(given) // LANES)
+            spread = np.zeros((LANES, piece, m, 2))
+            spread.reshape(-1, m, 2)[: len(given)] = np.stack([given.real, given.imag], axis=2)
+            weights = np.zeros((piece, 4 * m, LANES))
+            weights[:, : 2 * m] = spread.reshape(LANES, piece, 2 * m).transpose(1, 2, 0)
+            found, _ = sums(start + piece * np.arange(LANES), weights)
+            return np.ascontiguousarray(found[:, : 2 * m].sum(axis=2)).reshape(c, m, 2)
+
+        head, tail = end(begin, ahead), end(after, behind)
+        _, here = sums(np.full(LANES, first), np.zeros((1, 4 * m, LANES)))
+        out = np.empty((steps + 1, c))
+        out[0] = direct * here[:, 0] + (head @ [1, 1j] @ gains).real
+        length = steps // LANES + 1
+        turn = poles**factor
+        slowest = float(np.max(np.abs(turn)))
+        fading = min(length, int(np.ceil(np.log(1e-20) / np.log(slowest))))
+        weights = np.repeat(_pairs(inner).reshape(factor, 4 * m)[:, :, None], LANES, axis=2)
+        work, y = self._memory("work", length * c * 2 * m * LANES), self._memory("y", length * c * LANES)
+        library.filtered(
+            x,
+            ctypes.c_long(samples),
+            ctypes.c_long(first),
+            ctypes.c_long(factor),
+            ctypes.c_long(steps),
+            _at(weights),
+            ctypes.c_double(direct),
+            _at(kept := _pairs(turn)),
+            _at(own := _pairs(gains)),
+            _at(far := _pairs(turn**length)),
+            _at(head),
+            _at(tail),
+            ctypes.c_long(fading),
+            _at(scratch),
+            _at(work),
+            _at(y),
+            _at(out),
+        )
+        del kept, own, far  # until here: the library reads them
+        return out
+
+    def _memory(self, name: str, size: int) -> Array:
+        """Doubles (size,), the first on a vector's boundary; kept from call to call: its pages are there."""
+        block = self._kept.get(name)
+        if block is None or len(block) < size + LANES:
+            block = self._kept[name] = np.empty(size + LANES)
+        skipped = -(block.ctypes.data // 8) % LANES
+        return block[skipped : skipped + size]
+
+    def _library(self, modes: int) -> ctypes.CDLL:
+        if modes not in self._libraries:
+            text = f"{self.text}enum {{ MODES = {modes} }};\n{_source()}"
+            library = shared_library({"columns.c": text}, "columns.c", fast=True)
+            library.scratch_size.restype = ctypes.c_long
+            library.add_up.restype = library.filtered.restype = None
+            self._libraries[modes] = library
+        return self._libraries[modes]
+
+
+@cache
+def _source() -> str:
+    return Path(__file__).with_name("decimate.c").read_text(encoding="utf-8")
+
+
+def _pairs(values: Complex) -> Array:
+    """Real and imaginary parts side by side."""
+    return np.ascontiguousarray(np.stack([values.real, values.imag], axis=-1))
+
+
+def _at(x: NDArray[np.generic]) -> ctypes.c_void_p:
+    return ctypes.c_void_p(x.ctypes.data)

@@ -1,0 +1,88 @@
+"""Columns that C computes, filters and decimates are those of NumPy and scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from arms_support import ARMS, EVERY_ARM, model
+
+from modelgen.backends.numpy import NumpyFunction
+from modelgen.compiled import Columns, library
+from modelgen.dataset.decimation import decimation
+from modelgen.dataset.filters import low_pass
+from modelgen.functions import Function
+
+RATE = 1000.0
+
+
+def regressor(name: str) -> Function:
+    (function,) = [f for f in model(name, "default").functions if f.name == "regressor"]
+    return function
+
+
+def motion(name: str, samples: int) -> dict[str, np.ndarray]:
+    """Smooth random motion about the middle of the joints' ranges."""
+    rng = np.random.default_rng(5)
+    arm = ARMS[name]
+    t = np.arange(samples)[:, None] / RATE
+    limits = [arm.joints[i].limits.position or (-1.0, 1.0) for i in arm.coordinates]
+    low, high = np.array(limits).T
+    w = 2 * np.pi * rng.uniform(0.2, 4.0, len(low))
+    size = 0.4 * np.minimum(high - low, 6.0)
+    phase = rng.uniform(0, 6, len(low))
+    return {
+        "q": (low + high) / 2 + size * np.sin(w * t + phase),
+        "dq": w * size * np.cos(w * t + phase),
+        "ddq": -w * w * size * np.sin(w * t + phase),
+    }
+
+
+@pytest.mark.parametrize("name", EVERY_ARM)
+def test_every_arm(name: str) -> None:
+    function, samples = regressor(name), 1203
+    given = motion(name, samples)
+    columns = Columns(function)
+    rows = np.arange(150, samples - 150, 11)
+    d = decimation(samples, rows, 36.0, RATE, 4)
+    assert d is not None
+    found = columns.filtered(given, **vars(d))
+    full = np.asarray(NumpyFunction(function)(**given)).reshape(samples, -1)
+    expected = low_pass(full, 36.0, RATE, 4)[rows]
+    size = np.max(np.abs(expected))
+    assert np.max(np.abs(found - expected[:, columns.elements])) < 1e-10 * size
+    assert not np.delete(full, columns.elements, axis=1).any()
+    assert np.max(np.abs(found)) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("samples", "first", "factor", "steps", "order"),
+    [
+        (300, 40, 4, 50, 1),
+        (700, 100, 5, 1, 2),
+        (700, 100, 17, 7, 3),
+        (900, 0, 16, 8, 4),
+        (900, 99, 40, 15, 5),
+    ],
+)
+def test_shapes_of_the_work(samples: int, first: int, factor: int, steps: int, order: int) -> None:
+    """Lanes with and without something to do, tiles full and begun, any order of the filter."""
+    function = regressor("yaw3pitch")
+    given = motion("yaw3pitch", samples)
+    rows = first + factor * np.arange(steps + 1)
+    d = decimation(samples, rows, 60.0, RATE, order)
+    assert d is not None
+    found = Columns(function).filtered(given, **vars(d))
+    full = np.asarray(NumpyFunction(function)(**given)).reshape(samples, -1)
+    columns = Columns(function)
+    assert found == pytest.approx(d(full[:, columns.elements]), abs=1e-11 * np.abs(full).max())
+
+
+def test_without_a_compiler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.delenv("CC", raising=False)
+    library.compiler.cache_clear()
+    try:
+        with pytest.raises(RuntimeError, match="no C compiler"):
+            Columns(regressor("yaw3pitch"))
+    finally:
+        library.compiler.cache_clear()
