@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.rows import Array
@@ -57,4 +57,4 @@ def endogeneity(system: System) -> Endogeneity | None:
     share = np.zeros(system.n)
     share[used] = 100.0 * (1.0 - 1.0 / np.sqrt(ratio))
     statistic = float((system.counts[used] * np.log(ratio)).sum())
-    return Endogeneity(statistic, gain.rank, float(stats.chi2.ppf(1 - SIGNIFICANCE, gain.rank)), share)
+    return Endogeneity(statistic, gain.rank, float(special.chdtri(gain.rank, SIGNIFICANCE)), share)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from modelgen.dataset.periods import folded
 from modelgen.diagnosis.null_distribution import NULLS
@@ -64,7 +64,7 @@ class _Sums:
             return 0.0, np.inf
         free = max(5.0, self.free_between - taken)
         statistic = (self.between / free) / (self.within / self.free_within)
-        return statistic, float(stats.f.ppf(1 - SIGNIFICANCE / tests, free, self.free_within))
+        return statistic, float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))
 
 
 def lack_of_fit(system: System) -> LackOfFit | None:

@@ -82,7 +82,11 @@ def sensible(trial: Trial, arm: Arm) -> bool:
 
 
 class Court:
-    """Tries candidates against one system. known: columns that stay for these rows, by cause."""
+    """Tries candidates against one system.
+
+    known: columns for these rows, by candidate and values. They outlive a court: those that change with the
+    arm's parameters serve the next one to pass over what explains nothing, whatever the parameters are.
+    """
 
     def __init__(
         self,
@@ -97,9 +101,20 @@ class Court:
         self.rows = rows
         self.prober = prober
         self.base = base
+        self.fresh = True  # whether columns that change are made anew
+        self.aged = False  # whether some were not
+        self.renewed: set[object] = set()  # made with the parameters of this court
 
     def trial(self, candidate: Candidate) -> Trial | None:
         """The best that the candidate can do; None where it adds nothing of its own."""
+        self.fresh, self.aged = False, False
+        found = self._trial(candidate)
+        if found is None or not self.aged or found.gain.delta_bic < WORTH:
+            return found
+        self.fresh = True
+        return self._trial(candidate)
+
+    def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
         if not candidate.searched:
@@ -127,12 +142,14 @@ class Court:
         return None if gain is None else Trial(candidate, dict(values), columns, gain)
 
     def _columns(self, candidate: Candidate, values: Mapping[str, float]) -> list[Array] | None:
-        if not of.unchanging(candidate, self.prober):
-            return of.columns(candidate, values, self.rows, self.prober, self.base)
         given = {**candidate.fixed, **values}
         key = candidate.effect, candidate.joint, tuple(sorted(given.items()))
-        if key not in self.known:
+        stays = of.unchanging(candidate, self.prober)
+        if key not in self.known or (self.fresh and not stays and key not in self.renewed):
             self.known[key] = of.columns(candidate, values, self.rows, self.prober, self.base)
+            self.renewed.add(key)
+        elif not stays and key not in self.renewed:
+            self.aged = True
         return self.known[key]
 
     def _refined(

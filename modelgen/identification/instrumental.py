@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from modelgen.dataset.periods import other_period
 from modelgen.errors import InputError
@@ -71,7 +71,7 @@ def compared(regression: Regression, least: Solution, periods: Sequence[int | No
     whole, spread = np.zeros(p), np.zeros((p, p))
     whole[known] = theta
     spread[np.ix_(known, known)] = covariance
-    threshold = float(stats.chi2.ppf(1 - SIGNIFICANCE, degrees)) if degrees else float("inf")
+    threshold = float(special.chdtri(degrees, SIGNIFICANCE)) if degrees else float("inf")
     return Comparison(replace(least, theta=whole, covariance=spread), statistic, degrees, threshold)
 
 
