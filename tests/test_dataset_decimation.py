@@ -47,6 +47,16 @@ def test_a_constant_and_a_slow_wave_pass() -> None:
     )
 
 
+def test_what_is_not_finite_leaves_the_other_columns_alone() -> None:
+    table = drifting(4000)
+    rows = np.arange(400, 3600, 20)
+    expected = kept(table, rows, 20.0, RATE, 4)
+    table[2000, 1] = np.inf
+    found = kept(table, rows, 20.0, RATE, 4)
+    assert not np.isfinite(found[:, 1]).any()
+    assert np.array_equal(found[:, [0, 2]], expected[:, [0, 2]])
+
+
 def test_short_records_and_little_decimation_are_filtered_as_a_whole() -> None:
     table = drifting(200)
     rows = np.arange(20, 180, 20)

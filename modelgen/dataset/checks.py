@@ -19,8 +19,9 @@ MARGIN = 0.1  # of a joint's range, by which a log may leave it
 
 def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array, first: int = 0) -> None:
     """No NaN and no infinity in a block (N, k) of columns. Raises InputError."""
-    wrong = np.argwhere(~np.isfinite(block))
-    if wrong.size:
+    finite = np.isfinite(block)
+    if not finite.all():
+        wrong = np.argwhere(~finite)
         row, column = (int(x) for x in wrong[0])
         time = f"t = {stamps[row]:.9g} s" if np.isfinite(stamps[row]) else f"sample {first + row + 1}"
         raise InputError(

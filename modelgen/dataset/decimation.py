@@ -52,7 +52,11 @@ class Decimation:
     inner: Complex
 
     def __call__(self, columns: Array) -> Array:
-        """Columns (N, k) at the kept samples (J + 1, k)."""
+        """Columns (N, k) at the kept samples (J + 1, k); one that is not finite somewhere comes as NaN."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            return self._filtered(columns)
+
+    def _filtered(self, columns: Array) -> Array:
         m, k = len(self.poles), columns.shape[1]
         rows = columns[self.first : self.first + self.steps * self.factor + 1]
         before, after = np.empty((2, m, self.steps + 1, k), dtype=np.complex128)

@@ -43,9 +43,12 @@ class ParquetReader:
             # pyarrow would otherwise keep what it has read of the file.
             batches = self._file.iter_batches(batch_size=rows, columns=list(wanted), use_threads=False)
             for batch in batches:
-                block = np.empty((batch.num_rows, len(wanted)))
+                block = np.empty((len(wanted), batch.num_rows)).T  # columns in order in memory
                 for k, name in enumerate(wanted):
-                    block[:, k] = batch.column(name).cast(pyarrow.float64()).to_numpy(zero_copy_only=False)
+                    column = batch.column(name)
+                    if column.type != pyarrow.float64():
+                        column = column.cast(pyarrow.float64())
+                    block[:, k] = column.to_numpy(zero_copy_only=False)
                 if len(block):
                     yield block
         except (OSError, pyarrow.ArrowException) as error:

@@ -51,7 +51,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     motor_side = tuple(name.startswith("qm") for name in signals.position)
-    q, motor = logged.copy(), logged.copy()
+    q, motor = logged.copy(order="K"), logged.copy(order="K")
     for k, drive in enumerate(drives):
         if motor_side[k]:
             q[:, k] = drive.joint(logged[:, k])
@@ -146,4 +146,5 @@ class _Columns:
 
     def _table(self, names: Sequence[str | None]) -> Array:
         zero = np.zeros_like(self.columns["t"])
-        return np.stack([zero if name is None else self.columns[name] for name in names], axis=1)
+        # Columns in order in memory: what follows goes through them one by one.
+        return np.stack([zero if name is None else self.columns[name] for name in names]).T
