@@ -35,6 +35,7 @@ ORDER = (
     "extension",
     "diagnosis",
     "report",
+    "fleet",
     "cli",
     "__main__",
 )

@@ -8,6 +8,7 @@ import typer
 
 from modelgen import __version__
 from modelgen.cli import arguments as given
+from modelgen.cli.fleet_command import fleet
 from modelgen.cli.guard import guarded
 from modelgen.cli.refine_command import refine
 from modelgen.cli.simulate_command import simulate
@@ -170,6 +171,7 @@ def diagnose(
 
 app.command()(simulate)
 app.command()(refine)
+app.command()(fleet)
 
 
 @app.command()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,15 +10,11 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from modelgen.cli.output import print_json, print_table
-from modelgen.description import Arm, load
+from modelgen.description import Arm
 from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.diagnosis.run import diagnose, records
-from modelgen.effects import known_effects
 from modelgen.errors import InputError
-from modelgen.extension import extended_yaml
-from modelgen.functions import Options
-from modelgen.generation import generate
-from modelgen.report.diagnosis import pictures, report
+from modelgen.report.writing import write
 
 
 def run(
@@ -54,37 +48,6 @@ def run(
         print_json(to_json(result))
         return
     _print(result, out)
-
-
-def write(d: Diagnosis, file: Path, out: Path) -> None:
-    """diagnosis.json, report.html, the extended description and its code: whole, or nothing."""
-    trials = [c.trial for c in d.selection.causes]
-    causes = [(t.candidate.effect, t.candidate.joint, t.parameters) for t in trials]
-    name = d.arm.name
-    new = out.with_name(f".{out.name}.new")
-    try:
-        shutil.rmtree(new, ignore_errors=True)
-        new.mkdir(parents=True)
-        extended = extended_yaml(file, d.arm, causes)
-        (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
-        values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}
-        (arm,) = load(new / f"{name}_extended.yaml", known_effects()).values()
-        generate([arm], new / "generated", Options(identified=values), processes=1)
-        text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
-        (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
-        (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
-        for picture, drawn in pictures(d).items():
-            (new / picture).write_text(drawn, encoding="utf-8", newline="\n")
-        out.mkdir(parents=True, exist_ok=True)
-        for path in sorted(new.iterdir()):
-            target = out / path.name
-            if target.is_dir():
-                shutil.rmtree(target)
-            path.replace(target)
-    except OSError as error:
-        raise InputError(f"--out {out}: cannot write: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(new, ignore_errors=True)
 
 
 def sentence(d: Diagnosis) -> str:

@@ -1,0 +1,133 @@
+"""The diagnosis of one unit, as a job: whatever happens, it ends with a row."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from modelgen.description import Arm, load
+from modelgen.description.messages import suggest
+from modelgen.diagnosis.objects import Diagnosis, rounded, to_json
+from modelgen.diagnosis.run import diagnose, records
+from modelgen.effects import known_effects
+from modelgen.errors import InputError
+from modelgen.fleet.store import Row, fingerprint, keep, written
+from modelgen.fleet.units import Unit
+from modelgen.report.writing import write
+
+CRASHED = "the process ended: out of memory, or a crash"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A unit, the fleet's folder, and whether the extended model's code is wanted."""
+
+    unit: Unit
+    out: str
+    code: bool = False
+
+
+def done(job: Job) -> Row:
+    """Diagnose a unit and keep what was found, a failure too. Its row."""
+    unit, begin, cpu = job.unit, time.perf_counter(), time.process_time()
+    row = blank(unit)
+    with written(Path(job.out), unit.name) as new:
+        made_of: str | None = None
+        try:
+            made_of = fingerprint(unit)
+            d = _diagnosed(unit)
+            write(d, Path(unit.path(unit.description)), new, code=job.code)
+            row |= _found(d)
+            row["report"] = f"units/{unit.name}/report.html"
+        except InputError as error:
+            row["error"] = _short(str(error), unit)
+        except Exception as error:  # a mistake of ours must not stop the others; it keeps its traceback
+            made_of = None
+            row["error"] = f"a mistake in modelgen: {type(error).__name__}: {_short(str(error), unit)}"
+            (new / "traceback.txt").write_text(traceback.format_exc(), encoding="utf-8")
+        row["seconds"] = round(time.perf_counter() - begin, 3)
+        row["cpu_seconds"] = round(time.process_time() - cpu, 3)
+        keep(new, row, made_of)
+    return row
+
+
+def crashed(job: Job) -> Row:
+    """Keep that a unit has ended its process. Its row."""
+    row = blank(job.unit) | {"error": CRASHED}
+    with written(Path(job.out), job.unit.name) as new:
+        keep(new, row, None)
+    return row
+
+
+def blank(unit: Unit) -> Row:
+    """A row that says nothing but what was asked."""
+    return {"unit": unit.name, "arm": unit.arm, "train": list(unit.train), "test": list(unit.test)}
+
+
+def _diagnosed(unit: Unit) -> Diagnosis:
+    arm = _arm(unit)
+    mapping = None if unit.mapping is None else Path(unit.path(unit.mapping))
+    train, test = ([unit.path(spec) for spec in specs] for specs in (unit.train, unit.test))
+    found = records(arm, train, test, mapping)
+    return diagnose(arm, found, cutoff=unit.cutoff, period=unit.period)
+
+
+def _arm(unit: Unit) -> Arm:
+    arms = load(unit.path(unit.description), known_effects())
+    if unit.arm is None:
+        if len(arms) != 1:
+            raise InputError(
+                f"{unit.description}: found {len(arms)} arms, expected the key 'arm' with one of them"
+                f"{suggest('', arms)}"
+            )
+        return next(iter(arms.values()))
+    if unit.arm not in arms:
+        raise InputError(f"{unit.description}: found no arm '{unit.arm}'{suggest(unit.arm, arms)}")
+    return arms[unit.arm]
+
+
+def _short(message: str, unit: Unit) -> str:
+    """One line, with paths as the fleet's file has them."""
+    return " ".join(message.replace(unit.base.rstrip("/\\") + "/", "").split())
+
+
+def _found(d: Diagnosis) -> Row:
+    """A diagnosis as a flat row: lists by cause, by joint, by parameter."""
+    said = to_json(d)
+    fit, error = said["lack_of_fit"], said["error"]
+    gains = [g for g in error["gain_percent"] if g is not None]
+    return {
+        "arm": said["arm"],
+        "verdict": said["verdict"],
+        "reason": said["reason"],
+        "causes": [c["effect"] for c in said["causes"]],
+        "joints": [c["joint"] for c in said["causes"]],
+        "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
+        "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
+        "ambiguous_with": [_places(c["ambiguous_with"]) for c in said["causes"]],
+        "aliases": [_places(c["aliases"]) for c in said["causes"]],
+        "cause_parameters": [
+            {"cause": c["effect"], "joint": c["joint"], "name": name, **value}
+            for c in said["causes"]
+            for name, value in c["parameters"].items()
+        ],
+        "lack_of_fit": None if fit is None else fit["statistic"],
+        "lack_of_fit_threshold": None if fit is None else fit["threshold"],
+        "error_unit": error["unit"],
+        "error_before": error["before"],
+        "error_after": error["after"],
+        "gain_percent": error["gain_percent"],
+        "best_gain_percent": max(gains) if gains and said["causes"] else None,
+        "parameters": [
+            {"name": name, "value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
+            for name, e in d.parameters.items()
+        ],
+        "not_identifiable": [n["effect"] for n in said["not_identifiable"]],
+    }
+
+
+def _places(causes: list[dict[str, Any]]) -> list[str]:
+    return [c["effect"] if c["joint"] is None else f"{c['effect']} at joint {c['joint']}" for c in causes]
