@@ -52,13 +52,14 @@ def make(job: tuple[str, int]) -> tuple[str, list[Any]]:
     folder, k = Path(job[0]), job[1]
     cases = importlib.import_module("hidden.cases")
     name = f"u{k:03}"
-    arm, hidden = ARMS[k // 5 % len(ARMS)], ()
+    arm = ARMS[k // 5 % len(ARMS)]
+    hidden: list[Any] = []
     if k % 5:
         arm, effect, joint, magnitude = HIDDEN[(k - k // 5 - 1) % len(HIDDEN)]
-        hidden = (cases.Hidden(effect, joint, 1.3, magnitude),)
+        hidden = [cases.Hidden(effect, joint, 1.3, magnitude)]
     unit = folder / "units" / name
     if not (unit / "check.csv").exists():
-        cases.make(cases.Case(arm, 70_000 + k, hidden, "motor", RATE, PERIODS), unit)
+        cases.make(cases.Case(arm, 70_000 + k, tuple(hidden), "motor", RATE, PERIODS), unit)
         if k % 25 == 24:
             _spoil(unit / "train_b.csv", k // 25)
     return name, ["unusable"] if k % 25 == 24 else [hidden[0].effect, hidden[0].joint] if hidden else []

@@ -33,7 +33,10 @@ def fleet(
     as_json: given.Json = False,
 ) -> None:
     """Diagnose the logs of many arms as one job that can be taken up again: one table, one page."""
+    from modelgen.fleet.units import load_fleet
+
+    units = load_fleet(file)
     from modelgen.cli.fleeting import run
     from modelgen.jobs import Where
 
-    run(file, out, Where(jobs, dask), again=again, code=code, as_json=as_json)
+    run(file, units, out, Where(jobs, dask), again=again, code=code, as_json=as_json)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +15,19 @@ from modelgen.errors import InputError
 from modelgen.fleet.overview import FAILED, WORDS, causes, verdicts
 from modelgen.fleet.run import PAGE, Fleet, diagnose_fleet
 from modelgen.fleet.table import NAME
-from modelgen.fleet.units import load_fleet
+from modelgen.fleet.units import Unit
 from modelgen.jobs import Where
 
 _SHOWN = 10  # failures and causes
 
 
-def run(file: Path, out: Path, where: Where, *, again: bool, code: bool, as_json: bool) -> None:
-    """Diagnose the fleet, print what was found. Raises InputError, also where no unit could be diagnosed."""
-    units = load_fleet(file)
+def run(
+    file: Path, units: Sequence[Unit], out: Path, where: Where, *, again: bool, code: bool, as_json: bool
+) -> None:
+    """Diagnose the units of a file, print what was found.
+
+    Raises InputError, also where no unit could be diagnosed.
+    """
     console = Console(stderr=True)
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:

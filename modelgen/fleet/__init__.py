@@ -1,0 +1,1 @@
+"""The logs of many arms diagnosed as one job."""
