@@ -7,7 +7,7 @@ import pytest
 from arms_support import ARMS, EVERY_ARM, model
 
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.compiled import Columns, library
+from modelgen.compiled import RegressorColumns, plain_columns
 from modelgen.dataset.decimation import decimation
 from modelgen.dataset.filters import low_pass
 from modelgen.functions import Function
@@ -41,11 +41,11 @@ def motion(name: str, samples: int) -> dict[str, np.ndarray]:
 def test_every_arm(name: str) -> None:
     function, samples = regressor(name), 1203
     given = motion(name, samples)
-    columns = Columns(function)
+    columns = RegressorColumns(function)
     rows = np.arange(150, samples - 150, 11)
     d = decimation(samples, rows, 36.0, RATE, 4)
     assert d is not None
-    found = columns.filtered(given, **vars(d))
+    found = columns.filtered(list(given.values()), **vars(d))
     full = np.asarray(NumpyFunction(function)(**given)).reshape(samples, -1)
     expected = low_pass(full, 36.0, RATE, 4)[rows]
     size = np.max(np.abs(expected))
@@ -71,18 +71,16 @@ def test_shapes_of_the_work(samples: int, first: int, factor: int, steps: int, o
     rows = first + factor * np.arange(steps + 1)
     d = decimation(samples, rows, 60.0, RATE, order)
     assert d is not None
-    found = Columns(function).filtered(given, **vars(d))
+    found = RegressorColumns(function).filtered(list(given.values()), **vars(d))
     full = np.asarray(NumpyFunction(function)(**given)).reshape(samples, -1)
-    columns = Columns(function)
+    columns = RegressorColumns(function)
     assert found == pytest.approx(d(full[:, columns.elements]), abs=1e-11 * np.abs(full).max())
 
 
-def test_without_a_compiler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", "/nowhere")
-    monkeypatch.delenv("CC", raising=False)
-    library.compiler.cache_clear()
-    try:
-        with pytest.raises(RuntimeError, match="no C compiler"):
-            Columns(regressor("yaw3pitch"))
-    finally:
-        library.compiler.cache_clear()
+def test_plain_columns_are_those_of_numpy() -> None:
+    rng = np.random.default_rng(1)
+    table = rng.normal(size=(3000, 5)).cumsum(axis=0)
+    d = decimation(3000, np.arange(200, 2800, 13), 30.0, RATE, 4)
+    assert d is not None
+    found = plain_columns(5).filtered([table], **vars(d))
+    assert found == pytest.approx(d._filtered(table), abs=1e-12 * np.abs(table).max())

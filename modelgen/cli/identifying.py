@@ -130,8 +130,9 @@ def _streamed(
         raise InputError("a streamed log is not split: found no test record, expected --test LOG")
     check_separate(train, test)
     head = Stream(train[0], arm, None, mapping)
-    chosen = Stream(train[0], arm, asked(1 / head.axis.step), mapping).settings
-    streams = [Stream(spec, arm, chosen, mapping) for spec in train]
+    first = head.settled(asked(1 / head.axis.step))
+    chosen = first.settings
+    streams = [first, *(Stream(spec, arm, chosen, mapping) for spec in train[1:])]
     testing = [prepare(read(spec, arm, mapping), chosen) for spec in test]
     bar.update(task, description=f"identifying, {sum(s.samples for s in streams):,} samples")
     found = identify_streamed(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+import threading
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.compiled.lanes import LANES, text_of
-from modelgen.compiled.library import compiler, shared_library
+from modelgen.compiled.lanes import LANES, plain_text, text_of
+from modelgen.compiled.library import shared_library
 from modelgen.functions.objects import Function
 
 Array = NDArray[np.float64]
@@ -20,20 +21,15 @@ LARGEST = 1e5  # rad, up to which sine and cosine are exact
 
 
 class Columns:
-    """What a function of q, dq, ddq or t computes of its output, at full rate and through a filter.
+    """Columns made of numbers that every sample has, through a filter that is evaluated at kept samples.
 
-    elements: (c,), numbers of the computed elements of the output, in order. Raises RuntimeError where
-    there is no C compiler.
+    count: of the columns.
     """
 
-    def __init__(self, function: Function) -> None:
-        self.function = function
-        self.text, elements = text_of(function)
-        self.elements = np.array(elements, dtype=np.intp)
+    def __init__(self, text: str, count: int) -> None:
+        self.text, self.count = text, count
         self._libraries: dict[int, ctypes.CDLL] = {}
-        self._kept: dict[str, Array] = {}
-        if compiler() is None:
-            raise RuntimeError("found no C compiler")
+        self._local = threading.local()
 
     @staticmethod
     def fit(q: Array) -> bool:
@@ -42,7 +38,7 @@ class Columns:
 
     def filtered(
         self,
-        inputs: Mapping[str, Array],
+        inputs: Sequence[Array],
         *,
         first: int,
         factor: int,
@@ -58,13 +54,15 @@ class Columns:
     ) -> Array:
         """Filtered columns (steps + 1, c) at the samples first, first + factor, ...
 
-        inputs: by argument (N, size). The rest: fields of modelgen.dataset.decimation.Decimation.
+        inputs: the numbers (N, k), in several parts. The rest: fields of
+        modelgen.dataset.decimation.Decimation. Raises RuntimeError where it cannot be compiled.
         """
-        table = [np.ascontiguousarray(inputs[a.name].T, dtype=np.float64) for a in self.function.arguments]
-        samples, m, c = table[0].shape[1], len(poles), len(self.elements)
+        table = [np.ascontiguousarray(part.T, dtype=np.float64) for part in inputs]
+        samples, m, c = table[0].shape[1], len(poles), self.count
         library = self._library(m)
-        rows = [row.ctypes.data for part in table for row in part]
-        x = (ctypes.c_void_p * len(rows))(*rows)
+        x = (ctypes.c_void_p * sum(map(len, table)))(
+            *(part.ctypes.data + 8 * samples * k for part in table for k in range(len(part)))
+        )
         scratch = self._memory("scratch", library.scratch_size() // 8)
 
         def sums(place: NDArray[np.int_], weights: Array) -> tuple[Array, Array]:
@@ -123,9 +121,10 @@ class Columns:
 
     def _memory(self, name: str, size: int) -> Array:
         """Doubles (size,), the first on a vector's boundary; kept from call to call: its pages are there."""
-        block = self._kept.get(name)
+        block: Array | None = getattr(self._local, name, None)
         if block is None or len(block) < size + LANES:
-            block = self._kept[name] = np.empty(size + LANES)
+            block = np.empty(size + LANES)
+            setattr(self._local, name, block)
         skipped = -(block.ctypes.data // 8) % LANES
         return block[skipped : skipped + size]
 
@@ -137,6 +136,21 @@ class Columns:
             library.add_up.restype = library.filtered.restype = None
             self._libraries[modes] = library
         return self._libraries[modes]
+
+
+class RegressorColumns(Columns):
+    """What a function computes of its output. elements: (c,), numbers of these elements, in order."""
+
+    def __init__(self, function: Function) -> None:
+        text, elements = text_of(function)
+        super().__init__(text, len(elements))
+        self.elements = np.array(elements, dtype=np.intp)
+
+
+@cache
+def plain_columns(count: int) -> Columns:
+    """Columns as they are given."""
+    return Columns(plain_text(count), count)
 
 
 @cache

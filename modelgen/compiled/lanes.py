@@ -85,6 +85,15 @@ def text_of(function: Function) -> tuple[str, list[int]]:
     return "\n".join(lines) + "\n", computed
 
 
+def plain_text(count: int) -> str:
+    """The same of `count` columns that are given."""
+    return (
+        f"{_HEAD}enum {{ INPUTS = {count}, COLUMNS = {count} }};\n"
+        "static void columns(const lanes_t x[], lanes_t out[])\n{\n"
+        "    for (int i = 0; i < COLUMNS; i++) {\n        out[i] = x[i];\n    }\n}\n"
+    )
+
+
 class _Lanes:
     """Statements over vectors."""
 

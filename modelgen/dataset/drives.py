@@ -20,7 +20,8 @@ class Drive:
     """One joint's drive as functions of arrays (N,).
 
     motor: q_m(q). joint: q(q_m). k1: dq_m/dq. slope: d^2 q_m/dq^2. torque_constant: generalised force at
-    the motor coordinate per input. driven: whether there is a motor at all.
+    the motor coordinate per input. driven: whether there is a motor at all. ratio: k1 where it is constant
+    and q_m = k1 q, else None.
     """
 
     motor: Curve
@@ -30,6 +31,7 @@ class Drive:
     torque_constant: float
     driven: bool
     unit: str
+    ratio: float | None = None
 
     def gain(self, q: Array) -> Array:
         """K(q) (N,): joint effort per input."""
@@ -74,6 +76,13 @@ def _made(arm: Arm) -> tuple[Drive, ...]:
                 torque_constant=float(t.torque_constant),
                 driven=t.driven,
                 unit=t.unit if t.driven else ("m" if arm.joints[i].type == "prismatic" else "rad"),
+                ratio=_ratio(t.motor().subs(symbols), t.q),
             )
         )
     return tuple(found)
+
+
+def _ratio(motor: sp.Expr, q: sp.Symbol) -> float | None:
+    """The factor of q where `motor` is just that."""
+    factor = sp.sympify(motor).coeff(q)
+    return float(factor) if factor.is_number and factor * q == motor else None

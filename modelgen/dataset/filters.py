@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from scipy import signal
 
+from modelgen import compiled
 from modelgen.dataset.objects import Array
 
 # Central differences by half-width: weights of x[i+k] - x[i-k] for the first derivative, of
@@ -19,11 +21,22 @@ def low_pass(columns: Array, cutoff: float, rate: float, order: int) -> Array:
     """Butterworth forwards and backwards: zero phase, gain 1/2 at `cutoff` [Hz]. columns: (N, k)."""
     if len(columns) == 0 or columns.shape[1] == 0:
         return columns.copy()
-    sos = signal.butter(order, cutoff, fs=rate, output="sos")
+    sos, states = _sections(cutoff, rate, order)
     padding = min(len(columns) - 1, reach(cutoff, rate, order, 1e-6))
-    return np.asarray(signal.sosfiltfilt(sos, columns, axis=0, padlen=padding), dtype=np.float64)
+    found = compiled.both_ways(columns, sos, states, padding)
+    if found is None:
+        found = np.asarray(signal.sosfiltfilt(sos, columns, axis=0, padlen=padding), dtype=np.float64)
+    return found
 
 
+@lru_cache(maxsize=64)
+def _sections(cutoff: float, rate: float, order: int) -> tuple[Array, Array]:
+    """Second-order sections of a Butterworth filter, and their states for a constant input of 1."""
+    sos = signal.butter(order, cutoff, fs=rate, output="sos")
+    return sos, signal.sosfilt_zi(sos)
+
+
+@lru_cache(maxsize=64)
 def reach(cutoff: float, rate: float, order: int, remainder: float) -> int:
     """Samples after which the filter's memory has fallen to `remainder`, by its slowest pole."""
     poles = signal.butter(order, cutoff, fs=rate, output="zpk")[1]
@@ -35,13 +48,17 @@ def differences(x: Array, step: float, half_width: int) -> tuple[Array, Array]:
 
     The outermost half_width samples repeat their neighbours' derivatives; they are for trimming.
     """
-    first, second = np.zeros_like(x), np.zeros_like(x)
     count, h = len(x), half_width
+    taps = [a / step for a in _FIRST[h]], [b / step**2 for b in _SECOND[h]]
+    found = compiled.central(x, *taps) if count > 2 * h else None
+    if found is not None:
+        return found
+    first, second = np.zeros_like(x), np.zeros_like(x)
     inner = slice(h, count - h)
-    for k, (a, b) in enumerate(zip(_FIRST[h], _SECOND[h], strict=True), 1):
+    for k, (a, b) in enumerate(zip(*taps, strict=True), 1):
         ahead, behind = x[h + k : count - h + k], x[h - k : count - h - k]
-        first[inner] += a / step * (ahead - behind)
-        second[inner] += b / step**2 * (ahead - 2 * x[inner] + behind)
+        first[inner] += a * (ahead - behind)
+        second[inner] += b * (ahead - 2 * x[inner] + behind)
     for derivative in (first, second):
         derivative[:h], derivative[count - h :] = derivative[h], derivative[count - h - 1]
     return first, second
@@ -71,8 +88,11 @@ def advanced(x: Array, delay: float, held: bool) -> Array:
                 ]
             )
             first = whole - 1
-    indices = np.arange(len(x))
-    result = np.zeros_like(x)
-    for k, tap in enumerate(taps):
-        result += tap * x[np.clip(indices + first + k, 0, len(x) - 1)]
+    before, after = max(0, -first), max(0, first + len(taps) - 1)
+    longer = np.empty((x.shape[1], before + len(x) + after)).T  # columns in order in memory
+    longer[:before], longer[before : before + len(x)], longer[before + len(x) :] = x[0], x, x[-1]
+    result, term = np.zeros_like(x), np.empty_like(x)
+    for k, tap in enumerate(taps, before + first):
+        np.multiply(longer[k : k + len(x)], tap, out=term)
+        result += term
     return result

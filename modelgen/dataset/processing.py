@@ -106,20 +106,24 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
     chosen = choose(record, settings)
     step = record.step
     rate = 1.0 / step
-    smooth = {}
-    for name, values in (("q", record.q), ("motor", record.motor)):
-        cutoff = chosen.position_cutoff
-        smooth[name] = low_pass(values, cutoff, rate, chosen.position_order) if cutoff else values
-    half = chosen.half_width
-    q, (dq, ddq) = smooth["q"].copy(), differences(smooth["q"], step, half)
-    motor, (dmotor, ddmotor) = smooth["motor"].copy(), differences(smooth["motor"], step, half)
-    for k, drive in enumerate(drives_of(record.arm) if record.arm is not None else ()):
-        # Quantisation is even in the coordinate that was logged: that one is filtered, the other follows.
-        if record.motor_side and record.motor_side[k]:
+    drives = drives_of(record.arm) if record.arm is not None else ()
+    sides = record.motor_side or (False,) * record.n
+    # Quantisation is even in the coordinate that was logged: that one is filtered, the other follows.
+    logged = np.where(sides, record.motor, record.q) if any(sides) else record.q
+    q, dq, ddq = _smoothed(logged, step, chosen)
+    if drives:
+        motor, dmotor, ddmotor = q.copy(order="K"), dq.copy(order="K"), ddq.copy(order="K")
+    else:
+        motor, dmotor, ddmotor = _smoothed(record.motor, step, chosen)
+    for k, drive in enumerate(drives):
+        if sides[k]:
             q[:, k] = drive.joint(motor[:, k])
             k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
             dq[:, k] = dmotor[:, k] / k1
             ddq[:, k] = (ddmotor[:, k] - slope * dq[:, k] ** 2) / k1
+        elif drive.ratio is not None:
+            for values in (motor, dmotor, ddmotor):
+                values[:, k] *= drive.ratio
         else:
             motor[:, k] = drive.motor(q[:, k])
             k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
@@ -155,6 +159,15 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate),
     )
+
+
+def _smoothed(columns: Array, step: float, chosen: Chosen) -> tuple[Array, Array, Array]:
+    """Filtered columns (N, k) and their first two derivatives."""
+    cutoff = chosen.position_cutoff
+    values = (
+        low_pass(columns, cutoff, 1.0 / step, chosen.position_order) if cutoff else columns.copy(order="K")
+    )
+    return values, *differences(values, step, chosen.half_width)
 
 
 def kept_rows(record: Record, settings: Chosen) -> np.ndarray:

@@ -18,15 +18,15 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
     taken no more than a fiftieth of its weight from samples at rest.
     """
-    result = np.ones((len(rows), dq.shape[1]), dtype=bool)
     longest = max(2, round(settings.rest_time * rate))
-    for k, gate in enumerate(settings.gates):
-        slow = np.abs(dq[:, k]) < gate
-        rest = long_runs(slow, longest).astype(np.float64)
-        share = rest[rows]
-        if settings.cutoff and rest.any():
-            share = kept(rest[:, None], rows, settings.cutoff, rate, settings.order)[:, 0]
-        result[:, k] = ~slow[rows] & (share < SHARE)
+    slow = np.abs(dq) < np.array(settings.gates)
+    result = np.asarray(~slow[rows])
+    rest = np.stack([long_runs(column, longest) for column in slow.T], axis=1)
+    resting = np.flatnonzero(rest.any(axis=0))
+    if len(resting):
+        share = rest[:, resting].astype(np.float64)
+        share = kept(share, rows, settings.cutoff, rate, settings.order)
+        result[:, resting] &= share < SHARE
     return result
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from copy import copy
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -42,17 +44,42 @@ class Stream:
         arm: Arm,
         settings: Settings | Chosen | None = None,
         mapping: Path | str | None = None,
-        block: int = 16_384,
+        block: int = 32_768,
     ) -> None:
         self.spec, self.arm = spec, arm
         self._source = open_source(spec, arm, mapping)
+        self._asked, self._least = settings, block
         self.axis = self._survey()
         self.samples = self.axis.count
-        head = self._head()
-        self.settings = choose(head, settings)
-        self.remarks = head.remarks
-        self.overlap = overlap(self.settings, self.axis.step)
-        self.block = max(block, 4 * self.overlap)
+
+    def settled(self, settings: Settings | Chosen | None) -> Stream:
+        """The same log with other settings, without a further pass over it."""
+        result = copy(self)
+        for name in ("settings", "overlap", "block"):
+            result.__dict__.pop(name, None)
+        result._asked = settings
+        return result
+
+    @cached_property
+    def settings(self) -> Chosen:
+        """As used, every choice made."""
+        return choose(self._head, self._asked)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """For the user."""
+        return self._head.remarks
+
+    @cached_property
+    def overlap(self) -> int:
+        """Samples on each side of a block that its filters reach, and that rest is looked for in."""
+        return overlap(self.settings, self.axis.step)
+
+    @cached_property
+    def block(self) -> int:
+        """Samples of a block without its overlap: so many that blocks keep the same of their samples."""
+        factor = self.settings.factor
+        return -(-max(self._least, 4 * self.overlap) // factor) * factor
 
     def __len__(self) -> int:
         """Number of blocks."""
@@ -100,6 +127,7 @@ class Stream:
         efforts = zip(self._source.signals.effort, self._source.drives, strict=True)
         return tuple(name if drive.driven else None for name, drive in efforts)
 
+    @cached_property
     def _head(self) -> Record:
         """The beginning of the log, for settings to be chosen from."""
         table, t = _Rows(self._source.blocks(), self.axis).table(0, min(self.samples, LONGEST_SAMPLE))

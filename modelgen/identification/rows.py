@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.compiled import Columns, compiler
+from modelgen.compiled import RegressorColumns, compiler
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.identification.regression import Array
 from modelgen.probing import Motion, Prober
 
-SAMPLED = frozenset({"q", "dq", "ddq"})  # what the regressor may depend on, to be compiled
+SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
 
 
 class Rows:
@@ -32,10 +32,10 @@ class Rows:
         ends = np.searchsorted(self.joint, np.arange(self.n + 1))
         self.of_joint = [slice(a, b) for a, b in pairwise(ends)]
         (function,) = [f for f in model.functions if f.name == "regressor"]
-        self.motion_alone = {a.name for a in function.arguments} <= SAMPLED
-        self._compiled: Columns | None = None
+        self.motion_alone = [a.name for a in function.arguments] == SAMPLED
+        self._compiled: RegressorColumns | None = None
         if self.motion_alone and compiler() is not None:
-            self._compiled = Columns(function)
+            self._compiled = RegressorColumns(function)
             at = self.joint * self.p + self.parameter
             assert np.array_equal(self._compiled.elements, at)
 
@@ -50,7 +50,10 @@ class Rows:
         effort = np.asarray(p.parallel(self.prober.ideal(self.model, motion, p.input)))
         d = p.decimation
         if d is not None and self._compiled is not None and self._compiled.fit(q=p.q):
-            return effort, self._compiled.filtered({"q": p.q, "dq": p.dq, "ddq": p.ddq}, **vars(d))
+            try:
+                return effort, self._compiled.filtered((p.q, p.dq, p.ddq), **vars(d))
+            except RuntimeError:  # a compiler that knows no vectors, say
+                self._compiled = None
         full = np.asarray(self.prober.regressor(self.model, motion, theta))
         return effort, p.parallel(full[:, self.joint, self.parameter])
 

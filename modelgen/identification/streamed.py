@@ -26,7 +26,7 @@ from modelgen.probing import Prober
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Block = tuple[Array, Array, NDArray[np.bool_]]
-PART = 32  # blocks that the standard deviations are made of, at least where there are as many
+PART = 32  # blocks that the standard deviations are made of, at most
 KEPT = 128 * 1024**2  # bytes of them that are kept
 
 
@@ -87,7 +87,7 @@ class _Blocks:
     def __init__(self, streams: Sequence[Stream], rows: Rows, progress: Progress | None) -> None:
         self.streams, self.rows, self.progress = streams, rows, progress
         self.count = sum(len(s) for s in streams)
-        self.step = max(1, self.count // PART)  # of the blocks that `part` takes
+        self.step = max(1, -(-self.count // PART))  # of the blocks that `part` takes
         self.done, self.total = 0, self.count
         self.kept: list[Block] | None = []
 
