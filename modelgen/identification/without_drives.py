@@ -1,0 +1,87 @@
+"""The same records identified by models that leave out the drives, or parts of them, for comparison.
+
+Leborne, Creuze, Chemori and Brignone (2018), Table IV, compare the error of the current with and without the
+dynamics of the drives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.dataset import Chosen, Record, prepare
+from modelgen.description import Arm, DirectDrive, EffectUse, LeveredDrive
+from modelgen.errors import InputError
+from modelgen.functions import Options
+from modelgen.identification.identify import Identification, Validation, identify
+from modelgen.transmission import of_joint
+
+LINKS_ALONE = "links alone"
+CONSTANT_RATIO = "levers as gears of constant ratio"
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """name: LINKS_ALONE (no effects: no friction, no drive inertia, the drives' ratios as they are) or
+    CONSTANT_RATIO (levers replaced by gears that turn as far over the whole stroke, viscous and Coulomb
+    friction at the joints: what is usual where motors turn joints). test: on the same records.
+    """
+
+    name: str
+    test: Validation
+
+
+def without_drives(
+    train: Sequence[Record], test: Sequence[Record], arm: Arm, chosen: Chosen, found: Identification
+) -> tuple[Alternative, ...]:
+    """What models without the drives' dynamics predict of the test records, by the method of `found`.
+
+    Raises InputError where they cannot be identified from these records.
+    """
+    method = "wls" if found.method == "iv" else found.method
+
+    def identified(other: Arm, options: Options, side: bool) -> Validation:
+        parts = [
+            [prepare(r if side else replace(r, arm=other, motor_side=()), chosen) for r in part]
+            for part in (train, test)
+        ]
+        validation = identify(parts[0], other, options, test=parts[1], method=method).test
+        assert validation is not None
+        return validation
+
+    result = [Alternative(LINKS_ALONE, identified(arm, Options(without=("effects",)), True))]
+    if any(isinstance(arm.joints[i].drive, LeveredDrive) for i in arm.coordinates):
+        result.append(Alternative(CONSTANT_RATIO, identified(geared(arm), Options(), False)))
+    return tuple(result)
+
+
+def geared(arm: Arm) -> Arm:
+    """The arm with gears in place of its levers, and friction of the joints in place of the drives' effects.
+
+    A gear's ratio is that of the whole stroke: motor range over joint range. Raises InputError where a stroke
+    has no length.
+    """
+    joints = list(arm.joints)
+    for i in arm.coordinates:
+        joint = arm.joints[i]
+        if not isinstance(joint.drive, LeveredDrive):
+            continue
+        transmission = of_joint(arm, joint)
+        span, stroke = transmission.joint_range(), transmission.motor_range()
+        if span is None or stroke is None or not span[1] > span[0]:
+            raise InputError(f"{arm.name}: the stroke of joint {joint.name} has no length")
+        known = {str(name): value for name, value in arm.symbols.items()}
+        middle = 0.5 * (span[0] + span[1])
+        slope = transmission.k1().subs(transmission.q, middle)
+        falling = float(slope.subs({s: known[_plain(str(s))] for s in slope.free_symbols})) < 0
+        ratio = (stroke[1] - stroke[0]) / (span[1] - span[0])
+        friction = tuple(EffectUse(name, {}) for name in ("viscous_friction", "coulomb_friction"))
+        joints[i] = replace(
+            joint,
+            drive=DirectDrive(math.copysign(ratio, -1.0 if falling else 1.0), joint.drive.torque_constant),
+            effects=friction,
+        )
+    return replace(arm, joints=tuple(joints))
