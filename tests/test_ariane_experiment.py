@@ -13,7 +13,6 @@ from twin_body import LEVERS, MOTORS, Lever, model
 from twin_coverage import coverage
 from twin_plant import Recording, reference
 from twin_records import ARM, ARMS, HERE, recorded, set_points, truth, write_calibration, write_log
-from twin_run import without_levers
 from typer.testing import CliRunner
 
 from modelgen.backends.numpy import NumpyFunction
@@ -105,23 +104,24 @@ def test_drive_dynamics_explain_the_current_down_to_the_regulators_ripple(
     test = recorded(points, 2, periods=1)
     write_log(recording, tmp_path / "train.csv", recording.sample)
     write_log(test, tmp_path / "test.csv", test.sample)
-    rmse = {}
-    for name, options in (("with", []), ("without", ["--without", "effects"])):
-        out = tmp_path / name
-        logs = ["--train", str(tmp_path / "train.csv"), "--test", str(tmp_path / "test.csv")]
-        call = ["identify", str(ARMS), "--arm", ARM, *logs, "--mapping", str(HERE / "mapping.yaml")]
-        result = CliRunner().invoke(app, [*call, "--preset", "paper", "--out", str(out), *options])
-        assert result.exit_code == 0, result.output
-        data = json.loads((out / "identification.json").read_text(encoding="utf-8"))
-        assert data["processing"][1].startswith("positions: Butterworth, order 3, 0.5 Hz")
-        assert (out / "spectra.svg").exists()
-        rmse[name] = np.array(data["test"]["rmse"])
+    out = tmp_path / "out"
+    logs = ["--train", str(tmp_path / "train.csv"), "--test", str(tmp_path / "test.csv")]
+    call = ["identify", str(ARMS), "--arm", ARM, *logs, "--mapping", str(HERE / "mapping.yaml")]
+    result = CliRunner().invoke(app, [*call, "--preset", "paper", "--compare-drives", "--out", str(out)])
+    assert result.exit_code == 0, result.output
+    data = json.loads((out / "identification.json").read_text(encoding="utf-8"))
+    assert data["processing"][1].startswith("positions: Butterworth, order 3, 0.5 Hz")
+    assert (out / "spectra.svg").exists()
+    rmse = np.array(data["test"]["rmse"])
+    links, gears = data["without_drives"]
+    assert links["model"] in result.output
     noise = (test.sample - test.mean).std(axis=0)
-    assert (rmse["with"] < 1.25 * noise).all()
-    assert (rmse["without"] > 2 * rmse["with"]).all()
+    assert (rmse < 1.25 * noise).all()
+    assert links["model"] == "links alone"
+    assert (np.array(links["rmse"]) > 2 * rmse).all()
     # A constant ratio and friction at the joints, as of geared arms: the levers are what is missing.
-    geared = without_levers({"train": recording, "test": test})
-    assert (geared[1:] > 1.1 * rmse["with"][1:]).all()
+    assert gears["model"] == "levers as gears of constant ratio"
+    assert (np.array(gears["rmse"])[1:] > 1.1 * rmse[1:]).all()
 
 
 def test_intervals_cover_the_true_parameters(points: Path) -> None:

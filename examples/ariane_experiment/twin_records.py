@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from ruamel.yaml import YAML
-from twin_body import LEVERS, LINKS, MOTORS
+from twin_body import LINKS, MOTORS
 from twin_plant import Recording, record
 
 from modelgen.dataset import Record, drives_of
@@ -79,23 +79,6 @@ def as_record(recording: Recording, arm: Arm) -> Record:
         motor_side=(True,) * 3,
         arm=arm,
     )
-
-
-def classical() -> Arm:
-    """The description without levers: each drive's ratio constant, viscous and dry friction at the joint.
-
-    What is usual where motors turn joints through gears; the ratio is that of the whole strokes.
-    """
-    yaml = YAML(typ="safe")
-    document = yaml.load(ARMS.read_text(encoding="utf-8"))
-    arm = document["arms"][ARM]
-    document["arms"] = {ARM: arm}
-    for joint, lever, motor in zip(arm["joints"], LEVERS, MOTORS, strict=False):  # the fourth is locked
-        end = joint["drive"]["motor"][1]
-        ratio = end / (lever.joint(end) - lever.joint(0.0))
-        joint["drive"] = {"type": "direct", "ratio": ratio, "torque_constant": motor.constant}
-        joint["effects"], joint["limits"] = ["viscous_friction", "coulomb_friction"], {}
-    return _loaded(document)
 
 
 def truth() -> dict[str, float]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,22 +18,17 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from twin_pictures import comparison, predictions, tracking
-from twin_plant import Recording
 from twin_records import (
     ARM,
     ARMS,
     HERE,
-    as_record,
-    classical,
     recorded,
     set_points,
     write_calibration,
     write_log,
 )
 
-from modelgen.dataset import prepare, preset
 from modelgen.description import load
-from modelgen.identification import identify
 
 Array = NDArray[np.float64]
 
@@ -68,22 +62,12 @@ def identified(kind: str, *options: str) -> dict[str, Any]:
     return found
 
 
-def without_levers(recordings: dict[str, Recording]) -> Array:
-    """RMSE by joint (3,) [A] of the classical model, from the same records processed as in the paper."""
-    arm, shipped = classical(), load(ARMS)[ARM]
-    records = [replace(as_record(recordings[part], shipped), arm=arm, motor_side=()) for part in SEEDS]
-    train, test = (prepare(r, preset("paper", 1 / r.step)) for r in records)
-    validation = identify([train], arm, test=[test]).test
-    assert validation is not None
-    return validation.rmse
-
-
 def main() -> None:
     """Run, print, draw."""
     console = Console(stderr=True)
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("excite", total=8)
+        task = bar.add_task("excite", total=6)
         recordings, points = {}, {}
         for part, seed in SEEDS.items():
             bar.update(task, description=f"excite: {part}")
@@ -93,15 +77,10 @@ def main() -> None:
             write_log(recordings[part], BUILD / f"{part}.csv", recordings[part].sample)
             bar.advance(task)
         write_calibration(recordings["train"], BUILD)
-        found: dict[str, Any] = {"classical": without_levers(recordings)}
-        for kind, options in (
-            ("paper_without", ["--preset", "paper", "--without", "effects"]),
-            ("paper_with", ["--preset", "paper"]),
-            ("filtered_without", ["--cutoff", "1", "--without", "effects"]),
-            ("filtered_with", ["--cutoff", "1"]),
-        ):
+        found: dict[str, Any] = {}
+        for kind, options in (("paper", ["--preset", "paper"]), ("filtered", ["--cutoff", "1"])):
             bar.update(task, description=f"identify: {kind}")
-            found[kind] = identified(kind, *options)
+            found[kind] = identified(kind, "--compare-drives", *options)
             bar.advance(task)
     _print(found)
     t, wanted = set_points(points["train"])
@@ -115,17 +94,18 @@ def main() -> None:
 
 def _print(found: dict[str, Any]) -> None:
     for title, kind in (("current not filtered", "paper"), ("current and regressor below 1 Hz", "filtered")):
-        without, own = (np.array(found[f"{kind}_{x}"]["test"]["rmse"]) for x in ("without", "with"))
+        own = np.array(found[kind]["test"]["rmse"])
         print(f"RMSE of the current on the test record [A], {title}:")
-        print("  without the drives' dynamics  " + "  ".join(f"{x:.3f}" for x in without))
-        print("  with                          " + "  ".join(f"{x:.3f}" for x in own))
-        print("  improvement [%]               " + "  ".join(f"{x:.1f}" for x in 100 * (1 - own / without)))
-        if kind == "paper":
-            classic = "  ".join(f"{x:.3f}" for x in found["classical"])
-            print(f"  constant ratios, friction at the joints  {classic}")
+        print(f"  {'the arm as described':34s}" + "  ".join(f"{x:.3f}" for x in own))
+        for other in found[kind]["without_drives"]:
+            pairs = zip(other["rmse"], own, strict=True)
+            print(
+                f"  {other['model']:34s}"
+                + "  ".join(f"{x:.3f} ({100 * (y / x - 1):+.0f} %)" for x, y in pairs)
+            )
     for kind, values in PAPER.items():
-        print(f"  the paper's, {kind:7s}          " + "  ".join(f"{x:.3f}" for x in values))
-    print(found["filtered_with"]["verdict"])
+        print(f"  {f'the paper, {kind} drives':34s}" + "  ".join(f"{x:.3f}" for x in values))
+    print(found["filtered"]["verdict"])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from modelgen import __version__
 from modelgen.cli import arguments as given
 from modelgen.cli.fleet_command import fleet
 from modelgen.cli.guard import guarded
+from modelgen.cli.identify_command import identify
 from modelgen.cli.refine_command import refine
 from modelgen.cli.simulate_command import simulate
 
@@ -99,43 +100,7 @@ def show(
     run(found, chosen, as_json=as_json)
 
 
-@app.command()
-@guarded
-def identify(
-    arm: given.OneArm,
-    train: given.Train,
-    out: given.Folder,
-    test: given.OptionalTest = None,
-    arms: given.Arms = None,
-    mapping: given.Mapping = None,
-    cutoff: given.CutOff = None,
-    preset: given.Preset = "default",
-    method: given.Method = "wls",
-    consistent: given.Consistent = False,
-    stream: given.Streamed = False,
-    without: given.Without = "",
-    as_json: given.Json = False,
-) -> None:
-    """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
-    from modelgen.cli.identifying import run
-    from modelgen.cli.selecting import options, selected
-
-    chosen = options(without, given.Gains.KNOWN, False, False, None)
-    _, (found,) = selected(arms, [arm])
-    how = {"method": method, "physical": consistent}
-    run(
-        found,
-        train,
-        test or [],
-        out,
-        chosen,
-        mapping,
-        cutoff,
-        how,
-        preset=preset,
-        stream=stream,
-        as_json=as_json,
-    )
+app.command()(identify)
 
 
 @app.command()

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TaskProgressColumn, TextColumn, TimeRemainingColumn
@@ -34,6 +35,7 @@ from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.functions import Options
 from modelgen.identification import Identification, Validation, identify, identify_streamed, to_json
+from modelgen.identification.without_drives import Alternative, without_drives
 
 STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streamed
 
@@ -50,6 +52,7 @@ def run(
     *,
     preset: str,
     stream: bool,
+    compare: bool,
     as_json: bool,
 ) -> None:
     """Identify and write everything into `out`. how: options of `identify`. Raises InputError."""
@@ -67,7 +70,10 @@ def run(
         def asked(rate: float) -> Settings | Chosen:
             return Settings(cutoff=cutoff) if preset == "default" else processing(preset, rate)
 
+        others: tuple[Alternative, ...] = ()
         if stream or sum(Path(parse(s).path).stat().st_size for s in train if _exists(s)) > STREAMED:
+            if compare:
+                raise InputError("--compare-drives: found streamed logs, expected shorter ones, read at once")
             found, first, chosen = _streamed(arm, train, test, options, mapping, asked, how, bar, task)
         else:
             training, testing = gather(train, test, arm, mapping)
@@ -83,8 +89,16 @@ def run(
             prepared = [prepare(r, chosen) for r in training]
             found = identify(prepared, arm, options, test=[prepare(r, chosen) for r in testing], **how)
             first = prepared[0]
+            if compare:
+                bar.update(task, description="identifying without the drives")
+                others = without_drives(training, testing, arm, chosen, found)
     data = to_json(found) | {"cutoff_hz": chosen.cutoff, "processing": described(first)}
-    _write(found, data, first, out)
+    if compare:
+        data["without_drives"] = [
+            {"model": o.name, "rmse": o.test.rmse.tolist(), "nrmse_percent": o.test.nrmse_percent.tolist()}
+            for o in others
+        ]
+    _write(found, data, first, out, others)
     if as_json:
         print_json(data)
         return
@@ -102,12 +116,27 @@ def run(
     headings = ("parameter", "value", "std", "std %", "unit", "essential")
     print_table("", dict.fromkeys(headings, "right"), rows)
     assert found.test is not None
-    t = found.test
+    _print_test(found.test)
+    if others:
+        _print_comparison(found.test, others)
+    typer.echo("\n".join([*data["processing"], data["verdict"]]))
+
+
+def _print_test(t: Validation) -> None:
     table = [
         [str(j + 1), f"{t.rmse[j]:.4g}", t.unit[j], f"{t.nrmse_percent[j]:.1f}"] for j in range(len(t.rmse))
     ]
     print_table("test records", dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right"), table)
-    typer.echo("\n".join([*data["processing"], data["verdict"]]))
+
+
+def _print_comparison(t: Validation, others: Sequence[Alternative]) -> None:
+    """RMSE by model, and by how much the arm as described is below it."""
+    columns = {"model": "left"} | {f"joint {j + 1} [{u}]": "right" for j, u in enumerate(t.unit)}
+    table = [["the arm as described", *(f"{x:.4g}" for x in t.rmse)]]
+    for other in others:
+        pairs = zip(other.test.rmse, t.rmse, strict=True)
+        table.append([other.name, *(f"{x:.4g} ({100 * (y / x - 1):+.0f} %)" for x, y in pairs)])
+    print_table("RMSE on the test records, and what the described drives change", columns, table)
 
 
 def _exists(spec: str) -> bool:
@@ -146,20 +175,28 @@ def _streamed(
     return found, next(iter(streams[0])), chosen
 
 
-def picture(found: Validation) -> str:
-    """Measured and predicted effort of every joint as SVG."""
+def picture(found: Validation, others: Sequence[Alternative] = ()) -> str:
+    """Measured and predicted effort of every joint as SVG; predictions of other models beside."""
     n = found.measured.shape[1]
     made, axes = figure(n, 1, (7.0, 1.6 * n + 0.4))
+    one = bool((np.diff(found.t) > 0).all())  # records one after the other have no common time
+    t = found.t if one else np.arange(len(found.t))
     for j in range(n):
-        axes[j, 0].plot(found.measured[:, j], color=COLOURS[0], label="measured")
-        axes[j, 0].plot(found.predicted[:, j], color=COLOURS[1], label="predicted", linewidth=0.8)
+        axes[j, 0].plot(t, found.measured[:, j], color=COLOURS[0], label="measured")
+        for k, other in enumerate(others):
+            axes[j, 0].plot(
+                t, other.test.predicted[:, j], color=COLOURS[2 + k], label=other.name, linewidth=0.7
+            )
+        axes[j, 0].plot(t, found.predicted[:, j], color=COLOURS[1], label="predicted", linewidth=0.8)
         axes[j, 0].set_ylabel(f"joint {j + 1} [{found.unit[j]}]")
-    axes[0, 0].legend(loc="upper right")
-    axes[n - 1, 0].set_xlabel("row of the test records")
+    axes[0, 0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2 + len(others), fontsize=7)
+    axes[n - 1, 0].set_xlabel("time [s]" if one else "row of the test records")
     return svg(made)
 
 
-def _write(found: Identification, data: object, first: Prepared, out: Path) -> None:
+def _write(
+    found: Identification, data: object, first: Prepared, out: Path, others: Sequence[Alternative]
+) -> None:
     """Every file whole: written beside its place, then moved."""
     values = "".join(f"  {e.name}: {e.value:.12g}\n" for e in found.estimates)
     files = {
@@ -168,7 +205,7 @@ def _write(found: Identification, data: object, first: Prepared, out: Path) -> N
     }
     files["spectra.svg"] = spectra_svg(first)
     if found.test is not None:
-        files["test.svg"] = picture(found.test)
+        files["test.svg"] = picture(found.test, others)
     try:
         out.mkdir(parents=True, exist_ok=True)
         for name, text in files.items():

@@ -10,10 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from modelgen.dataset import Chosen, Record, prepare
-from modelgen.description import Arm, DirectDrive, EffectUse, LeveredDrive
+from modelgen.description import Arm, DirectDrive, LeveredDrive
+from modelgen.description.objects import EffectUse, geometry_symbol
 from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.identification.identify import Identification, Validation, identify
@@ -52,7 +51,7 @@ def without_drives(
         assert validation is not None
         return validation
 
-    result = [Alternative(LINKS_ALONE, identified(arm, Options(without=("effects",)), True))]
+    result = [Alternative(LINKS_ALONE, identified(arm, Options(without=frozenset({"effects"})), True))]
     if any(isinstance(arm.joints[i].drive, LeveredDrive) for i in arm.coordinates):
         result.append(Alternative(CONSTANT_RATIO, identified(geared(arm), Options(), False)))
     return tuple(result)
@@ -73,12 +72,11 @@ def geared(arm: Arm) -> Arm:
         span, stroke = transmission.joint_range(), transmission.motor_range()
         if span is None or stroke is None or not span[1] > span[0]:
             raise InputError(f"{arm.name}: the stroke of joint {joint.name} has no length")
-        known = {str(name): value for name, value in arm.symbols.items()}
+        known = {geometry_symbol(name): value for name, value in arm.symbols.items()}
         middle = 0.5 * (span[0] + span[1])
-        slope = transmission.k1().subs(transmission.q, middle)
-        falling = float(slope.subs({s: known[_plain(str(s))] for s in slope.free_symbols})) < 0
+        falling = float(transmission.k1().subs(transmission.q, middle).subs(known)) < 0
         ratio = (stroke[1] - stroke[0]) / (span[1] - span[0])
-        friction = tuple(EffectUse(name, {}) for name in ("viscous_friction", "coulomb_friction"))
+        friction = tuple(EffectUse(name) for name in ("viscous_friction", "coulomb_friction"))
         joints[i] = replace(
             joint,
             drive=DirectDrive(math.copysign(ratio, -1.0 if falling else 1.0), joint.drive.torque_constant),
