@@ -300,6 +300,7 @@ def test_bad_input_on_the_command_line_writes_nothing(file: Path, tmp_path: Path
     for arguments, said in (
         ((tmp_path / "no.yaml", tmp_path / "out"), "there is no such fleet file"),
         ((file, taken), "found a file, expected a folder"),
+        ((file, tmp_path / "out", "--dask", "mars"), "--dask: found 'mars', expected an address"),
     ):
         answer = called(*arguments)
         assert answer.returncode == 2

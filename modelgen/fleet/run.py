@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,6 +46,17 @@ def diagnose_fleet(
     """
     library()  # before the long work, not after it
     _prepare(out)
+    try:
+        return _diagnosed(units, out, where, again, code, progress)
+    finally:
+        for left in (out / "units", out):  # where nothing came of it
+            with contextlib.suppress(OSError):
+                left.rmdir()
+
+
+def _diagnosed(
+    units: Sequence[Unit], out: Path, where: Where, again: bool, code: bool, progress: Progress | None
+) -> Fleet:
     found = {u.name: store.kept(u, out) for u in units}
     rows = {name: row for name, row in found.items() if row and not (again and row.get("error"))}
     kept = len(rows)
