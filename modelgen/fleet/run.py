@@ -49,6 +49,7 @@ def diagnose_fleet(
     try:
         return _diagnosed(units, out, where, again, code, progress)
     finally:
+        store.swept(out)  # of processes that were ended by an interruption
         for left in (out / "units", out):  # where nothing came of it
             with contextlib.suppress(OSError):
                 left.rmdir()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -66,17 +67,22 @@ def read(out: Path, name: str) -> dict[str, Any] | None:
 
 @contextmanager
 def written(out: Path, name: str) -> Iterator[Path]:
-    """A new folder that takes the place of the unit's when the context ends well."""
+    """A new folder that takes the place of the unit's when the context ends well. Raises InputError."""
     target = folder(out, name)
-    new, old = (target.with_name(f".{name}{ending}") for ending in (_NEW, _OLD))
-    shutil.rmtree(new, ignore_errors=True)
-    new.mkdir(parents=True)
-    yield new
-    if target.exists():
-        shutil.rmtree(old, ignore_errors=True)
-        target.rename(old)
-    new.rename(target)
-    shutil.rmtree(old, ignore_errors=True)
+    # Two may be at it: a cluster goes on with a job whose call has been interrupted.
+    own = uuid.uuid4().hex
+    new, old = (target.with_name(f".{name}.{own}{ending}") for ending in (_NEW, _OLD))
+    try:
+        new.mkdir(parents=True)
+        yield new
+        if target.exists():
+            target.rename(old)
+        new.rename(target)
+    except OSError as error:
+        raise InputError(f"--out {out}: cannot write: {error.strerror or error}") from error
+    finally:
+        for left in (new, old):
+            shutil.rmtree(left, ignore_errors=True)
 
 
 def keep(into: Path, row: Row, made_of: str | None) -> None:
