@@ -147,7 +147,7 @@ def test_killed_in_the_middle_and_taken_up_on_a_cluster(file: Path, out: Path, t
         fleet(file, other, "--jobs", "1"), start_new_session=True, stderr=subprocess.PIPE
     )
     first = other / "units" / "one" / "unit.json"
-    for _ in range(600):
+    for _ in range(2400):
         if first.exists():
             break
         time.sleep(0.05)
