@@ -6,6 +6,7 @@
 #   make format  let ruff rewrite the layout
 #   make bench   beside Pinocchio, MuJoCo, SymPy and FIGAROH: docs/benchmarks.md (needs valgrind)
 #   make bench-generation  CPU time of generation, per arm and over the number of joints
+#   make docs    the documentation as HTML, with the reference: build/docs/index.html
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
 #   make run-examples  the examples, and the plots that they write
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
@@ -19,7 +20,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench bench-generation size run-examples prove fuzz hidden blind clean
+.PHONY: run test pytest lint format bench bench-generation docs size run-examples prove fuzz hidden blind clean
 
 EXAMPLE := examples/diagnosis
 
@@ -49,6 +50,9 @@ bench: $(INSTALLED)
 
 bench-generation: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
+
+docs: $(INSTALLED)
+	$(BIN)/python docs/build.py
 
 size: $(INSTALLED)
 	$(BIN)/python benchmarks/size.py

@@ -1,0 +1,169 @@
+"""make docs: the pages of this folder, the examples, and the reference from docstrings and --help, as HTML.
+
+    python docs/build.py [--out build/docs]
+
+By Sphinx, warnings as errors. The sources are put together in a temporary folder: nothing is written here.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import pkgutil
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+PICTURES = (".svg", ".png")
+# In the order in which data flows.
+PACKAGES = (
+    "description",
+    "geometry",
+    "transmission",
+    "effects",
+    "model",
+    "base_parameters",
+    "functions",
+    "graph",
+    "backends",
+    "generation",
+    "dataset",
+    "excitation",
+    "calibration",
+    "identification",
+    "simulation",
+    "probing",
+    "extension",
+    "diagnosis",
+    "fleet",
+    "jobs",
+)
+GUIDES = {
+    "Start": ["tutorial", "theory"],
+    "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
+    "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
+    "What a model lacks": ["diagnosing", "effects", "fleet", "case-studies", "diagnosis_method"],
+}
+
+
+def main() -> int:
+    """Exit status of Sphinx."""
+    parser = argparse.ArgumentParser(prog="docs/build.py")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
+    out = parser.parse_args().out
+    with tempfile.TemporaryDirectory() as scratch:
+        source = Path(scratch) / "source"
+        gather(source)
+        options = ["-W", "--keep-going", "-q", "-b", "html", "-c", str(HERE), "-d", f"{scratch}/trees"]
+        done = subprocess.run([sys.executable, "-m", "sphinx", *options, str(source), str(out)], check=False)
+    if not done.returncode:
+        print(f"{os.path.relpath(out)}/index.html")
+    return done.returncode
+
+
+def gather(folder: Path) -> None:
+    """Pages, pictures, examples and reference as Sphinx wants them."""
+    named = {page for pages in GUIDES.values() for page in pages}
+    others = sorted(p.stem for p in HERE.glob("*.md") if p.stem not in named | {"index"})
+    howto = sorted(f"howto/{p.stem}" for p in (HERE / "howto").glob("*.md"))
+    for path in HERE.rglob("*"):
+        if path.suffix == ".md":
+            _write(folder / path.relative_to(HERE), _linked(path.read_text("utf-8")))
+        elif path.suffix in PICTURES:
+            _copy(path, folder / path.relative_to(HERE))
+    examples = []
+    for place in sorted((ROOT / "examples").iterdir()):
+        if not place.is_dir():
+            continue
+        if (place / "README.md").exists():
+            text = (place / "README.md").read_text("utf-8").replace("](../../docs/", "](../../")
+            # sources lie beside the page in the repository alone
+            text = re.sub(r"\[([^\]]+)\]\(([^)/]+\.(?:c|py|yaml))\)", r"`\1`", text)
+            _write(folder / "examples" / place.name / "README.md", text)
+            examples.append(f"examples/{place.name}/README")
+        for picture in place.iterdir():
+            if picture.suffix in PICTURES:
+                _copy(picture, folder / "examples" / place.name / picture.name)
+    for package in PACKAGES:
+        _write(folder / "reference" / f"{package}.md", reference(package))
+    _write(folder / "reference" / "command_line.md", command_line())
+    trees = {
+        **GUIDES,
+        "How to": howto,
+        "More": others,
+        "Examples": examples,
+        "Reference": [f"reference/{name}" for name in ("command_line", *PACKAGES)],
+    }
+    index = folder / "index.md"
+    index.write_text(index.read_text("utf-8") + "".join(_tree(k, v) for k, v in trees.items() if v), "utf-8")
+
+
+def reference(package: str) -> str:
+    """A page of everything public in a package."""
+    module = importlib.import_module(f"modelgen.{package}")
+    names = [f"modelgen.{package}"] if hasattr(module, "__all__") else [module.__name__, *modules(package)]
+    text = "".join(
+        f".. automodule:: {name}\n   :members:\n   :imported-members:\n\n"
+        if hasattr(module, "__all__")
+        else f".. automodule:: {name}\n   :members:\n\n"
+        for name in names
+    )
+    return f"# modelgen.{package}\n\n```{{eval-rst}}\n{text}```\n"
+
+
+def modules(package: str) -> Iterator[str]:
+    """Dotted names of the modules of a package."""
+    module = importlib.import_module(f"modelgen.{package}")
+    for found in pkgutil.iter_modules(module.__path__):
+        yield f"modelgen.{package}.{found.name}"
+
+
+def command_line() -> str:
+    """The help of every command."""
+    environment = {**os.environ, "COLUMNS": "88", "TERMINAL_WIDTH": "88", "NO_COLOR": "1", "TERM": "dumb"}
+
+    def text(*words: str) -> str:
+        call = [sys.executable, "-m", "modelgen", *words]
+        done = subprocess.run(call, capture_output=True, text=True, check=True, env=environment)
+        return "\n".join(line.rstrip() for line in done.stdout.strip().splitlines())
+
+    from typer.main import get_command  # noqa: PLC0415 - slow, and only here
+
+    from modelgen.cli.app import app  # noqa: PLC0415
+
+    parts = [f"# Command line\n\n```text\n{text('--help')}\n```\n"]
+    for name in get_command(app).commands:  # type: ignore[attr-defined]
+        parts.append(f"## {name}\n\n```text\n{text(name, '--help')}\n```\n")
+    return "\n".join(parts)
+
+
+def _linked(text: str) -> str:
+    """Links to examples, which lie beside this folder in the repository and below it here."""
+    text = re.sub(r"\[([^\]]+)\]\((?:\.\./)+examples/\w+/?\)", r"\1", text)  # a folder is no page
+    return text.replace("](../examples/", "](examples/")
+
+
+def _tree(title: str, pages: list[str]) -> str:
+    listed = "\n".join(pages)
+    return f"\n```{{toctree}}\n:caption: {title}\n:hidden:\n\n{listed}\n```\n"
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def _copy(path: Path, place: Path) -> None:
+    place.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(path, place)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

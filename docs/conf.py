@@ -1,0 +1,50 @@
+"""Sphinx's settings; docs/build.py puts the sources together and calls it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+project = "modelgen"
+author = "The modelgen authors"
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+html_theme = "furo"
+html_title = "modelgen"
+html_show_copyright = False
+html_show_sourcelink = False
+html_last_updated_fmt = None
+myst_heading_anchors = 4
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True}
+autodoc_type_aliases = {"Array": "Array"}
+
+
+def _plain(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Docstrings are plain text: names in backquotes are code, indented lines are as they stand."""
+    result: list[str] = []
+    block = False
+    for line in lines:
+        indented = line.startswith("    ")
+        if indented and not block:
+            result += ["", "::", ""]
+        elif block and line.strip() and not indented:
+            result.append("")
+            block = False
+        block = block or indented
+        result.append(line if block else _escaped(line))
+    lines[:] = [*result, ""]
+
+
+def _escaped(line: str) -> str:
+    """Text as text: stars, bars and underscores mean themselves."""
+    line = re.sub(r"^(\s*)([-*+]|\w+[.)])(\s)", r"\1\\\2\3", line)
+    parts = re.split(r"(`[^`]+`)", line)
+    return "".join(
+        f"`{p}`" if p.startswith("`") and len(p) > 1 else re.sub(r"([*|_\\`])", r"\\\1", p) for p in parts
+    )
+
+
+def setup(app: Any) -> None:
+    """Called by Sphinx."""
+    app.connect("autodoc-process-docstring", _plain)
