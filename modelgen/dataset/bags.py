@@ -28,6 +28,8 @@ class BagReader:
     memory. Raises InputError where the file cannot be read or a library is missing.
     """
 
+    by_column = False
+
     def __init__(self, path: Path) -> None:
         self.path = path
         if not path.exists():

@@ -21,6 +21,8 @@ class CsvReader:
     Lines that begin with # and empty lines are skipped. Raises InputError where there is no header.
     """
 
+    by_column = False
+
     def __init__(self, path: Path) -> None:
         self.path = path
         try:

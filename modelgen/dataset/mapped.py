@@ -48,6 +48,7 @@ class MappedReader:
 
     def __init__(self, foreign: Foreign, reader: Reader, arm: Arm, drives: Sequence[Drive]) -> None:
         self.foreign, self.reader, self.arm, self.drives = foreign, reader, arm, drives
+        self.by_column = reader.by_column
         document = foreign.document
         n = len(drives)
         if len(document.joints) != n:

@@ -15,6 +15,8 @@ from modelgen.errors import InputError
 class ParquetReader:
     """A Parquet file of numeric columns. Raises InputError where it is none, or pyarrow is missing."""
 
+    by_column = True
+
     def __init__(self, path: Path) -> None:
         try:
             import pyarrow.parquet  # noqa: PLC0415 - an extra
@@ -32,7 +34,7 @@ class ParquetReader:
         self.names = tuple(self._file.schema_arrow.names)
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
-        """The wanted columns, block after block; a missing value is NaN. Raises InputError."""
+        """The wanted columns, `rows` at a time; a missing value is NaN. Raises InputError."""
         import pyarrow  # noqa: PLC0415 - an extra
 
         for name in wanted:
@@ -42,14 +44,26 @@ class ParquetReader:
         try:
             # pyarrow would otherwise keep what it has read of the file.
             batches = self._file.iter_batches(batch_size=rows, columns=list(wanted), use_threads=False)
+            held, filled = _empty(rows, len(wanted)), 0
             for batch in batches:
-                block = np.empty((len(wanted), batch.num_rows)).T  # columns in order in memory
-                for k, name in enumerate(wanted):
-                    column = batch.column(name)
-                    if column.type != pyarrow.float64():
-                        column = column.cast(pyarrow.float64())
-                    block[:, k] = column.to_numpy(zero_copy_only=False)
-                if len(block):
-                    yield block
+                taken = 0
+                while taken < batch.num_rows:
+                    count = min(batch.num_rows - taken, rows - filled)
+                    for k, name in enumerate(wanted):
+                        column = batch.column(name).slice(taken, count)
+                        if column.type != pyarrow.float64():
+                            column = column.cast(pyarrow.float64())
+                        held[filled : filled + count, k] = column.to_numpy(zero_copy_only=False)
+                    taken, filled = taken + count, filled + count
+                    if filled == rows:
+                        yield held
+                        held, filled = _empty(rows, len(wanted)), 0
+            if filled:
+                yield held[:filled]
         except (OSError, pyarrow.ArrowException) as error:
             raise InputError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
+
+
+def _empty(rows: int, columns: int) -> Array:
+    """(rows, columns), each column in order in memory."""
+    return np.empty((columns, rows)).T

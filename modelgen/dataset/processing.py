@@ -112,7 +112,9 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
     logged = np.where(sides, record.motor, record.q) if any(sides) else record.q
     q, dq, ddq = _smoothed(logged, step, chosen)
     if drives:
-        motor, dmotor, ddmotor = q.copy(order="K"), dq.copy(order="K"), ddq.copy(order="K")
+        both = zip(drives, sides, strict=True)
+        ratios = np.array([1.0 if side or d.ratio is None else d.ratio for d, side in both])
+        motor, dmotor, ddmotor = q * ratios, dq * ratios, ddq * ratios
     else:
         motor, dmotor, ddmotor = _smoothed(record.motor, step, chosen)
     for k, drive in enumerate(drives):
@@ -121,10 +123,7 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
             k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
             dq[:, k] = dmotor[:, k] / k1
             ddq[:, k] = (ddmotor[:, k] - slope * dq[:, k] ** 2) / k1
-        elif drive.ratio is not None:
-            for values in (motor, dmotor, ddmotor):
-                values[:, k] *= drive.ratio
-        else:
+        elif drive.ratio is None:
             motor[:, k] = drive.motor(q[:, k])
             k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
             dmotor[:, k] = k1 * dq[:, k]

@@ -55,6 +55,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     for k, drive in enumerate(drives):
         if motor_side[k]:
             q[:, k] = drive.joint(logged[:, k])
+        elif drive.ratio is not None:
+            motor[:, k] *= drive.ratio
         else:
             motor[:, k] = drive.motor(logged[:, k])
     checks.check_jumps(file, arm, signals.position, q, t)
@@ -75,7 +77,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         for k, (name, drive) in enumerate(zip(signals.effort, drives, strict=True)):
             kind = (name or "").rstrip("0123456789")
             if kind == "tau" and drive.driven:
-                gain[:, k] = drive.gain(q[:, k])
+                ratio = drive.ratio
+                gain[:, k] = drive.gain(q[:, k]) if ratio is None else drive.torque_constant * ratio
             elif kind == "taum":
                 gain[:, k] = drive.torque_constant
         given = effort / gain

@@ -46,18 +46,22 @@ class Source:
         """Names of the columns that are read, the time first."""
         return tuple(dict.fromkeys(self.signals.wanted))
 
-    def blocks(self, rows: int = BLOCK) -> Iterator[Array]:
+    def blocks(self, rows: int = BLOCK, *, time_alone: bool = False) -> Iterator[Array]:
         """The wanted columns of the part in blocks of `rows`; rows without a time are kept for refusal."""
+        wanted = self.wanted[:1] if time_alone else self.wanted
         waiting: list[Array] = []
-        for block in self.reader.blocks(self.wanted, rows):
+        for block in self.reader.blocks(wanted, rows):
             t = block[:, 0]
             inside = ((t >= self.spec.begin) & (t < self.spec.end)) | np.isnan(t)
+            if not waiting and len(block) == rows and inside.all():
+                yield block
+                continue
             waiting.append(block if inside.all() else block[inside])
             while sum(map(len, waiting)) >= rows:
                 whole = np.concatenate(waiting)
                 yield whole[:rows]
                 waiting = [whole[rows:]]
-        rest = np.concatenate(waiting) if waiting else np.empty((0, len(self.wanted)))
+        rest = np.concatenate(waiting) if waiting else np.empty((0, len(wanted)))
         if len(rest):
             yield rest
 

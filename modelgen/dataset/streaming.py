@@ -33,8 +33,9 @@ class Stream:
 
     Their rows, one block after the other, are those of the whole log prepared at once, and filtered columns
     agree with the whole's to 1e-9 of their size: neighbouring blocks overlap by `overlap` samples. A first
-    pass checks the log and finds its time axis. spec, mapping: as in `read`. settings: None or unset
-    values are chosen from the first quarter million samples. block: samples per block, at least. Raises
+    pass finds the time axis and checks the log; where columns are read one by one (Parquet), only the time
+    is read then, and the others are checked block by block. spec, mapping: as in `read`. settings: None or
+    unset values are chosen from the first quarter million samples. block: samples per block, at least. Raises
     InputError as `read` does. Iterate as often as needed; every iteration reads the file.
     """
 
@@ -92,7 +93,8 @@ class Stream:
     def records(self) -> Iterator[Record]:
         """The blocks before they are processed, overlap included."""
         trim, begins = self.settings.trimmed(self.axis.step), self._begins()
-        rows = _Rows(self._source.blocks(), self.axis)
+        content = _Content(self)
+        rows = _Rows(content.checked(self._source.blocks()), self.axis)
         for number, begin in enumerate(begins, 1):
             end = min(begin + self.block, self.samples - trim)
             low, high = max(0, begin - self.overlap), min(self.samples, end + self.overlap)
@@ -100,6 +102,7 @@ class Stream:
             record, _ = record_of(self._source, self.arm, table, self.axis, t)
             name = f"{self.spec} block {number} of {len(begins)}"
             yield replace(record, name=name, core=(begin - low, end - low), first=low)
+        content.check_changes()
 
     def _begins(self) -> range:
         """First samples of the blocks, without their overlap."""
@@ -107,31 +110,55 @@ class Stream:
         return range(trim, self.samples - trim, self.block)
 
     def _survey(self) -> Axis:
-        """First pass: finite numbers, running time, changing signals. Raises InputError."""
+        """First pass: running time; the signals too where all columns are read anyway. Raises InputError."""
         found = Survey(self.spec, self._source.rate, self._source.gap)
-        wanted = self._source.wanted
-        low, high = np.full(len(wanted), np.inf), np.full(len(wanted), -np.inf)
-        for block in self._source.blocks():
-            checks.check_finite(self.spec, block[:, 0], wanted, block, found.count)
+        alone = self._source.reader.by_column
+        content = _Content(self)
+        blocks = self._source.blocks(time_alone=True) if alone else content.checked(self._source.blocks())
+        for block in blocks:
+            if alone:
+                checks.check_finite(self.spec, block[:, 0], ("t",), block, found.count)
             found.add(block[:, 0])
-            low, high = np.minimum(low, block.min(axis=0)), np.maximum(high, block.max(axis=0))
         checks.check_length(self.spec, found.count)
-        span = dict(zip(wanted, np.stack([low, high], axis=1), strict=True))
-        signals = self._source.signals
-        for names, what in ((signals.position, "position"), (self._driven(), "effort")):
-            ends = np.stack([span[name] if name else np.zeros(2) for name in names], axis=1)
-            checks.check_constant(self.spec, self.arm, names, ends, what, found.count)
+        if not alone:
+            content.check_changes()
         return found.axis()
-
-    def _driven(self) -> tuple[str | None, ...]:
-        efforts = zip(self._source.signals.effort, self._source.drives, strict=True)
-        return tuple(name if drive.driven else None for name, drive in efforts)
 
     @cached_property
     def _head(self) -> Record:
         """The beginning of the log, for settings to be chosen from."""
-        table, t = _Rows(self._source.blocks(), self.axis).table(0, min(self.samples, LONGEST_SAMPLE))
+        blocks = _Content(self).checked(self._source.blocks())
+        table, t = _Rows(blocks, self.axis).table(0, min(self.samples, LONGEST_SAMPLE))
         return replace(record_of(self._source, self.arm, table, self.axis, t)[0], name=self.spec)
+
+
+class _Content:
+    """What a log's columns hold, block after block."""
+
+    def __init__(self, stream: Stream) -> None:
+        self.stream, self.source = stream, stream._source
+        self.count = 0
+        self.low = np.full(len(self.source.wanted), np.inf)
+        self.high = -self.low
+
+    def checked(self, blocks: Iterator[Array]) -> Iterator[Array]:
+        """The blocks. Raises InputError where a number is not finite."""
+        for block in blocks:
+            checks.check_finite(self.stream.spec, block[:, 0], self.source.wanted, block, self.count)
+            self.count += len(block)
+            self.low = np.minimum(self.low, block.min(axis=0))
+            self.high = np.maximum(self.high, block.max(axis=0))
+            yield block
+
+    def check_changes(self) -> None:
+        """Positions and driven efforts must change. Raises InputError."""
+        span = dict(zip(self.source.wanted, np.stack([self.low, self.high], axis=1), strict=True))
+        signals = self.source.signals
+        efforts = zip(signals.effort, self.source.drives, strict=True)
+        driven = tuple(name if drive.driven else None for name, drive in efforts)
+        for names, what in ((signals.position, "position"), (driven, "effort")):
+            ends = np.stack([span[name] if name else np.zeros(2) for name in names], axis=1)
+            checks.check_constant(self.stream.spec, self.stream.arm, names, ends, what, self.count)
 
 
 class _Rows:

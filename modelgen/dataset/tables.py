@@ -20,6 +20,10 @@ class Reader(Protocol):
     """A file with named columns."""
 
     @property
+    def by_column(self) -> bool:
+        """Whether a column is read without the others."""
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the columns, in the file's order; doubled ones as often as they stand there."""
 
