@@ -24,35 +24,42 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "tests"))
+PATH = ROOT / "benchmarks", ROOT / "tests"
+sys.path.insert(0, str(PATH[1]))
 THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 CODE = (
-    "import sys, resource; from modelgen.cli.app import app\n"
+    "import sys, resource; from modelgen.cli.app import app\n{before}\n"
     "try:\n    app(sys.argv[1:], standalone_mode=False)\n"
     "finally:\n"
     "    used = resource.getrusage(resource.RUSAGE_SELF)\n"
     "    print('used', used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, file=sys.stderr)"
 )
+BEFORE = "from identification_scale import instead_of_files; instead_of_files({samples})"
 TEST = 20_000  # samples of the record that validates
 PEER = 60_000  # samples that the loop gets
 
 
-def identified(log: Path, held: Path, folder: Path) -> dict[str, Any]:
-    """identification.json of `modelgen identify --stream`, with its seconds (wall and CPU) and MiB."""
+def identified(log: Path, held: Path, folder: Path, before: str = "") -> dict[str, Any]:
+    """identification.json of `modelgen identify --stream`, with its seconds (wall and CPU) and MiB.
+
+    before: what the process runs first. `made`: CPU seconds that it spent on making the log.
+    """
     words = ["identify", "--arm", "ur10e", "--stream", "--train", str(log), "--test", str(held)]
     begin = time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-c", CODE, *words, "--out", str(folder / "out"), "--json"],
+        [sys.executable, "-c", CODE.format(before=before), *words, "--out", str(folder / "out"), "--json"],
         capture_output=True,
         text=True,
         check=False,
-        env=os.environ | THREADS,
+        env=os.environ | THREADS | {"PYTHONPATH": os.pathsep.join([*map(str, PATH), *sys.path])},
     )
     wall = time.perf_counter() - begin
     if done.returncode:
         raise SystemExit(done.stderr)
     cpu, peak = (float(x) for x in done.stderr.split("used")[1].split())
-    return json.loads(done.stdout) | {"wall": wall, "cpu": cpu, "peak": peak}
+    made = sum(float(x) for x in re.findall(r"^made (.*)$", done.stderr, re.MULTILINE))
+    result: dict[str, Any] = json.loads(done.stdout)
+    return result | {"wall": wall, "cpu": cpu, "peak": peak, "made": made}
 
 
 def side_by_side(samples: int) -> None:

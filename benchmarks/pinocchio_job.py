@@ -83,7 +83,8 @@ class Job:
 
     def run(self, log: Path, samples: int) -> Array:
         """Base parameters (p,) from the first samples of the log."""
-        n, triangles, done = 6, {}, 0
+        n, done = 6, 0
+        triangles: dict[int, Array] = {}
         blocks = pq.ParquetFile(log).iter_batches(BLOCK, columns=names(), use_threads=False)
         while done < samples:
             with self.timed("reading"):
@@ -97,7 +98,7 @@ class Job:
                 for j in range(n):
                     rows = np.column_stack([columns[:, j], effort[:, j]])
                     both = np.vstack([triangles[j], rows]) if j in triangles else rows
-                    triangles[j] = np.linalg.qr(both, mode="r")
+                    triangles[j] = np.asarray(np.linalg.qr(both, mode="r"))
         with self.timed("solution"):
             sigma = np.ones(n)
             for _ in range(5):
