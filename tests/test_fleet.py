@@ -11,14 +11,17 @@ import time
 from html.parser import HTMLParser
 from pathlib import Path
 
+import jsonschema
 import pyarrow.parquet
 import pytest
 from hidden.cases import Case, Hidden, make
 from jobs_support import cluster
+from ruamel.yaml import YAML
 
 from modelgen.errors import InputError
 from modelgen.fleet.diagnosing import Job, crashed
 from modelgen.fleet.overview import overview
+from modelgen.fleet.schema import fleet_json_schema
 from modelgen.fleet.store import kept, read
 from modelgen.fleet.units import Unit, load_fleet
 
@@ -242,6 +245,22 @@ def test_the_name_of_a_unit_may_stand_in_folder_and_file(tmp_path: Path) -> None
         *("x/x_a.csv", "x/x_t.csv", "y/x_a.csv"),
     )
     assert found == {"x": (("x/x_a.csv",), ("x/x_t.csv",))}
+
+
+def test_the_example_of_the_documentation_is_a_fleet(checkout: Path, tmp_path: Path) -> None:
+    text = (checkout / "docs" / "fleet.md").read_text(encoding="utf-8")
+    text = text[text.index("```yaml\n") + 8 :]
+    text = text[: text.index("```")]
+    jsonschema.validate(YAML(typ="safe", pure=True).load(text), fleet_json_schema())
+    for name in ("logs/a17/train_1.csv", "logs/a17/test.csv", "short/b2.csv"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    (tmp_path / "fleet.yaml").write_text(text, encoding="utf-8")
+    found = {unit.name: unit for unit in load_fleet(tmp_path / "fleet.yaml")}
+    assert list(found) == ["workshop", "yard", "a17", "b2"]
+    assert found["yard"].arm == "digger_long"
+    assert found["a17"].train == ("logs/a17/train_1.csv",)
+    assert (found["b2"].description, found["b2"].test) == ("arms/b2.yaml", ("short/b2.csv@45:60",))
 
 
 def test_what_a_unit_says_goes_before_what_all_share(tmp_path: Path) -> None:

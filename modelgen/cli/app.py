@@ -224,10 +224,15 @@ def effects(as_json: given.Json = False, pages: given.Pages = None) -> None:
 
 @app.command()
 @guarded
-def schema(of_mapping: given.OfMapping = False) -> None:
-    """Print a JSON Schema of the description, or of a mapping file, for editors."""
+def schema(of_mapping: given.OfMapping = False, of_fleet: given.OfFleet = False) -> None:
+    """Print a JSON Schema of the description, of a mapping file or of a fleet, for editors."""
     import json
 
+    if of_fleet:
+        from modelgen.fleet.schema import fleet_json_schema
+
+        typer.echo(json.dumps(fleet_json_schema(), indent=2))
+        return
     if of_mapping:
         from modelgen.dataset.mapping_schema import mapping_json_schema
 

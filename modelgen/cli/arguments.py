@@ -177,6 +177,7 @@ Version = Annotated[bool, typer.Option("--version", help="Print the version and 
 OfMapping = Annotated[
     bool, typer.Option("--mapping", help="Of the files that say what the columns of a foreign log are.")
 ]
+OfFleet = Annotated[bool, typer.Option("--fleet", help="Of the files that list the arms of a fleet.")]
 Begin = Annotated[
     str,
     typer.Option(

@@ -51,3 +51,19 @@ class Document(Common):
     schema_: Literal[1] = Field(alias="schema", description="Version of this format.")
     units: list[UnitModel] = Field(default_factory=list, description="Units one by one.")
     patterns: list[PatternModel] = Field(default_factory=list, description="Units by the names of files.")
+
+
+def fleet_json_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of fleet files, for editors."""
+    schema = Document.model_json_schema(by_alias=True)
+    # One record may stand without a list.
+    for name in ("UnitModel", "PatternModel"):
+        for key in ("train", "test"):
+            listed = schema["$defs"][name]["properties"][key]
+            text = listed.pop("description")
+            schema["$defs"][name]["properties"][key] = {
+                "anyOf": [listed, {"type": "string", "minLength": 1}],
+                "description": text,
+            }
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "modelgen fleet"}
+    return head | {key: value for key, value in schema.items() if key != "title"}
