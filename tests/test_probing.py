@@ -79,7 +79,9 @@ def test_an_effect_adds_what_the_arm_with_it_does(effect: str, arm: str) -> None
     found_at = places(ARMS[arm], effect)
     # where a slide stands along the vertical makes no difference to it
     joint = 2 if effect == "encoder_offset" else found_at[len(found_at) // 2]
-    values = VALUES.get(effect, {})
+    chosen = {p.name for p in CATALOGUE[effect].nonlinear}
+    shown = {name: value for name, value in CATALOGUE[effect].shown.items() if name in chosen}
+    values = VALUES.get(effect, shown)
     p = prober(arm)
     m = motion(arm)
     emitted = build(with_effect(ARMS[arm], effect, joint, values), Options())

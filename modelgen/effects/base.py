@@ -12,6 +12,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import ClassVar
 
 import sympy as sp
@@ -46,11 +47,17 @@ class Parameter:
     grid: tuple[float, ...] = ()
 
 
+def at(**values: float) -> Mapping[str, float]:
+    """Values of parameters by name, for `Definition.shown`."""
+    return MappingProxyType(values)
+
+
 class Definition(ABC):
     """One entry of the catalogue: what every kind of effect has.
 
     scope: whether it stands at a "joint", at the "arm", or at "either". confused_with: effects that
-    look alike in many records; experiment: what tells them apart.
+    look alike in many records; experiment: what tells them apart. shown: values for its picture in
+    docs/effects.md, in the units of the motor coordinates [rad, N m].
     """
 
     name: ClassVar[str]
@@ -63,6 +70,7 @@ class Definition(ABC):
     states: ClassVar[tuple[str, ...]] = ()
     confused_with: ClassVar[tuple[str, ...]] = ()
     experiment: ClassVar[str] = ""
+    shown: ClassVar[Mapping[str, float]] = at()
     seen_over: ClassVar[str] = "velocity"  # what shows it best: velocity, position, acceleration or time
 
     def values(self, given: Mapping[str, float]) -> dict[str, float]:

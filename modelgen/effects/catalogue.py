@@ -1,64 +1,61 @@
-"""All effects by name."""
+"""All effects by name: every class of the modules below that has one."""
 
 from __future__ import annotations
 
-from modelgen.effects.base import Definition
-from modelgen.effects.compliance import Backlash, JointFlexibility
-from modelgen.effects.environment import AddedMass, BaseTilt, FluidDrag, PayloadChange
-from modelgen.effects.friction import (
-    AsymmetricViscousFriction,
-    CoulombFriction,
-    FrictionOffset,
-    NonlinearViscousFriction,
-    ViscousFriction,
-)
-from modelgen.effects.friction_dry import (
-    FrictionWarmUp,
-    LoadDependentFriction,
-    PositionDependentFriction,
-    Presliding,
-    StribeckFriction,
-)
-from modelgen.effects.measurement import (
-    DriveGainError,
-    EncoderOffset,
-    LeverGeometry,
-    TimeDelay,
-    TorqueConstantSaturation,
-)
-from modelgen.effects.mechanism import ActuatorMass, DriveInertia, Spring, TorqueRipple, TransmissionCoupling
+from types import ModuleType
 
-CATALOGUE: dict[str, type[Definition]] = {
-    effect.name: effect
-    for effect in (
-        ViscousFriction,
-        CoulombFriction,
-        FrictionOffset,
-        AsymmetricViscousFriction,
-        StribeckFriction,
-        LoadDependentFriction,
-        NonlinearViscousFriction,
-        PositionDependentFriction,
-        FrictionWarmUp,
-        Presliding,
-        DriveInertia,
-        TorqueRipple,
-        Backlash,
-        JointFlexibility,
-        TransmissionCoupling,
-        LeverGeometry,
-        ActuatorMass,
-        Spring,
-        PayloadChange,
-        FluidDrag,
-        AddedMass,
-        BaseTilt,
-        DriveGainError,
-        TorqueConstantSaturation,
-        EncoderOffset,
-        TimeDelay,
-    )
-}
+from modelgen.effects import compliance, environment, friction, friction_dry, measurement, mechanism
+from modelgen.effects.base import Definition
+
+MODULES = (friction, friction_dry, mechanism, compliance, environment, measurement)
+# What is printed first, in this order; others follow in the order of their modules.
+FIRST = (
+    "viscous_friction",
+    "coulomb_friction",
+    "friction_offset",
+    "asymmetric_viscous_friction",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "nonlinear_viscous_friction",
+    "position_dependent_friction",
+    "friction_warm_up",
+    "presliding",
+    "drive_inertia",
+    "torque_ripple",
+    "backlash",
+    "joint_flexibility",
+    "transmission_coupling",
+    "lever_geometry",
+    "actuator_mass",
+    "spring",
+    "payload_change",
+    "fluid_drag",
+    "added_mass",
+    "base_tilt",
+    "drive_gain_error",
+    "torque_constant_saturation",
+    "encoder_offset",
+    "time_delay",
+)
+
+
+def collected(modules: tuple[ModuleType, ...]) -> dict[str, type[Definition]]:
+    """The effects that the modules define, by name. Raises ValueError where two have one name."""
+    found: dict[str, type[Definition]] = {}
+    for module in modules:
+        for thing in vars(module).values():
+            own = isinstance(thing, type) and thing.__module__ == module.__name__
+            # a class without a name is what several effects have in common
+            if not own or not issubclass(thing, Definition) or "name" not in vars(thing):
+                continue
+            if thing.name in found:
+                raise ValueError(f"two effects are called {thing.name}")
+            found[thing.name] = thing
+    first = {name: k for k, name in enumerate(FIRST)}
+    return {name: found[name] for name in sorted(found, key=lambda n: first.get(n, len(first)))}
+
+
+CATALOGUE: dict[str, type[Definition]] = collected(MODULES)
 
 
 def known_effects() -> dict[str, tuple[str, ...]]:

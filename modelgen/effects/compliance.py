@@ -13,7 +13,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import POSITIVE, Effect, Parameter, Values
+from modelgen.effects.base import POSITIVE, Effect, Parameter, Values, at
 from modelgen.effects.variables import Variables
 
 STIFFNESS = Parameter("stiffness", "{f}/{x}", "stiffness between drive and link", bounds=POSITIVE)
@@ -54,6 +54,7 @@ class JointFlexibility(Compliance):
     nonlinear = (STIFFNESS, DAMPING)
     confused_with = ("backlash", "time_delay")
     experiment = "a chirp up to the resonance, with encoders on motor and link"
+    shown = at(stiffness=4000.0, damping=60.0)
 
     def spring(self, x: Variables, p: Values) -> tuple[sp.Expr, sp.Expr]:
         """stiffness times lag."""
@@ -81,6 +82,7 @@ class Backlash(Compliance):
     )
     confused_with = ("joint_flexibility", "presliding", "time_delay")
     experiment = "a motion that reverses the load, with encoders on motor and link"
+    shown = at(play=0.01, stiffness=30000.0, damping=300.0)
 
     def spring(self, x: Variables, p: Values) -> tuple[sp.Expr, sp.Expr]:
         """stiffness times what the lag exceeds the gap by."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values
+from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values, at
 from modelgen.effects.variables import PointVariables
 
 # Gauss-Legendre quadrature with five points on [0, 1]: (place, weight)
@@ -53,6 +53,7 @@ class FluidDrag(Strips):
     )
     confused_with = ("nonlinear_viscous_friction", "added_mass")
     experiment = "the same motion in air and in the fluid, the arm folded and straight"
+    shown = at(coefficient=60.0)
 
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """CD |v| v by length, v the velocity across the link."""
@@ -70,6 +71,7 @@ class AddedMass(Strips):
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
     confused_with = ("payload_change", "fluid_drag")
     experiment = "the same motion in air and in the fluid, fast and slow"
+    shown = at(per_length=4.0)
 
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """CM a by length, a the acceleration across the link (no gravity: the fluid floats)."""
@@ -91,6 +93,7 @@ class PayloadChange(LinkEffect):
     )
     confused_with = ("friction_warm_up", "base_tilt")
     experiment = "weigh it, or compare records with and without"
+    shown = at(mass=1.0, x=0.5)
 
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """The joint's own, the last one for the whole arm."""
@@ -120,6 +123,7 @@ class BaseTilt(DescriptionEffect):
     )
     confused_with = ("encoder_offset", "friction_offset", "spring")
     experiment = "an inclinometer, or a second mounting of the base"
+    shown = at(z=0.05)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """Gravity as the turned base sees it: Rz' Ry' Rx' g."""

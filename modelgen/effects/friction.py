@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
 from modelgen.effects.variables import Variables
 
 SMOOTHING = Parameter(
@@ -29,6 +29,7 @@ class ViscousFriction(Effect):
     linear = (Parameter("coefficient", "{f} s/{x}", "viscous friction coefficient", "FV"),)
     confused_with = ("nonlinear_viscous_friction", "fluid_drag")
     experiment = "a sweep of constant speeds"
+    shown = at(coefficient=0.001)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FV v."""
@@ -44,6 +45,7 @@ class CoulombFriction(Effect):
     linear = (Parameter("magnitude", "{f}", "Coulomb friction", "FC"),)
     confused_with = ("friction_offset", "presliding", "backlash")
     experiment = "slow reversals"
+    shown = at(magnitude=0.1)
     nonlinear = (SMOOTHING,)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
@@ -60,6 +62,7 @@ class FrictionOffset(Effect):
     reference = "Khalil and Dombre 2002"
     confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")
     experiment = "the current with the motor switched off, and constant speeds in both directions"
+    shown = at(offset=0.05)
     linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=ANY),)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
@@ -80,6 +83,7 @@ class AsymmetricViscousFriction(Effect):
     linear = (Parameter("coefficient", "{f} s/{x}", "half the difference of the two", "FA", bounds=ANY),)
     confused_with = ("friction_offset",)
     experiment = "constant speeds, several in each direction"
+    shown = at(coefficient=0.0005)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FA |v|."""
@@ -106,6 +110,7 @@ class NonlinearViscousFriction(Effect):
     )
     confused_with = ("stribeck_friction", "fluid_drag", "torque_constant_saturation")
     experiment = "constant speeds up to the highest"
+    shown = at(coefficient=0.1, exponent=0.6, scale=100.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FN |v / scale|^exponent sign(v)."""

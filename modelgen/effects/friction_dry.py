@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
 from modelgen.effects.friction import SMOOTHING, direction
 from modelgen.effects.variables import Variables
 
@@ -32,6 +32,7 @@ class StribeckFriction(Effect):
     )
     confused_with = ("presliding", "backlash", "nonlinear_viscous_friction", "time_delay")
     experiment = "slow constant speeds around the Stribeck velocity, both directions"
+    shown = at(magnitude=0.1, velocity=8.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FS exp(-|v / v_s|^exponent) sign(v)."""
@@ -51,6 +52,7 @@ class LoadDependentFriction(Effect):
     nonlinear = (SMOOTHING,)
     confused_with = ("position_dependent_friction", "drive_gain_error")
     experiment = "the same path with two payloads"
+    shown = at(coefficient=0.15)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FL |load| sign(v), the load that of gravity alone."""
@@ -71,6 +73,7 @@ class PositionDependentFriction(Effect):
     nonlinear = (SMOOTHING,)
     confused_with = ("load_dependent_friction",)
     experiment = "small reversals at many places of the range, with and without payload"
+    shown = at(slope=0.04, curvature=0.02)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """(FP q + FQ q^2) sign(v)."""
@@ -102,6 +105,7 @@ class FrictionWarmUp(Effect):
     )
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
+    shown = at(dry=0.1, viscous=0.0003, time=5.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """exp(-t / time) (FCW sign(v) + FVW v)."""
@@ -129,6 +133,7 @@ class Presliding(Effect):
     states = ("bend",)
     confused_with = ("stribeck_friction", "backlash", "time_delay")
     experiment = "reversals of small amplitude, at several amplitudes and speeds"
+    shown = at(magnitude=0.1, distance=6.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FD z, where z is the bend of the bristles, from -1 to 1."""

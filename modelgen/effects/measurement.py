@@ -8,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from modelgen.description.objects import Arm, DirectDrive, LeveredDrive
-from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values
+from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
 from modelgen.effects.variables import InputVariables
 
 
@@ -22,6 +22,7 @@ class EncoderOffset(DescriptionEffect):
     nonlinear = (Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY),)
     confused_with = ("base_tilt", "spring", "friction_offset")
     experiment = "an index mark or a hard stop"
+    shown = at(offset=0.03)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """Frame and lever turned by the offset."""
@@ -49,6 +50,7 @@ class LeverGeometry(DescriptionEffect):
     )
     confused_with = ("encoder_offset", "position_dependent_friction", "actuator_mass")
     experiment = "`modelgen calibrate`, or static holds over the whole stroke"
+    shown = at(l2=0.001)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """The lever with its true lengths."""
@@ -77,6 +79,7 @@ class DriveGainError(DescriptionEffect):
     nonlinear = (Parameter("error", "1", "true over described torque constant, less 1", bounds=(-0.9, 9.0)),)
     confused_with = ("load_dependent_friction", "torque_constant_saturation")
     experiment = "a run with a known payload"
+    shown = at(error=0.1)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """The drive with its true torque constant."""
@@ -100,6 +103,7 @@ class TorqueConstantSaturation(InputEffect):
     )
     confused_with = ("nonlinear_viscous_friction", "load_dependent_friction", "drive_gain_error")
     experiment = "a known payload at rest, light and heavy"
+    shown = at(coefficient=0.002)
 
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:
         """i (1 - c i^2), its largest value where i is beyond it."""
@@ -125,6 +129,7 @@ class TimeDelay(InputEffect):
     states = ("lagged",)
     confused_with = ("joint_flexibility", "presliding", "stribeck_friction")
     experiment = "the cross-correlation of a chirp, or a loop-back of the signal"
+    shown = at(delay=0.02)
 
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:
         """The input of a first-order lag that has the delay for its time constant."""

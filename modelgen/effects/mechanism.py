@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values
+from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
 from modelgen.effects.variables import Variables
 from modelgen.transmission import Levered, Transmission
 
@@ -25,6 +25,7 @@ class DriveInertia(Effect):
     linear = (Parameter("inertia", "{f} s^2/{x}", "inertia of the drive", "IA"),)
     confused_with = ("actuator_mass",)
     experiment = "fast and slow runs of the same path"
+    shown = at(inertia=0.0005)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """IA a."""
@@ -46,6 +47,7 @@ class Spring(Effect):
     rest = Parameter("rest", "{x}", "coordinate at rest", bounds=ANY)
     confused_with = ("friction_offset", "base_tilt", "encoder_offset")
     experiment = "static holds over the whole range"
+    shown = at(stiffness=8.0, preload=-4.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """KS q + KO."""
@@ -85,6 +87,7 @@ class TorqueRipple(Effect):
     )
     confused_with = ("position_dependent_friction", "lever_geometry")
     experiment = "slow constant speed, and the spectrum over the motor's angle"
+    shown = at(sine=0.05, cosine=0.0, harmonic=0.25)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """RS sin(phase) + RC cos(phase), phase = 2 pi harmonic x / revolution."""
@@ -119,6 +122,7 @@ class TransmissionCoupling(Effect):
     )
     confused_with = ("fluid_drag",)
     experiment = "the two joints moved one at a time, then together"
+    shown = at(inertia=0.0, viscous=2.0, dry=4.0, other=1.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """IC a + FVC v + FCC sign(v) at the coordinate of the coupling."""
@@ -144,6 +148,7 @@ class ActuatorMass(Effect):
     )
     confused_with = ("lever_geometry", "drive_inertia", "spring")
     experiment = "static holds over the stroke, then fast and slow runs"
+    shown = at(inertia=0.05, moment_x=0.3, moment_y=0.1)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """JS (b'^2 a + b' b'' v^2) + dU/dq with b the angle of the actuator against the lever's base."""

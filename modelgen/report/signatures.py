@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
@@ -24,35 +22,6 @@ ARM = Arm(
     (_LINK, _LINK),
     (0.0, -9.81, 0.0),
 )
-# What shows the effect in the picture, in the units of the motor coordinates [rad, N m].
-VALUES: Mapping[str, Mapping[str, float]] = {
-    "viscous_friction": {"coefficient": 1e-3},
-    "coulomb_friction": {"magnitude": 0.1},
-    "friction_offset": {"offset": 0.05},
-    "asymmetric_viscous_friction": {"coefficient": 5e-4},
-    "stribeck_friction": {"magnitude": 0.1, "velocity": 8.0},
-    "load_dependent_friction": {"coefficient": 0.15},
-    "nonlinear_viscous_friction": {"coefficient": 0.1, "exponent": 0.6, "scale": 100.0},
-    "position_dependent_friction": {"slope": 0.04, "curvature": 0.02},
-    "friction_warm_up": {"dry": 0.1, "viscous": 3e-4, "time": 5.0},
-    "presliding": {"magnitude": 0.1, "distance": 6.0},
-    "drive_inertia": {"inertia": 5e-4},
-    "torque_ripple": {"sine": 0.05, "cosine": 0.0, "harmonic": 0.25},
-    "backlash": {"play": 0.01, "stiffness": 3e4, "damping": 300.0},
-    "joint_flexibility": {"stiffness": 4e3, "damping": 60.0},
-    "transmission_coupling": {"inertia": 0.0, "viscous": 2.0, "dry": 4.0, "other": 1.0},
-    "lever_geometry": {"l2": 0.001},
-    "actuator_mass": {"inertia": 0.05, "moment_x": 0.3, "moment_y": 0.1},
-    "spring": {"stiffness": 8.0, "preload": -4.0},
-    "payload_change": {"mass": 1.0, "x": 0.5},
-    "fluid_drag": {"coefficient": 60.0},
-    "added_mass": {"per_length": 4.0},
-    "base_tilt": {"z": 0.05},
-    "drive_gain_error": {"error": 0.1},
-    "torque_constant_saturation": {"coefficient": 0.002},
-    "encoder_offset": {"offset": 0.03},
-    "time_delay": {"delay": 0.02},
-}
 
 
 def motion() -> Motion:
@@ -76,7 +45,7 @@ def parameters(arm: Arm) -> np.ndarray:
 def picture(name: str, prober: Prober, along: Motion, base: np.ndarray) -> str:
     """SVG of what the effect adds to the inputs, over time and over what shows it best."""
     joint = places(ARM, name)[-1]
-    added = prober.contribution(name, joint, along, VALUES[name], base)
+    added = prober.contribution(name, joint, along, CATALOGUE[name].shown, base)
     rows = range(prober.n) if joint is None else [joint - 1]
     made, axes = figure(1, 2, (7.2, 2.2))
     over = CATALOGUE[name].seen_over
