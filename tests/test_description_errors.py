@@ -113,7 +113,7 @@ def test_the_good_text_is_good() -> None:
             "type: levered",
             "type: lever",
             "16:17: arm.joints.0.drive.type: found 'lever', "
-            "expected one of none, direct, levered, did you mean 'levered'?",
+            "expected one of none, direct, levered, slider_crank, did you mean 'levered'?",
         ),
         ("type: prismatic", "type: prism", "found 'prism', expected one of revolute, prismatic, fixed"),
         ("rev: 1", "rev: 2", "21:16: arm.joints.0.drive.rev: found 2, expected one of 1, -1"),

@@ -16,6 +16,7 @@ ORDER = (
     "jobs",
     "figures",
     "graph",
+    "linkages",
     "description",
     "geometry",
     "transmission",

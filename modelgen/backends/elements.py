@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from modelgen.description.objects import Joint, LeveredDrive, NoDrive
+from modelgen.description.objects import Joint, LeveredDrive, LinkageDrive, NoDrive
 from modelgen.functions.objects import Argument, Function, Model
 
 # Names of parameters are short and carry the number of their joint, so they never meet those of a library.
@@ -79,4 +79,6 @@ def local_names(model: Model, function: Function) -> dict[str, tuple[Element | N
 def _drive(joint: Joint) -> str:
     if isinstance(joint.drive, NoDrive):
         return "undriven"
+    if isinstance(joint.drive, LinkageDrive):
+        return f"{joint.drive.linkage} drive"
     return "levered drive" if isinstance(joint.drive, LeveredDrive) else "direct drive"

@@ -19,7 +19,7 @@ from modelgen.base_parameters.closed_form import Factors, closed_forms
 from modelgen.base_parameters.objects import BaseParameter, Grouping
 from modelgen.base_parameters.oracle import rank, regressor_values
 from modelgen.base_parameters.printing import printed
-from modelgen.description.objects import Arm, LeveredDrive, Scalar, geometry_symbol
+from modelgen.description.objects import Arm, LeveredDrive, LinkageDrive, Scalar, geometry_symbol
 from modelgen.graph import Expr
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
@@ -95,6 +95,9 @@ def _of_levers(arm: Arm) -> set[str]:
         drive = joint.drive
         if isinstance(drive, LeveredDrive):
             for value in (drive.l1, drive.l2, *drive.length, drive.offset):
+                names |= {symbol.name for symbol in sp.sympify(value).free_symbols}
+        if isinstance(drive, LinkageDrive):
+            for value in drive.figures.values():
                 names |= {symbol.name for symbol in sp.sympify(value).free_symbols}
     return names
 

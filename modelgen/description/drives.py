@@ -11,6 +11,7 @@ from modelgen.description.objects import (
     DirectDrive,
     Drive,
     LeveredDrive,
+    LinkageDrive,
     MotorLimits,
     NoDrive,
     Range,
@@ -19,15 +20,18 @@ from modelgen.description.schema import (
     AnyDriveModel,
     DirectDriveModel,
     LeveredDriveModel,
+    LinkageModel,
     MotorModel,
     NoDriveModel,
 )
+from modelgen.linkages import LINKAGES
 
 # Nearer than this to a dead centre the lever passes on next to no effort, and rounding decides its branch.
 DEAD_CENTRE_MARGIN = math.radians(0.5)
 # Joint range and stroke come from different measurements: below `ROUNDING` the cut is not worth a remark,
 # beyond `DISAGREEMENT` one of the two must be wrong.
 ROUNDING = math.radians(0.01)
+LEVER = "length, rev or offset"  # what of a lever its range depends on
 DISAGREEMENT = math.radians(0.5)
 
 
@@ -52,6 +56,8 @@ def read_drive(context: Context, model: AnyDriveModel, joint_type: str, steps: S
             )
         case LeveredDriveModel():
             return _levered(context, model, steps)
+        case LinkageModel():
+            return _linkage(context, model, joint_type, steps)
 
 
 def _levered(context: Context, model: LeveredDriveModel, steps: Steps) -> LeveredDrive:
@@ -70,6 +76,28 @@ def _levered(context: Context, model: LeveredDriveModel, steps: Steps) -> Levere
         motor=(motor[0], motor[1]),
         rev=model.rev,
         offset=context.quantity(model.offset, "angle", [*steps, "offset"]).scalar,
+        torque_constant=_torque_constant(context, model, steps),
+        limits=_motor_limits(context, model, steps),
+    )
+
+
+def _linkage(context: Context, model: LinkageModel, joint_type: str, steps: Steps) -> LinkageDrive:
+    linkage = LINKAGES[model.type]
+    if joint_type != linkage.joint:
+        raise context.error(
+            f"found a drive {model.type} on a {joint_type} joint, expected a {linkage.joint} one",
+            [*steps, "type"],
+        )
+    found = {
+        f.name: context.quantity(getattr(model, f.name), f.kind, [*steps, f.name]) for f in linkage.figures
+    }
+    try:
+        linkage.reach({name: quantity.value for name, quantity in found.items()})
+    except ValueError as error:
+        raise context.error(str(error), steps) from None
+    return LinkageDrive(
+        linkage=model.type,
+        figures={name: quantity.scalar for name, quantity in found.items()},
         torque_constant=_torque_constant(context, model, steps),
         limits=_motor_limits(context, model, steps),
     )
@@ -121,8 +149,13 @@ def _check_triangle(context: Context, l1: float, l2: float, ends: list[float], s
             )
 
 
-def stroke_range(context: Context, model: LeveredDriveModel, steps: Steps) -> Range:
-    """Joint range [rad] that the actuator's stroke allows."""
+def stroke_range(context: Context, model: LeveredDriveModel | LinkageModel, steps: Steps) -> Range:
+    """Joint range [rad, m] that the actuator's stroke, or the linkage's reach, allows."""
+    if isinstance(model, LinkageModel):
+        linkage = LINKAGES[model.type]
+        return linkage.reach(
+            {f.name: context.number(getattr(model, f.name), f.kind, steps) for f in linkage.figures}
+        )
     l1, l2 = context.number(model.l1, "length", steps), context.number(model.l2, "length", steps)
     offset = context.number(model.offset, "angle", steps)
     lengths = context.numbers(model.length, "length", steps)
@@ -130,7 +163,14 @@ def stroke_range(context: Context, model: LeveredDriveModel, steps: Steps) -> Ra
     return ends[0], ends[1]
 
 
-def within_stroke(context: Context, joint: str, position: Range | None, stroke: Range, steps: Steps) -> Range:
+def within_stroke(
+    context: Context,
+    joint: str,
+    position: Range | None,
+    stroke: Range,
+    steps: Steps,
+    figures: str = LEVER,
+) -> Range:
     """The joint range, cut to the stroke where they disagree a little. Raises InputError where by more.
 
     Without a joint range, the stroke's is taken.
@@ -143,8 +183,8 @@ def within_stroke(context: Context, joint: str, position: Range | None, stroke: 
     if excess >= DISAGREEMENT:
         raise context.error(
             f"found the joint range {shown}, but the actuator's stroke allows {allowed}; "
-            "correct the range, or the drive's length, rev or offset; where these are not known well, leave "
-            "the range out until modelgen calibrate has found them",
+            f"correct the range, or the drive's {figures}; where these are not known well, leave the range "
+            f"out{' until modelgen calibrate has found them' if figures == LEVER else ''}",
             steps,
         )
     cut = max(position[0], stroke[0]), min(position[1], stroke[1])

@@ -8,10 +8,11 @@ from typing import TypeAlias
 
 from modelgen.description.context import Context, show
 from modelgen.description.document import Steps
-from modelgen.description.drives import read_drive, stroke_range, within_stroke
+from modelgen.description.drives import LEVER, read_drive, stroke_range, within_stroke
 from modelgen.description.messages import describe, suggest
 from modelgen.description.objects import Drive, EffectUse, Joint, Limits, NoDrive
-from modelgen.description.schema import EffectEntry, JointModel, LeveredDriveModel
+from modelgen.description.schema import EffectEntry, JointModel, LeveredDriveModel, LinkageModel
+from modelgen.linkages import LINKAGES
 
 DEFAULT_EFFECTS = ("viscous_friction", "coulomb_friction", "drive_inertia")
 
@@ -86,9 +87,12 @@ def _limits(context: Context, model: JointModel, kind: str, joint_at: Steps) -> 
                 [*at, "position"],
             )
         position = low, high
-    if isinstance(model.drive, LeveredDriveModel):
+    if isinstance(model.drive, LeveredDriveModel | LinkageModel):
         stroke = stroke_range(context, model.drive, [*joint_at, "drive"])
-        position = within_stroke(context, model.name, position, stroke, [*at, "position"])
+        figures = LEVER
+        if isinstance(model.drive, LinkageModel):
+            figures = ", ".join(f.name for f in LINKAGES[model.drive.type].figures)
+        position = within_stroke(context, model.name, position, stroke, [*at, "position"], figures)
     return Limits(
         position=position,
         velocity=context.positive(given.velocity, kind, [*at, "velocity"]),

@@ -11,6 +11,9 @@ from pydantic import ValidationError
 
 from modelgen.description.document import Node, Steps, one_line
 from modelgen.errors import InputError
+from modelgen.linkages import LINKAGES
+
+_DRIVES = ("none", "direct", "levered", *LINKAGES)
 
 _EXPECTED = {
     "string_type": "text (put quotes around it)",
@@ -87,7 +90,7 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], Inp
     elif kind == "missing":
         message = f"the key '{entry['loc'][-1]}' is missing"
     elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
-        message = "the key 'type' is missing, expected one of none, direct, levered"
+        message = f"the key 'type' is missing, expected one of {', '.join(_DRIVES)}"
     elif kind == "union_tag_invalid":
         path = [*path, "type"]
         options = re.findall(r"'(\w+)'", context["expected_tags"])

@@ -76,7 +76,17 @@ class LeveredDrive:
     limits: MotorLimits = MotorLimits()
 
 
-Drive: TypeAlias = NoDrive | DirectDrive | LeveredDrive
+@dataclass(frozen=True)
+class LinkageDrive:
+    """A drive of modelgen.linkages: its name and its figures [m, rad] by name."""
+
+    linkage: str
+    figures: Mapping[str, Scalar]
+    torque_constant: float
+    limits: MotorLimits = MotorLimits()
+
+
+Drive: TypeAlias = NoDrive | DirectDrive | LeveredDrive | LinkageDrive
 
 
 @dataclass(frozen=True)

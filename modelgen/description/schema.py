@@ -7,7 +7,7 @@ the arm's symbols and the unit of some depends on the joint's type.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import (
     BaseModel,
@@ -17,11 +17,13 @@ from pydantic import (
     Field,
     Tag,
     WithJsonSchema,
+    create_model,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
 
 from modelgen.description.expressions import MAX_LENGTH
+from modelgen.linkages import LINKAGES, Linkage
 
 JOINT_NAME = r"^[A-Za-z_][A-Za-z0-9_-]*$"
 ARM_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
@@ -134,8 +136,32 @@ class LeveredDriveModel(MotorModel):
     offset: Number = Field(description="Joint angle minus rev times the lever's inner angle [rad].")
 
 
-AnyDriveModel: TypeAlias = NoDriveModel | DirectDriveModel | LeveredDriveModel
-DriveModel: TypeAlias = Annotated[AnyDriveModel, Field(discriminator="type")]
+class LinkageModel(MotorModel):
+    """A drive of modelgen.linkages; each has a class of its own, with its figures as fields."""
+
+    type: str
+
+
+def _linkage_model(linkage: Linkage) -> type[LinkageModel]:
+    fields: dict[str, Any] = {f.name: (Number, Field(description=f.text)) for f in linkage.figures}
+    fields["type"] = (Literal[linkage.name], Field(description=f"{linkage.name}: {linkage.text}."))
+    force = f"Generalised force at the motor coordinate per ampere [J per {linkage.unit} per A]. Not zero."
+    fields["torque_constant"] = (Number, Field(description=force))
+    made: type[LinkageModel] = create_model(
+        f"{type(linkage).__name__}Model",
+        __base__=LinkageModel,
+        __doc__=linkage.text[0].upper() + linkage.text[1:] + ".",
+        **fields,
+    )
+    return made
+
+
+AnyDriveModel: TypeAlias = NoDriveModel | DirectDriveModel | LeveredDriveModel | LinkageModel
+if TYPE_CHECKING:
+    DriveModel: TypeAlias = AnyDriveModel
+else:
+    _MODELS = (NoDriveModel, DirectDriveModel, LeveredDriveModel, *map(_linkage_model, LINKAGES.values()))
+    DriveModel = Annotated[Union[_MODELS], Field(discriminator="type")]  # noqa: UP007 - made of a tuple
 
 
 class JointModel(Model):

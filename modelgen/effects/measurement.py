@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from modelgen.description.objects import Arm, DirectDrive, LeveredDrive
+from modelgen.description.objects import Arm, LeveredDrive, NoDrive
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
 from modelgen.effects.variables import InputVariables
 
@@ -85,7 +85,7 @@ class DriveGainError(DescriptionEffect):
         """The drive with its true torque constant."""
         assert joint is not None
         drive = arm.joints[joint].drive
-        if not isinstance(drive, DirectDrive | LeveredDrive):
+        if isinstance(drive, NoDrive):
             raise ValueError("found on a joint without a drive, expected a driven joint")
         constant = drive.torque_constant * (1 + values["error"])
         return _with(arm, joint, drive=replace(drive, torque_constant=constant))

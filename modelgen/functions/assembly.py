@@ -104,7 +104,9 @@ class Assembly:
         result = []
         for n, drive in enumerate(self.real.drives):
             motor = drive.transmission.motor_range()
-            if "q" in inputs and not self.options.runtime_geometry:
+            # a lever's geometry is then an input, see stroke_guards
+            lever = isinstance(drive.transmission, Levered)
+            if "q" in inputs and not (self.options.runtime_geometry and lever):
                 joint = drive.transmission.joint_range()
                 if joint:
                     result.append(_range("q", n, joint, STROKE_MARGIN))

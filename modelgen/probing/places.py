@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from modelgen.description.objects import Arm, DirectDrive, EffectUse, LeveredDrive
+from modelgen.description.objects import Arm, EffectUse, LeveredDrive, NoDrive
 from modelgen.effects import CATALOGUE, DescriptionEffect, InputEffect
 from modelgen.effects.environment import AddedMass, FluidDrag
 from modelgen.effects.measurement import LeverGeometry
@@ -34,7 +34,7 @@ def places(arm: Arm, name: str) -> list[int | None]:
             continue
         if issubclass(effect, _LEVERS) and not isinstance(joint.drive, LeveredDrive):
             continue
-        driven = isinstance(joint.drive, LeveredDrive | DirectDrive)
+        driven = not isinstance(joint.drive, NoDrive)
         if name == "drive_gain_error" and not driven:
             continue
         if issubclass(effect, InputEffect) and not driven:
@@ -53,7 +53,7 @@ def _of_delay(arm: Arm) -> list[int | None]:
     for number, index in enumerate(arm.coordinates, 1):
         joint = arm.joints[index]
         there = any(use.name == "time_delay" for use in joint.effects)
-        if isinstance(joint.drive, LeveredDrive | DirectDrive) and not there:
+        if not isinstance(joint.drive, NoDrive) and not there:
             found.append(number)
     return found if len(found) != 2 else [None]
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from markupsafe import Markup
 
-from modelgen.description import DirectDrive, LeveredDrive
+from modelgen.description import NoDrive
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.rows import Array
 from modelgen.figures import COLOURS, figure, svg
 
-DRIVEN = (DirectDrive, LeveredDrive)
 _WINDOWS = 12  # that the picture of the simulation shows
 _SECONDS = 10.0  # of the test record that the pictures over time show
 
@@ -48,7 +47,7 @@ def units_of(d: Diagnosis) -> list[str]:
         return list(d.test.prepared.effort_unit) or ["A"] * len(d.arm.coordinates)
     joints = [d.arm.joints[i] for i in d.arm.coordinates]
     forces = ["N" if j.type == "prismatic" else "N m" for j in joints]
-    return ["A" if isinstance(j.drive, DRIVEN) else u for j, u in zip(joints, forces, strict=True)]
+    return [u if isinstance(j.drive, NoDrive) else "A" for j, u in zip(joints, forces, strict=True)]
 
 
 def residuals(d: Diagnosis) -> list[tuple[str, Markup]]:

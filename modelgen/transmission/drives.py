@@ -3,7 +3,7 @@
 The generalised force at q_m is torque_constant i. Everything else follows from q_m(q): by
 differentiation dq_m = k1 dq and ddq_m = k1 ddq + k2 with k1 = dq_m/dq and k2 = k1' dq^2, and by
 virtual work the joint effort K i with K = torque_constant k1.
-A new kind of drive is one more class here and its entry in `of_joint`.
+A new kind of drive is one more class in modelgen.linkages.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ from modelgen.description.objects import (
     DirectDrive,
     Joint,
     LeveredDrive,
+    LinkageDrive,
     Range,
     Scalar,
     geometry_symbol,
 )
+from modelgen.linkages import LINKAGES
 
 
 class Transmission(ABC):
@@ -176,6 +178,34 @@ class Levered(Transmission):
         return min(self.drive.motor), max(self.drive.motor)
 
 
+class Linked(Transmission):
+    """A drive of modelgen.linkages."""
+
+    def __init__(self, drive: LinkageDrive, values: dict[sp.Symbol, float]) -> None:
+        super().__init__(drive.torque_constant)
+        self.linkage = LINKAGES[drive.linkage]
+        self.unit = self.linkage.unit
+        self.figures = {name: sp.sympify(value) for name, value in drive.figures.items()}
+        self.values = values
+
+    def motor(self) -> sp.Expr:
+        """q_m(q) of the linkage."""
+        return self.linkage.motor(self.q, self.figures)
+
+    def joint(self) -> sp.Expr:
+        """Its inverse."""
+        return self.linkage.inverse(self.q_m, self.figures)
+
+    def joint_range(self) -> Range:
+        """The reach of the linkage."""
+        return self.linkage.reach({name: float(x.subs(self.values)) for name, x in self.figures.items()})
+
+    def motor_range(self) -> Range:
+        """The motor coordinates at its ends."""
+        ends = [float(self.motor().subs(self.q, q).subs(self.values)) for q in self.joint_range()]
+        return min(ends), max(ends)
+
+
 STROKE_MARGIN = math.radians(0.05)  # [rad] beyond a lever's stroke before the status says so
 
 
@@ -204,6 +234,8 @@ def _made(drive: _Text, symbols: _Text) -> Transmission:
         return Direct(drive.value)
     if isinstance(drive.value, LeveredDrive):
         return Levered(drive.value, {geometry_symbol(n): v for n, v in symbols.value})
+    if isinstance(drive.value, LinkageDrive):
+        return Linked(drive.value, {geometry_symbol(n): v for n, v in symbols.value})
     return Undriven()
 
 
