@@ -4,7 +4,8 @@
 #   make pytest  every test
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
-#   make bench   beside Pinocchio, MuJoCo, SymPy and FIGAROH: docs/benchmarks.md (needs valgrind)
+#   make bench   beside Pinocchio, MuJoCo, SymForce, SymPy and FIGAROH, and variants: docs/benchmarks.md (needs valgrind)
+#   make bench-scale  chains of 2 to 50 joints and trees, into the same page
 #   make bench-generation  CPU time of generation, per arm and over the number of joints
 #   make docs    the documentation as HTML, with the reference: build/docs/index.html
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
@@ -20,7 +21,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench bench-generation docs size run-examples prove fuzz hidden blind clean
+.PHONY: run test pytest lint format bench bench-scale bench-generation docs size run-examples prove fuzz hidden blind clean
 
 EXAMPLE := examples/diagnosis
 
@@ -46,7 +47,13 @@ format: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	$(BIN)/python benchmarks/variants.py --accept
 	$(BIN)/python benchmarks/compare.py --accept
+
+bench-scale: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	$(BIN)/python benchmarks/scale.py --accept
+	$(BIN)/python benchmarks/compare.py --page
 
 bench-generation: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py

@@ -2,6 +2,7 @@
 
     python benchmarks/compare.py [ARM ...]     print the tables, and what has drifted since they were written
     python benchmarks/compare.py --accept      write benchmarks/compare.json, docs/benchmarks.md, its pictures
+    python benchmarks/compare.py --page        write the page and its pictures from the files of figures
 
 Needs gcc, valgrind and the packages of `pip install 'modelgen[bench]'`; compiling against Pinocchio's headers
 takes minutes and 5 GB of memory, once (build/bench). Reports; fails only where results differ.
@@ -12,21 +13,22 @@ from __future__ import annotations
 import argparse
 import importlib.metadata
 import json
+import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from peers import batch, build, pages
-from peers.arms import BENCH, SHIPPED, links_alone, subject
+from peers import batch, build, pages, quoted
+from peers.arms import BENCH, links_alone, names, subject
 from peers.field import OURS, PINOCCHIO, Peer, measured, shared
 
 ROOT = Path(__file__).resolve().parent.parent
 ACCEPTED = ROOT / "benchmarks" / "compare.json"
 WORK = ROOT / "build" / "bench"
 _DRIFT = 0.03
-_PACKAGES = ("pin", "casadi", "mujoco", "sympy", "figaroh")
+_PACKAGES = ("pin", "casadi", "mujoco", "sympy", "symforce", "figaroh")
 
 
 def versions() -> dict[str, str]:
@@ -41,31 +43,41 @@ def versions() -> dict[str, str]:
 
 
 def summary(peers: dict[str, Peer]) -> dict[str, Any]:
-    """Figures of one arm for the file: times as quantiles of the ratio to modelgen's median."""
-    ours = {f: float(np.median(times)) for f, times in peers[OURS].nanoseconds.items()}
-    return {
-        name: {
-            "instructions": {f: round(count, 1) for f, count in peer.instructions.items()},
-            "time": {
-                f: [round(float(x), 2) for x in np.percentile(times, (50, 10, 90)) / ours[f]]
-                for f, times in peer.nanoseconds.items()
-            },
-            "bytes": peer.bytes,
-            "generation": None if peer.generation is None else round(peer.generation, 2),
-        }
-        for name, peer in peers.items()
+    """Figures of one arm for the file. Times: every block of calls over modelgen's median of the same round,
+    as quantiles 50, 10, 90 %, and the medians of the rounds, lowest and highest."""
+    ours = {
+        f: [float(np.median(blocks)) for blocks in rounds] for f, rounds in peers[OURS].nanoseconds.items()
     }
+    result = {}
+    for name, peer in peers.items():
+        times = {}
+        for f, rounds in peer.nanoseconds.items():
+            ratios = [blocks / mine for blocks, mine in zip(rounds, ours[f], strict=True)]
+            medians = [float(np.median(one)) for one in ratios]
+            quantiles = np.percentile(np.concatenate(ratios), (50, 10, 90))
+            times[f] = [round(float(x), 2) for x in (*quantiles, min(medians), max(medians))]
+        result[name] = {
+            "operations": peer.operations,
+            "instructions": {f: round(count, 1) for f, count in peer.instructions.items()},
+            "time": times,
+            "costs": {key: round(value, 2) for key, value in peer.costs.items()},
+        }
+    return result
 
 
 def rows(name: str, peers: dict[str, Peer]) -> dict[str, float]:
     """Rows of the regressor per second, by who computes them; as ratios to the loop in Python."""
     case = subject(name)
+
+    def median(peer: Peer) -> float:
+        return float(np.median(np.concatenate(peer.nanoseconds["regressor"])))
+
     found = {
-        "modelgen, C": 1e9 * case.joints / float(np.median(peers[OURS].nanoseconds["regressor"])),
+        "modelgen, C": 1e9 * case.joints / median(peers[OURS]),
         "modelgen, NumPy": float(np.median(batch.numpy_rows(links_alone(case.arm), case))),
     }
     if PINOCCHIO in peers:
-        nanoseconds = float(np.median(peers[PINOCCHIO].nanoseconds["regressor"]))
+        nanoseconds = median(peers[PINOCCHIO])
         found[PINOCCHIO] = 1e9 * case.joints / nanoseconds
         found["Pinocchio, Python"] = float(np.median(batch.pinocchio_rows(case)))
     if build.package("figaroh"):
@@ -88,26 +100,37 @@ def drifted(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
 def main(arguments: Sequence[str]) -> int:
     """Measure, print, compare or accept."""
     parser = argparse.ArgumentParser(description="Generated functions beside those of other tools.")
-    parser.add_argument("arm", nargs="*", help="arms, by default the three bench arms and five others")
+    parser.add_argument("arm", nargs="*", help="arms, by default every shipped one")
     parser.add_argument("--accept", action="store_true", help="write the tables")
+    parser.add_argument("--page", action="store_true", help="write the page from the files of figures alone")
     given = parser.parse_args(arguments)
+    if given.page:
+        pages.write(json.loads(ACCEPTED.read_text(encoding="utf-8")), ACCEPTED.parent, ROOT / "docs")
+        return 0
+    if unknown := [name for name in given.arm if name not in names()]:
+        parser.error(f"unknown arm {unknown[0]!r}, expected one of {', '.join(names())}")
+    if given.accept and given.arm:
+        parser.error("--accept measures every arm")
+    if missing := [tool for tool in ("gcc", "g++", "valgrind") if shutil.which(tool) is None]:
+        parser.error(f"needs {missing[0]} (Debian: build-essential, valgrind)")
     WORK.mkdir(parents=True, exist_ok=True)
     common = shared(WORK)
     arms, batches = {}, {}
-    for name in given.arm or (*BENCH, *SHIPPED):
+    for name in given.arm or names():
         print(name, file=sys.stderr, flush=True)
         peers = measured(name, common, WORK / name)
         arms[name] = summary(peers)
         if name in BENCH:
             batches[name] = rows(name, peers)
     result = {"versions": versions(), "arms": arms, "rows_per_second": batches}
-    print(pages.document(result))
+    result["quoted"] = quoted.counted()
+    print(pages.document(result, ACCEPTED.parent))
     if ACCEPTED.exists():
         before = json.loads(ACCEPTED.read_text(encoding="utf-8"))["arms"]
         print("\n".join(drifted(before, arms)), file=sys.stderr)
     if given.accept:
         ACCEPTED.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-        pages.write(result, ROOT / "docs")
+        pages.write(result, ACCEPTED.parent, ROOT / "docs")
     return 0
 
 

@@ -81,7 +81,7 @@ def _model(case: Subject) -> Any:
     """The arm in Pinocchio's Python module, from the text that its C++ reads."""
     import pinocchio as pin  # noqa: PLC0415 - likewise
 
-    first, *lines = model_text(case.arm).splitlines()
+    first, *lines = model_text(case).splitlines()
     model = pin.Model()
     model.gravity.linear = np.array([float(x) for x in first.split()[1:]])
     for i, line in enumerate(lines):

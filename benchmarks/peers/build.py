@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
+import importlib.metadata
 import importlib.util
-import resource
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).parent
 # valgrind 3.19 knows no AVX-512.
 TARGET = ("-O3", "-march=x86-64-v3", "-DNDEBUG")
 # As in docs/firmware.md; -std=c99 alone would forbid fused operations.
-C = ("gcc", *TARGET, "-std=gnu11", "-ffp-contract=fast", "-fno-math-errno")
-CXX = ("g++", "-std=c++17")
+C = ("gcc", *TARGET, "-std=gnu11", "-ffp-contract=fast", "-fno-math-errno", "-fstack-usage")
+CXX = ("g++", "-std=c++17", "-fstack-usage")
 # What Pinocchio's own CMake target defines.
 _PINOCCHIO = (
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
@@ -24,21 +26,20 @@ _PINOCCHIO = (
 )
 
 
+@dataclass(frozen=True)
+class Built:
+    """The harness with a peer's functions, and the objects that hold their code."""
+
+    program: Path
+    objects: Sequence[Path]
+
+
 def run(command: Sequence[str], folder: Path | None = None) -> str:
     """Standard output of a command. Raises RuntimeError with what it wrote where it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)}\n{done.stderr[-3000:]}")
     return done.stdout
-
-
-def cost(command: Sequence[str]) -> tuple[float, float]:
-    """CPU time [s] of a command, and the most memory that any command so far has taken [MB]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    run(command, HERE.parent)  # where `-m` finds this package
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return cpu, after.ru_maxrss / 1024
 
 
 def package(name: str) -> Path | None:
@@ -75,14 +76,21 @@ def pinocchio_flags() -> list[str] | None:
     return [*_PINOCCHIO, f"-I{prefix}", f"-I{casadi}/include", f"-I{casadi}/include/eigen3"]
 
 
+def _once(folder: Path, source: Path, *flags: str) -> Path:
+    """A source compiled, anew where it, the arms' reader or a package has changed."""
+    found = [importlib.metadata.version(name) for name in ("pin", "casadi")]
+    texts = [path.read_text(encoding="utf-8") for path in (source, HERE / "pinocchio_model.hpp")]
+    key = hashlib.sha256("\n".join([*texts, *found, *flags]).encode()).hexdigest()[:12]
+    out = folder / f"{source.stem}-{key}.o"
+    return out if out.exists() else object_file(source, out, *flags)
+
+
 def pinocchio(folder: Path) -> Path | None:
     """The harness with Pinocchio's algorithms; takes minutes to compile."""
     flags = pinocchio_flags()
     if flags is None:
         return None
-    compiled = folder / "pinocchio.o"
-    if not compiled.exists():
-        object_file(HERE / "pinocchio.cpp", compiled, *flags)
+    compiled = _once(folder, HERE / "pinocchio.cpp", *flags)
     return program(folder / "pinocchio", [compiled])
 
 
@@ -92,9 +100,7 @@ def tracer(folder: Path) -> Path | None:
     casadi = package("casadi")
     if flags is None or casadi is None:
         return None
-    compiled = folder / "tracer.o"
-    if not compiled.exists():
-        object_file(HERE / "pinocchio_traced.cpp", compiled, *flags, "-O1")
+    compiled = _once(folder, HERE / "pinocchio_traced.cpp", *flags, "-O1")
     out = folder / "tracer"
     run(["g++", str(compiled), "-o", str(out), f"-L{casadi}", "-lcasadi", f"-Wl,-rpath,{casadi}"])
     return out

@@ -2,39 +2,42 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.description.objects import Arm
 from modelgen.functions import Model, nominal_base
-from peers import build, mujoco_model, ours, sympy_kane
+from peers import build, cost, mujoco_model, operations, ours, symbolic, symforce_newton, sympy_kane
 from peers.arms import BENCH, Subject, links_alone, subject
-from peers.measure import Call, code_size, instructions, nanoseconds, values
+from peers.bodies import Body
+from peers.build import Built
+from peers.measure import Call, heap, instructions, nanoseconds, values
 
 Array = NDArray[np.float64]
 OURS, RUN_TIME = "modelgen", "modelgen, parameters at run time"
-PINOCCHIO, TRACED = "Pinocchio, C++", "Pinocchio, traced with CasADi"
-MUJOCO, KANE = "MuJoCo", "SymPy, Kane"
+PINOCCHIO, MUJOCO, KANE, SYMFORCE = "Pinocchio, C++", "MuJoCo", "SymPy, Kane", "SymForce"
+TRACED, TRACED_DEFAULT = "Pinocchio, traced with CasADi", "the same in Pinocchio's default convention"
 FUNCTIONS = tuple(ours.FUNCTIONS)
-_ROUNDS, _SECONDS = 3, 0.3
+_ROUNDS, _SECONDS = 5, 0.2
 _AGREEMENT = 1e-9
 
 
 @dataclass
 class Peer:
-    """Figures of one way to compute, by function. `generation` [s CPU]: description to C, all functions."""
+    """Figures of one way to compute, by function.
+
+    nanoseconds: one array of blocks for each round. costs: generation [s CPU, MB], code, tables, stack and
+    heap [bytes], where they apply.
+    """
 
     call: Call
+    operations: dict[str, dict[str, int]] = field(default_factory=dict)
     instructions: dict[str, float] = field(default_factory=dict)
-    nanoseconds: dict[str, list[float]] = field(default_factory=dict)
-    bytes: dict[str, int] = field(default_factory=dict)
-    generation: float | None = None
+    nanoseconds: dict[str, list[Array]] = field(default_factory=dict)
+    costs: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -54,43 +57,63 @@ def shared(folder: Path) -> Shared:
 
 def measured(name: str, common: Shared, folder: Path) -> dict[str, Peer]:
     """Everyone's figures for one arm. Raises RuntimeError where results differ."""
-    folder.mkdir(parents=True, exist_ok=True)
     case = subject(name)
-    found = _built(case, common, folder)
-    _agree(case, links_alone(case.arm), {peer: values(made.call) for peer, made in found.items()})
+    model = links_alone(case.arm)
+    found = _built(case, model, common, folder)
+    _agree(case, model, {peer: values(made.call) for peer, made in found.items()})
     for made in found.values():
         made.instructions = instructions(made.call)
+        made.costs["heap"] = heap(made.call)
     for _ in range(_ROUNDS):
         for made in found.values():
             for function, times in nanoseconds(made.call, _SECONDS).items():
-                made.nanoseconds.setdefault(function, []).extend(times.tolist())
+                made.nanoseconds.setdefault(function, []).append(times)
     return _split(found)
 
 
-def _built(case: Subject, common: Shared, folder: Path) -> dict[str, Peer]:
-    start = process_time()
-    model = links_alone(case.arm)
-    program, objects = ours.generated(model, folder)
-    found = {OURS: Peer(Call(program, folder, case), generation=process_time() - start)}
-    found[OURS].bytes = {key: code_size(path) for key, path in objects.items()}
+def _built(case: Subject, model: Model, common: Shared, folder: Path) -> dict[str, Peer]:
+    def place(peer: str) -> Path:
+        (folder / peer).mkdir(parents=True, exist_ok=True)
+        return folder / peer
+
+    def add(peer: str, made: Built, counts: dict[str, dict[str, int]], generation: dict[str, float]) -> None:
+        bytes_of = [cost.sections(path) for path in made.objects]
+        sizes = {key: sum(one[key] for one in bytes_of) for key in bytes_of[0]}
+        sizes["stack"] = cost.stack(made.objects)
+        called = Call(made.program, folder, case)
+        found[peer] = Peer(called, counts, costs=generation | {k: float(v) for k, v in sizes.items()})
+
+    found: dict[str, Peer] = {}
+    name = case.arm.name
+    spent = cost.generated(ours.__name__, name, str(place("modelgen")))
+    add(OURS, ours.built(model, place("modelgen")), ours.operations(model), spent)
     if common.pinocchio:
         found[PINOCCHIO] = Peer(Call(common.pinocchio, folder, case))
     if common.tracer:
-        source = folder / "traced.c"
+        sources = [place("traced") / name for name in ("traced.c", "besides.c")]
         model_file = found[OURS].call.command()[1]
-        seconds, _ = build.cost([str(common.tracer), model_file, str(source)])
-        program, compiled = ours.traced(source, case.joints, folder)
-        found[TRACED] = Peer(Call(program, folder, case), generation=seconds)
-        found[TRACED].bytes = {"all": code_size(compiled)}
+        counts: dict[str, dict[str, int]] = {}
+        spent = {}
+        for source, names in zip(sources, (symbolic.TRACED, symbolic.TRACED_BESIDES), strict=True):
+            command = [str(common.tracer), model_file, str(source), ",".join(names)]
+            seconds, memory, _ = cost.launched(command)
+            counts |= operations.traced(source.read_text(encoding="utf-8"))
+            spent = spent or {"seconds": seconds, "memory": memory}
+        add(TRACED, symbolic.traced(sources, case.joints), counts, spent)
+    if build.package("symforce") and build.pinocchio_flags():
+        where = place("symforce")
+        spent = cost.generated(symforce_newton.__name__, name, str(where))
+        texts = {key: (where / f"{key}.h").read_text(encoding="utf-8") for key in FUNCTIONS}
+        counts = {key: operations.symforce(text) for key, text in texts.items()}
+        add(SYMFORCE, symbolic.symforce(where, case.joints), counts, spent)
+    if name in BENCH[:2]:  # minutes from seven joints on
+        source = place("kane") / "kane.c"
+        spent = cost.generated(sympy_kane.__name__, name, str(source))
+        counts = operations.kane(source.read_text(encoding="utf-8"))
+        add(KANE, symbolic.kane(source, case.joints), counts, spent)
     if common.mujoco:
-        mujoco_model.save(case.arm, folder / "model.mjb")
+        mujoco_model.save(case, folder / "model.mjb")
         found[MUJOCO] = Peer(Call(common.mujoco, folder, case, folder / "model.mjb"))
-    if case.arm.name in BENCH[:2]:  # minutes from seven joints on
-        source = folder / "kane.c"
-        command = [sys.executable, "-m", sympy_kane.__name__, case.arm.name, str(source)]
-        seconds, _ = build.cost(command)
-        made = ours.kane(source, case.joints, folder)
-        found[KANE] = Peer(Call(made, folder, case), generation=seconds)
     return found
 
 
@@ -109,24 +132,18 @@ def _agree(case: Subject, model: Model, results: Mapping[str, Mapping[str, Array
                 if peer == OURS:
                     theirs = value.reshape(len(mine), n, -1) @ np.array(list(nominal_base(model).values()))
                 else:  # by columns
-                    theirs = np.einsum("spn,p->sn", value.reshape(len(mine), -1, n), _pinocchio(case.arm))
+                    parameters = np.concatenate([_pinocchio(body) for body in case.bodies])
+                    theirs = np.einsum("spn,p->sn", value.reshape(len(mine), -1, n), parameters)
             difference = np.abs(mine - theirs).max() / np.abs(mine).max()
             if not difference < _AGREEMENT:
                 name = case.arm.name
                 raise RuntimeError(f"{name}: {peer} and modelgen differ by {difference:.1e} in {function}")
 
 
-def _pinocchio(arm: Arm) -> Array:
+def _pinocchio(body: Body) -> Array:
     """Parameters in Pinocchio's order: m, first moments, xx, xy, yy, xz, yz, zz about the joint's frame."""
-    found: list[float] = []
-    for link in arm.links:
-        assert link is not None
-        m, c = link.mass, np.array(link.com)
-        xx, xy, xz, yy, yz, zz = link.inertia
-        t = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        t += m * (c @ c * np.eye(3) - np.outer(c, c))
-        found += [m, *(m * c), t[0, 0], t[0, 1], t[1, 1], t[0, 2], t[1, 2], t[2, 2]]
-    return np.array(found)
+    t = body.tensor
+    return np.array([body.mass, *body.first, t[0, 0], t[0, 1], t[1, 1], t[0, 2], t[1, 2], t[2, 2]])
 
 
 def _split(found: dict[str, Peer]) -> dict[str, Peer]:
@@ -144,14 +161,18 @@ def _split(found: dict[str, Peer]) -> dict[str, Peer]:
         chosen = {key: value for key, value in best.items() if value}
         result[name] = _renamed(made, chosen)
         run_time = {f: f"{f}_run_time" for f in FUNCTIONS if f"{f}_run_time" in made.instructions}
+        if name == TRACED:
+            default = {f: f"{f}_world" for f in ("mass_matrix", "forward_dynamics")}
+            result[TRACED_DEFAULT] = replace(_renamed(made, default), costs={})
         if run_time:
-            result[RUN_TIME] = replace(_renamed(made, run_time), generation=None)
+            result[RUN_TIME] = replace(_renamed(made, run_time), costs={})
     return result
 
 
 def _renamed(made: Peer, names: Mapping[str, str]) -> Peer:
     return replace(
         made,
+        operations={key: made.operations[name] for key, name in names.items() if name in made.operations},
         instructions={key: made.instructions[name] for key, name in names.items()},
         nanoseconds={key: made.nanoseconds[name] for key, name in names.items()},
     )

@@ -1,10 +1,12 @@
 /* harness MODEL STATES N COUNT values          the results of every function in every state
  * harness MODEL STATES N COUNT count           under callgrind: one dump for each function
+ * harness MODEL STATES N COUNT heap            bytes allocated by the model and its functions
  * harness MODEL STATES N COUNT time SECONDS    ns per call, blocks of every function in turn
  *
  * STATES: a file of COUNT x 3 N doubles. */
 #include "peer.h"
 
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,9 +73,17 @@ int main(int argc, char **argv)
     if (!states || !file || fread(states, sizeof *states, size, file) != size)
         return 2;
     fclose(file);
+    const struct mallinfo2 before = mallinfo2();
     const struct peer_function *functions = peer_open(argv[1]);
     if (!functions)
         return 2;
+    if (!strcmp(argv[5], "heap")) {
+        for (const struct peer_function *f = functions; f->name; f++)
+            f->call(states, states + joints, states + 2 * joints);
+        const struct mallinfo2 after = mallinfo2();
+        printf("%zu\n", after.uordblks + after.hblkhd - before.uordblks - before.hblkhd);
+        return 0;
+    }
     if (!strcmp(argv[5], "values") || !strcmp(argv[5], "count")) {
         for (const struct peer_function *f = functions; f->name; f++)
             argv[5][0] == 'v' ? values(f) : count(f);

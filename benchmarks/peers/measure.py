@@ -32,7 +32,7 @@ class Call:
         """The command line; writes the files that it names."""
         model, states = self.folder / "model.txt", self.folder / "states.bin"
         if not states.exists():
-            model.write_text(model_text(self.subject.arm), encoding="utf-8")
+            model.write_text(model_text(self.subject), encoding="utf-8")
             self.subject.states.tofile(states)
         samples = len(self.subject.states)
         return [
@@ -85,11 +85,6 @@ def nanoseconds(call: Call, seconds: float) -> dict[str, Array]:
     return {name: np.array(times) for name, times in found.items()}
 
 
-def code_size(path: Path, pattern: str = ".") -> int:
-    """Bytes of the functions of an object file whose symbols match the pattern."""
-    size = 0
-    for line in run(["nm", "--print-size", "--demangle", str(path)]).splitlines():
-        words = line.split(maxsplit=3)
-        if len(words) == 4 and words[2] in "tTwWuV" and re.search(pattern, words[3]):
-            size += int(words[1], 16)
-    return size
+def heap(call: Call) -> float:
+    """Bytes that the model and its functions have allocated once each function has run."""
+    return float(run(call.command("heap")))

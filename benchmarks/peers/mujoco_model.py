@@ -9,8 +9,7 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
-from modelgen.description.objects import Arm
-from peers.arms import placement
+from peers.arms import Subject
 from peers.build import object_file, package, program
 
 
@@ -18,24 +17,25 @@ def _text(numbers: Iterable[float]) -> str:
     return " ".join(f"{float(number):.17g}" for number in numbers)
 
 
-def save(arm: Arm, path: Path) -> None:
+def save(case: Subject, path: Path) -> None:
     """Write the arm as a compiled model (.mjb)."""
     root = ElementTree.Element("mujoco")
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="false")
-    ElementTree.SubElement(root, "option", gravity=_text(arm.gravity))
-    carrier = ElementTree.SubElement(root, "worldbody")
-    for i, (joint, link) in enumerate(zip(arm.joints, arm.links, strict=True)):
-        assert link is not None
-        place = placement(arm, i)
+    ElementTree.SubElement(root, "option", gravity=_text(case.arm.gravity))
+    world = ElementTree.SubElement(root, "worldbody")
+    made: list[ElementTree.Element] = []
+    for body in case.bodies:
         quaternion = np.zeros(4)
-        mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(place[:3, :3]).reshape(9))
-        carrier = ElementTree.SubElement(carrier, "body", pos=_text(place[:3, 3]), quat=_text(quaternion))
-        xx, xy, xz, yy, yz, zz = link.inertia
+        mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(body.place[:3, :3]).reshape(9))
+        place = {"pos": _text(body.place[:3, 3]), "quat": _text(quaternion)}
+        carrier = ElementTree.SubElement(world if body.parent is None else made[body.parent], "body", place)
+        xx, xy, xz, yy, yz, zz = body.inertia
         inertia = _text((xx, yy, zz, xy, xz, yz))
-        mass, com = _text([link.mass]), _text(link.com)
+        mass, com = _text([body.mass]), _text(body.com)
         ElementTree.SubElement(carrier, "inertial", pos=com, mass=mass, fullinertia=inertia)
-        kind = "slide" if joint.type == "prismatic" else "hinge"
+        kind = "slide" if body.prismatic else "hinge"
         ElementTree.SubElement(carrier, "joint", type=kind, axis="0 0 1")
+        made.append(carrier)
     model = mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding="unicode"))
     mujoco.mj_saveModel(model, str(path), None)
 

@@ -1,7 +1,12 @@
-"""The generated C behind the harness, and that of Pinocchio traced through CasADi."""
+"""The generated C behind the harness.
+
+python -m peers.ours ARM FOLDER     generates, and prints what it cost
+"""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +14,10 @@ import numpy as np
 from modelgen import __version__
 from modelgen.backends import Provenance, c_files
 from modelgen.functions import Model, nominal_base
-from peers.build import object_file, program
+from peers.arms import links_alone, subject
+from peers.build import Built, object_file, program
+from peers.cost import generation
+from peers.harness_source import harness_source
 
 # Name in the tables -> function without and with parameters folded in; inputs after q.
 FUNCTIONS = {
@@ -18,35 +26,21 @@ FUNCTIONS = {
     "forward_dynamics": ("q, dq, third", True),
     "regressor": ("q, dq, third", False),
 }
-_CALL = """\
-static const double *call_{key}(const double *q, const double *dq, const double *third)
-{{
-    static double out[{size}];
-    (void)dq;
-    (void)third;
-    {call};
-    return out;
-}}
-"""
 
 
-def harness_source(head: str, calls: dict[str, tuple[str, int]]) -> str:
-    """C text of a peer. `calls`: name -> (call that writes `out`, size of the result)."""
-    text = [head, '#include "peer.h"', ""]
-    text += [_CALL.format(key=key, size=size, call=call) for key, (call, size) in calls.items()]
-    rows = "".join(f'    {{"{key}", {size}, call_{key}}},\n' for key, (_, size) in calls.items())
-    text += [f"static const struct peer_function functions[] = {{\n{rows}    {{0, 0, 0}}}};"]
-    text += ["", "const struct peer_function *peer_open(const char *model)", "{", "    (void)model;"]
-    return "\n".join([*text, "    return functions;", "}", ""])
-
-
-def generated(model: Model, folder: Path) -> tuple[Path, dict[str, Path]]:
-    """The harness with an arm's C; the objects by function, for their size."""
-    arm = model.arm.name
-    files = c_files(model, Provenance(f"modelgen {__version__}", ""))
-    for name, text in files.items():
+def write(model: Model, folder: Path) -> None:
+    """An arm's C."""
+    for name, text in c_files(model, Provenance(f"modelgen {__version__}", "")).items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
+
+
+def built(model: Model, folder: Path, flags: Sequence[str] = (), units: Sequence[str] | None = None) -> Built:
+    """The harness with an arm's C that `write` wrote, parameters folded in and at run time.
+
+    `flags` are added to those of the compiler; `units`: sources to compile in place of the functions'.
+    """
+    arm = model.arm.name
     sizes = {f.name: f.outputs[0].size for f in model.functions}
     calls = {}
     for key, (inputs, parametric) in FUNCTIONS.items():
@@ -61,42 +55,31 @@ def generated(model: Model, folder: Path) -> tuple[Path, dict[str, Path]]:
     wrapper = folder / "wrapper.c"
     wrapper.write_text(harness_source(head, calls), encoding="utf-8")
     include = f"-I{folder / 'include'}"
-    objects = {"wrapper": object_file(wrapper, folder / "wrapper.o", include)}
-    names = [key for pair in FUNCTIONS for key in (pair, f"{pair}_identified") if key in sizes]
-    for name in [*names, "sincos"]:
-        source = folder / "src" / f"{arm}_{name}.c"
-        objects[name] = object_file(source, folder / f"{name}.o", include)
-    return program(folder / "ours", list(objects.values())), objects
-
-
-def traced(source: Path, joints: int, folder: Path) -> tuple[Path, Path]:
-    """The harness with C that CasADi wrote, and the object with that C."""
-    sizes = {"inverse_dynamics": joints, "mass_matrix": joints**2, "forward_dynamics": joints}
-    sizes["regressor"] = 10 * joints**2
-    declared = "int traced_{0}(const double **, double **, long long *, double *, int);"
-    head = "\n".join(declared.format(name) for name in sizes)
-    calls = {
-        name: (
-            f"const double *in[] = {{q, dq, third}};\n    double *res[] = {{out}};\n"
-            f"    traced_{name}(in, res, 0, 0, 0)",
-            size,
-        )
-        for name, size in sizes.items()
+    run_time = [key for key, (_, parametric) in FUNCTIONS.items() if parametric]
+    folded = [f"{key}_identified" if parametric else key for key, (_, parametric) in FUNCTIONS.items()]
+    if units is not None:
+        made = [object_file(Path(unit), Path(unit).with_suffix(".o"), include, *flags) for unit in units]
+        made.append(object_file(wrapper, folder / "wrapper.o", include))
+        return Built(program(folder / "program", made), made)
+    objects = {
+        name: object_file(folder / "src" / f"{arm}_{name}.c", folder / f"{name}.o", include, *flags)
+        for name in [*run_time, *folded, "sincos"]
     }
-    wrapper = folder / "traced_wrapper.c"
-    wrapper.write_text(harness_source(head, calls), encoding="utf-8")
-    code = object_file(source, folder / "traced.o")
-    objects = [code, object_file(wrapper, folder / "traced_wrapper.o")]
-    return program(folder / "traced", objects), code
+    everything = [object_file(wrapper, folder / "wrapper.o", include), *objects.values()]
+    return Built(program(folder / "program", everything), [objects[name] for name in [*folded, "sincos"]])
 
 
-def kane(source: Path, joints: int, folder: Path) -> Path:
-    """The harness with C that sympy_kane wrote."""
-    sizes = {"inverse_dynamics": joints, "mass_matrix": joints**2}
-    types = "const double *, const double *, const double *, double *"
-    head = "\n".join(f"void kane_{name}({types});" for name in sizes)
-    calls = {name: (f"kane_{name}(q, dq, third, out)", size) for name, size in sizes.items()}
-    wrapper = folder / "kane_wrapper.c"
-    wrapper.write_text(harness_source(head, calls), encoding="utf-8")
-    objects = [object_file(source, folder / "kane.o"), object_file(wrapper, folder / "kane_wrapper.o")]
-    return program(folder / "kane", objects)
+def operations(model: Model) -> dict[str, dict[str, int]]:
+    """Operations of each function as it is tabulated, and with parameters at run time."""
+    counts = {f.name: dict(f.operations) for f in model.functions}
+    found = {}
+    for key, (_, parametric) in FUNCTIONS.items():
+        found[key] = counts[f"{key}_identified" if parametric else key]
+        if parametric:
+            found[f"{key}_run_time"] = counts[key]
+    return found
+
+
+if __name__ == "__main__":
+    arm = subject(sys.argv[1]).arm
+    generation(lambda: write(links_alone(arm), Path(sys.argv[2])))

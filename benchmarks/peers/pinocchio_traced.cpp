@@ -1,4 +1,5 @@
-// Pinocchio's algorithms traced with CasADi's symbols, as C: pinocchio_traced MODEL OUT.c
+// Pinocchio's algorithms traced with CasADi's symbols, as C: pinocchio_traced MODEL OUT.c NAMES. NAMES: functions,
+// separated by commas.
 #include <pinocchio/autodiff/casadi.hpp>
 
 #include "pinocchio_model.hpp"
@@ -31,25 +32,37 @@ template <typename Matrix> SX symbols(const Matrix &matrix)
 
 int main(int argc, char **argv)
 {
-    if (argc != 3)
+    if (argc != 4)
         return 2;
     const Model model = read_model(argv[1]).cast<SX>();
     pinocchio::DataTpl<SX> data(model);
     const int n = model.nv;
     const SX x = SX::sym("q", n), v = SX::sym("dq", n), a = SX::sym("third", n);
     const Vector q = vector(x), dq = vector(v), third = vector(a);
-    casadi::CodeGenerator code("traced", {{"with_header", false}});
+    // the file has the name of its first function, a prefix of what it defines besides
+    casadi::CodeGenerator code("of_" + names.substr(1, names.find(',', 1) - 1), {{"with_header", false}});
+    const std::string names = std::string(",") + argv[3] + ",";
+    const auto wanted = [&](const std::string &name) { return names.find("," + name + ",") != std::string::npos; };
     const auto add = [&](const std::string &name, const SX &result) {
+        if (!wanted(name))
+            return;
         code.add(casadi::Function("traced_" + name, {x, v, a}, {densify(result)}, {{"cse", true}}));
     };
     pinocchio::rnea(model, data, q, dq, third);
     add("inverse_dynamics", symbols(data.tau));
-    pinocchio::crba(model, data, q, pinocchio::Convention::LOCAL);
-    data.M.triangularView<Eigen::StrictlyLower>() = data.M.transpose().triangularView<Eigen::StrictlyLower>();
-    add("mass_matrix", symbols(data.M));
-    pinocchio::aba(model, data, q, dq, third, pinocchio::Convention::LOCAL);
-    add("forward_dynamics", symbols(data.ddq));
-    pinocchio::computeJointTorqueRegressor(model, data, q, dq, third);
+    using pinocchio::Convention;
+    for (const auto convention : {Convention::LOCAL, Convention::WORLD}) {
+        const std::string suffix = convention == Convention::WORLD ? "_world" : "";
+        data.M.fill(SX(0));
+        pinocchio::crba(model, data, q, convention);
+        data.M.triangularView<Eigen::StrictlyLower>() =
+            data.M.transpose().triangularView<Eigen::StrictlyLower>();
+        add("mass_matrix" + suffix, symbols(data.M));
+        pinocchio::aba(model, data, q, dq, third, convention);
+        add("forward_dynamics" + suffix, symbols(data.ddq));
+    }
+    if (wanted("regressor"))
+        pinocchio::computeJointTorqueRegressor(model, data, q, dq, third);
     add("regressor", symbols(data.jointTorqueRegressor));
     std::ofstream(argv[2]) << code.dump();
 }

@@ -18,25 +18,27 @@ from sympy.physics.mechanics import (
     inertia,
 )
 
-from modelgen.description.objects import Arm
-from peers.arms import placement, subject
+from peers.arms import Subject, subject
+from peers.cost import generation
 
 
-def equations(arm: Arm) -> tuple[sp.Matrix, sp.Matrix, list[sp.Symbol], list[sp.Symbol]]:
+def equations(case: Subject) -> tuple[sp.Matrix, sp.Matrix, list[sp.Symbol], list[sp.Symbol]]:
     """Mass matrix and the right-hand side without efforts, M(q) ddq = f(q, dq) + effort; symbols q, dq.
 
     Raises ValueError for an arm with prismatic joints.
     """
-    count = len(arm.joints)
+    count = case.joints
     angles, speeds = dynamicsymbols(f"q:{count}"), dynamicsymbols(f"u:{count}")
-    base = frame = ReferenceFrame("base")
-    point = Point("base")
-    point.set_vel(base, 0)
+    base = ReferenceFrame("base")
+    ground = Point("base")
+    ground.set_vel(base, 0)
+    made: list[tuple[ReferenceFrame, Point]] = []
     bodies, loads = [], []
-    for i, (joint, link) in enumerate(zip(arm.joints, arm.links, strict=True)):
-        if joint.type == "prismatic" or link is None:
-            raise ValueError(f"{arm.name}: revolute joints with bodies only")
-        place = placement(arm, i)
+    for i, body in enumerate(case.bodies):
+        if body.prismatic:
+            raise ValueError(f"{case.arm.name}: revolute joints only")
+        frame, point = (base, ground) if body.parent is None else made[body.parent]
+        place = body.place
         turn = sp.Matrix(3, 3, [_exact(x) for x in place[:3, :3].ravel()])
         turned = ReferenceFrame(f"link{i}")
         c, s = sp.cos(angles[i]), sp.sin(angles[i])
@@ -49,15 +51,15 @@ def equations(arm: Arm) -> tuple[sp.Matrix, sp.Matrix, list[sp.Symbol], list[sp.
         origin.v2pt_theory(point, base, frame)
         axes = (turned.x, turned.y, turned.z)
         centre = origin.locatenew(
-            f"centre{i}", sum((x * a for x, a in zip(link.com, axes, strict=True)), 0 * turned.x)
+            f"centre{i}", sum((x * a for x, a in zip(body.com, axes, strict=True)), 0 * turned.x)
         )
         centre.v2pt_theory(origin, base, turned)
-        xx, xy, xz, yy, yz, zz = link.inertia
+        xx, xy, xz, yy, yz, zz = body.inertia
         tensor = inertia(turned, xx, yy, zz, xy, yz, xz)
-        bodies.append(RigidBody(f"body{i}", centre, turned, link.mass, (tensor, centre)))
-        weight = [link.mass * g for g in arm.gravity]
+        bodies.append(RigidBody(f"body{i}", centre, turned, body.mass, (tensor, centre)))
+        weight = [body.mass * g for g in case.arm.gravity]
         loads.append((centre, weight[0] * base.x + weight[1] * base.y + weight[2] * base.z))
-        frame, point = turned, origin
+        made.append((turned, origin))
     rates = [angle.diff() - speed for angle, speed in zip(angles, speeds, strict=True)]
     kane = KanesMethod(base, angles, speeds, rates)
     kane.kanes_equations(bodies, loads)
@@ -86,7 +88,7 @@ def c_function(name: str, results: list[sp.Expr], inputs: dict[str, list[sp.Symb
 
 def main(name: str, out: Path) -> None:
     """Write inverse dynamics and mass matrix of an arm as C."""
-    mass, forcing, q, dq = equations(subject(name).arm)
+    mass, forcing, q, dq = equations(subject(name))
     third = list(sp.symbols(f"a0:{len(q)}"))
     inputs = {"q": q, "dq": dq, "third": third}
     effort = list(mass * sp.Matrix(third) - forcing)
@@ -95,4 +97,4 @@ def main(name: str, out: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]))
+    generation(lambda: main(sys.argv[1], Path(sys.argv[2])))
