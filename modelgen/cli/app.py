@@ -114,6 +114,7 @@ def diagnose(
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
     period: given.Period = None,
+    no_experiment: given.NoExperiment = False,
     as_json: given.Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
@@ -130,6 +131,7 @@ def diagnose(
         mapping=mapping,
         cutoff=cutoff,
         period=period,
+        experiment=not no_experiment,
         as_json=as_json,
     )
 

@@ -70,6 +70,10 @@ Period = Annotated[
     float | None,
     typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
 ]
+NoExperiment = Annotated[
+    bool,
+    typer.Option("--no-experiment", help="Do not look for what tells rivalling causes apart."),
+]
 OptionalTest = Annotated[
     list[str] | None,
     typer.Option("--test", metavar="LOG", help="A record not fitted; repeatable.", show_default=False),

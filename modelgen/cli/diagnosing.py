@@ -14,6 +14,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
+from modelgen.report.experiment import followed
 from modelgen.report.writing import write
 
 
@@ -27,6 +28,7 @@ def run(
     mapping: Path | None,
     cutoff: float | None,
     period: float | None,
+    experiment: bool,
     as_json: bool,
 ) -> None:
     """Diagnose and write everything into `out`. Raises InputError."""
@@ -41,7 +43,7 @@ def run(
         def progress(text: str, done: int, total: int) -> None:
             bar.update(task, description=text, completed=done, total=total)
 
-        result = diagnose(arm, found, cutoff=cutoff, period=period, progress=progress)
+        result = diagnose(arm, found, cutoff=cutoff, period=period, progress=progress, experiment=experiment)
         bar.update(task, description="writing", completed=0, total=None)
         write(result, file, out)
     if as_json:
@@ -83,4 +85,6 @@ def _print(d: Diagnosis, out: Path) -> None:
         table.append([str(j + 1), f"{e.before[j]:.4g}", f"{e.after[j]:.4g}", f"{e.gain[j]:.1f}", interval])
     title = f"error on the test record [{d.errors.unit}]"
     print_table(title, dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right"), table)
+    if d.next_experiment is not None:
+        typer.echo(f"next: {followed(d.next_experiment)}")
     typer.echo(f"report: {out / 'report.html'}")

@@ -10,6 +10,8 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.diagnosis.endogeneity import Endogeneity
+from modelgen.diagnosis.experiments import Experiment
+from modelgen.diagnosis.experiments import to_json as experiment_json
 from modelgen.diagnosis.lack_of_fit import LackOfFit
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.replay import Scores
@@ -83,7 +85,7 @@ class Diagnosis:
     before: Fitted
     after: Fitted
     parameters: Mapping[str, Estimate]
-    next_experiment: Mapping[str, Any] | None
+    next_experiment: Experiment | None
     test: Rows
     residuals: tuple[Array, Array]
     selection: Selection
@@ -124,7 +126,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             else {"f_gof": numbers(scores.f_gof), "mae": numbers(scores.mae), "rmse": numbers(scores.rmse)}
             for name, scores in zip(("before", "after"), d.simulation, strict=True)
         },
-        "next_experiment": d.next_experiment,
+        "next_experiment": experiment_json(d.next_experiment),
         "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
         "positions": None if d.positions is None else _positions(d.positions),
         "settings": dict(d.settings),

@@ -19,6 +19,7 @@ from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
+from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, residuals, rows_twice, unit_of_efforts
 from modelgen.diagnosis.positions import blur, feigned
@@ -77,8 +78,11 @@ def diagnose(
     cutoff: float | None = None,
     period: float | None = None,
     progress: Progress | None = None,
+    experiment: bool = True,
 ) -> Diagnosis:
     """What the arm's model gets wrong in the records, of which the last is looked at for the errors alone.
+
+    experiment: whether to look for what would separate causes that stand for each other.
 
     Raises InputError where the records cannot answer.
     """
@@ -110,6 +114,11 @@ def diagnose(
     share = feigned(blurs, mean_squares(selection.system))
     verdict, reason = _verdict(selection, beside, fit, share, noisy)
     named = _named(selection, pool, prober, model, base, rows)
+    following = None
+    if experiment and verdict == "named":
+        plan = None if free else stage(arm, model, prober, train, base)
+        shortest = min((p for p in lengths if p is not None), default=None)
+        following = next_experiment(named, selection.causes, plan, selection.system, shortest, progress)
     before = fitted(arm, model, rows)
     after = extended(arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)
@@ -127,7 +136,7 @@ def diagnose(
         before,
         after,
         base_estimates(after.model, after.rows, after.theta),
-        next_experiment(named),
+        following,
         last,
         pair,
         selection,

@@ -13,6 +13,7 @@ from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.selection import Ranked
 from modelgen.effects import CATALOGUE
 from modelgen.report.drawing import effort, inline, left_over, replayed, residuals
+from modelgen.report.experiment import described
 from modelgen.resources import templates_folder
 
 
@@ -50,7 +51,7 @@ def report(d: Diagnosis) -> str:
         simulation_text=_SIMULATED[free],
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
         missing=d.not_identifiable,
-        experiment=d.next_experiment,
+        experiment=described(d.next_experiment),
         settings=[(name, _said(value)) for name, value in d.settings.items()],
     )
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"

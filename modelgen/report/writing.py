@@ -14,6 +14,7 @@ from modelgen.extension import extended_yaml
 from modelgen.functions import Options
 from modelgen.generation import generate
 from modelgen.report.diagnosis import pictures, report
+from modelgen.report.experiment import NAMES, plans
 
 
 def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True) -> None:
@@ -37,9 +38,11 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True) -> None:
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
         (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
-        for picture, drawn in pictures(d).items():
+        for picture, drawn in {**pictures(d), **plans(d)}.items():
             (new / picture).write_text(drawn, encoding="utf-8", newline="\n")
         out.mkdir(parents=True, exist_ok=True)
+        for stale in NAMES:  # of a diagnosis before
+            (out / stale).unlink(missing_ok=True)
         for path in sorted(new.iterdir()):
             target = out / path.name
             if target.is_dir():

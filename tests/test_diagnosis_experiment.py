@@ -1,0 +1,210 @@
+"""The next experiment: run by an independent plant, it tells causes apart that the records could not."""
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hidden import arms, logs
+from hidden.cases import Bench, Case, Hidden, make
+from numpy.random import default_rng
+
+from modelgen.dataset import Record, choose, drives_of, prepare, read
+from modelgen.description import Arm, load
+from modelgen.diagnosis.baseline import estimated
+from modelgen.diagnosis.candidates import candidates
+from modelgen.diagnosis.motions import Stage, stage
+from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.proposal import Proposal, propose
+from modelgen.diagnosis.run import settings_for
+from modelgen.diagnosis.separation import Judge, hypothesis
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.trials import Court, Trial
+from modelgen.effects import known_effects
+from modelgen.excitation.writing import data
+from modelgen.functions import build_model
+from modelgen.probing import Prober
+
+PERIOD = 10.0  # s
+SEED = 90210
+Place = tuple[str, int]
+
+
+class Scene:
+    """One arm whose records are those of the plant."""
+
+    def __init__(self, pair: tuple[Place, Place], magnitudes: tuple[float, float], folder: Path) -> None:
+        hidden = tuple(Hidden(e, j, 1.1, m) for (e, j), m in zip(pair, magnitudes, strict=True))
+        self.bench = Bench(Case("direct2", SEED, hidden, periods=3))
+        self.magnitudes, self.pair, self.folder = magnitudes, pair, folder
+        folder.mkdir(exist_ok=True)
+        arms.write_description(folder / "arms.yaml", "arm", arms.describe(self.bench.arm, default_rng(5)))
+        self.arm: Arm = load(folder / "arms.yaml", known_effects())["arm"]
+        self.model, self.prober = build_model(self.arm), Prober(self.arm)
+
+    def record(self, name: str, k: int, true: int) -> Record:
+        """Path k of the bench with one member of the pair hidden in it."""
+        path = self.folder / f"{name}_{true}.csv"
+        logs.write(path, self.bench.record(k, {true: self.magnitudes[true]}))
+        return read(str(path), self.arm)
+
+    def small(self, k: int, amplitude: float) -> None:
+        """Makes path k smaller about its middle."""
+        plant = self.bench.paths[k].copy()
+        for name in ("sine", "cosine"):
+            plant[name] *= amplitude
+        self.bench.paths[k] = plant
+
+    def follow(self, k: int, found: Proposal) -> None:
+        """Path k becomes that of a proposal, which is written in motor coordinates."""
+        plant = self.bench.paths[k].copy()
+        for j, series in enumerate(data(found.excitation)["series"]):
+            (ratio,) = drives_of(self.arm)[j].motor(np.ones(1))
+            plant["centre"][j] = series["mean"] / ratio
+            plant["sine"][j], plant["cosine"][j] = (
+                np.array(series["sin"]) / ratio,
+                np.array(series["cos"]) / ratio,
+            )
+        plant["frequency"] = 1.0 / found.excitation.problem.settings.period
+        self.bench.paths[k] = plant
+
+    def trials(self, records: list[Record]) -> tuple[list[Trial], System, Stage]:
+        """Both members fitted to the records."""
+        chosen = choose(records, settings_for(records, None))
+        prepared = [prepare(r, chosen) for r in records]
+        rows = rows_twice(self.prober, self.model, prepared, estimated(self.model))
+        period = round(PERIOD / records[0].step)
+        periods = [period // chosen.factor if period % chosen.factor == 0 else None for _ in records]
+        system = System(rows, [r.columns for r in rows], periods)
+        base = rows[0].baseline.base(system.theta)
+        court = Court(system, rows, self.prober, base)
+        pool = {(c.effect, c.joint): c for c in candidates(self.arm, self.prober, rows)}
+        found = [court.trial(pool[place]) for place in self.pair]
+        assert found[0] is not None
+        assert found[1] is not None
+        return [found[0], found[1]], system, stage(self.arm, self.model, self.prober, prepared, base)
+
+
+@dataclass(frozen=True)
+class Set:
+    """Two causes with the magnitudes at which the plant has them. true: which of the two the records hold,
+    in motions of `amplitude` of the arm's range and speed.
+    """
+
+    pair: tuple[Place, Place]
+    magnitudes: tuple[float, float]
+    true: int
+    amplitude: float
+
+
+SETS = {
+    "offset": Set((("friction_offset", 1), ("asymmetric_viscous_friction", 1)), (0.29, 0.22), 0, 0.3),
+    "asymmetric": Set((("friction_offset", 1), ("asymmetric_viscous_friction", 1)), (0.29, 0.22), 1, 0.3),
+    "stribeck": Set((("stribeck_friction", 2), ("presliding", 2)), (0.3, 0.01), 0, 0.15),
+    "backlash": Set((("backlash", 1), ("joint_flexibility", 1)), (0.17, 0.97), 0, 0.25),
+}
+CONVINCING = 10.0  # delta BIC: very strong evidence (Kass and Raftery 1995)
+
+
+def beyond(found: list[Trial], true: int) -> float:
+    """Evidence for the truth over the other."""
+    return found[true].gain.delta_bic - found[1 - true].gain.delta_bic
+
+
+def proposed(scene: Scene, true: int) -> tuple[float, Proposal]:
+    """Evidence that the record of the scene gives for the truth, and the trajectory proposed after it."""
+    found, system, planned = scene.trials([scene.record("old", 0, true)])
+    named = [
+        np.concatenate([r.columns, c], axis=2) for r, c in zip(system.rows, found[true].columns, strict=True)
+    ]
+    judge = Judge(System(system.rows, named, system.periods), scene.prober, planned.base)
+    result = propose(planned, judge, [hypothesis(t) for t in found], round(PERIOD / planned.step))
+    assert result is not None
+    return beyond(found, true), result
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_the_plant_on_the_proposed_trajectory_tells_apart_what_its_record_did_not(
+    name: str, tmp_path: Path
+) -> None:
+    case = SETS[name]
+    scene = Scene(case.pair, case.magnitudes, tmp_path)
+    scene.small(0, case.amplitude)
+    before, found = proposed(scene, case.true)
+    assert before < CONVINCING
+    scene.follow(1, found)
+    for truth in (0, 1):
+        trials, _, _ = scene.trials([scene.record("new", 1, truth)])
+        assert beyond(trials, truth) > CONVINCING
+
+
+def test_the_trajectory_keeps_the_limits_and_ends_where_it_begins(tmp_path: Path) -> None:
+    case = SETS["offset"]
+    scene = Scene(case.pair, case.magnitudes, tmp_path)
+    _, found = proposed(scene, case.true)
+    made = found.excitation
+    period = round(PERIOD * made.problem.settings.rate)
+    assert np.abs(np.diff(found.q[[0, period]], axis=0)).max() < 1e-12
+    for j, joint in enumerate(scene.arm.joints):
+        low, high = joint.limits.position or (-np.inf, np.inf)
+        q, t = found.q[:, j], made.t[1] - made.t[0]
+        assert low <= q.min()
+        assert q.max() <= high
+        assert np.abs(np.gradient(q, t)).max() <= joint.limits.velocity
+        assert np.abs(np.gradient(np.gradient(q, t), t)).max() <= joint.limits.acceleration
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """The command line on short records: friction that grows with the load, or a drive that saturates."""
+    folder = tmp_path_factory.mktemp("load")
+    make(Case("direct2", 31, (Hidden("load_dependent_friction", 2, 1.1, 0.2345),)), folder)
+    command = [
+        sys.executable,
+        "-m",
+        "modelgen",
+        "diagnose",
+        str(folder / "arms.yaml"),
+        "--arm",
+        "arm",
+        "--json",
+    ]
+    for name in ("train_a", "train_b"):
+        command += ["--train", f"{folder / name}.csv@0:10"]
+    command += ["--test", str(folder / "test.csv"), "--out", str(folder / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=200)
+    return folder, json.loads(done.stdout)
+
+
+def test_the_next_experiment_is_in_the_answer_with_its_files(answered: tuple[Path, dict[str, Any]]) -> None:
+    folder, answer = answered
+    (cause,) = answer["causes"]
+    rivals = {(c["effect"], c["joint"]) for c in cause["ambiguous_with"]}
+    assert rivals == {("torque_constant_saturation", 2)}
+    said = answer["next_experiment"]
+    assert {(c["effect"], c["joint"]) for c in said["separates"]} == rivals | {(cause["effect"], 2)}
+    trajectory = said["trajectory"]
+    assert trajectory["expected_delta_bic"] > cause["ambiguous_with"][0]["delta_bic"]
+    assert max(trajectory["limits_used"].values()) <= 1
+    table = np.genfromtxt(folder / "out" / trajectory["file"], delimiter=",", names=True)
+    points = np.genfromtxt(folder / "out" / trajectory["set_points"], delimiter=",", names=True)
+    assert points.dtype.names == ("t", "qm1", "qm2")
+    assert np.abs(table["qm2"] - points["qm2"]).max() < 1e-9
+    assert abs(points["t"][-1] - trajectory["period_s"]) < 1e-9
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Next experiment" in page
+    assert said["do"] in page.replace("&#39;", "'").replace("The trajectory", "the trajectory")
+
+
+def test_a_payload_tells_load_from_current_better_than_a_motion(
+    answered: tuple[Path, dict[str, Any]],
+) -> None:
+    said = answered[1]["next_experiment"]
+    first = said["tests"][0]
+    assert "payload" in first["test"]
+    assert first["expected_delta_bic"] > said["trajectory"]["expected_delta_bic"]
+    assert said["do"] == first["test"]
