@@ -122,6 +122,9 @@ def test_drive_dynamics_explain_the_current_down_to_the_regulators_ripple(
     # A constant ratio and friction at the joints, as of geared arms: the levers are what is missing.
     assert gears["model"] == "levers as gears of constant ratio"
     assert (np.array(gears["rmse"])[1:] > 1.1 * rmse[1:]).all()
+    page = (out / "report.html").read_text(encoding="utf-8")
+    for text in (f"{rmse[0]:.4g}", f"{links['nrmse_percent'][2]:.1f}", gears["model"], data["verdict"][:40]):
+        assert text in page
 
 
 def test_intervals_cover_the_true_parameters(points: Path) -> None:

@@ -73,7 +73,7 @@ def _alone(p: Plant, r: Request) -> None:
     """No log: the motion, its energy, when it comes to rest."""
     if r.window is not None:
         raise InputError("--window cuts a log into windows: give --log FILE too")
-    reference = None if r.reference is None else _reference(p, r.reference)
+    reference = None if r.reference is None else reference_of(p.n, r.reference)
     if bool(r.control) != (reference is not None):
         raise InputError("--control and --reference belong together: found one without the other")
     given = None if r.inputs is None else _inputs(p, r.inputs)
@@ -129,9 +129,9 @@ def _somewhere(p: Plant) -> Array:
         return np.where(inside, 0.0, (low + high) / 2)
 
 
-def _reference(p: Plant, path: Path) -> Reference:
-    """t and q<n> of a table, of modelgen excite say."""
-    names = ["t", *(f"q{k + 1}" for k in range(p.n))]
+def reference_of(n: int, path: Path) -> Reference:
+    """t and q<n> of a table, of modelgen excite say, for n coordinates."""
+    names = ["t", *(f"q{k + 1}" for k in range(n))]
     return Reference(*_table("--reference", path, names))
 
 

@@ -167,6 +167,11 @@ def chosen_cutoff(record: Record) -> float:
     return float(min(max(quiet, OVER_CONTENT * content, PERIODS / length), rate / SAMPLES))
 
 
+def motion_bandwidth(record: Record) -> float:
+    """Frequency [Hz] below which nine tenths of the power of every joint's speed lie, noise apart."""
+    return max(_frequencies(q, 1.0 / record.step)[1] for q in record.q.T)
+
+
 def _frequencies(q: Array, rate: float) -> tuple[float, float]:
     """Highest cut-off [Hz] that the noise of a position q (N,) allows, and the bandwidth of the motion."""
     speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided

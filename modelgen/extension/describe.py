@@ -38,10 +38,7 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
 
 def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
     """The arm's part of its description file with the causes added; comments and order stay."""
-    yaml = YAML()
-    yaml.width = 110
-    whole = yaml.load(file.read_text(encoding="utf-8"))
-    entry: CommentedMap = whole["arms"][arm.name]
+    whole, entry = _read(file, arm)
     for effect, joint, values in causes:
         added: Any = effect
         given = admitted(effect, values)
@@ -55,12 +52,42 @@ def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
             index = arm.coordinates[joint - 1]
             present = [use.name for use in arm.joints[index].effects]
             _listed(entry["joints"][index], present).append(added)
+    return _written(whole, arm, entry)
+
+
+def with_torque_constants(file: Path, arm: Arm, values: Mapping[int, float]) -> str:
+    """The arm's part of its description file with other torque constants, by number of the coordinate."""
+    whole, entry = _read(file, arm)
+    for number, value in values.items():
+        joint = entry["joints"][arm.coordinates[number - 1]]
+        # the drive may be that of other joints as well: this one gets its own
+        own = CommentedMap(joint["drive"])
+        if joint["drive"].fa.flow_style():
+            own.fa.set_flow_style()
+        own["torque_constant"] = float(f"{value:.9g}")
+        joint["drive"] = own
+    return _written(whole, arm, entry)
+
+
+def _read(file: Path, arm: Arm) -> tuple[CommentedMap, CommentedMap]:
+    """The description, and the arm's part of it."""
+    whole = _yaml().load(file.read_text(encoding="utf-8"))
+    return whole, whole["arms"][arm.name]
+
+
+def _yaml() -> YAML:
+    yaml = YAML()
+    yaml.width = 110
+    return yaml
+
+
+def _written(whole: CommentedMap, arm: Arm, entry: CommentedMap) -> str:
     document = CommentedMap()
     for key in ("schema", "convention"):
         document[key] = whole[key]
     document["arms"] = CommentedMap({arm.name: entry})
     out = io.StringIO()
-    yaml.dump(document, out)
+    _yaml().dump(document, out)
     return out.getvalue()
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from modelgen.description.objects import Inertial
 from modelgen.effects import applied_effects
@@ -75,6 +77,31 @@ def about_origin(link: Inertial) -> Mapping[str, float]:
         "MZ": m * z,
         "M": m,
     }
+
+
+def payload_standard(model: Model, payload: Sequence[float]) -> NDArray[np.float64]:
+    """What a point mass adds to the standard parameters (s,). payload: mass [kg] and, if wanted, x, y, z [m].
+
+    It is carried by the last link, in its frame. Raises InputError for a negative mass, or other numbers.
+    """
+    standard = np.zeros(len(model.standard))
+    if not payload:
+        return standard
+    if len(payload) not in (1, 4):
+        raise InputError(f"--payload: found {len(payload)} numbers, expected MASS or MASS,X,Y,Z")
+    if not payload[0] >= 0:
+        raise InputError(f"--payload: found a mass of {payload[0]:g} kg, expected 0 or more")
+    m, x, y, z = (*payload, 0.0, 0.0, 0.0)[:4]
+    last = len(model.arm.joints)
+    index = {p.name: i for i, p in enumerate(model.standard)}
+    for name, value in about_origin(Inertial(m, (x, y, z), (0.0,) * 6)).items():
+        standard[index[f"{name}{last}"]] = value
+    return standard
+
+
+def payload_base(model: Model, payload: Sequence[float]) -> NDArray[np.float64]:
+    """The same in base parameters (p,)."""
+    return np.array(list(grouped(model, payload_standard(model, payload).tolist()).values()))
 
 
 def factor_value(factor: float | sp.Expr, symbols: Mapping[str, float]) -> float:

@@ -1,13 +1,17 @@
 """Parameters from logs: regression, uncertainty, validation."""
 
-from modelgen.identification.identify import METHODS, Estimate, Identification, Validation, identify, to_json
+from modelgen.identification.identify import METHODS, Instruments, identify
+from modelgen.identification.objects import Estimate, Identification, Validation
+from modelgen.identification.output import to_json
 from modelgen.identification.regression import Regression, Solution, Triangle
 from modelgen.identification.streamed import identify_streamed
+from modelgen.identification.words import verdict
 
 __all__ = [
     "METHODS",
     "Estimate",
     "Identification",
+    "Instruments",
     "Regression",
     "Solution",
     "Triangle",
@@ -15,4 +19,5 @@ __all__ = [
     "identify",
     "identify_streamed",
     "to_json",
+    "verdict",
 ]

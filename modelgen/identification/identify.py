@@ -2,73 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, Options, build_model
+from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.consistent import Consistent, consistent
-from modelgen.identification.instrumental import Comparison, compared, needed
+from modelgen.identification.consistent import consistent
+from modelgen.identification.essentials import essential, only, part, refit
+from modelgen.identification.gains import Gain, estimated, with_gains
+from modelgen.identification.instrumental import Comparison, Instrument, compared, of_period
+from modelgen.identification.objects import Estimate, Identification
 from modelgen.identification.regression import Array, Regression, Solution
-from modelgen.identification.rows import Rows
+from modelgen.identification.validation import regression_of, validate
 from modelgen.probing import Prober
 
 METHODS = ("ols", "wls", "robust", "iv")
-NEEDED = 2.0  # standard deviations that a parameter of the data's support is away from zero
-POOR = 30.0  # % of relative standard deviation from which a parameter is called poorly determined
+INSTRUMENTS = ("auto", "period", "simulated")
+TURNS = 5  # of simulation and estimate, at most
+SETTLED = 0.1  # standard deviations by which a turn may move a parameter yet
+
+# The motion that a model makes of a record: base parameters by name to the same rows without its errors.
+Simulated = Callable[[Prepared, Mapping[str, float]], Prepared]
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A base parameter. std: None where the records do not determine it; essential: they support it."""
+class Instruments:
+    """Where instruments come from. source: one of INSTRUMENTS. simulated: of the model under its controller.
 
-    name: str
-    value: float
-    std: float | None
-    unit: str
-    essential: bool
-
-    @property
-    def relative(self) -> float | None:
-        """Standard deviation in % of the value, None without one."""
-        return None if self.std is None or not self.value else 100.0 * self.std / abs(self.value)
-
-
-@dataclass(frozen=True)
-class Validation:
-    """On test records, by joint, in the unit that the log carried: rmse (n,), nrmse (n,) in % of the effort.
-
-    t: (M,) [s]; measured, predicted: (M, n), records one after the other.
+    "auto" takes other periods where the motion repeats, and for the method "iv" the simulation else.
     """
 
-    unit: tuple[str, ...]
-    rmse: Array
-    nrmse_percent: Array
-    t: Array
-    measured: Array
-    predicted: Array
-
-
-@dataclass(frozen=True)
-class Identification:
-    """What the training records say about an arm, and how it does on the test records."""
-
-    arm: Arm
-    model: Model
-    method: str
-    solution: Solution
-    estimates: tuple[Estimate, ...]
-    test: Validation | None
-    consistent: Consistent | None = None
-    comparison: Comparison | None = None
+    source: str = "auto"
+    simulated: Simulated | None = None
 
 
 def identify(
@@ -79,37 +51,161 @@ def identify(
     test: Sequence[Prepared] = (),
     method: str = "wls",
     physical: bool = False,
+    instruments: Instruments | None = None,
+    essential_only: bool = False,
+    payloads: Mapping[int, Sequence[float]] | None = None,
 ) -> Identification:
     """Base parameters from `train`, validated on `test`. method: one of METHODS.
 
     physical: the physically consistent ones closest to those; standard deviations stay those of the others.
+    essential_only: the others are left out of the fit. payloads: mass [kg] and, if wanted, x, y, z [m] of a
+    point that the last link carries in a record, by number in `train` followed by `test`. With the gains
+    "estimated" of the options they give the torque constants too.
 
     Raises InputError for free motions, an unknown method, and records with too few moving rows.
     """
     if method not in METHODS:
         raise InputError(f"--method: found '{method}', expected {', '.join(METHODS)}")
     options = options or Options()
-    model, prober = build_model(arm, options), Prober(reduced(arm, options))
+    _refuse(options, method, physical=physical, payloads=bool(payloads))
+    known = replace(options, gains="known") if options.gains == "estimated" else options
+    model, prober = build_model(arm, known), Prober(reduced(arm, known))
+    carried = payloads or {}
+    added = [payload_base(model, carried.get(k, ())) for k in range(len(train) + len(test))]
+    plain = "wls" if method == "iv" else method
+    gains: tuple[Gain, ...] = ()
+    if options.gains == "estimated":
+        solution, gains = _with_gains(train, prober, model, added, plain, essential_only=essential_only)
+        arm = with_gains(arm, gains)
+        model, prober = build_model(arm, known), Prober(reduced(arm, known))
+        found = concluded(arm, model, prober, method, solution, test, physical=physical, added=added)
+        return replace(found, gains=gains)
+    regression, solution = _fitted(train, prober, model, added, plain)
+    if essential_only:
+        solution = only(regression, solution, plain)
+    both = _by_instruments(
+        train, model, prober, regression, solution, instruments or Instruments(), wanted=method == "iv"
+    )
+    if method == "iv":
+        if both is None:
+            raise InputError(
+                "--method iv: found no motion that repeats, expected two identical periods or more in a "
+                "record (see modelgen excite), or --instrument simulated"
+            )
+        solution = both.solution
+    found = concluded(arm, model, prober, method, solution, test, physical=physical, added=added)
+    return replace(found, comparison=both)
+
+
+def _refuse(options: Options, method: str, *, physical: bool, payloads: bool) -> None:
+    """Raises InputError for what does not go together."""
+    if options.gains == "row_wise":
+        for name, asked in (("--consistent", physical), ("--payload", payloads)):
+            if asked:
+                raise InputError(f"--gains row_wise: rows have no common scale, which {name} needs")
+    if options.gains == "estimated" and method == "iv":
+        raise InputError("--gains estimated: found --method iv, expected ols, wls or robust")
+
+
+def _columns_by_load(model: Model) -> bool:
+    """Whether columns of the regressor depend on the parameters, by loads or states."""
+    (function,) = [f for f in model.functions if f.name == "regressor"]
+    return bool({"load", "state"} & {a.name for a in function.arguments})
+
+
+def _fitted(
+    train: Sequence[Prepared], prober: Prober, model: Model, added: Sequence[Array], method: str
+) -> tuple[Regression, Solution]:
+    """Rows and least squares. Columns that depend on the load are evaluated anew with the load found."""
     theta = np.zeros(len(model.grouping.base))
-    regression = _regression(prober, model, train, theta)
+    regression = regression_of(prober, model, train, theta, added)
+    enough(model.arm, regression)
+    solution = regression.solve(method)
+    if _columns_by_load(model):
+        regression = regression_of(prober, model, train, solution.theta, added)
+        solution = regression.solve(method)
+    return regression, solution
+
+
+def _with_gains(
+    train: Sequence[Prepared],
+    prober: Prober,
+    model: Model,
+    added: Sequence[Array],
+    method: str,
+    *,
+    essential_only: bool,
+) -> tuple[Solution, tuple[Gain, ...]]:
+    """Parameters and torque constants; what a payload takes stays in the effort."""
+    theta = np.zeros(len(model.grouping.base))
+    for _ in range(2 if _columns_by_load(model) else 1):
+        regression = regression_of(prober, model, train, theta)
+        enough(model.arm, regression)
+        carried = [c @ more for c, more in zip(regression.columns, added, strict=False)]
+        solution, gains = estimated(model.arm, regression, carried, method)
+        theta = solution.theta
+    if essential_only:
+        # Each elimination finds the gains anew.
+        solution = refit(
+            solution, lambda kept: estimated(model.arm, part(regression, kept), carried, method)[0]
+        )
+        gains = estimated(model.arm, part(regression, solution.determined), carried, method)[1]
+    return solution, gains
+
+
+def enough(arm: Arm, regression: Regression) -> None:
+    """Raises InputError for records with fewer moving rows than three per parameter."""
     count = sum(int(m.sum()) for m in regression.moving)
-    if count < 3 * len(theta):
+    size = regression.columns[0].shape[2]
+    if count < 3 * size:
         raise InputError(
-            f"{arm.name}: {count} moving rows for {len(theta)} parameters: the records are too short or move "
+            f"{arm.name}: {count} moving rows for {size} parameters: the records are too short or move "
             "too little, expected at least three times as many; see modelgen excite"
         )
-    plain = "wls" if method == "iv" else method
-    solution = regression.solve(plain)
-    (function,) = [f for f in model.functions if f.name == "regressor"]
-    if {"load", "state"} & {a.name for a in function.arguments}:
-        # Columns that depend on the load are evaluated anew with the load that was found.
-        regression = _regression(prober, model, train, solution.theta)
-        solution = regression.solve(plain)
-    both = compared(regression, solution, [_rows_in_period(p) for p in train])
-    if method == "iv":
-        solution = needed(both).solution
-    found = concluded(arm, model, prober, method, solution, test, physical=physical)
-    return replace(found, comparison=both)
+
+
+def _by_instruments(
+    train: Sequence[Prepared],
+    model: Model,
+    prober: Prober,
+    regression: Regression,
+    least: Solution,
+    given: Instruments,
+    *,
+    wanted: bool,
+) -> Comparison | None:
+    """Least squares beside instruments; None where there are none."""
+    if given.source not in INSTRUMENTS:
+        raise InputError(f"--instrument: found '{given.source}', expected {', '.join(INSTRUMENTS)}")
+    if given.source != "simulated":
+        periods = [_rows_in_period(p) for p in train]
+        found = compared(
+            regression,
+            least,
+            [
+                None if period is None else of_period(table, moving, period)
+                for table, moving, period in zip(regression.columns, regression.moving, periods, strict=True)
+            ],
+        )
+        if found is not None or given.source == "period" or not wanted:
+            return found
+    if given.simulated is None:
+        return None
+    names = [b.name for b in model.grouping.base]
+    theta, found = least.theta, None
+    for _ in range(TURNS):
+        motions = [given.simulated(p, dict(zip(names, theta.tolist(), strict=True))) for p in train]
+        made = regression_of(prober, model, motions, theta)
+        instruments = [Instrument(c, m) for c, m in zip(made.columns, made.moving, strict=True)]
+        found = compared(regression, least, instruments)
+        if found is None:
+            break
+        spread = np.sqrt(np.maximum(np.diag(found.solution.covariance), 0.0))
+        moved = np.abs(found.solution.theta - theta)
+        theta = found.solution.theta
+        if (moved <= SETTLED * spread).all():
+            break
+    return None if found is None else replace(found, simulated=True)
 
 
 def _rows_in_period(p: Prepared) -> int | None:
@@ -128,153 +224,34 @@ def concluded(
     test: Sequence[Prepared],
     *,
     physical: bool,
+    added: Sequence[Array] = (),
 ) -> Identification:
-    """Estimates and validation of a solution."""
+    """Estimates and validation of a solution. added: base parameters of payloads, those of `test` last."""
     found = consistent(model, solution.theta, solution.precision) if physical else None
-    theta = solution.theta if found is None else found.base
-    needed = essential(solution)
+    theta: Array = solution.theta if found is None else found.base
+    flags, places = essential(solution), joints_of(model)
+    spread = np.sqrt(np.maximum(np.diag(solution.covariance), 0.0))
     estimates = tuple(
-        Estimate(b.name, float(v), float(np.sqrt(c)) if known else None, b.unit, bool(e))
-        for b, v, c, known, e in zip(
-            model.grouping.base,
-            theta,
-            np.maximum(np.diag(solution.covariance), 0.0),
-            solution.determined,
-            needed,
-            strict=True,
+        Estimate(
+            b.name,
+            float(theta[k]),
+            float(spread[k]) if solution.determined[k] else None,
+            b.unit,
+            bool(flags[k]) and not solution.dropped[k],
+            bool(solution.dropped[k]),
+            places[k],
+            model.standard[b.representative].name,
         )
+        for k, b in enumerate(model.grouping.base)
     )
-    validation = validate(prober, model, test, theta) if test else None
+    carried = added[len(added) - len(test) :] if added else None
+    validation = validate(prober, model, test, theta, carried) if test else None
     return Identification(arm, model, method, solution, estimates, validation, found)
 
 
-def essential(solution: Solution) -> NDArray[np.bool_]:
-    """Flags (p,) of the parameters that backward elimination leaves.
-
-    The least significant goes first; the others then take its part over by their covariance.
-    """
-    theta, v = solution.theta.copy(), solution.covariance.copy()
-    left = list(np.flatnonzero(solution.determined & (np.diag(v) > 0)))
-    flags = solution.determined.copy()
-    while left:
-        k = min(left, key=lambda i: theta[i] ** 2 / v[i, i])
-        if theta[k] ** 2 >= NEEDED**2 * v[k, k]:
-            break
-        column, size = v[:, k].copy(), v[k, k]
-        theta = theta - column * (theta[k] / size)
-        v = v - np.outer(column, column) / size
-        flags[k] = False
-        left = [i for i in left if i != k and v[i, i] > 0]
-    return np.asarray(flags)
-
-
-def validate(prober: Prober, model: Model, records: Sequence[Prepared], theta: Array) -> Validation:
-    """Prediction error on records that were not fitted. Raises InputError for a free motion."""
-    regression = _regression(prober, model, records, theta)
-    gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
-    measured = np.concatenate([y * g for y, g in zip(regression.effort, gain, strict=True)])
-    wrong = np.concatenate([e * g for e, g in zip(regression.residuals(theta), gain, strict=True)])
-    moving = np.concatenate(regression.moving)
-    if not moving.any():
-        raise InputError(f"{records[0].record.name}: no joint moves in the test records; expected a motion")
-    rmse, share = [], []
-    for j in range(measured.shape[1]):
-        # A joint that rests throughout is judged by all its rows: holding is an effort too.
-        rows = moving[:, j] if moving[:, j].any() else np.ones(len(moving), dtype=bool)
-        e, y = wrong[rows, j], measured[rows, j]
-        rmse.append(float(np.sqrt(np.mean(e**2))))
-        share.append(100.0 * float(np.linalg.norm(e)) / max(float(np.linalg.norm(y)), 1e-300))
-    t = np.concatenate([p.t for p in records])
-    unit = records[0].effort_unit or ("",) * measured.shape[1]
-    return Validation(unit, np.array(rmse), np.array(share), t, measured, measured - wrong)
-
-
-def _regression(prober: Prober, model: Model, records: Sequence[Prepared], theta: Array) -> Regression:
-    made = Rows(model, prober)
-    rows = [made.of(p, theta) for p in records]
-    return Regression([y for y, _ in rows], [made.whole(w) for _, w in rows], [p.moving for p in records])
-
-
-def verdict(found: Identification) -> str:
-    """In words: what is well determined, what is not, what would help."""
-    lost = [e.name for e in found.estimates if e.std is None]
-    poor = [e.name for e in found.estimates if e.std is not None and (e.relative or np.inf) > POOR]
-    good = len(found.estimates) - len(lost) - len(poor)
-    text = [f"{good} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
-    if poor:
-        text.append(f"Poorly determined: {', '.join(poor)}.")
-    if lost:
-        text.append(f"Not determined by these records, set to zero: {', '.join(lost)}.")
-    if found.comparison is not None and found.comparison.biased:
-        text.append(
-            "Errors of the positions bias least squares (test of Durbin, Wu and Hausman)"
-            + ("; these are by instruments." if found.method == "iv" else ": use --method iv.")
-        )
-    if found.consistent is not None:
-        wrong = found.consistent.violated
-        text.append(
-            f"Physically consistent; the plain solution closest to the prior is not: {'; '.join(wrong)}."
-            if wrong
-            else "Physically consistent, as the plain solution is."
-        )
-    if poor or lost:
-        text.append("Faster motion of the joints they belong to would help; see modelgen excite.")
-    return " ".join(text)
-
-
-def to_json(found: Identification) -> dict[str, Any]:
-    """identification.json."""
-    test = found.test
-    return {
-        "schema": 1,
-        "arm": found.arm.name,
-        "method": found.method,
-        "condition_number": found.solution.condition,
-        "parameters": [
-            {
-                "name": e.name,
-                "value": e.value,
-                "std": e.std,
-                "relative_std_percent": e.relative,
-                "unit": e.unit,
-                "essential": e.essential,
-            }
-            for e in found.estimates
-        ],
-        "test": None
-        if test is None
-        else {
-            "unit": ", ".join(dict.fromkeys(test.unit)),
-            "rmse": [float(x) for x in test.rmse],
-            "nrmse_percent": [float(x) for x in test.nrmse_percent],
-        },
-        "verdict": verdict(found),
-        "least_squares": _least_squares(found.comparison),
-        **_physical(found),
-    }
-
-
-def _least_squares(c: Comparison | None) -> dict[str, Any] | None:
-    """The test of Durbin, Wu and Hausman; None where no motion repeats."""
-    if c is None or not c.degrees:
-        return None
-    return {
-        "biased": c.biased,
-        "statistic": c.statistic,
-        "degrees": c.degrees,
-        "threshold": c.threshold,
-    }
-
-
-def _physical(found: Identification) -> dict[str, Any]:
-    """Standard parameters that could exist, and what was wrong with the plain ones."""
-    if found.consistent is None:
-        return {}
-    c = found.consistent
-    return {
-        "standard_parameters": [
-            {"name": p.name, "value": float(x), "unit": p.unit}
-            for p, x in zip(found.model.standard, c.standard, strict=True)
-        ],
-        "consistency": {"plain_solution": list(c.violated), "chi_square_per_parameter": c.distance},
-    }
+def joints_of(model: Model) -> list[int]:
+    """By base parameter, the number of the last coordinate in whose row it stands."""
+    last = [0] * len(model.grouping.base)
+    for row, column in zip(model.packed.rows, model.packed.columns, strict=True):
+        last[column] = max(last[column], row + 1)
+    return last

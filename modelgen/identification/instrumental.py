@@ -1,9 +1,10 @@
 """Instrumental variables: parameters that errors of the positions do not bias.
 
-Least squares takes the regressor as exact. Where the motion repeats, the regressor at the same phase of
-another period has the same truth and other errors: it is the instrument (Reiersoel 1945; for robots Janot,
-Vandanjon and Gautier 2014, who take theirs from a simulation). The difference of both estimates, over the
-covariance that noise of the effort alone would give it, is the test of Durbin, Wu and Hausman (Hausman 1978).
+Least squares takes the regressor as exact. An instrument has the same truth and other errors (Reiersoel
+1945): the regressor at the same phase of another period, where the motion repeats, or along the motion that
+the model makes under the controller (Janot, Vandanjon and Gautier 2014). The difference of both estimates,
+over the covariance that noise of the effort alone would give it, is the test of Durbin, Wu and Hausman
+(Hausman 1978).
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from numpy.typing import NDArray
 from scipy import special
 
 from modelgen.dataset.periods import other_period
-from modelgen.errors import InputError
 from modelgen.identification.autocovariance import autocovariance, autoregression, meat_of
 from modelgen.identification.regression import Regression, Solution
 
@@ -36,6 +36,7 @@ class Comparison:
     statistic: float
     degrees: int
     threshold: float
+    simulated: bool = False  # whether the instruments are of a simulation
 
     @property
     def biased(self) -> bool:
@@ -43,13 +44,29 @@ class Comparison:
         return self.statistic > self.threshold
 
 
-def compared(regression: Regression, least: Solution, periods: Sequence[int | None]) -> Comparison | None:
-    """Both estimates on the rows that have a partner; None where too few have one.
+@dataclass(frozen=True)
+class Instrument:
+    """Of a record: columns (M, n, p) without the errors of its regressor; there (M, n): where they exist."""
 
-    periods: rows in a period of each record, None where it does not repeat.
+    columns: Array
+    there: NDArray[np.bool_]
+
+
+def of_period(columns: Array, moving: NDArray[np.bool_], period: int) -> Instrument:
+    """The regressor (M, n, p) at the same phase of another period of so many rows."""
+    partner = other_period(len(columns), period)
+    return Instrument(columns[partner], (partner >= 0)[:, None] & moving[partner])
+
+
+def compared(
+    regression: Regression, least: Solution, instruments: Sequence[Instrument | None]
+) -> Comparison | None:
+    """Both estimates on the rows that have an instrument; None where too few have one.
+
+    instruments: of each record, None where it has none.
     """
     known, p = least.determined, least.determined.size
-    rows = _rows(regression, periods, known, least.sigma)
+    rows = _rows(regression, instruments, known, least.sigma)
     if sum(len(y) for y, _, _, _ in rows) < FEWEST * p:
         return None
     size = int(known.sum())
@@ -75,34 +92,22 @@ def compared(regression: Regression, least: Solution, periods: Sequence[int | No
     return Comparison(replace(least, theta=whole, covariance=spread), statistic, degrees, threshold)
 
 
-def needed(found: Comparison | None) -> Comparison:
-    """The comparison; InputError where there is none."""
-    if found is None:
-        raise InputError(
-            "--method iv: found no motion that repeats, expected two identical periods or more in a record; "
-            "see modelgen excite"
-        )
-    return found
-
-
 _Rows = tuple[Array, Array, Array, int]
 
 
 def _rows(
-    regression: Regression, periods: Sequence[int | None], known: NDArray[np.bool_], sigma: Array
+    regression: Regression, instruments: Sequence[Instrument | None], known: NDArray[np.bool_], sigma: Array
 ) -> list[_Rows]:
     """Effort, columns, instruments of every record and joint, over the joint's residuals; the joint."""
     found: list[_Rows] = []
-    for y, table, moving, period in zip(
-        regression.effort, regression.columns, regression.moving, periods, strict=True
+    for y, table, moving, z in zip(
+        regression.effort, regression.columns, regression.moving, instruments, strict=True
     ):
-        if period is None:
+        if z is None:
             continue
-        partner = other_period(len(y), period)
-        there = moving & (partner >= 0)[:, None] & moving[partner]
         for j in range(y.shape[1]):
-            k = there[:, j]
-            own, other = table[k, j][:, known], table[partner[k], j][:, known]
+            k = moving[:, j] & z.there[:, j]
+            own, other = table[k, j][:, known], z.columns[k, j][:, known]
             found.append((y[k, j] / sigma[j], own / sigma[j], other / sigma[j], j))
     return found
 

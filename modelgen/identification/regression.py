@@ -60,7 +60,7 @@ class Triangle:
 class Solution:
     """theta: (p,); covariance: (p, p), zero for what is not determined; determined: (p,); condition: of
     the weighted columns at unit length; sigma: (n,) residuals' size by joint; precision: (p, p), normal
-    matrix of the weighted rows.
+    matrix of the weighted rows. left_out: (p,), what was taken out of the fit, None: nothing.
     """
 
     theta: Array
@@ -69,6 +69,12 @@ class Solution:
     condition: float
     sigma: Array
     precision: Array
+    left_out: NDArray[np.bool_] | None = None
+
+    @property
+    def dropped(self) -> NDArray[np.bool_]:
+        """Flags (p,) of what was taken out of the fit."""
+        return np.zeros(len(self.theta), dtype=bool) if self.left_out is None else self.left_out
 
 
 @dataclass(frozen=True)

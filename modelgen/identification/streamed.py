@@ -18,7 +18,8 @@ from modelgen.errors import InputError
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.autocovariance import ORDER, autoregression, meat_of
-from modelgen.identification.identify import Identification, concluded
+from modelgen.identification.identify import concluded
+from modelgen.identification.objects import Identification
 from modelgen.identification.regression import ROUNDS, Solution, Triangle
 from modelgen.identification.rows import Rows
 from modelgen.probing import Prober

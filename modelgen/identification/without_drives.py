@@ -7,7 +7,7 @@ dynamics of the drives.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from modelgen.dataset import Chosen, Record, prepare
@@ -15,7 +15,8 @@ from modelgen.description import Arm, DirectDrive, LeveredDrive
 from modelgen.description.objects import EffectUse, geometry_symbol
 from modelgen.errors import InputError
 from modelgen.functions import Options
-from modelgen.identification.identify import Identification, Validation, identify
+from modelgen.identification.identify import identify
+from modelgen.identification.objects import Identification, Validation
 from modelgen.transmission import of_joint
 
 LINKS_ALONE = "links alone"
@@ -34,9 +35,16 @@ class Alternative:
 
 
 def without_drives(
-    train: Sequence[Record], test: Sequence[Record], arm: Arm, chosen: Chosen, found: Identification
+    train: Sequence[Record],
+    test: Sequence[Record],
+    arm: Arm,
+    chosen: Chosen,
+    found: Identification,
+    payloads: Mapping[int, Sequence[float]] | None = None,
 ) -> tuple[Alternative, ...]:
     """What models without the drives' dynamics predict of the test records, by the method of `found`.
+
+    payloads: as for `identify`.
 
     Raises InputError where they cannot be identified from these records.
     """
@@ -47,7 +55,7 @@ def without_drives(
             [prepare(r if side else replace(r, arm=other, motor_side=()), chosen) for r in part]
             for part in (train, test)
         ]
-        validation = identify(parts[0], other, options, test=parts[1], method=method).test
+        validation = identify(parts[0], other, options, test=parts[1], method=method, payloads=payloads).test
         assert validation is not None
         return validation
 

@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.description.objects import Arm, Inertial
+from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, grouped, nominal_standard
-from modelgen.functions.nominal import about_origin
+from modelgen.functions.nominal import payload_standard
 from modelgen.simulation.slip import Slip, elastic, slip
 from modelgen.transmission import STROKE_MARGIN, of_joint
 
@@ -96,7 +96,7 @@ def plant(
     if parameters is None:
         made = slip(changed, standard=elastic(changed))
         standard = np.array(list(_nominal(made.model).values()))
-        standard += _payload(made.model, payload)
+        standard += payload_standard(made.model, payload)
         base = _grouped(made.model, standard)
         return Plant(made, standard if made.standard else base, base)
     if lock:
@@ -109,7 +109,7 @@ def plant(
         what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
         raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
     base = np.array([parameters[name] for name in names])
-    base += _grouped(made.model, _payload(made.model, payload))
+    base += _grouped(made.model, payload_standard(made.model, payload))
     return Plant(made, base, base)
 
 
@@ -125,24 +125,6 @@ def _nominal(model: Model) -> dict[str, float]:
 
 def _grouped(model: Model, standard: Array) -> Array:
     return np.array(list(grouped(model, standard.tolist()).values()))
-
-
-def _payload(model: Model, payload: Sequence[float]) -> Array:
-    """What a point mass at the last link adds to the standard parameters."""
-    standard = np.zeros(len(model.standard))
-    if not payload:
-        return standard
-    if payload[0] < 0:
-        raise InputError(f"--payload: found a mass of {payload[0]:g} kg, expected 0 or more")
-    if len(payload) not in (1, 4):
-        raise InputError(f"--payload: found {len(payload)} numbers, expected MASS or MASS,X,Y,Z")
-    m, x, y, z = (*payload, 0.0, 0.0, 0.0)[:4]
-    added = about_origin(Inertial(m, (x, y, z), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
-    last = len(model.arm.joints)
-    index = {p.name: i for i, p in enumerate(model.standard)}
-    for name, value in added.items():
-        standard[index[f"{name}{last}"]] = value
-    return standard
 
 
 def _names(arm: Arm) -> str:

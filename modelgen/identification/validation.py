@@ -1,0 +1,70 @@
+"""Rows of records as a regression, and the prediction error on records that were not fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.dataset import Prepared
+from modelgen.errors import InputError
+from modelgen.functions import Model
+from modelgen.identification.objects import Validation
+from modelgen.identification.regression import Array, Regression
+from modelgen.identification.rows import Rows
+from modelgen.probing import Prober
+
+
+def validate(
+    prober: Prober,
+    model: Model,
+    records: Sequence[Prepared],
+    theta: Array,
+    added: Sequence[Array] | None = None,
+) -> Validation:
+    """Prediction error on records that were not fitted. added: as for `regression_of`.
+
+    Raises InputError for a free motion.
+    """
+    regression = regression_of(prober, model, records, theta, added)
+    gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
+    more = [np.zeros_like(theta)] * len(records) if added is None else added
+    whole = [y + c @ m for y, c, m in zip(regression.effort, regression.columns, more, strict=True)]
+    measured = np.concatenate([y * g for y, g in zip(whole, gain, strict=True)])
+    wrong = np.concatenate([e * g for e, g in zip(regression.residuals(theta), gain, strict=True)])
+    moving = np.concatenate(regression.moving)
+    if not moving.any():
+        raise InputError(f"{records[0].record.name}: no joint moves in the test records; expected a motion")
+    rmse, share = [], []
+    for j in range(measured.shape[1]):
+        # A joint that rests throughout is judged by all its rows: holding is an effort too.
+        rows = moving[:, j] if moving[:, j].any() else np.ones(len(moving), dtype=bool)
+        e, y = wrong[rows, j], measured[rows, j]
+        rmse.append(float(np.sqrt(np.mean(e**2))))
+        share.append(100.0 * float(np.linalg.norm(e)) / max(float(np.linalg.norm(y)), 1e-300))
+    t = np.concatenate([p.t for p in records])
+    unit = records[0].effort_unit or ("",) * measured.shape[1]
+    return Validation(unit, np.array(rmse), np.array(share), t, measured, measured - wrong)
+
+
+def regression_of(
+    prober: Prober,
+    model: Model,
+    records: Sequence[Prepared],
+    theta: Array,
+    added: Sequence[Array] | None = None,
+) -> Regression:
+    """Rows of the records. theta: for columns that depend on the load [base].
+
+    added: base parameters (p,) that each record has in addition, of a payload: what they take is taken off
+    the effort.
+    """
+    made = Rows(model, prober)
+    effort, columns = [], []
+    for k, p in enumerate(records):
+        more = np.zeros_like(theta) if added is None else added[k]
+        y, w = made.of(p, theta + more)
+        whole = made.whole(w)
+        effort.append(y - whole @ more if more.any() else y)
+        columns.append(whole)
+    return Regression(effort, columns, [p.moving for p in records])

@@ -1,0 +1,66 @@
+"""An identification in words: what is known well, what is not, what would help."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.identification.objects import POOR, Estimate, Identification
+
+# What shows a parameter, by the letters that its standard parameter begins with; the first that fits.
+_SHOWN_BY = (
+    (("FV", "FA", "FN"), "a wider range of speeds"),
+    (("FC", "FO", "FS"), "slow turns in both directions, with reversals"),
+    (("MX", "MY", "MZ", "V"), "more of the range of positions, slowly, for the weight"),
+    (("XX", "XY", "XZ", "YY", "YZ", "ZZ", "I", "J", "M"), "larger accelerations"),
+)
+
+
+def verdict(found: Identification) -> str:
+    """Which parameters are well determined, which are not, and what experiment would help."""
+    lost = [e for e in found.estimates if e.std is None and not e.dropped]
+    poor = [e for e in found.estimates if e.std is not None and (e.relative or np.inf) > POOR]
+    dropped = [e.name for e in found.estimates if e.dropped]
+    good = [e.name for e in found.estimates if e.std is not None and (e.relative or np.inf) <= POOR]
+    text = [f"{len(good)} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
+    if poor:
+        text.append(f"Poorly determined: {', '.join(e.name for e in poor)}.")
+    if lost:
+        text.append(f"Not determined by these records, set to zero: {', '.join(e.name for e in lost)}.")
+    if dropped:
+        text.append(f"Left out, since the records do not support them: {', '.join(dropped)}.")
+    if found.comparison is not None and found.comparison.biased:
+        text.append(
+            "Errors of the positions bias least squares (test of Durbin, Wu and Hausman)"
+            + ("; these are by instruments." if found.method == "iv" else ": use --method iv.")
+        )
+    if found.consistent is not None:
+        wrong = found.consistent.violated
+        text.append(
+            f"Physically consistent; the plain solution closest to the prior is not: {'; '.join(wrong)}."
+            if wrong
+            else "Physically consistent, as the plain solution is."
+        )
+    if found.gains:
+        gains = ", ".join(f"joint {g.joint} {g.value / g.described:.3f}" for g in found.gains)
+        text.append(f"Torque constants over those of the description: {gains}.")
+    advice = experiment([*lost, *poor])
+    if advice:
+        text.append(f"What would help: {'; '.join(advice)}. See modelgen excite.")
+    return " ".join(text)
+
+
+def experiment(wanting: Sequence[Estimate]) -> list[str]:
+    """What would show the parameters, joint after joint."""
+    found: dict[str, set[int]] = {}
+    for e in wanting:
+        name = e.standard or e.name
+        kind = next((what for heads, what in _SHOWN_BY if name.startswith(heads)), "faster motion")
+        found.setdefault(kind, set()).add(e.joint)
+    order = [what for _, what in _SHOWN_BY] + ["faster motion"]
+    return [
+        f"{what} of joint{'s' if len(found[what]) > 1 else ''} {', '.join(map(str, sorted(found[what])))}"
+        for what in order
+        if what in found
+    ]
