@@ -23,13 +23,15 @@ SIGNIFICANCE = 1e-4
 class Endogeneity:
     """statistic: likelihood ratio, chi-squared of `degrees` where positions are exact; threshold: of it.
 
-    share: percent of the RMSE by joint (n,) that the errors of the regressor explain.
+    share: percent of the whitened RMSE by joint (n,) that the errors of the regressor explain; cost: of the
+    RMSE as it is, as whitening brings out what is high in frequency.
     """
 
     statistic: float
     degrees: int
     threshold: float
     share: Array
+    cost: Array
 
     @property
     def found(self) -> bool:
@@ -51,10 +53,13 @@ def endogeneity(system: System) -> Endogeneity | None:
     ]
     gain = system.gain_of(system.whitened(left))
     if gain is None:
-        return Endogeneity(0.0, 0, np.inf, np.zeros(system.n))
+        return Endogeneity(0.0, 0, np.inf, np.zeros(system.n), np.zeros(system.n))
     used = system.counts > 0
     ratio = gain.rss0[used] / np.maximum(gain.rss1[used], 1e-300)
-    share = np.zeros(system.n)
-    share[used] = 100.0 * (1.0 - 1.0 / np.sqrt(ratio))
     statistic = float((system.counts[used] * np.log(ratio)).sum())
-    return Endogeneity(statistic, gain.rank, float(special.chdtri(gain.rank, SIGNIFICANCE)), share)
+    plain, share, cost = system.plain.gain(left, 0.0), np.zeros(system.n), np.zeros(system.n)
+    share[used] = 100.0 * (1.0 - 1.0 / np.sqrt(ratio))
+    if plain is not None:
+        used = plain.rss0 > 0
+        cost[used] = 100.0 * (1.0 - np.sqrt(plain.rss1[used] / plain.rss0[used]))
+    return Endogeneity(statistic, gain.rank, float(special.chdtri(gain.rank, SIGNIFICANCE)), share, cost)

@@ -155,6 +155,7 @@ def _positions(p: Positions) -> dict[str, Any]:
             "threshold": rounded(test.threshold),
             "degrees": test.degrees,
             "share_percent": numbers(test.share),
+            "cost_percent": numbers(test.cost),
         },
     }
 

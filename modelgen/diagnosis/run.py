@@ -209,12 +209,12 @@ def _verdict(
             "outside_catalogue",
             f"something deterministic remains that no effect of the catalogue explains{more}",
         )
-    if correlated is not None and correlated.found and correlated.share.max() > PRACTICAL:
-        joint = int(np.argmax(correlated.share)) + 1
+    if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
+        joint = int(np.argmax(correlated.cost)) + 1
         return "cannot_tell", (
             "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
             f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
-            f"costs {correlated.share.max():.1f} % at joint {joint}; better encoders can tell"
+            f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 
