@@ -7,6 +7,7 @@
 #   make bench   beside Pinocchio, MuJoCo, SymForce, SymPy and FIGAROH, and variants: docs/benchmarks.md (needs valgrind)
 #   make bench-scale  chains of 2 to 50 joints and trees, into the same page
 #   make bench-generation  CPU time of generation, per arm and over the number of joints
+#   make bench-fleet  diagnose 200 simulated arms as one job, into build/fleet; CPU time of a diagnosis over its size
 #   make docs    the documentation as HTML, with the reference: build/docs/index.html
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
 #   make run-examples  the examples, and the plots that they write
@@ -21,7 +22,8 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench bench-scale bench-generation docs size run-examples prove fuzz hidden blind clean
+.PHONY: run test pytest lint format bench bench-scale bench-generation bench-fleet docs size run-examples prove fuzz \
+    hidden blind clean
 
 EXAMPLE := examples/diagnosis
 
@@ -57,6 +59,10 @@ bench-scale: $(INSTALLED)
 
 bench-generation: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
+
+bench-fleet: $(INSTALLED)
+	$(BIN)/python benchmarks/fleet.py build/fleet
+	$(BIN)/python benchmarks/diagnosis_scale.py
 
 docs: $(INSTALLED)
 	$(BIN)/python docs/build.py
