@@ -39,9 +39,9 @@ int main(int argc, char **argv)
     const int n = model.nv;
     const SX x = SX::sym("q", n), v = SX::sym("dq", n), a = SX::sym("third", n);
     const Vector q = vector(x), dq = vector(v), third = vector(a);
+    const std::string names = std::string(",") + argv[3] + ",";
     // the file has the name of its first function, a prefix of what it defines besides
     casadi::CodeGenerator code("of_" + names.substr(1, names.find(',', 1) - 1), {{"with_header", false}});
-    const std::string names = std::string(",") + argv[3] + ",";
     const auto wanted = [&](const std::string &name) { return names.find("," + name + ",") != std::string::npos; };
     const auto add = [&](const std::string &name, const SX &result) {
         if (!wanted(name))
