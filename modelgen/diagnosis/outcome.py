@@ -40,9 +40,15 @@ def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> Fitted:
     return Fitted(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
 
 
-def rows_twice(prober: Prober, model: Model, prepared: Sequence[Prepared], baseline: Baseline) -> list[Rows]:
-    """The records' equations; made twice where columns depend on the parameters."""
-    rows = [rows_of(prober, model, p, None, baseline) for p in prepared]
+def rows_twice(
+    prober: Prober,
+    model: Model,
+    prepared: Sequence[Prepared],
+    baseline: Baseline,
+    start: Array | None = None,
+) -> list[Rows]:
+    """The records' equations; made twice where columns depend on the parameters. start: unknowns (k,)."""
+    rows = [rows_of(prober, model, p, start, baseline) for p in prepared]
     (regressor,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in regressor.arguments}:
         theta = weighted_fit(rows, [r.columns for r in rows])
@@ -60,7 +66,11 @@ def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Pre
     bigger = extended_arm(arm, causes)
     model = build_model(bigger)
     known = held(model) if train[0].input is None else estimated(model)
-    own = rows_twice(Prober(bigger), model, [_seen_by(p, bigger) for p in train], known)
+    # links that weigh nothing swing on no spring: not from zero
+    values = dict(zip((b.name for b in before.model.grouping.base), before.parameters, strict=True))
+    first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
+    start = None if train[0].input is None else first
+    own = rows_twice(Prober(bigger), model, [_seen_by(p, bigger) for p in train], known, start)
     if (
         any(effect == LATER for effect, _, _ in causes)
         and own[0].columns.shape == before.rows[0].columns.shape
