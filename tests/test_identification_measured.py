@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -36,3 +37,21 @@ def test_emps_meets_the_published_values_and_reaches_the_generated_code(tmp_path
     result = CliRunner().invoke(app, [*call, "--out", str(folder), "-j", "1"])
     assert result.exit_code == 0, result.output
     assert "emps_inverse_dynamics_identified" in (folder / "emps/include/emps.h").read_text()
+
+
+def test_tx40_with_its_coupled_wrist_predicts_each_third_of_its_motion_from_the_others(
+    tmp_path: Path,
+) -> None:
+    call = ["identify", str(STUDIES / "tx40_arm.yaml"), "--arm", "tx40"]
+    call += ["--mapping", str(STUDIES / "tx40_mapping.yaml"), "--train", f"{DATA}/tx40/tx40_motor.csv@0:7.4"]
+    call += ["--cutoff", "10", "--folds", "3", "--out", str(tmp_path), "--json"]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 0, result.output
+    data = json.loads(result.stdout)["folds"]
+    limits = (6.7, 6.5, 10.0, 8.9, 31.0, 20.0)
+    assert all(x <= limit for x, limit in zip(data["nrmse_percent"], limits, strict=True))
+    parts = np.array([part["nrmse_percent"] for part in data["parts"]])
+    assert len(parts) == 3
+    # together lies between the parts
+    assert (parts.min(axis=0) < data["nrmse_percent"]).all()
+    assert (data["nrmse_percent"] < parts.max(axis=0)).all()

@@ -14,7 +14,8 @@ from modelgen.cli.files import write_together
 from modelgen.cli.output import print_json, print_table
 from modelgen.dataset import Chosen, Prepared, described, spectra_svg
 from modelgen.extension import with_torque_constants
-from modelgen.identification import Identification, to_json
+from modelgen.identification import Identification, Validation, to_json
+from modelgen.identification.folds import Folds
 from modelgen.identification.output import errors
 from modelgen.identification.without_drives import Alternative
 from modelgen.report.identification import models, page, predictions, table
@@ -22,12 +23,15 @@ from modelgen.report.identification import models, page, predictions, table
 
 @dataclass(frozen=True)
 class Outcome:
-    """others: models beside the identification. first: a training record, for the spectra."""
+    """others: models beside the identification. first: a training record, for the spectra. folds: parts of
+    the training records held out in turn.
+    """
 
     found: Identification
     others: Sequence[Alternative]
     first: Prepared
     chosen: Chosen
+    folds: Folds | None = None
 
     def data(self) -> dict[str, Any]:
         """identification.json."""
@@ -36,7 +40,16 @@ class Outcome:
             to_json(self.found)
             | {"cutoff_hz": self.chosen.cutoff, "processing": described(self.first)}
             | ({"without_drives": beside} if beside else {})
+            | ({} if self.folds is None else {"folds": self._folds(self.folds)})
         )
+
+    @staticmethod
+    def _folds(folds: Folds) -> dict[str, Any]:
+        return {
+            "parts": [{"test": name, **errors(test)} for name, test in folds.parts],
+            "rmse": folds.rmse.tolist(),
+            "nrmse_percent": folds.nrmse_percent.tolist(),
+        }
 
 
 def write(o: Outcome, file: Path, out: Path) -> None:
@@ -81,12 +94,20 @@ def show(o: Outcome, *, as_json: bool) -> None:
     if found.gains:
         rows = [[str(g.joint), f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}"] for g in found.gains]
         print_table("torque constants", dict.fromkeys(("joint", "described", "found", "std"), "right"), rows)
-    test = found.test
-    assert test is not None
+    if found.test is not None:
+        _show_test(found.test, o)
+    if o.folds is not None:
+        heads = {"held out": "left"} | {f"joint {j + 1}": "right" for j in range(len(o.folds.rmse))}
+        rows = [[name, *(f"{x:.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
+        rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
+        print_table("NRMSE % of parts of the training records, each held out in its turn", heads, rows)
+    typer.echo("\n".join([*data["processing"], data["verdict"]]))
+
+
+def _show_test(test: Validation, o: Outcome) -> None:
     rows = [[str(j + 1), a, test.unit[j], b] for j, (a, b) in enumerate(table(test))]
     print_table("test records", dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right"), rows)
     if o.others:
         heads = {"model": "left"} | {f"joint {j + 1} [{unit}]": "right" for j, unit in enumerate(test.unit)}
         rows = [[name, *cells] for name, cells in models(test, o.others)]
         print_table("RMSE on the test records (NRMSE %), and what the described drives change", heads, rows)
-    typer.echo("\n".join([*data["processing"], data["verdict"]]))

@@ -61,6 +61,16 @@ CompareDrives = Annotated[
 Essential = Annotated[
     bool, typer.Option("--essential", help="Fit again with the parameters alone that the logs support.")
 ]
+NumberOfFolds = Annotated[
+    int | None,
+    typer.Option(
+        "--folds",
+        metavar="K",
+        min=2,
+        help="Cross-validate: each of K parts of the training records held out in its turn.",
+        show_default=False,
+    ),
+]
 
 
 @guarded
@@ -82,6 +92,7 @@ def identify(
     payload: Payload = None,
     essential: Essential = False,
     compare_drives: CompareDrives = False,
+    folds: NumberOfFolds = None,
     consistent: given.Consistent = False,
     stream: given.Streamed = False,
     without: given.Without = "",
@@ -109,6 +120,7 @@ def identify(
         payload=payload or [],
         essential=essential,
         compare=compare_drives,
+        folds=folds,
         consistent=consistent,
         stream=stream,
         as_json=as_json,

@@ -13,6 +13,7 @@ from modelgen.cli.identified import Outcome, show, write
 from modelgen.cli.simulating import reference_of
 from modelgen.dataset import (
     Prepared,
+    Record,
     Settings,
     Stream,
     check_separate,
@@ -31,10 +32,12 @@ from modelgen.functions import Options
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification import (
     METHODS,
+    Identification,
     Instruments,
     identify,
     identify_streamed,
 )
+from modelgen.identification.folds import Folds, folds
 from modelgen.identification.without_drives import Alternative, without_drives
 from modelgen.simulation.instruments import Tracking
 from modelgen.simulation.values import numbers
@@ -61,6 +64,7 @@ class Request:
     payload: Sequence[str]
     essential: bool
     compare: bool
+    folds: int | None
     consistent: bool
     stream: bool
     as_json: bool
@@ -92,6 +96,10 @@ def _check(options: Options, r: Request) -> None:
         raise InputError(f"--method: found '{r.method}', expected {', '.join(METHODS)}")
     if r.bandwidth is not None and not 0 < r.bandwidth < float("inf"):
         raise InputError(f"--bandwidth: found {r.bandwidth:g}, expected more than 0 Hz")
+    if r.compare and r.folds is not None and not r.test:
+        raise InputError("--compare-drives: compares errors on test records, expected --test LOG")
+    if r.folds is not None and r.payload:
+        raise InputError("--folds: parts of a record with a payload, and without; expected no --payload")
     if options.gains == "row_wise" and (r.instrument == "simulated" or r.reference is not None):
         raise InputError("--gains row_wise: rows without a common scale cannot be simulated")
 
@@ -105,8 +113,12 @@ def _settings(r: Request) -> Callable[[float], Settings]:
 
 def _whole(arm: Arm, options: Options, r: Request, bar: Progress, task: TaskID) -> Outcome:
     """All records at once."""
-    training, testing = gather(r.train, r.test, arm, r.mapping)
-    if not testing:
+    if r.folds is not None and not r.test:
+        training = [read(spec, arm, r.mapping) for spec in r.train]
+        testing: list[Record] = []
+    else:
+        training, testing = gather(r.train, r.test, arm, r.mapping)
+    if not testing and r.folds is None:
         if len(training) > 1:
             raise InputError("found no test record, expected one: --test LOG")
         one, two = split(training[0])
@@ -122,22 +134,30 @@ def _whole(arm: Arm, options: Options, r: Request, bar: Progress, task: TaskID) 
         None if r.reference is None else reference_of(len(arm.coordinates), r.reference),
         r.bandwidth,
     )
-    found = identify(
-        train,
-        arm,
-        options,
-        test=test,
-        method=r.method,
-        physical=r.consistent,
-        instruments=Instruments(r.instrument, tracking),
-        essential_only=r.essential,
-        payloads=payloads,
-    )
+
+    def identified(train: Sequence[Prepared], test: Sequence[Prepared]) -> Identification:
+        return identify(
+            train,
+            arm,
+            options,
+            test=test,
+            method=r.method,
+            physical=r.consistent,
+            instruments=Instruments(r.instrument, tracking),
+            essential_only=r.essential,
+            payloads=payloads,
+        )
+
+    found = identified(train, test)
     others: tuple[Alternative, ...] = ()
     if r.compare:
         bar.update(task, description="identifying without the drives")
         others = without_drives(training, testing, found.arm, chosen, found, payloads)
-    return Outcome(found, others, train[0], chosen)
+    parts: Folds | None = None
+    if r.folds is not None:
+        bar.update(task, description=f"holding out each of {r.folds} parts")
+        parts = folds(training, r.folds, chosen, identified)
+    return Outcome(found, others, train[0], chosen, parts)
 
 
 def _payloads(r: Request) -> dict[int, list[float]]:
@@ -165,6 +185,7 @@ def _streamed(arm: Arm, options: Options, r: Request, bar: Progress, task: TaskI
         ("--payload", r.payload),
         ("--essential", r.essential),
         ("--compare-drives", r.compare),
+        ("--folds", r.folds),
         ("--instrument", r.instrument != "auto"),
     ):
         if asked:

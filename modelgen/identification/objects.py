@@ -41,12 +41,13 @@ class Estimate:
 class Validation:
     """On test records, by joint, in the unit that the log carried: rmse (n,), nrmse (n,) in % of the effort.
 
-    t: (M,) [s]; measured, predicted: (M, n), records one after the other.
+    t: (M,) [s]; measured, predicted: (M, n), records one after the other. rows: (n,), how many were judged.
     """
 
     unit: tuple[str, ...]
     rmse: Array
     nrmse_percent: Array
+    rows: Array
     t: Array
     measured: Array
     predicted: Array

@@ -35,16 +35,17 @@ def validate(
     moving = np.concatenate(regression.moving)
     if not moving.any():
         raise InputError(f"{records[0].record.name}: no joint moves in the test records; expected a motion")
-    rmse, share = [], []
+    rmse, share, judged = [], [], []
     for j in range(measured.shape[1]):
         # A joint that rests throughout is judged by all its rows: holding is an effort too.
         rows = moving[:, j] if moving[:, j].any() else np.ones(len(moving), dtype=bool)
         e, y = wrong[rows, j], measured[rows, j]
         rmse.append(float(np.sqrt(np.mean(e**2))))
+        judged.append(float(rows.sum()))
         share.append(100.0 * float(np.linalg.norm(e)) / max(float(np.linalg.norm(y)), 1e-300))
     t = np.concatenate([p.t for p in records])
     unit = records[0].effort_unit or ("",) * measured.shape[1]
-    return Validation(unit, np.array(rmse), np.array(share), t, measured, measured - wrong)
+    return Validation(unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong)
 
 
 def regression_of(
