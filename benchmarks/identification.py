@@ -21,12 +21,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+os.environ |= THREADS  # before the libraries are loaded
+
+import numpy as np  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
 PATH = ROOT / "benchmarks", ROOT / "tests"
 sys.path.insert(0, str(PATH[1]))
-THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 CODE = (
     "import sys, resource; from modelgen.cli.app import app\n{before}\n"
     "try:\n    app(sys.argv[1:], standalone_mode=False)\n"
@@ -36,7 +38,7 @@ CODE = (
 )
 BEFORE = "from identification_scale import instead_of_files; instead_of_files({samples})"
 TEST = 20_000  # samples of the record that validates
-PEER = 60_000  # samples that the loop gets
+PEER = 40_000  # samples that the loop gets
 
 
 def identified(log: Path, held: Path, folder: Path, before: str = "") -> dict[str, Any]:
@@ -51,7 +53,7 @@ def identified(log: Path, held: Path, folder: Path, before: str = "") -> dict[st
         capture_output=True,
         text=True,
         check=False,
-        env=os.environ | THREADS | {"PYTHONPATH": os.pathsep.join([*map(str, PATH), *sys.path])},
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([*map(str, PATH), *sys.path])},
     )
     wall = time.perf_counter() - begin
     if done.returncode:
@@ -64,7 +66,7 @@ def identified(log: Path, held: Path, folder: Path, before: str = "") -> dict[st
 
 def side_by_side(samples: int) -> None:
     """Both, on the same log."""
-    from long_log import RATE, write  # noqa: PLC0415 - the threads are set first
+    from long_log import RATE, write  # noqa: PLC0415 - needs the tests' folder
     from pinocchio_job import Job  # noqa: PLC0415
 
     with tempfile.TemporaryDirectory() as name:
@@ -109,7 +111,6 @@ def held_table(path: Path) -> Any:
 
 
 if __name__ == "__main__":
-    os.environ |= THREADS
     words = sys.argv[1:]
     if words[:1] == ["--scale"]:
         from identification_scale import scale

@@ -6,7 +6,7 @@ import json
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from modelgen.dataset.tables import Reader, open_table
 from modelgen.figures import COLOURS, figure, svg
 
 Array = NDArray[np.float64]
-ON_DISK = 10_000_000  # samples, beyond which a log is made block by block as it is read
+ON_DISK = 1_000  # samples, beyond which a log is made block by block as it is read
 MADE = "made.parquet"
 
 
@@ -79,12 +79,12 @@ def scale(most: int) -> None:
                 found = identified(log, held, folder)
             table.append((samples, found["cpu"] - found["made"], found["peak"]))
             print(f"{samples:>12,} samples {table[-1][1]:8.1f} s of CPU {found['peak']:6.0f} MiB", flush=True)
-    folder = ROOT / "docs"
-    (folder / "identification.json").write_text(json.dumps(table) + "\n", encoding="utf-8")
-    (folder / "identification.svg").write_text(picture(table), encoding="utf-8")
+    rounded = [(samples, round(seconds, 1), round(peak)) for samples, seconds, peak in table]
+    (ROOT / "benchmarks" / "identification.json").write_text(json.dumps(rounded) + "\n", encoding="utf-8")
+    (ROOT / "docs" / "identification.svg").write_text(picture(rounded), encoding="utf-8")
 
 
-def picture(table: list[tuple[int, float, float]]) -> str:
+def picture(table: Sequence[tuple[int, float, float]]) -> str:
     """CPU time and peak memory over the samples as SVG."""
     samples, seconds, memory = np.array(table).T
     made, axes = figure(1, 2, (8.0, 3.0))

@@ -45,7 +45,7 @@ class Stream:
         arm: Arm,
         settings: Settings | Chosen | None = None,
         mapping: Path | str | None = None,
-        block: int = 32_768,
+        block: int = 16_384,
     ) -> None:
         self.spec, self.arm = spec, arm
         self._source = open_source(spec, arm, mapping)
