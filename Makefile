@@ -6,6 +6,7 @@
 #   make format  let ruff rewrite the layout
 #   make bench   beside Pinocchio, MuJoCo, SymForce, SymPy and FIGAROH, and variants: docs/benchmarks.md (needs valgrind)
 #   make bench-scale  chains of 2 to 50 joints and trees, into the same page
+#   make bench-identification  long logs, beside Pinocchio's regressor in a loop; growth with the samples
 #   make bench-generation  CPU time of generation, per arm and over the number of joints
 #   make bench-fleet  diagnose 200 simulated arms as one job, into build/fleet; CPU time of a diagnosis over its size
 #   make docs    the documentation as HTML, with the reference: build/docs/index.html
@@ -22,8 +23,8 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: run test pytest lint format bench bench-scale bench-generation bench-fleet docs size run-examples prove fuzz \
-    hidden blind clean
+.PHONY: run test pytest lint format bench bench-scale bench-identification bench-generation bench-fleet docs size \
+    run-examples prove fuzz hidden blind clean
 
 EXAMPLE := examples/diagnosis
 
@@ -56,6 +57,11 @@ bench-scale: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python benchmarks/scale.py --accept
 	$(BIN)/python benchmarks/compare.py --page
+
+bench-identification: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench,logs]'
+	$(BIN)/python benchmarks/identification.py
+	$(BIN)/python benchmarks/identification.py --scale 1e8
 
 bench-generation: $(INSTALLED)
 	$(BIN)/python benchmarks/generate.py
