@@ -2,13 +2,13 @@
 
 A Butterworth filter run forwards and backwards has the impulse response
 
-    h(k) = sum over its poles p of r H(1/p) p^|k|, and a small direct part at k = 0,
+    h(k) = sum over its poles p of r H(1/p) p^abs(k), and a small direct part at k = 0,
 
 r the residue of the filter H at p: partial fractions of H(z) H(1/z) (Oppenheim and Schafer 2010, sections
-3.3 and 5.6). What lies before a sample and what lies after it are then
-sums weighted by powers of the poles, which go from kept sample to kept sample by one multiplication: nothing
-is computed for the samples that decimation throws away. The ends of the record are those of
-scipy.signal.sosfiltfilt: an odd extension, constant beyond it.
+3.3 and 5.6). What lies before a sample and what lies after it are then sums weighted by powers of the
+poles, which go from kept sample to kept sample by one multiplication: nothing is computed for the samples
+that decimation throws away. The ends of the record are those of scipy.signal.sosfiltfilt: an odd extension,
+constant beyond it.
 """
 
 from __future__ import annotations
