@@ -16,7 +16,7 @@ from typing import ClassVar
 import sympy as sp
 
 Values = Mapping[str, sp.Expr]  # figures by name
-DEAD_CENTRE = math.radians(5.0)  # nearer to a dead centre, the motor turns the joint with next to no effort
+DEAD_CENTRE = math.radians(5.0)  # nearer to a dead centre, gain or speed ratio is next to nothing
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,9 @@ def slider_crank(q: float) -> tuple[float, float]:
     return per_metre * x, per_metre * float(turning @ along) / along[0]
 
 
-WITNESSES: dict[str, Callable[[float], tuple[float, float]]] = {"slider_crank": slider_crank}
+WITNESSES: dict[str, Callable[[float], tuple[float, float]]] = {
+    "slider_crank": slider_crank,
+}
 
 
 def arm_with(name: str, **figures: float) -> Arm:
@@ -105,10 +107,12 @@ def test_the_reach_ends_at_the_dead_centres(name: str) -> None:
     low, high = of_joint(arm, arm.joints[0]).joint_range() or (0.0, 0.0)
     inside = [WITNESSES[name](x)[1] for x in np.linspace(low, high, 200)]
     assert len(set(np.sign(inside))) == 1
-    # beyond: the gain changes its sign
-    for end, outward in ((low, -1), (high, 1)):
-        beyond = WITNESSES[name](end + outward * DEAD_CENTRE * 1.01)[1]
-        assert np.sign(beyond) == -np.sign(inside[0])
+    for beyond in (low - DEAD_CENTRE * 1.01, high + DEAD_CENTRE * 1.01):
+        try:
+            slope = WITNESSES[name](beyond)[1]
+        except ValueError:  # no root: the parts do not meet
+            continue
+        assert np.sign(slope) == -np.sign(inside[0])
 
 
 @each

@@ -6,4 +6,10 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.backends.packaging import packaging_files
 from modelgen.backends.provenance import Provenance
 
-__all__ = ["NumpyFunction", "Provenance", "c_files", "casadi_files", "packaging_files"]
+# What is printed into every arm's folder: each gives text by path for a model and its provenance.
+PRINTERS = (
+    c_files,
+    casadi_files,
+)
+
+__all__ = ["PRINTERS", "NumpyFunction", "Provenance", "c_files", "casadi_files", "packaging_files"]

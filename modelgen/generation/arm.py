@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from modelgen import __version__
-from modelgen.backends import Provenance, c_files, casadi_files, packaging_files
+from modelgen.backends import PRINTERS, Provenance, packaging_files
 from modelgen.backends.c import c_symbols
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
@@ -64,7 +64,7 @@ def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> Generated
     """Print a model in every language; `arm` is the description as the user gave it. Raises InputError."""
     provenance = Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
     try:
-        files = {**c_files(model, provenance), **casadi_files(model, provenance)}
+        files = {path: text for print_ in PRINTERS for path, text in print_(model, provenance).items()}
         files |= packaging_files(model, provenance, files, size_rows(model))
     except ValueError as error:
         raise InputError(str(error), arm.where) from error
