@@ -24,6 +24,7 @@ ROOT = HERE.parent
 PICTURES = (".svg", ".png")
 # In the order in which data flows.
 PACKAGES = (
+    "linkages",
     "description",
     "geometry",
     "transmission",
@@ -108,7 +109,9 @@ def gather(folder: Path) -> None:
 def reference(package: str) -> str:
     """A page of everything public in a package."""
     module = importlib.import_module(f"modelgen.{package}")
-    names = [f"modelgen.{package}"] if hasattr(module, "__all__") else [module.__name__, *modules(package)]
+    names = [module.__name__]
+    if not hasattr(module, "__all__") and hasattr(module, "__path__"):
+        names += modules(package)
     text = "".join(
         f".. automodule:: {name}\n   :members:\n   :imported-members:\n\n"
         if hasattr(module, "__all__")

@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from docutils import nodes
+from latex2mathml.converter import convert
+
 project = "modelgen"
 author = "The modelgen authors"
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
@@ -14,6 +17,9 @@ html_show_copyright = False
 html_show_sourcelink = False
 html_last_updated_fmt = None
 myst_heading_anchors = 4
+myst_enable_extensions = ["dollarmath"]
+# MathML, which browsers draw without a script and without a network
+html_math_renderer = "mathml"
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True}
@@ -45,6 +51,19 @@ def _escaped(line: str) -> str:
     )
 
 
+def _inline(translator: Any, node: Any) -> None:
+    translator.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def _block(translator: Any, node: Any) -> None:
+    style = "margin: 1em 0; padding: 2px 0; overflow-x: auto; overflow-y: hidden"
+    made = convert(node.astext(), display="block").replace("<math ", '<math style="overflow: visible" ', 1)
+    translator.body.append(f'<div style="{style}">{made}</div>')
+    raise nodes.SkipNode
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
+    app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
     app.connect("autodoc-process-docstring", _plain)
