@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from arms_support import ARMS
+from c_support import Library, flat_c, shared_library
 from numpy.typing import NDArray
+from ruamel.yaml import YAML
 from test_identification_consistent import RATE, tapering
+from typer.testing import CliRunner
 from witness.bodies import Body
 from witness.rigid_bodies import RigidBodies
 
+from modelgen.cli.app import app
 from modelgen.dataset import Prepared, Record, Settings, prepare
-from modelgen.description import Arm, NoDrive
+from modelgen.description import Arm, NoDrive, load
 from modelgen.errors import InputError
-from modelgen.functions import Options
+from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification import identify, verdict
 
@@ -29,6 +36,7 @@ VISCOUS = np.array([1e-3, 2e-3, 1e-3, 5e-4, 4e-4, 3e-4])
 DRY = np.array([0.3, 0.4, 0.3, 0.1, 0.08, 0.06])
 PAYLOAD = (4.0, 0.1, -0.05, 0.25)  # kg, m
 OPTIONS = Options(gains="estimated")
+FILE = Path(__file__).resolve().parents[1] / "arms.yaml"
 
 
 def loaded(body: Body) -> Body:
@@ -93,6 +101,135 @@ def test_a_known_payload_shows_the_torque_constants(
     wrong = identify([light, heavy], arm, test=[other], payloads=carried)
     assert wrong.test is not None
     assert wrong.test.rmse.max() > 2 * found.test.rmse.max()
+
+
+def write_csv(made: Record, path: Path) -> str:
+    """The record as a log of joint positions and currents."""
+    assert made.input is not None
+    n = made.n
+    names = ["t", *(f"q{k + 1}" for k in range(n)), *(f"i{k + 1}" for k in range(n))]
+    table = np.column_stack([made.t, made.q, made.input])
+    np.savetxt(path, table, fmt="%.10g", delimiter=",", header=",".join(names), comments="")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Body], list[str], Path]:
+    """Logs of an arm without, with, and again without the payload, and what identify makes of them."""
+    arm, bodies = ARMS["rx90"], tapering(5)
+    folder = tmp_path_factory.mktemp("gains")
+    heavy = [*bodies[:-1], loaded(bodies[-1])]
+    runs = ((1, "light", bodies), (2, "heavy", heavy), (3, "test", bodies))
+    logs = [write_csv(record(arm, b, seed, seconds=12.0), folder / f"{name}.csv") for seed, name, b in runs]
+    payload = ",".join(map(str, PAYLOAD))
+    call = ["identify", str(FILE), "--arm", "rx90", "--train", logs[0], "--train", logs[1], "--test", logs[2]]
+    call += ["--cutoff", "8", "--gains", "estimated", "--payload", f"{logs[1]}={payload}"]
+    result = CliRunner().invoke(app, [*call, "--out", str(folder / "out")])
+    assert result.exit_code == 0, result.output
+    assert "torque constants" in result.output
+    return bodies, logs, folder / "out"
+
+
+def test_what_is_found_reaches_the_compiled_functions(
+    written: tuple[list[Body], list[str], Path], tmp_path: Path
+) -> None:
+    bodies, _, out = written
+    found = load(out / "rx90_identified.yaml")["rx90"]
+    constants = [j.drive.torque_constant for j in found.joints]  # type: ignore[union-attr]
+    assert constants == pytest.approx(TRUE, rel=0.02)
+    data = json.loads((out / "identification.json").read_text(encoding="utf-8"))
+    assert [x["value"] for x in data["torque_constants"]] == pytest.approx(constants)
+    # The parameters lie beside that description: generate takes them without being told.
+    call = ["generate", str(out / "rx90_identified.yaml"), "--out", str(tmp_path), "-j", "1"]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 0, result.output
+    names = yaml(out / "rx90_parameters.yaml")["parameters"]
+    model = build_model(found, Options(identified=names))
+    library = Library(shared_library(tmp_path / "rx90", "rx90", "double"), model, "double")
+    links = RigidBodies(reduced(found, Options(without=frozenset({"drives", "effects"}))), bodies)
+    rng = np.random.default_rng(9)
+    got, true = [], []
+    for _ in range(50):
+        q, dq, ddq = rng.uniform(-0.8, 0.8, 6), rng.uniform(-1.5, 1.5, 6), rng.uniform(-4, 4, 6)
+        status, outputs = library.call("inverse_dynamics_identified", q, dq, ddq)
+        assert status == 0
+        got.append(flat_c(outputs))
+        motor = links.effort(q, dq, ddq) / RATIO + INERTIA * RATIO * ddq
+        true.append((motor + VISCOUS * RATIO * dq + DRY * np.sign(dq)) / TRUE)
+    error = np.linalg.norm(np.array(got) - true, axis=0) / np.linalg.norm(true, axis=0)
+    assert error.max() < 0.03
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--gains", "estimated"], "share a scale that no record shows"),
+        (["--gains", "estimated", "--method", "iv"], "expected ols, wls or robust"),
+        (["--gains", "estimated", "--payload", "none.csv=2"], "expected LOG=KG"),
+        (["--gains", "estimated", "--payload", "{log}"], "expected LOG=KG"),
+        (["--gains", "estimated", "--payload", "{log}="], "expected a mass above 0 kg"),
+        (["--gains", "estimated", "--payload", "{log}=-1"], "expected a mass above 0 kg"),
+        (["--gains", "estimated", "--payload", "{log}=1,2"], "expected MASS or MASS,X,Y,Z"),
+        (["--gains", "estimated", "--payload", "{log}=heavy"], "'heavy'"),
+        (["--gains", "row_wise", "--consistent"], "no common scale"),
+        (["--gains", "row_wise", "--instrument", "simulated"], "without a common scale cannot be simulated"),
+        (["--gains", "row_wise", "--payload", "{log}=2"], "no common scale"),
+        (["--stream", "--gains", "estimated"], "needs all rows at once"),
+        (["--stream", "--essential"], "needs all rows at once"),
+        (["--method", "iv", "--instrument", "period"], "found no motion that repeats"),
+        (["--method", "iv", "--instrument", "none"], "expected auto, period, simulated"),
+        (["--method", "iv", "--bandwidth", "0"], "--bandwidth: found 0"),
+        (["--method", "iv", "--control", "lqr"], "--control lqr"),
+        (["--method", "iv", "--reference", "none.csv"], "none.csv"),
+        (["--method", "2sls"], "found '2sls'"),
+    ],
+)
+def test_options_that_make_no_sense_get_one_line(
+    written: tuple[list[Body], list[str], Path], tmp_path: Path, options: list[str], message: str
+) -> None:
+    _, logs, _ = written
+    call = ["identify", str(FILE), "--arm", "rx90", "--train", logs[0], "--test", logs[2], "--cutoff", "8"]
+    call += [o.format(log=logs[0]) for o in options]
+    result = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
+    assert result.exit_code == 2, result.output
+    assert message in result.output
+    assert result.output.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda text: text.replace("FV1: ", "FV1: .nan #"), "FV1 is nan"),
+        (lambda text: text.replace("FV1: ", "FV1: 1.0.0 #"), "a number by each name"),
+        (lambda text: text.replace("FV1: ", "FV9: "), "missing FV1; unknown FV9"),
+        (lambda text: text + "  FV1: 0.1\n", "DuplicateKeyError"),
+        (lambda text: text.replace("arm: rx90", "arm: other"), "belongs to the arm 'other'"),
+        (lambda _: "- 1\n", "a number by each name"),
+    ],
+)
+def test_parameters_beside_the_description_that_do_not_fit_are_refused(
+    written: tuple[list[Body], list[str], Path],
+    tmp_path: Path,
+    change: Callable[[str], str],
+    message: str,
+) -> None:
+    _, _, out = written
+    for name in ("rx90_identified.yaml", "rx90_parameters.yaml"):
+        text = (out / name).read_text(encoding="utf-8")
+        (tmp_path / name).write_text(change(text) if "parameters" in name else text, encoding="utf-8")
+    call = ["generate", str(tmp_path / "rx90_identified.yaml"), "--out", str(tmp_path / "code"), "-j", "1"]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 2, result.output
+    assert message in result.output
+    assert result.output.count("\n") == 1
+    assert not (tmp_path / "code").exists()
+
+
+def yaml(path: Path) -> dict[str, dict[str, float]]:
+    """A file of parameters."""
+    found: dict[str, dict[str, float]] = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
+    return found
 
 
 def test_without_a_payload_the_scale_is_refused(records: tuple[Arm, list[Body], list[Prepared]]) -> None:

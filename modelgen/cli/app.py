@@ -59,11 +59,12 @@ def generate(
 ) -> None:
     """Write C99 and CasADi functions of every arm, with identified parameters folded in where given."""
     from modelgen.cli.generating import budget_of, run
-    from modelgen.cli.selecting import options, selected, with_parameters
+    from modelgen.cli.selecting import beside, options, selected, with_parameters
 
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
     budget = budget_of(target, max_flash, max_stack)
     file, found = selected(arms, arm or [])
+    own = beside(Path(file), found, chosen) if parameters is None else {}
     chosen = with_parameters(chosen, parameters, found)
     artefacts = [name for name, asked in (("casadi", casadi), ("plant", casadi_plant)) if asked]
     run(
@@ -76,6 +77,7 @@ def generate(
         budget=budget,
         processes=jobs,
         as_json=as_json,
+        identified=own,
     )
 
 

@@ -30,6 +30,7 @@ def run(
     budget: Budget | None,
     processes: int | None,
     as_json: bool,
+    identified: Mapping[str, Mapping[str, float]] | None = None,
 ) -> None:
     """Generate or check, and print the outcome. Raises InputError, and typer.Exit where a check fails."""
     console = Console(stderr=True)
@@ -44,6 +45,7 @@ def run(
             artefacts=artefacts,
             budget=budget,
             processes=processes,
+            identified=identified,
             progress=lambda name: bar.update(task, advance=1, description=name),
         )
     for arm in arms:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from math import isfinite
 from pathlib import Path
 
 from ruamel.yaml import YAML
@@ -60,18 +61,40 @@ def with_parameters(chosen: Options, file: Path | None, arms: Sequence[Arm]) -> 
     """The options with the values of <arm>_parameters.yaml. Raises InputError where it does not fit."""
     if file is None:
         return chosen
+    return replace(chosen, identified=_parameters(f"--parameters {file}", file, [arm.name for arm in arms]))
+
+
+def beside(description: Path, arms: Sequence[Arm], chosen: Options) -> dict[str, dict[str, float]]:
+    """By arm, the values of the <arm>_parameters.yaml that lie beside the description.
+
+    They belong to the arm as described: with parts left out, or gains of each row's own, none is taken.
+    Raises InputError for a file that does not fit.
+    """
+    if chosen.without or chosen.gains == "row_wise":
+        return {}
+    files = {arm.name: description.parent / f"{arm.name}_parameters.yaml" for arm in arms}
+    return {name: _parameters(str(file), file, [name]) for name, file in files.items() if file.is_file()}
+
+
+def _parameters(who: str, file: Path, arms: Sequence[str]) -> dict[str, float]:
+    """The values by name. who: how messages name the file."""
     try:
         data = YAML(typ="safe", pure=True).load(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, YAMLError) as error:
-        raise InputError(f"--parameters {file}: cannot be read as YAML ({type(error).__name__})") from error
+    except OSError as error:
+        raise InputError(f"{who}: {(error.strerror or str(error)).lower()}") from error
+    except (UnicodeDecodeError, YAMLError) as error:
+        raise InputError(f"{who}: cannot be read as YAML ({type(error).__name__})") from error
     values = data.get("parameters") if isinstance(data, dict) else None
     if not isinstance(values, dict) or not all(
         isinstance(k, str) and type(v) in (int, float) for k, v in values.items()
     ):
-        raise InputError(f"--parameters {file}: expected 'parameters:' with a number by each name")
-    if [arm.name for arm in arms] != [data.get("arm")]:
+        raise InputError(f"{who}: expected 'parameters:' with a number by each name")
+    infinite = [k for k, v in values.items() if not isfinite(v)]
+    if infinite:
+        raise InputError(f"{who}: {infinite[0]} is {values[infinite[0]]}, expected a finite number")
+    if list(arms) != [data.get("arm")]:
         raise InputError(
-            f"--parameters {file}: belongs to the arm '{data.get('arm')}', found "
-            f"{', '.join(arm.name for arm in arms)}; give --arm {data.get('arm')}"
+            f"{who}: belongs to the arm '{data.get('arm')}', found {', '.join(arms)}; "
+            f"give --arm {data.get('arm')}"
         )
-    return replace(chosen, identified={k: float(v) for k, v in values.items()})
+    return {k: float(v) for k, v in values.items()}

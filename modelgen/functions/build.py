@@ -49,7 +49,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         a, Dynamics(real, standard_values(real)), "_standard", ["standard_parameters"]
     )
     if options.identified:
-        _check(options, grouping)
+        _check(arm.name, options, grouping)
         dynamics = Dynamics(base, folded_values(base, grouping, options.identified))
         functions += parametric_functions(a, dynamics, "_identified", [])
     functions += kinematic_functions(a)
@@ -99,7 +99,7 @@ def _representatives(n: int, grouping: Grouping, rows: list[Grouping]) -> list[l
     return table
 
 
-def _check(options: Options, grouping: Grouping) -> None:
+def _check(arm: str, options: Options, grouping: Grouping) -> None:
     expected = [base.name for base in grouping.base]
     missing = [name for name in expected if name not in options.identified]
     extra = [name for name in options.identified if name not in expected]
@@ -108,4 +108,7 @@ def _check(options: Options, grouping: Grouping) -> None:
     if missing or extra:
         what = [f"missing {', '.join(missing)}"] if missing else []
         what += [f"unknown {', '.join(extra)}"] if extra else []
-        raise InputError(f"identified parameters do not fit the arm: {'; '.join(what)}")
+        raise InputError(
+            f"{arm}: identified parameters do not fit the arm: {'; '.join(what)}; expected those of modelgen "
+            "identify for this description"
+        )

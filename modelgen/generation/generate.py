@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,19 +43,23 @@ def generate(
     budget: Budget | None = None,
     processes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    identified: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Report:
     """Write the folder `out/<arm>` of every arm, or with `check` compare it and write nothing.
 
     `artefacts` are those of ARTEFACTS to build as well; a check looks at no others.
     With `budget` nothing is written either where a function exceeds it.
     Nothing is written before every arm has been generated, and each folder is replaced whole.
+    identified: values of base parameters by name, by arm, to be folded in; the options' for the others.
     `processes` is one per processor by default. Raises InputError for an arm that has no model, for
     arms whose names collide in C or on the disk, and where `out` cannot be written.
     """
     _refuse_same_folder(arms)
     if not check:
         check_output(out, [arm.name for arm in arms])
-    generated = generate_arms(arms, options, processes or os.cpu_count() or 1, progress, artefacts)
+    generated = generate_arms(
+        arms, options, processes or os.cpu_count() or 1, progress, artefacts, identified
+    )
     refuse_collisions(arms, generated)
     if budget is not None:
         excess = excesses(generated, budget)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import copyreg
 import multiprocessing
 import signal
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -21,16 +22,20 @@ def generate_arms(
     processes: int,
     done: Callable[[str], None],
     artefacts: Collection[str] = (),
+    identified: Mapping[str, Mapping[str, float]] | None = None,
 ) -> list[GeneratedArm]:
     """Every arm's files, in the order of the arms; `done` is told the name of each that is ready.
 
+    identified: values of base parameters by name, by arm; those of the options for the others.
     Raises InputError of the first arm, in that order, that has one.
     """
+    values = identified or {}
+    by_arm = [replace(options, identified=values.get(a.name, options.identified)) for a in arms]
     workers = min(processes, len(arms))
     results = []
     if workers <= 1:
-        for arm in arms:
-            results.append(generate_arm(arm, options, artefacts))
+        for arm, own in zip(arms, by_arm, strict=True):
+            results.append(generate_arm(arm, own, artefacts))
             done(arm.name)
         return results
     # A frozen mapping is pickled by its content.
@@ -41,7 +46,9 @@ def generate_arms(
     if hasattr(context, "set_forkserver_preload"):
         context.set_forkserver_preload([__name__])
     with ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt) as pool:
-        futures = [pool.submit(generate_arm, arm, options, artefacts) for arm in arms]
+        futures = [
+            pool.submit(generate_arm, arm, own, artefacts) for arm, own in zip(arms, by_arm, strict=True)
+        ]
         try:
             for arm, future in zip(arms, futures, strict=True):
                 results.append(future.result())
