@@ -1,10 +1,12 @@
 """Bad input to the diagnosis: one line that says what is wrong, exit 2, nothing written."""
 
+import json
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from modelgen.description import load
@@ -102,8 +104,17 @@ def test_all_joints_at_rest(logs: Path, tmp_path: Path) -> None:
     train = still(logs, tmp_path, "one.csv"), still(logs, tmp_path, "two.csv")
     answer = ask(logs, tmp_path / "out", train=train, test=(str(logs / "test.csv"),))
     assert answer.code == 2
-    assert "rest" in answer.said
+    assert "all 3 joints are at rest" in answer.said
     assert "Traceback" not in answer.said
+    assert "modelgen excite" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def test_all_joints_at_rest_under_a_shaking_brake(logs: Path, tmp_path: Path) -> None:
+    train = lockstep(tmp_path, "one.csv", 2e-5), lockstep(tmp_path, "three.csv", 3e-5)
+    answer = ask(logs, tmp_path / "out", train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert "all joints rest in the training records" in answer.said
     assert not (tmp_path / "out").exists()
 
 
@@ -119,3 +130,83 @@ def test_an_effect_that_the_arm_has_already_is_no_candidate(logs: Path) -> None:
     arm = next(iter(load(logs / "arms.yaml", known_effects()).values()))
     assert places(arm, "coulomb_friction") == []
     assert 2 in places(arm, "load_dependent_friction")
+
+
+def test_records_whose_joints_are_in_another_order(logs: Path, tmp_path: Path) -> None:
+    _, *lines = table(logs / "train_b.csv")
+    turned = written(tmp_path / "turned.csv", [["t", "qm2", "qm1", "qm3", "i2", "i1", "i3"], *lines])
+    train = str(logs / "train_a.csv"), turned
+    answer = ask(logs, tmp_path / "out", train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert "no one model of digger fits both" in answer.said
+    assert "turned.csv" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def lockstep(folder: Path, name: str, size: float) -> str:
+    """All motors follow one small sine: gravity, inertia and friction of the links look alike."""
+    t = np.arange(2500) / 250.0
+    motion = size * np.sin(np.pi * t)
+    noise = np.random.default_rng(len(name)).normal(size=(len(t), 3))
+    currents = noise + np.sign(np.cos(np.pi * t))[:, None]
+    columns = [t, *(np.round(middle * (1 + motion)) for middle in (6e4, 5e4, 3.5e4)), *currents.T]
+    lines = [[f"{x:.8g}" for x in row] for row in np.column_stack(columns)]
+    return written(folder / name, [["t", "qm1", "qm2", "qm3", "i1", "i2", "i3"], *lines])
+
+
+def test_a_motion_that_does_not_tell_the_models_own_parameters_apart(logs: Path, tmp_path: Path) -> None:
+    train = lockstep(tmp_path, "one.csv", 0.004), lockstep(tmp_path, "three.csv", 0.005)
+    answer = ask(logs, tmp_path / "out", train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert "does not tell the model's parameters apart" in answer.said
+    assert "modelgen excite" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def slowed(logs: Path, folder: Path, name: str) -> str:
+    """The record with the last joint shaken by a count or two, as a brake lets it."""
+    head, *lines = table(logs / name)
+    place = head.index("qm3")
+    for k, line in enumerate(lines):
+        line[place] = str(42245 + k // 250 % 2)
+    return written(folder / name, [head, *lines])
+
+
+def test_a_joint_at_rest_cannot_show_what_is_asked_for(logs: Path, tmp_path: Path) -> None:
+    train = slowed(logs, tmp_path, "train_a.csv"), slowed(logs, tmp_path, "train_b.csv")
+    more = "--effect", "stribeck_friction:3"
+    answer = ask(logs, tmp_path / "out", *more, train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert "joint 3 rests in the training records, which cannot show it" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ("coulomb_friction:2", "the model of joint 2 has it already"),
+        ("viscous_friction", "the model of the arm has it already"),
+        ("stribek_friction", "did you mean 'stribeck_friction'"),
+        ("stribeck_friction:9", "found joint 9, expected 1 to 3"),
+        ("stribeck_friction:x", "expected a joint from 1"),
+    ],
+)
+def test_questions_that_make_no_sense(logs: Path, tmp_path: Path, asked: str, said: str) -> None:
+    train = str(logs / "train_a.csv"), str(logs / "train_b.csv")
+    test = (str(logs / "test.csv"),)
+    answer = ask(logs, tmp_path / "out", "--effect", asked, train=train, test=test)
+    assert answer.code == 2
+    assert said in answer.said
+    assert "Traceback" not in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def test_one_effect_alone_is_asked_for(logs: Path, tmp_path: Path) -> None:
+    train = str(logs / "train_a.csv"), str(logs / "train_b.csv")
+    more = "--effect", "load_dependent_friction:2", "--json"
+    answer = ask(logs, tmp_path / "out", *more, train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 0
+    found = json.loads((tmp_path / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert {(r["effect"], r["joint"]) for turn in found["ranking"] for r in turn} == {
+        ("load_dependent_friction", 2)
+    }

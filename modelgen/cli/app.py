@@ -116,6 +116,7 @@ def diagnose(
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
     period: given.Period = None,
+    effect: given.AskedEffects = None,
     no_experiment: given.NoExperiment = False,
     as_json: given.Json = False,
 ) -> None:
@@ -133,6 +134,7 @@ def diagnose(
         mapping=mapping,
         cutoff=cutoff,
         period=period,
+        effects=effect or [],
         experiment=not no_experiment,
         as_json=as_json,
     )

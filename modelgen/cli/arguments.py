@@ -70,6 +70,12 @@ Period = Annotated[
     float | None,
     typer.Option(metavar="S", help="Period of the excitation, found by itself else.", show_default=False),
 ]
+AskedEffects = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--effect", metavar="NAME[:JOINT]", help="Ask for this effect alone; repeatable.", show_default=False
+    ),
+]
 NoExperiment = Annotated[
     bool,
     typer.Option("--no-experiment", help="Do not look for what tells rivalling causes apart."),

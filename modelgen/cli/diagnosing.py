@@ -28,12 +28,14 @@ def run(
     mapping: Path | None,
     cutoff: float | None,
     period: float | None,
+    effects: Sequence[str],
     experiment: bool,
     as_json: bool,
 ) -> None:
     """Diagnose and write everything into `out`. Raises InputError."""
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out}: found a file, expected a folder")
+    wanted = [_place(text) for text in effects]
     console = Console(stderr=True)
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
@@ -43,13 +45,23 @@ def run(
         def progress(text: str, done: int, total: int) -> None:
             bar.update(task, description=text, completed=done, total=total)
 
-        result = diagnose(arm, found, cutoff=cutoff, period=period, progress=progress, experiment=experiment)
+        result = diagnose(
+            arm, found, cutoff=cutoff, period=period, progress=progress, experiment=experiment, effects=wanted
+        )
         bar.update(task, description="writing", completed=0, total=None)
         write(result, file, out)
     if as_json:
         print_json(to_json(result))
         return
     _print(result, out)
+
+
+def _place(text: str) -> tuple[str, int | None]:
+    """Effect and joint of NAME or NAME:JOINT. Raises InputError."""
+    name, colon, joint = text.partition(":")
+    if colon and not joint.isdecimal():
+        raise InputError(f"--effect {text}: found '{joint}', expected a joint from 1, as in {name}:2")
+    return name, int(joint) if colon else None
 
 
 def sentence(d: Diagnosis) -> str:

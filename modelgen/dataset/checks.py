@@ -44,6 +44,11 @@ def check_constant(
     columns: (N, n), or their lowest and highest values (2, n) over `samples`.
     """
     count = len(columns) if samples is None else samples
+    if what == "position" and len(names) > 1 and not np.ptp(columns, axis=0).any():
+        raise InputError(
+            f"{file}: all {len(names)} joints are at rest in all {count} samples, expected a motion; "
+            "see modelgen excite"
+        )
     for k, name in enumerate(names):
         if name is None or np.ptp(columns[:, k]) > 0.0:
             continue

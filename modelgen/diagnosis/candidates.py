@@ -192,10 +192,10 @@ def waves(residual: Array, position: Array, speed: Array, cutoff: float, count: 
     residual, position, speed: (M,). A periodogram over position (Lomb 1976), of waves that pass slower
     than the cut-off [Hz] for a tenth of the rows at least.
     """
+    if len(residual) < 20 or np.ptp(position) <= 0:
+        return []
     span = float(np.ptp(position))
     slow = float(np.quantile(np.abs(speed), 0.1))
-    if span <= 0 or len(residual) < 20:
-        return []
     step = np.pi / span
     highest = 2 * np.pi * cutoff / max(slow, 1e-9 * span)
     grid = step * np.arange(3, min(4000, max(8, int(highest / step))))

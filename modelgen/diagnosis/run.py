@@ -13,6 +13,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.baseline import estimated, held
 from modelgen.diagnosis.candidates import LATER, Candidate, candidates
+from modelgen.diagnosis.checks import Place, asked, check_excitation, check_motion, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
@@ -28,7 +29,6 @@ from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, select
 from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares, weighted_fit
-from modelgen.diagnosis.whitening import ORDER
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober
@@ -79,11 +79,12 @@ def diagnose(
     period: float | None = None,
     progress: Progress | None = None,
     experiment: bool = True,
+    effects: Sequence[Place] = (),
 ) -> Diagnosis:
     """What the arm's model gets wrong in the records, of which the last is looked at for the errors alone.
 
-    experiment: whether to look for what would separate causes that stand for each other.
-
+    experiment: whether to look for what would separate causes that stand for each other. effects: to be asked
+    for alone, with a joint from 1 or at any place; all of the catalogue where there are none.
     Raises InputError where the records cannot answer.
     """
     free = found[0].input is None
@@ -103,9 +104,12 @@ def diagnose(
     model, prober = build_model(arm), Prober(arm)
     train, test = prepared[:-1], prepared[-1]
     rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
-    _check_motion(arm, rows)
-    pool = candidates(arm, prober, rows)
+    check_motion(arm, rows)
+    check_excitation(arm, model, rows)
     first = weighted_fit(rows, [r.columns for r in rows])
+    start = rows[0].baseline.base(first)
+    check_one_arm(arm, model, rows, prober, start)
+    pool = asked(arm, candidates(arm, prober, rows), effects, rows, prober, start)
     blurs = blur(train, rows, prober, model, first)
     selection, beside = standing(select(rows, prober, pool, periods, progress, blur=blurs), rows)
     baseline = rows[0].baseline
@@ -141,6 +145,7 @@ def diagnose(
         pair,
         selection,
         {
+            "asked": [effect if joint is None else f"{effect}:{joint}" for effect, joint in effects] or "all",
             "train": [record.name for record in found[:-1]],
             "test": found[-1].name,
             "cutoff_hz": chosen.cutoff,
@@ -156,26 +161,6 @@ def diagnose(
         },
         Positions(share, noisy),
     )
-
-
-def _check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
-    short = [r.prepared for r in rows if len(r.effort) < 3 * ORDER]
-    if short:
-        raise InputError(
-            f"{short[0].record.name}: too short a record: {len(short[0].rows)} rows are left, expected at "
-            f"least {3 * ORDER} ({3 * ORDER / short[0].rate:.2g} s and what the filters trim)"
-        )
-    moving = np.mean(np.concatenate([r.moving for r in rows]), axis=0)
-    if not (moving > 0.02).any():
-        raise InputError(
-            f"{arm.name}: all joints rest in the training records; expected a motion, see modelgen excite"
-        )
-    unknowns, equations = rows[0].columns.shape[2], sum(int(r.moving.sum()) for r in rows)
-    if equations < 3 * unknowns:
-        raise InputError(
-            f"{arm.name}: {equations} equations for {unknowns} parameters: the records are too short or move "
-            "too little, expected at least three times as many; see modelgen excite"
-        )
 
 
 def _verdict(

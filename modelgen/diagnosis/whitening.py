@@ -49,9 +49,8 @@ def whitener(residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], or
         now.append(residual[usable])
     x, y = np.concatenate(past), np.concatenate(now)
     if len(y) < 4 * order:
-        size = float(
-            np.sqrt(np.mean(np.concatenate([r[m] for r, m in zip(residuals, moving, strict=True)]) ** 2))
-        )
+        left = np.concatenate([r[m] for r, m in zip(residuals, moving, strict=True)])
+        size = float(np.sqrt(np.mean(left**2))) if len(left) else 1.0
         return Whitener(np.concatenate([[1.0], np.zeros(order)]), max(size, 1e-300))
     a = np.linalg.lstsq(x, y, rcond=None)[0]
     left = y - x @ a
