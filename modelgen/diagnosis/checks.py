@@ -166,9 +166,7 @@ def _hidden(there: Sequence[Candidate], rows: Sequence[Rows]) -> str:
     share = moving_share(rows)
     still = sorted({c.joint for c in there if c.joint is not None and share[c.joint - 1] <= LEAST})
     if still:
-        return (
-            f"joint {', '.join(map(str, still))} rests in the training records, which cannot show it"
-        )
+        return f"joint {', '.join(map(str, still))} rests in the training records, which cannot show it"
     return "the motion of the training records cannot show it: the model's own parameters absorb all of it"
 
 
