@@ -54,3 +54,42 @@ def test_a_stream_refuses_what_read_refuses(tmp_path: Path) -> None:
     table["i1"][:] = 2.0
     with pytest.raises(InputError, match="the effort i1 is 2 in all 4000 samples"):
         Stream(write_csv(tmp_path / "b.csv", table), DRIVEN)
+
+
+def parquet(path: Path, table: dict[str, np.ndarray]) -> str:
+    pq = pytest.importorskip("pyarrow.parquet")
+    pa = pytest.importorskip("pyarrow")
+    pq.write_table(pa.table(table), path, row_group_size=700)
+    return str(path)
+
+
+def test_parquet_gives_the_blocks_of_csv_and_refuses_what_it_refuses(tmp_path: Path) -> None:
+    """Only the time is read first: what is wrong in the other columns is found on the way."""
+    t = times(20.0, 200.0)
+    table = columns(t)
+    settings = Settings(cutoff=8.0, rest_gate=0.02)
+    one = list(Stream(write_csv(tmp_path / "a.csv", table), DRIVEN, settings, block=900))
+    two = list(Stream(parquet(tmp_path / "a.parquet", table), DRIVEN, settings, block=900))
+    assert len(one) == len(two) > 2
+    for a, b in zip(one, two, strict=True):
+        assert a.effort == pytest.approx(b.effort, rel=1e-9)
+    table["i1"][3000] = np.nan
+    stream = Stream(parquet(tmp_path / "b.parquet", table), DRIVEN, settings, block=900)
+    with pytest.raises(InputError, match=r"found nan in the column i1 at t = 15 s"):
+        list(stream)
+    table["i1"][:] = 2.0
+    stream = Stream(parquet(tmp_path / "c.parquet", table), DRIVEN, settings, block=900)
+    with pytest.raises(InputError, match="the effort i1 is 2 in all 4000 samples"):
+        list(stream)
+    table["t"][100] = np.nan
+    with pytest.raises(InputError, match="found nan in the column t"):
+        Stream(parquet(tmp_path / "d.parquet", table), DRIVEN, settings)
+
+
+def test_other_settings_need_no_other_pass(tmp_path: Path) -> None:
+    file = write_csv(tmp_path / "a.csv", columns(times(20.0, 200.0)))
+    stream = Stream(file, DRIVEN, Settings(cutoff=8.0))
+    other = stream.settled(Settings(cutoff=4.0))
+    assert (stream.settings.cutoff, other.settings.cutoff) == (8.0, 4.0)
+    assert other.overlap > stream.overlap
+    assert other.settings == Stream(file, DRIVEN, Settings(cutoff=4.0)).settings
