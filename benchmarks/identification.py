@@ -103,6 +103,42 @@ def side_by_side(samples: int) -> None:
         print("                               Pinocchio " + " ".join(f"{x:.4f}" for x in rmse))
 
 
+def regressor_alone() -> None:
+    """Rows of the regressor per second of CPU: compiled C, NumPy, Pinocchio in a loop."""
+    import pinocchio as pin  # noqa: PLC0415
+    from long_log import arm, links, period  # noqa: PLC0415 - needs the tests' folder
+
+    from modelgen.backends.numpy import NumpyFunction  # noqa: PLC0415
+    from modelgen.compiled import RegressorColumns  # noqa: PLC0415
+    from modelgen.functions import Options, build_model  # noqa: PLC0415
+
+    own = build_model(arm(), Options(without=frozenset({"drives", "effects"})))
+    (function,) = [f for f in own.functions if f.name == "regressor"]
+    states = period(1)[:3]
+    model, data = links().model, links().model.createData()
+
+    def loop() -> None:
+        for q, dq, ddq in zip(*states, strict=True):
+            pin.computeJointTorqueRegressor(model, data, q, dq, ddq)
+
+    columns, numpy = RegressorColumns(function), NumpyFunction(function)
+    found = {}
+    for name, call in {
+        "compiled C": lambda: columns.values(states),
+        "NumPy": lambda: numpy(*states),
+        "Pinocchio in a loop": loop,
+    }.items():
+        times = []
+        for _ in range(8):
+            begin = time.process_time()
+            call()
+            times.append(time.process_time() - begin)
+        found[name] = states[0].size / float(np.median(times[1:]))
+    last = found["Pinocchio in a loop"]
+    print("regressor alone, thousand rows a second (ratio to the loop):")
+    print("  " + ", ".join(f"{name} {x / 1e3:,.0f} ({x / last:.1f})" for name, x in found.items()))
+
+
 def held_table(path: Path) -> Any:
     """t, q, tau of a log."""
     import pyarrow.parquet as pq  # noqa: PLC0415
@@ -117,5 +153,6 @@ if __name__ == "__main__":
 
         scale(int(float(words[1])) if len(words) > 1 else 10_000_000)
     else:
+        regressor_alone()
         side_by_side(int(float(words[0])) if words else 10_000_000)
     print(f"this process: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")

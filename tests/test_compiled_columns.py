@@ -48,6 +48,9 @@ def test_every_arm(name: str) -> None:
     found = columns.filtered(list(given.values()), **vars(d))
     full = np.asarray(NumpyFunction(function)(**given)).reshape(samples, -1)
     expected = low_pass(full, 36.0, RATE, 4)[rows]
+    assert columns.values(list(given.values())) == pytest.approx(
+        full[:, columns.elements], abs=1e-13 * np.abs(full).max()
+    )
     size = np.max(np.abs(expected))
     assert np.max(np.abs(found - expected[:, columns.elements])) < 1e-10 * size
     assert not np.delete(full, columns.elements, axis=1).any()

@@ -36,6 +36,18 @@ class Columns:
         """Whether sine and cosine of these coordinates are exact."""
         return bool(max(-q.min(), q.max()) <= LARGEST)
 
+    def values(self, inputs: Sequence[Array]) -> Array:
+        """Columns (N, c) at all samples. inputs: the numbers (N, k), in several parts.
+
+        Raises RuntimeError where it cannot be compiled.
+        """
+        library, (x, samples, table) = self._library(1), _pointers(inputs)
+        out = np.empty((samples, self.count))
+        row = self._memory("row", self.count * LANES)
+        library.evaluate(x, ctypes.c_long(samples), _at(row), _at(out))
+        del table  # until here: the library reads it
+        return out
+
     def filtered(
         self,
         inputs: Sequence[Array],
@@ -57,12 +69,8 @@ class Columns:
         inputs: the numbers (N, k), in several parts. The rest: fields of
         modelgen.dataset.decimation.Decimation. Raises RuntimeError where it cannot be compiled.
         """
-        table = [np.ascontiguousarray(part.T, dtype=np.float64) for part in inputs]
-        samples, m, c = table[0].shape[1], len(poles), self.count
-        library = self._library(m)
-        x = (ctypes.c_void_p * sum(map(len, table)))(
-            *(part.ctypes.data + 8 * samples * k for part in table for k in range(len(part)))
-        )
+        m, c = len(poles), self.count
+        library, (x, samples, table) = self._library(m), _pointers(inputs)
         scratch = self._memory("scratch", library.scratch_size() // 8)
 
         def sums(place: NDArray[np.int_], weights: Array) -> tuple[Array, Array]:
@@ -116,7 +124,7 @@ class Columns:
             _at(y),
             _at(out),
         )
-        del kept, own, far  # until here: the library reads them
+        del kept, own, far, table  # until here: the library reads them
         return out
 
     def _memory(self, name: str, size: int) -> Array:
@@ -133,7 +141,7 @@ class Columns:
             text = f"{self.text}enum {{ MODES = {modes} }};\n{_source()}"
             library = shared_library({"columns.c": text}, "columns.c", fast=True)
             library.scratch_size.restype = ctypes.c_long
-            library.add_up.restype = library.filtered.restype = None
+            library.evaluate.restype = library.add_up.restype = library.filtered.restype = None
             self._libraries[modes] = library
         return self._libraries[modes]
 
@@ -156,6 +164,14 @@ def plain_columns(count: int) -> Columns:
 @cache
 def _source() -> str:
     return Path(__file__).with_name("decimate.c").read_text(encoding="utf-8")
+
+
+def _pointers(inputs: Sequence[Array]) -> tuple[ctypes.Array[ctypes.c_void_p], int, list[Array]]:
+    """Where each number's samples begin, how many samples there are, and the arrays that hold them."""
+    table = [np.ascontiguousarray(part.T, dtype=np.float64) for part in inputs]
+    samples = table[0].shape[1]
+    places = [part.ctypes.data + 8 * samples * k for part in table for k in range(len(part))]
+    return (ctypes.c_void_p * len(places))(*places), samples, table
 
 
 def _pairs(values: Complex) -> Array:

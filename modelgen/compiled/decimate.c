@@ -50,6 +50,26 @@ static void gather(
     }
 }
 
+/* The columns at all samples, row after row; memory for LANES rows from outside. */
+void evaluate(const double *const x[INPUTS], const long samples, lanes_t row[COLUMNS], double *const out)
+{
+    lanes_t given[INPUTS];
+    long place[LANES];
+
+    for (int l = 0; l < LANES; l++) {
+        place[l] = l;
+    }
+    for (long k = 0; k < samples; k += LANES) {
+        gather(x, samples, place, k, given);
+        columns(given, row);
+        for (int l = 0; l < LANES && k + l < samples; l++) {
+            for (int c = 0; c < COLUMNS; c++) {
+                out[(k + l) * COLUMNS + c] = row[c][l];
+            }
+        }
+    }
+}
+
 /*
  * Weighted sums over `count` samples from place[l] on, of each lane; weights: count x SUMS. The sums stand in
  * scratch->sums, the columns at the last sample in scratch->last.

@@ -48,10 +48,12 @@ class Rows:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
         motion = Motion(p.time, p.q, p.dq, p.ddq)
         effort = np.asarray(p.parallel(self.prober.ideal(self.model, motion, p.input)))
-        d = p.decimation
-        if d is not None and self._compiled is not None and self._compiled.fit(q=p.q):
+        if self._compiled is not None and self._compiled.fit(q=p.q):
             try:
-                return effort, self._compiled.filtered((p.q, p.dq, p.ddq), **vars(d))
+                inputs, d = (p.q, p.dq, p.ddq), p.decimation
+                if d is None:
+                    return effort, p.parallel(self._compiled.values(inputs))
+                return effort, self._compiled.filtered(inputs, **vars(d))
             except RuntimeError:  # a compiler that knows no vectors, say
                 self._compiled = None
         full = np.asarray(self.prober.regressor(self.model, motion, theta))
