@@ -164,7 +164,7 @@ def test_what_is_found_reaches_the_compiled_functions(
     ("options", "message"),
     [
         (["--gains", "estimated"], "share a scale that no record shows"),
-        (["--gains", "estimated", "--method", "iv"], "expected ols, wls or robust"),
+        (["--gains", "estimated", "--method", "iv"], "expected ols, wls, gls or robust"),
         (["--gains", "estimated", "--payload", "none.csv=2"], "expected LOG=KG"),
         (["--gains", "estimated", "--payload", "{log}"], "expected LOG=KG"),
         (["--gains", "estimated", "--payload", "{log}="], "expected a mass above 0 kg"),

@@ -75,6 +75,37 @@ def test_claimed_deviations_hold_where_the_fit_takes_much_of_the_noise_in_its_ba
     assert np.all((ratio > 0.7) & (ratio < 1.5))
 
 
+def test_noise_that_joints_share_is_taken_into_account() -> None:
+    # Joint 1 has a tenth of the noise of joint 2 and the same on top: nearly all of it can be taken off.
+    t = np.arange(600) / 50.0
+    table = np.stack(
+        [
+            np.column_stack([np.sin(t), np.cos(0.7 * t), np.zeros(len(t))]),
+            np.column_stack([np.zeros(len(t)), np.sin(1.3 * t), np.sign(np.cos(2.1 * t))]),
+        ],
+        axis=1,
+    )
+    found = {"wls": [], "gls": []}  # type: dict[str, list[np.ndarray]]
+    claimed = []
+    moving = np.ones((len(t), 2), dtype=bool)
+    moving[:100, 0] = moving[550:, 1] = False  # not always both
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        shared, own = rng.normal(size=(2, len(t)))
+        noise = np.column_stack([shared + 0.1 * own, shared])
+        effort = table @ TRUTH + noise
+        effort[~moving] = 1e3  # what does not count is not looked at
+        for method, thetas in found.items():
+            solution = Regression([effort], [table], [moving]).solve(method)
+            thetas.append(solution.theta)
+        claimed.append(np.sqrt(np.diag(solution.covariance)))
+    wls, gls = (np.array(found[m]) for m in ("wls", "gls"))
+    assert (gls.std(axis=0) < 0.5 * wls.std(axis=0)).all()
+    assert np.abs(gls.mean(axis=0) - TRUTH).max() < 4 * gls.std(axis=0).max() / np.sqrt(len(gls))
+    ratio = np.mean(claimed, axis=0) / gls.std(axis=0)
+    assert ((ratio > 0.7) & (ratio < 1.5)).all()
+
+
 def test_robust_weights_hold_against_outliers() -> None:
     plain, robust = (
         np.abs(regression(3, 0.0, outliers=80).solve(m).theta - TRUTH).max() for m in ("ols", "robust")

@@ -85,7 +85,11 @@ OptionalTest = Annotated[
     typer.Option("--test", metavar="LOG", help="A record not fitted; repeatable.", show_default=False),
 ]
 Method = Annotated[
-    str, typer.Option(metavar="NAME", help="ols, wls (weights by joint), robust, or iv (noisy positions).")
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="ols, wls (weights by joint), gls (noise that joints share), robust, iv (noisy positions).",
+    ),
 ]
 Streamed = Annotated[
     bool, typer.Option("--stream", help="Read block by block, as logs above 512 MB always are.")

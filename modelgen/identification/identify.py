@@ -23,7 +23,7 @@ from modelgen.identification.regression import Array, Regression, Solution
 from modelgen.identification.validation import regression_of, validate
 from modelgen.probing import Prober
 
-METHODS = ("ols", "wls", "robust", "iv")
+METHODS = ("ols", "wls", "gls", "robust", "iv")
 INSTRUMENTS = ("auto", "period", "simulated")
 TURNS = 5  # of simulation and estimate, at most
 SETTLED = 0.1  # standard deviations by which a turn may move a parameter yet
@@ -104,7 +104,7 @@ def _refuse(options: Options, method: str, *, physical: bool, payloads: bool) ->
             if asked:
                 raise InputError(f"--gains row_wise: rows have no common scale, which {name} needs")
     if options.gains == "estimated" and method == "iv":
-        raise InputError("--gains estimated: found --method iv, expected ols, wls or robust")
+        raise InputError("--gains estimated: found --method iv, expected ols, wls, gls or robust")
 
 
 def _columns_by_load(model: Model) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 DEPENDENT = 1e-8  # part of a column, of unit length, that the others leave over where it depends on them
 HUBER = 1.345  # 95 % efficient for normal residuals (Huber 1981)
 ROUNDS = 20
+LEAST = 1e-3  # eigenvalue of the correlation between joints
 PANEL = 4  # columns that LAPACK's dtpqrt takes together: the fastest for the tens of columns of an arm
 
 
@@ -86,7 +87,13 @@ class Regression:
     moving: Sequence[NDArray[np.bool_]]
 
     def solve(self, method: str = "wls") -> Solution:
-        """By "ols", "wls" (weights from the residuals of each joint) or "robust" (Huber's on top)."""
+        """By "ols", "wls" (weights from the residuals of each joint), "robust" (Huber's on top), or "gls".
+
+        "gls" also takes the covariance of the residuals between the joints at one time into account (Zellner
+        1962): joints that share a motor share its noise.
+        """
+        if method == "gls":
+            return self._with_covariance()
         n = self.effort[0].shape[1]
         weights = [m.astype(float) for m in self.moving]
         theta, known, condition = self._fit(weights)
@@ -103,6 +110,45 @@ class Regression:
         assert len(sigma) == n
         covariance = self._covariance(theta, known, weights)
         return Solution(theta, covariance, known, condition, sigma, self._precision(sigma))
+
+    def _with_covariance(self) -> Solution:
+        solution = self.solve("wls")
+        for _ in range(ROUNDS):
+            before = solution.theta
+            white = self.whitened(self.between(before))
+            solution = white.solve("ols")
+            if np.allclose(solution.theta, before, rtol=1e-6, atol=1e-12):
+                break
+        ones = np.ones(self.effort[0].shape[1])
+        return replace(solution, sigma=self._sigma(solution.theta), precision=white._precision(ones))
+
+    def between(self, theta: Array) -> Array:
+        """Covariance (n, n) of the residuals between joints, over the rows where both move."""
+        left = np.concatenate([e * m for e, m in zip(self.residuals(theta), self.moving, strict=True)])
+        there = np.concatenate(self.moving).astype(float)
+        sigma = self._sigma(theta)
+        correlation = (left.T @ left) / np.maximum(there.T @ there, 1.0) / np.outer(sigma, sigma)
+        np.fill_diagonal(correlation, 1.0)
+        # Each element has rows of its own: together they may not be a covariance.
+        values, vectors = np.linalg.eigh(correlation)
+        correlation = (vectors * np.maximum(values, LEAST)) @ vectors.T
+        return np.asarray(correlation * np.outer(sigma, sigma))
+
+    def whitened(self, covariance: Array) -> Regression:
+        """Rows whose residuals do not hang together between joints; rows that do not count are zero."""
+        efforts, columns = [], []
+        for y, table, moving in zip(self.effort, self.columns, self.moving, strict=True):
+            effort, column = np.zeros_like(y), np.zeros_like(table)
+            patterns, which = np.unique(moving, axis=0, return_inverse=True)
+            for k, pattern in enumerate(patterns):
+                own = np.flatnonzero(pattern)
+                rows = np.flatnonzero(which.ravel() == k)
+                lower = np.linalg.inv(np.linalg.cholesky(covariance[np.ix_(own, own)]))
+                effort[np.ix_(rows, own)] = y[np.ix_(rows, own)] @ lower.T
+                column[np.ix_(rows, own)] = np.einsum("ij,mjp->mip", lower, table[np.ix_(rows, own)])
+            efforts.append(effort)
+            columns.append(column)
+        return Regression(efforts, columns, self.moving)
 
     def residuals(self, theta: Array) -> list[Array]:
         """Effort minus prediction, (M, n) of each record."""
