@@ -55,3 +55,23 @@ def test_tx40_with_its_coupled_wrist_predicts_each_third_of_its_motion_from_the_
     # together lies between the parts
     assert (parts.min(axis=0) < data["nrmse_percent"]).all()
     assert (data["nrmse_percent"] < parts.max(axis=0)).all()
+
+
+def test_tx40_predicts_what_was_held_out(tmp_path: Path) -> None:
+    # 0 to 5 s fitted, 5 to 7.4 s held out, 10 Hz. The wrist is coupled: joints 5 and 6 share motor 6.
+    log, mapping = f"{DATA}/tx40/tx40_motor.csv", f"{STUDIES}/tx40_mapping.yaml"
+    call = [
+        "identify",
+        str(STUDIES / "tx40_arm.yaml"),
+        "--arm",
+        "tx40",
+        "--mapping",
+        mapping,
+        "--cutoff",
+        "10",
+    ]
+    call += ["--train", f"{log}@0:5", "--test", f"{log}@5:7.4", "--method", "gls", "--essential", "--json"]
+    result = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.output
+    share = json.loads(result.stdout)["test"]["nrmse_percent"]
+    assert all(x <= limit for x, limit in zip(share, [6.7, 6.5, 10.0, 8.9, 31.0, 20.0], strict=True))
