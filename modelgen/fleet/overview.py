@@ -30,7 +30,7 @@ COLOURS = {
     FAILED: "#b3261e",
 }
 # By joint; causes of the whole arm come last.
-_JOINTS = ("#123a66", "#1f5fa8", "#4f8acb", "#86b2e3", "#b9d4f1", "#dbe8f7")
+_JOINTS = ("#123a66", "#4f8acb", "#a9cbee", "#d1661a", "#f0b27a", "#7a4a1d", "#666666")
 _ARM = "#8a4fa3"
 
 
