@@ -21,9 +21,11 @@ from ruamel.yaml import YAML
 from modelgen.errors import InputError
 from modelgen.fleet.diagnosing import Job, crashed
 from modelgen.fleet.overview import overview
+from modelgen.fleet.run import diagnose_fleet
 from modelgen.fleet.schema import fleet_json_schema
 from modelgen.fleet.store import kept, read
 from modelgen.fleet.units import Unit, load_fleet
+from modelgen.jobs import Where
 
 pytestmark = pytest.mark.xdist_group("dask")
 FLEET = """schema: 1
@@ -47,11 +49,7 @@ def fleet(file: Path, out: Path, *more: str) -> list[str]:
 
 
 def called(file: Path, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
-    checkout = str(Path(__file__).resolve().parent.parent)
-    environment = {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join([*os.environ.get("PATH_FIRST", "").split(), checkout]),
-    }
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parent.parent)}
     return subprocess.run(
         fleet(file, out, *more), capture_output=True, text=True, check=False, timeout=200, env=environment
     )
@@ -319,7 +317,6 @@ def test_bad_input_on_the_command_line_writes_nothing(file: Path, tmp_path: Path
     for arguments, said in (
         ((tmp_path / "no.yaml", tmp_path / "out"), "there is no such fleet file"),
         ((file, taken), "found a file, expected a folder"),
-        ((file, tmp_path / "out", "--dask", "mars"), "--dask: found 'mars', expected an address"),
     ):
         answer = called(*arguments)
         assert answer.returncode == 2
@@ -329,12 +326,15 @@ def test_bad_input_on_the_command_line_writes_nothing(file: Path, tmp_path: Path
 
 
 def test_without_pyarrow(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "path" / "pyarrow").mkdir(parents=True)
-    (tmp_path / "path" / "pyarrow" / "__init__.py").write_text("raise ImportError\n", encoding="utf-8")
-    monkeypatch.setenv("PATH_FIRST", str(tmp_path / "path"))
-    answer = called(file, tmp_path / "out")
-    assert answer.returncode == 2
-    assert answer.stderr.splitlines() == ["the table of a fleet needs pyarrow: pip install 'modelgen[logs]'"]
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    with pytest.raises(InputError, match=r"a fleet needs pyarrow: pip install 'modelgen\[logs\]'"):
+        diagnose_fleet(load_fleet(file), tmp_path / "out", Where(1))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_cluster_that_is_not_reached_leaves_nothing(file: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--dask: found 'mars', expected an address"):
+        diagnose_fleet(load_fleet(file), tmp_path / "out", Where(dask="mars"))
     assert not (tmp_path / "out").exists()
 
 
