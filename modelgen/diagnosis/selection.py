@@ -20,7 +20,7 @@ EVIDENCE = 15.0  # delta BIC
 PRACTICAL = 1.5  # percent of the RMSE on a record that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample
 AMBIGUOUS = 10.0  # delta BIC behind the winner
-MOST = 4  # causes
+MOST = 4  # causes, or one for each joint where there are more
 FEW = 4  # records that are tried one by one
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 
@@ -83,7 +83,7 @@ def select(
     correlated = endogeneity(system)
     noisy = correlated is not None and correlated.found and float(correlated.share.max()) > PRACTICAL
     turns: list[list[Ranked]] = []
-    for turn in range(MOST):
+    for turn in range(max(MOST, rows[0].effort.shape[1])):
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
@@ -123,6 +123,9 @@ def select(
         causes.append(Cause(best, best.gain.delta_bic, gain, rivals))
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     causes, system = _eliminated(causes, rows, system, evidence)
+    named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
+    for cause in causes:  # what is there beside it does not stand for it
+        cause.rivals = [r for r in cause.rivals if (r[0].candidate.effect, r[0].candidate.joint) not in named]
     return Selection(causes, system, turns)
 
 
