@@ -110,7 +110,8 @@ def _alone(p: Plant, r: Request) -> None:
             stop_at_limits=reference is not None,
             progress=lambda t: bar.update(task, completed=t),
         )
-    write(p, found.t, found.q, found.dq, r, None)
+    moved = control is not None
+    write(p, found.t, found.q, found.dq, r, None, found.input if moved else None)
     data = _facts(p, found)
     if r.as_json:
         print_json(data)
@@ -137,9 +138,13 @@ def reference_of(n: int, path: Path) -> Reference:
 
 def _inputs(p: Plant, path: Path) -> tuple[Array, Array]:
     """t (S,) and inputs (S, n): i<n> [A] of driven joints, tau<n> [N m, N] of the others."""
+    return _table("--input", path, ["t", *_input_names(p)])
+
+
+def _input_names(p: Plant) -> list[str]:
+    """The inputs' columns in a log."""
     drives = [p.arm.joints[i].drive for i in p.arm.coordinates]
-    names = [f"{'tau' if isinstance(d, NoDrive) else 'i'}{k + 1}" for k, d in enumerate(drives)]
-    return _table("--input", path, ["t", *names])
+    return [f"{'tau' if isinstance(d, NoDrive) else 'i'}{k + 1}" for k, d in enumerate(drives)]
 
 
 def _table(option: str, path: Path, names: list[str]) -> tuple[Array, Array]:
@@ -207,13 +212,23 @@ def _print(p: Plant, found: Trajectory, data: dict[str, Any]) -> None:
     typer.echo(f"energy {data['energy']['begin']:.6g} J at the beginning, {change:+.6g} J since")
 
 
-def write(p: Plant, t: Array, q: Array, dq: Array, r: Request, measured: Array | None) -> None:
-    """The table, the picture, the animation."""
+def write(
+    p: Plant,
+    t: Array,
+    q: Array,
+    dq: Array,
+    r: Request,
+    measured: Array | None,
+    inputs: Array | None = None,
+) -> None:
+    """The table, with the inputs (S, n) where there are any, the picture, the animation."""
     if r.out is not None:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["t", *(f"q{k + 1}" for k in range(p.n)), *(f"dq{k + 1}" for k in range(p.n))])
-        writer.writerows([f"{x:.12g}" for x in row] for row in np.column_stack([t, q, dq]))
+        names = ["t", *(f"q{k + 1}" for k in range(p.n)), *(f"dq{k + 1}" for k in range(p.n))]
+        columns = [t, q, dq] if inputs is None else [t, q, dq, inputs]
+        writer.writerow(names if inputs is None else [*names, *_input_names(p)])
+        writer.writerows([f"{x:.12g}" for x in row] for row in np.column_stack(columns))
         write_together("--out", r.out.parent, {r.out.name: text.getvalue()})
     if r.plot is not None:
         write_together("--plot", r.plot.parent, {r.plot.name: _picture(p, t, q, dq, measured)})

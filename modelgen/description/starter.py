@@ -34,18 +34,26 @@ arms:
           motor: [0, 20000]      # motor coordinate there: increments here
           rev: 1                 # q = rev * inner angle of the lever + offset
           offset: -60 deg
-          torque_constant: 1.0e-4   # J per increment per A
+          torque_constant: 1.0e-3   # J per increment per A
           motor_velocity: 2000   # increments/s
           motor_acceleration: 20000
           current: 3             # A
-        effects: [viscous_friction, coulomb_friction, drive_inertia]   # the default of a driven joint
+        # the default effects of a driven joint, with values at the motor to simulate with
+        effects:
+          - viscous_friction: {{coefficient: 1.0e-7}}   # J s per increment^2
+          - coulomb_friction: {{magnitude: 3.0e-4}}     # J per increment
+          - drive_inertia: {{inertia: 1.0e-8}}          # J s^2 per increment^2
       # Turned by a geared motor: q_m = ratio q. A prismatic axis on a ball-screw has ratio 2*pi/lead.
       - name: elbow
         alpha: 0
         d: d2
         r: 0
         limits: {{position: [-120 deg, 120 deg], velocity: 90 deg, effort: 40}}
-        drive: {{type: direct, ratio: 100, torque_constant: 0.05}}   # N m/A at the motor
+        drive: {{type: direct, ratio: 100, torque_constant: 0.05, current: 3}}   # N m/A at the motor
+        effects:
+          - viscous_friction: {{coefficient: 5.0e-5}}   # N m s/rad
+          - coulomb_friction: {{magnitude: 0.01}}       # N m
+          - drive_inertia: {{inertia: 2.0e-5}}          # kg m^2
     links:                       # nominal inertials: needed to simulate before anything was identified
       shoulder: {{mass: 5, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.08, 0, 0.08]}}
       elbow: {{mass: 2, com: [0.15, 0, 0], inertia: [0.003, 0, 0, 0.02, 0, 0.02]}}
