@@ -21,6 +21,7 @@ from modelgen.description import (
     starter,
 )
 from modelgen.description.names import C_KEYWORDS
+from modelgen.effects import known_effects
 from modelgen.errors import InputError
 
 HEAD = "schema: 1\nconvention: khalil_kleinfinger\narms:\n  a:\n"
@@ -209,7 +210,7 @@ def test_the_same_text_gives_the_same_arm_wherever_its_lines_are(checkout: Path)
 
 @pytest.mark.parametrize("name", ["my_arm", "A", "arm2", "null", "Off", "x" * 48])
 def test_the_starter_file_loads_as_it_stands(name: str) -> None:
-    arms = loads(starter(name), "arms.yaml", dict.fromkeys(DEFAULT_EFFECTS, ()))
+    arms = loads(starter(name), "arms.yaml", known_effects())
     assert list(arms) == [name]
     arm = arms[name]
     assert arm.notes == ()
