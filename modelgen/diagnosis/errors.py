@@ -9,8 +9,8 @@ import numpy as np
 
 from modelgen.dataset import Record
 from modelgen.diagnosis.objects import Errors
-from modelgen.diagnosis.replay import Scores
 from modelgen.diagnosis.rows import Array, Rows
+from modelgen.simulation.windows import Windows
 
 DRAWS = 400
 BLOCKS = 20  # in a record
@@ -24,7 +24,7 @@ def errors(rows: Rows, before: Array, after: Array, unit: str) -> Errors:
     return Errors(unit, *np.array(found).T)
 
 
-def motion_errors(record: Record, before: Scores | None, after: Scores | None) -> Errors:
+def motion_errors(record: Record, before: Windows | None, after: Windows | None) -> Errors:
     """Of the simulated positions of a free motion [rad, m]; not a number where one cannot be simulated."""
     n = record.n
     found = np.full((n, 5), np.nan)

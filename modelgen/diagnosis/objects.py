@@ -14,9 +14,9 @@ from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.experiments import to_json as experiment_json
 from modelgen.diagnosis.lack_of_fit import LackOfFit
 from modelgen.diagnosis.outcome import Fitted
-from modelgen.diagnosis.replay import Scores
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Ranked, Selection
+from modelgen.simulation.windows import Windows
 
 VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
 
@@ -81,7 +81,7 @@ class Diagnosis:
     not_identifiable: tuple[tuple[str, str], ...]
     lack_of_fit: LackOfFit | None
     errors: Errors
-    simulation: tuple[Scores | None, Scores | None]
+    simulation: tuple[Windows | None, Windows | None]
     before: Fitted
     after: Fitted
     parameters: Mapping[str, Estimate]

@@ -18,6 +18,10 @@ from modelgen.effects import described
 from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober
+from modelgen.simulation.windows import Windows, simulated_windows
+
+WINDOW = 0.25  # s
+MOST = 250  # windows
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,31 @@ def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
     ):
         return prepared
     return prepare(replace(record, arm=described(arm)), prepared.settings)
+
+
+def replay(fitted: Fitted, rows: Rows) -> Windows | None:
+    """Simulated against measured positions; None where the record is too short, or nothing stays finite.
+
+    A free motion has no inputs, and is simulated from its beginning to its end.
+    """
+    p = rows.prepared
+    trim = int(p.rows[0])
+    if p.input is None:
+        moving = np.flatnonzero(rows.moving.any(axis=1))
+        if not len(moving):
+            return None
+        starts = p.rows[moving[:1]]
+        length = len(p.time) - trim - int(starts[0])
+    else:
+        length = max(4, round(WINDOW / p.record.step))
+        count = (len(p.time) - 2 * trim) // length
+        if count < 2:
+            return None
+        starts = trim + length * np.linspace(0, count - 1, min(count, MOST)).astype(int)
+    states = None
+    if any(f.name == "effects_step" for f in fitted.model.functions):
+        states = Prober(fitted.arm).states(rows.motion, fitted.parameters)
+    return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
 
 
 def residuals(

@@ -22,9 +22,8 @@ from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
-from modelgen.diagnosis.outcome import extended, fitted, residuals, rows_twice, unit_of_efforts
+from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, rows_twice, unit_of_efforts
 from modelgen.diagnosis.positions import blur, feigned
-from modelgen.diagnosis.replay import replay
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, select
 from modelgen.diagnosis.standing import standing
