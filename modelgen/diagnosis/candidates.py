@@ -27,8 +27,19 @@ STEPS: Mapping[str, Mapping[str, float]] = {
     "time_delay": {"delay": 1e-4},
 }
 INVISIBLE = 1e-5  # of the largest column of a sensitivity
-RELAXATION = 0.003  # s, damping over stiffness of an elastic joint
-RIGID = 3e3  # stiffness of a contact, in the scale of stiffness
+# Elastic joints and play move in proportion to nothing that they have: all of it is searched for,
+# stiffness in its scale, relaxation (damping over stiffness) in s, play in the range of the motion.
+SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    "joint_flexibility": {
+        "stiffness": (3.0, 8.0, 20.0, 50.0, 120.0, 300.0, 800.0, 3000.0),
+        "relaxation": (0.02,),
+    },
+    "backlash": {
+        "play": (3e-4, 8e-4, 2e-3, 4e-3, 1e-2, 3e-2),
+        "stiffness": (200.0,),
+        "relaxation": (0.02,),
+    },
+}
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
@@ -95,9 +106,6 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
         assert joint is not None
         unit = drives_of(prober.arm)[joint - 1].unit
         return [{"revolution": 2 * np.pi if unit in ("rad", "unit rad") else 1.0}]
-    if name in COMPLIANT:
-        stiffness = RIGID * scale("stiffness", name, joint, rows, prober)
-        return [{"stiffness": stiffness, "damping": RELAXATION * stiffness}]
     return [{}]
 
 
@@ -150,8 +158,7 @@ def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Pr
         return _payload(c, r, record, prober, base)
     given = {**c.fixed, **values}
     if c.effect in COMPLIANT:
-        if "damping" not in given:
-            given["damping"] = RELAXATION * given["stiffness"]
+        given["damping"] = given.pop("relaxation") * given["stiffness"]
         return prober.contribution(c.effect, c.joint, motion, given, base)[:, :, None]
     return prober.columns(c.effect, c.joint, motion, given, base)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import LATER, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned
@@ -227,6 +227,8 @@ def judged(
 def instrumented(trial: Trial, system: System) -> bool:
     """Whether the cause's estimate differs from zero where instruments keep errors of the positions out."""
     if trial.candidate.effect in (LATER, "friction_warm_up"):  # do not repeat
+        return False
+    if trial.candidate.effect in COMPLIANT:  # searched for over what makes a filter of any errors
         return False
     table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
     pairs = Pairs(system.rows, table, system.periods, system.plain.sizes)

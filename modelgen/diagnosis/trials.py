@@ -30,6 +30,10 @@ ONE_SIGNED = (
 )
 GOLDEN = (math.sqrt(5) - 1) / 2
 WHOLE = 0.02  # off a whole number of waves, of that number
+WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play, that is found
+REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and others are searched
+SECTIONS = 5  # golden sections over each of several values in turn
+ROUNDS = 2  # over all values in turn
 WORTH = 4.0  # evidence below which a grid's best is not refined
 
 
@@ -51,13 +55,9 @@ class Trial:
 
 def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
     """The effect's own parameters from those of its columns."""
-    if candidate.effect == "joint_flexibility":
-        share = found.pop("share", 1.0)
-        # the deflection is in proportion to the compliance
-        stiffness = found["stiffness"] / share if share > 0 else found["stiffness"]
-        return {"stiffness": stiffness, "damping": of.RELAXATION * stiffness}
-    if candidate.effect == "backlash":
-        found.pop("share", None)
+    if candidate.effect in of.COMPLIANT:
+        play = {"play": found["play"]} if "play" in found else {}
+        return {**play, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
     if candidate.effect == of.LATER and found.get("mass"):
         mass = found["mass"]
         return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
@@ -73,7 +73,7 @@ def sensible(trial: Trial, arm: Arm) -> bool:
         except InputError:
             return False
     if trial.candidate.effect in of.COMPLIANT:
-        return bool(trial.gain.values[0] > 0.0)
+        return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
     bounds = {p.name: p.bounds for p in CATALOGUE[trial.candidate.effect].accepted()}
     if trial.candidate.effect in ONE_SIGNED:
         found = trial.parameters
@@ -117,11 +117,11 @@ class Court:
     def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
+        if candidate.effect in of.COMPLIANT:
+            return self._compliant(candidate)
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
-        if candidate.effect == "backlash":
-            parameter = next(p for p in candidate.searched if p.name == "play")
         unit = of.scale(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
         if not unit > 0:
             return None
@@ -162,6 +162,35 @@ class Court:
 
         return golden(at, math.log(low), math.log(high), best)
 
+    def _compliant(self, candidate: Candidate) -> Trial | None:
+        """A scan over the first value, then a section over each in turn."""
+        search = of.SEARCHES[candidate.effect]
+        kinds = {"play": "span", "stiffness": "stiffness"}
+        units = {
+            name: of.scale(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
+            for name in search
+        }
+        if not all(unit > 0 for unit in units.values()):
+            return None
+        extra = float(len(search))
+        start = {name: units[name] * grid[0] for name, grid in search.items()}
+        (first, grid), *_ = search.items()
+        best = _best([self._at(candidate, {**start, first: units[first] * g}, extra) for g in grid])
+        if best is None or best.gain.delta_bic < WORTH:
+            return best
+        for turn in range(ROUNDS):
+            for name in ("relaxation", "stiffness", "play"):
+                if name not in search:
+                    continue
+                reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
+
+                def at(x: float, name: str = name, held: Trial = best) -> Trial | None:
+                    return self._at(candidate, {**held.values, name: math.exp(x)}, extra)
+
+                middle = math.log(best.values[name])
+                best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
+        return best
+
     def _periodic(self, candidate: Candidate) -> Trial | None:
         assert candidate.joint is not None
         j = candidate.joint - 1
@@ -193,12 +222,14 @@ class Court:
         return best
 
 
-def golden(at: Callable[[float], Trial | None], low: float, high: float, best: Trial) -> Trial:
+def golden(
+    at: Callable[[float], Trial | None], low: float, high: float, best: Trial, sections: int = REFINEMENTS
+) -> Trial:
     """The best trial of a golden section search on [low, high]."""
     a, b = low, high
     inner = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)]
     found = [at(inner[0]), at(inner[1])]
-    for _ in range(REFINEMENTS):
+    for _ in range(sections):
         scores = [-math.inf if t is None else t.gain.delta_bic for t in found]
         best = _best([best, *found]) or best
         if scores[0] > scores[1]:

@@ -29,6 +29,7 @@ from modelgen.probing.series import Series
 Values = Mapping[str, float]
 Place = tuple[str, int | None]
 
+SETTLING = 1.0  # s, for which an elastic transmission is loaded as at the first sample: not let loose there
 # Not free: they choose the form of the law, or where it acts.
 _FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay")
 
@@ -247,11 +248,13 @@ class Prober:
         return tuple(float(value) for value in given if value is not None)
 
     def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
-        """States at every sample, (N, s), from zero."""
+        """States at every sample, (N, s), from zero; a transmission's from where it settles at the first."""
         if e not in self._series:
             self._series[e] = Series(e, self.base)
         series, count = self._series[e], len(motion.t)
-        return series(self._given(series.heads.function, motion, free, parameters, None, None), count)
+        given = self._given(series.heads.function, motion, free, parameters, None, None)
+        elastic = any(getattr(effect.effect, "place", "") == "transmission" for effect in e.effects)
+        return series(given, count, round(SETTLING / motion.step) if elastic else 0)
 
     def _given(
         self,

@@ -50,16 +50,20 @@ class Series:
         heads, self.rest = steps_of(e, base)
         self.heads = NumpyFunction(heads)
 
-    def __call__(self, given: Mapping[str, Array], count: int) -> Array:
-        """States (N, s) at `count` samples, from zero at the first. given: inputs by name, (N or 1, m)."""
+    def __call__(self, given: Mapping[str, Array], count: int, ahead: int = 0) -> Array:
+        """States (N, s) at `count` samples, from zero `ahead` steps before the first, all like the first.
+
+        given: inputs by name, (N or 1, m).
+        """
         found = np.asarray(self.heads(**{a.name: given[a.name] for a in self.heads.function.arguments}))
         head = np.ascontiguousarray(np.broadcast_to(found, (count, self.rest.arguments[1].size)))
-        state = np.zeros((count + 1, self.rest.arguments[0].size))
+        head = np.concatenate([np.repeat(head[:1], ahead, axis=0), head])
+        state = np.zeros((len(head) + 1, self.rest.arguments[0].size))
         if compiler() is None:
             state[1:] = _interpreted(self.rest, head)
         else:
             _compiled(self.rest)(head, state)
-        return state[:-1]
+        return state[ahead:-1]
 
 
 def _compiled(rest: Function) -> Callable[[Array, Array], None]:
