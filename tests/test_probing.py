@@ -48,14 +48,18 @@ def motion(arm: str) -> Motion:
 
 
 def with_states(emitted: Emitted, m: Motion, theta: np.ndarray) -> dict[str, np.ndarray]:
-    """States along the motion, stepped one sample after the other by `effects_step`."""
+    """States along the motion, stepped one sample after the other by `effects_step`.
+
+    An elastic transmission is first held for a second where the motion begins: it settles under its load.
+    """
     extra: dict[str, np.ndarray] = {"time": m.t[:, None]}
     if not emitted.model.states:
         return extra
     state = np.zeros((1, len(emitted.model.states)))
     found = []
     takes = [a.name for a in emitted.functions["effects_step_standard"].arguments]
-    for k in range(len(m.t)):
+    settling = round(1 / m.step) if any("_lag_" in name for name in emitted.model.states) else 0
+    for k in [0] * settling + list(range(len(m.t))):
         found.append(state[0])
         more = {"ddq": m.ddq[k : k + 1]} if "ddq" in takes else {}
         state = np.atleast_2d(
@@ -63,7 +67,7 @@ def with_states(emitted: Emitted, m: Motion, theta: np.ndarray) -> dict[str, np.
                 "effects_step_standard", m.q[k : k + 1], m.dq[k : k + 1], [[m.step]], theta, state, **more
             )
         )
-    return {**extra, "state": np.array(found)}
+    return {**extra, "state": np.array(found[settling:])}
 
 
 def call(emitted: Emitted, name: str, *inputs: np.ndarray, **more: np.ndarray) -> np.ndarray:

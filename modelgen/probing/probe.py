@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 
@@ -30,6 +30,7 @@ Values = Mapping[str, float]
 Place = tuple[str, int | None]
 
 SETTLING = 1.0  # s, for which an elastic transmission is loaded as at the first sample: not let loose there
+REMEMBERED = 40  # results that do not depend on an effect's own values
 # Not free: they choose the form of the law, or where it acts.
 _FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay")
 
@@ -49,7 +50,7 @@ class Prober:
         self._arms: dict[object, tuple[NumpyFunction, Equations]] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
         self._series: dict[Equations, Series] = {}
-        self._inputs: dict[tuple[int, bytes], tuple[Motion, Array]] = {}
+        self._memory: dict[tuple[object, int, bytes], tuple[Motion, Array]] = {}
 
     @cached_property
     def n(self) -> int:
@@ -177,7 +178,11 @@ class Prober:
             alone = replace(described(self.arm), joints=joints, effects=())
             self._made["links"] = NumpyFunction(links_and_effect(Equations(slid(alone)), self.base))
         call = self._made["links"]
-        return np.asarray(call(**self._given(call.function, motion, (), parameters, None, None)))
+
+        def inputs() -> Array:
+            return np.asarray(call(**self._given(call.function, motion, (), parameters, None, None)))
+
+        return self._kept("links", motion, parameters, inputs)
 
     # -- inside -----------------------------------------------------------------------------
 
@@ -188,13 +193,7 @@ class Prober:
         call, e = self._arms[key]
         if key != "described":
             return self._along(call, e, motion, parameters)
-        at = (id(motion), np.asarray(parameters).tobytes())
-        if at not in self._inputs:
-            if len(self._inputs) > 20:
-                self._inputs.clear()
-            # the motion is kept: its place in memory is the key
-            self._inputs[at] = motion, self._along(call, e, motion, parameters)
-        return self._inputs[at][1]
+        return self._kept(key, motion, parameters, lambda: self._along(call, e, motion, parameters))
 
     def _along(self, call: NumpyFunction, e: Equations, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
@@ -233,7 +232,11 @@ class Prober:
             if "loads" not in self._made:
                 self._made["loads"] = NumpyFunction(loads_of(self.arm, self.base))
             made = self._made["loads"]
-            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
+
+            def inputs() -> Array:
+                return np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
+
+            loads = self._kept("loads", motion, parameters, inputs)
         states = self._states(e, motion, free, parameters) if e.state_names() else None
         return np.asarray(call(**self._given(function, motion, free, parameters, loads, states)))
 
@@ -251,10 +254,26 @@ class Prober:
         """States at every sample, (N, s), from zero; a transmission's from where it settles at the first."""
         if e not in self._series:
             self._series[e] = Series(e, self.base)
-        series, count = self._series[e], len(motion.t)
-        given = self._given(series.heads.function, motion, free, parameters, None, None)
+        series = self._series[e]
+
+        def head() -> Array:
+            return series.head(
+                self._given(series.heads.function, motion, (), parameters, None, None), len(motion.t)
+            )
+
         elastic = any(getattr(effect.effect, "place", "") == "transmission" for effect in e.effects)
-        return series(given, count, round(SETTLING / motion.step) if elastic else 0)
+        ahead = round(SETTLING / motion.step) if elastic else 0
+        return series(self._kept((e, "head"), motion, parameters, head), free, ahead)
+
+    def _kept(self, what: object, motion: Motion, parameters: Array, make: Callable[[], Array]) -> Array:
+        """What `make` gives, made once for a motion and parameters; the last few are remembered."""
+        at = (what, id(motion), np.asarray(parameters).tobytes())
+        if at not in self._memory:
+            if len(self._memory) >= REMEMBERED:
+                del self._memory[next(iter(self._memory))]
+            # the motion is kept: its place in memory is the key
+            self._memory[at] = motion, make()
+        return self._memory[at][1]
 
     def _given(
         self,

@@ -63,15 +63,15 @@ def columns_of(e: Equations) -> tuple[Function, list[tuple[str, int]]]:
 
 
 def steps_of(e: Equations, base: Grouping) -> tuple[Function, Function]:
-    """States after dt: what needs no state, and from {state, head} the rest."""
+    """States after dt: what needs neither state nor free values, and from {state, head, free} the rest."""
     forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), _values(e, base))
-    heads, tails = cut(forces.steps(e.graph.input("dt", 0)), ["state"], "head")
-    sizes = {"state": len(tails), "head": len(heads)}
+    heads, tails = cut(forces.steps(e.graph.input("dt", 0)), ["state", "free"], "head")
+    sizes = {"state": len(tails), "head": len(heads), "free": len(e.free)}
     arguments = tuple(Argument(a, size, "", "", float("inf")) for a, size in sizes.items())
     output = Output("out", len(tails), 1, "", "")
     rest = Function("step", "", arguments, (output,), lower({"out": tails}), {})
     found = bare("heads", e, len(base.base), heads)
-    return replace(found, arguments=tuple(a for a in found.arguments if a.name != "state")), rest
+    return replace(found, arguments=tuple(a for a in found.arguments if a.name not in sizes)), rest
 
 
 def links_and_effect(e: Equations, base: Grouping) -> Function:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -24,13 +24,13 @@ _DRIVER = """
 #ifdef _WIN32
 __declspec(dllexport)
 #endif
-void run(long count, long heads, long states, const double *head, double *state);
-void run(long count, long heads, long states, const double *head, double *state)
+void run(long count, long heads, long states, const double *head, const double *values, double *state);
+void run(long count, long heads, long states, const double *head, const double *values, double *state)
 {
     static casadi_int integers[%d];
     static double numbers[%d];
     for (long k = 0; k < count; k++) {
-        const double *given[%d] = {state + k * states, head + k * heads};
+        const double *given[%d] = {state + k * states, head + k * heads, values};
         double *found[%d] = {state + (k + 1) * states};
         step(given, found, integers, numbers, 0);
     }
@@ -41,32 +41,39 @@ void run(long count, long heads, long states, const double *head, double *state)
 class Series:
     """The states of the effects of some equations along a motion.
 
-    What of a step needs no state is evaluated for all samples at once. The rest, a few operations, is
-    compiled, or where there is no C compiler run by CasADi's virtual machine. It holds none of the arm's
-    figures: one library serves all arms.
+    What of a step needs neither state nor free values is evaluated for all samples at once. The rest, a few
+    operations, is compiled, or where there is no C compiler run by CasADi's virtual machine. It holds none
+    of the arm's figures: one library serves all arms.
     """
 
     def __init__(self, e: Equations, base: Grouping) -> None:
         heads, self.rest = steps_of(e, base)
         self.heads = NumpyFunction(heads)
 
-    def __call__(self, given: Mapping[str, Array], count: int, ahead: int = 0) -> Array:
-        """States (N, s) at `count` samples, from zero `ahead` steps before the first, all like the first.
+    @property
+    def arguments(self) -> list[str]:
+        """Names of the inputs of `head`."""
+        return [a.name for a in self.heads.function.arguments]
 
-        given: inputs by name, (N or 1, m).
-        """
-        found = np.asarray(self.heads(**{a.name: given[a.name] for a in self.heads.function.arguments}))
-        head = np.ascontiguousarray(np.broadcast_to(found, (count, self.rest.arguments[1].size)))
-        head = np.concatenate([np.repeat(head[:1], ahead, axis=0), head])
+    def head(self, given: Mapping[str, Array], count: int) -> Array:
+        """What the steps need of every sample (N, h). given: inputs by name, (N or 1, m)."""
+        found = np.asarray(self.heads(**{name: given[name] for name in self.arguments}))
+        return np.ascontiguousarray(np.broadcast_to(found, (count, self.rest.arguments[1].size)))
+
+    def __call__(self, head: Array, free: Sequence[float], ahead: int = 0) -> Array:
+        """States (N, s) from zero `ahead` steps before the first sample, all like the first."""
+        if ahead:
+            head = np.concatenate([np.repeat(head[:1], ahead, axis=0), head])
         state = np.zeros((len(head) + 1, self.rest.arguments[0].size))
-        if compiler() is None:
-            state[1:] = _interpreted(self.rest, head)
-        else:
-            _compiled(self.rest)(head, state)
+        self._run(head, np.array([*free, 0.0]), state)
         return state[ahead:-1]
 
+    @cached_property
+    def _run(self) -> Callable[[Array, Array, Array], None]:
+        return _interpreted(self.rest) if compiler() is None else _compiled(self.rest)
 
-def _compiled(rest: Function) -> Callable[[Array, Array], None]:
+
+def _compiled(rest: Function) -> Callable[[Array, Array, Array], None]:
     step = casadi_function(rest)
     made = ca.CodeGenerator("step", {"with_header": False})
     made.add(step)
@@ -75,9 +82,9 @@ def _compiled(rest: Function) -> Callable[[Array, Array], None]:
     library = _library(_PRIVATE + made.dump() + _DRIVER % sizes)
     library.run.restype = None
 
-    def run(head: Array, state: Array) -> None:
+    def run(head: Array, free: Array, state: Array) -> None:
         counts = (ctypes.c_long(x) for x in (len(head), head.shape[1], state.shape[1]))
-        library.run(*counts, ctypes.c_void_p(head.ctypes.data), ctypes.c_void_p(state.ctypes.data))
+        library.run(*counts, *(ctypes.c_void_p(x.ctypes.data) for x in (head, free, state)))
 
     return run
 
@@ -87,6 +94,12 @@ def _library(source: str) -> ctypes.CDLL:
     return shared_library({"series.c": source}, "series.c")
 
 
-def _interpreted(rest: Function, head: Array) -> Array:
-    series = casadi_function(rest).mapaccum("series", len(head), {"base": 4})
-    return np.array(series(np.zeros(rest.arguments[0].size), head.T)).T
+def _interpreted(rest: Function) -> Callable[[Array, Array, Array], None]:
+    step = casadi_function(rest)
+
+    def run(head: Array, free: Array, state: Array) -> None:
+        series = step.mapaccum("series", len(head), {"base": 4})
+        values = np.tile(free[: rest.arguments[2].size, None], (1, len(head)))
+        state[1:] = np.array(series(state[0], head.T, values)).T
+
+    return run
