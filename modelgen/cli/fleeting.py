@@ -69,7 +69,8 @@ def data(found: Fleet, out: Path) -> dict[str, Any]:
 def _print(said: dict[str, Any]) -> None:
     kept = f", {said['kept']} of them from before" if said["kept"] else ""
     counts = ", ".join(f"{n} {WORDS[key]}" for key, n in said["verdicts"].items() if n)
-    typer.echo(f"{said['units']} units{kept}: {counts}")
+    units = "1 unit" if said["units"] == 1 else f"{said['units']} units"
+    typer.echo(f"{units}{kept}: {counts}")
     rows = [
         [c["effect"], "arm" if c["joint"] is None else str(c["joint"]), str(c["units"])]
         for c in said["causes"][:_SHOWN]

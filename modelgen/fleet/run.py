@@ -17,6 +17,7 @@ from modelgen.fleet.units import Unit
 from modelgen.jobs import Where, run
 
 PAGE = "overview.html"
+CODE = "generated"  # the folder that --code adds to a unit's
 Progress = Callable[[int, int], None]
 
 
@@ -59,7 +60,11 @@ def _diagnosed(
     units: Sequence[Unit], out: Path, where: Where, again: bool, code: bool, progress: Progress | None
 ) -> Fleet:
     found = {u.name: store.kept(u, out) for u in units}
-    rows = {name: row for name, row in found.items() if row and not (again and row.get("error"))}
+    rows = {
+        name: row
+        for name, row in found.items()
+        if row and (not again if row.get("error") else not code or (store.folder(out, name) / CODE).is_dir())
+    }
     kept = len(rows)
     jobs = [Job(u, str(out.absolute()), code) for u in units if u.name not in rows]
     if progress:
