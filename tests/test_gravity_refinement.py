@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arms_support import ARMS
-from plant import PUBLISHED
+from plant import HIDDEN, PUBLISHED
 from simulation_support import middle
 from typer.testing import CliRunner
 
@@ -173,3 +173,41 @@ def test_bad_input_is_one_line(words: list[str], expected: str, swings: list[str
     assert expected in said
     assert "Traceback" not in said
     assert not out.exists()
+
+
+LINK = """schema: 1
+convention: khalil_kleinfinger
+arms:
+  link:
+    gravity: [9.81, 0, 0]
+    joints:
+    - name: j2
+      drive: {type: none}
+      effects: [viscous_friction: {coefficient: 0.2358}, coulomb_friction: {magnitude: 0.1873},
+        spring: {stiffness: 1.02, preload: -0.322}%s]
+    links: {j2: {mass: 6.74322, com: [0.193949, 0, 0], inertia: [0.01, 0, 0, 0.056, 0, 0.056052]}}
+"""
+
+
+def test_stiction_is_found_in_swings_that_end_beside_the_rest_angle(tmp_path: Path) -> None:
+    """The plant's static friction, of another form, shows in the motion as lower friction at speed."""
+    random, logs, t = np.random.default_rng(4), [], np.arange(1001) / 200
+    for degrees in (20, 30, 40):
+        q = HIDDEN.swing(np.radians(degrees), t) + 2e-4 * random.standard_normal(len(t))
+        file = str(tmp_path / f"{degrees}.csv")
+        np.savetxt(file, np.column_stack([t, q]), delimiter=",", header="t,q1", comments="", fmt="%.7g")
+        logs += ["--log", file]
+    found = {}
+    for name, more in (("without", ""), ("with", ", stribeck_friction: {velocity: 0.14, magnitude: 0.05}")):
+        arms = tmp_path / f"{name}.yaml"
+        arms.write_text(LINK % more, encoding="utf-8")
+        status, out, said = invoked(
+            str(arms), "--arm", "link", *logs, "--out", str(tmp_path / name), "--json"
+        )
+        assert status == 0, said
+        found[name] = json.loads(out)
+    assert found["with"]["joints"][0]["rmse"] < found["without"]["joints"][0]["rmse"] / 3
+    values = {x["name"]: x for x in found["with"]["parameters"]}
+    assert values["FS1"]["value"] > 10 * values["FS1"]["std"]
+    assert values["FC1"]["value"] == pytest.approx(HIDDEN.coulomb, rel=0.05)
+    assert values["KS1"]["value"] == pytest.approx(HIDDEN.stiffness, rel=0.02)
