@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.dataset.drives import Drive
 from modelgen.dataset.objects import Array
-from modelgen.description import Arm
+from modelgen.description import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.transmission import of_joint
 
@@ -39,7 +39,7 @@ def check_length(file: str, samples: int) -> None:
 def check_constant(
     file: str, arm: Arm, names: tuple[str | None, ...], columns: Array, what: str, samples: int | None = None
 ) -> None:
-    """Positions and efforts must change. Raises InputError.
+    """Positions and efforts must change, but for undriven joints without any effort. Raises InputError.
 
     columns: (N, n), or their lowest and highest values (2, n) over `samples`.
     """
@@ -52,7 +52,9 @@ def check_constant(
     for k, name in enumerate(names):
         if name is None or np.ptp(columns[:, k]) > 0.0:
             continue
-        joint = arm.joints[arm.coordinates[k]].name
+        drive, joint = arm.joints[arm.coordinates[k]].drive, arm.joints[arm.coordinates[k]].name
+        if what == "effort" and isinstance(drive, NoDrive) and columns[0, k] == 0.0:
+            continue
         advice = (
             f"where joint {joint} was held, lock it in the description, locked: {{{joint}: ...}}"
             if what == "position"

@@ -34,9 +34,7 @@ def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
     record, logged = record_of(source, arm, table, axis, axis.times())
     checks.check_constant(spec, arm, source.signals.position, logged, "position")
     if record.input is not None:
-        driven = zip(source.signals.effort, source.drives, strict=True)
-        names = tuple(name if drive.driven else None for name, drive in driven)
-        checks.check_constant(spec, arm, names, record.input, "effort")
+        checks.check_constant(spec, arm, source.signals.effort, record.input, "effort")
     return record
 
 

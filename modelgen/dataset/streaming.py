@@ -151,12 +151,10 @@ class _Content:
             yield block
 
     def check_changes(self) -> None:
-        """Positions and driven efforts must change. Raises InputError."""
+        """Positions and efforts must change. Raises InputError."""
         span = dict(zip(self.source.wanted, np.stack([self.low, self.high], axis=1), strict=True))
         signals = self.source.signals
-        efforts = zip(signals.effort, self.source.drives, strict=True)
-        driven = tuple(name if drive.driven else None for name, drive in efforts)
-        for names, what in ((signals.position, "position"), (driven, "effort")):
+        for names, what in ((signals.position, "position"), (signals.effort, "effort")):
             ends = np.stack([span[name] if name else np.zeros(2) for name in names], axis=1)
             checks.check_constant(self.stream.spec, self.stream.arm, names, ends, what, self.count)
 
