@@ -3,8 +3,9 @@
     python benchmarks/variants.py              print the tables
     python benchmarks/variants.py --accept     write benchmarks/variants.json, for the page of `make bench`
 
-The three bench arms, parameters folded in, x86-64-v3, counted by callgrind; and four states at once in
-vectors of four. Results are compared to those of the generator as it is.
+The three bench arms, parameters folded in, x86-64-v3, counted by callgrind; on a Cortex-M4F where
+arm-none-eabi-gcc is installed; and four states at once in vectors of four. Results are compared to those of
+the generator as it is.
 """
 
 from __future__ import annotations
@@ -14,10 +15,13 @@ import json
 import shutil
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from firmware.sizes import measure
+from firmware.targets import M4F
 from peers import ours, pages_variants
 from peers.arms import BENCH, Subject, links_alone, subject
 from peers.cost import sections
@@ -25,6 +29,8 @@ from peers.measure import Call, instructions, values
 from peers.variants import SHIPPED, VARIANTS, Variant
 from peers.variants_c import calls, inlined, library
 from peers.vectors import packed
+
+from modelgen.functions import Model
 
 ROOT = Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "variants"
@@ -62,7 +68,19 @@ def counted(case: Subject, variant: Variant, reference: dict[str, Any] | None) -
     }
     # put together in another way, the objects hold other functions too
     code = None if units else sum(sections(path)["code"] for path in built.objects)
-    return {"instructions": counts, "operations": operations, "code": code, "values": found}
+    result = {"instructions": counts, "operations": operations, "code": code, "values": found}
+    if not variant.kind and not variant.flags and shutil.which(M4F.gcc):
+        result["m4f"] = on_m4f(model, folder / "m4f")
+    return result
+
+
+def on_m4f(model: Model, folder: Path) -> dict[str, int]:
+    """Instructions of the four functions on a Cortex-M4F in single precision, sine and cosine included."""
+    names = {(f"{key}_identified" if folded else key): key for key, (_, folded) in ours.FUNCTIONS.items()}
+    folder.mkdir()
+    few = replace(model, functions=tuple(f for f in model.functions if f.name in names))
+    sizes = measure(few, folder, "gcc")
+    return {key: sizes[name].instructions for name, key in names.items()}
 
 
 def main(arguments: Sequence[str]) -> int:
