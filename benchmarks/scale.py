@@ -52,9 +52,10 @@ def main(arguments: Sequence[str]) -> int:
         limits = tired if shape == "chain" else {"modelgen": set(), "traced": set()}
         found = growth.measured(shape, case, tracer, WORK / case.arm.name, limits)
         result["arms"][case.arm.name] = {"shape": shape, "joints": joints, **found}
+        (WORK / "scale.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     print("\n".join(pages_scale.lines(result)))
     if given.accept:
-        (ROOT / "benchmarks" / "scale.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+        shutil.copyfile(WORK / "scale.json", ROOT / "benchmarks" / "scale.json")
     return 0
 
 
