@@ -81,21 +81,21 @@ def readings(
     """Of what causes claim: (effect, joint, values of its parameters)."""
     found = []
     for effect, joint, values in claims:
-        place = "" if joint is None else f" of joint {joint}"
+        place = "" if joint is None else f"joint {joint}: "
         if effect in READINGS:
             text, names, spread = READINGS[effect]
             size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in names)))
-            found.append(Test(f"read {text}{place} (expected {size:.2g})", (size / spread) ** 2))
+            found.append(Test(f"{place}read {text} (the cause claims {size:.2g})", (size / spread) ** 2))
         elif effect == "friction_offset" and joint is not None:
             size = abs(values.get("offset", 0.0)) / drives_of(stage.arm)[joint - 1].torque_constant
             noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.plain.sizes[joint - 1])
             rows = max(1.0, READING * stage.prepared[0].rate * float(judge.shares[joint - 1]))
-            text = f"read the current{place} at rest with the motor switched off, for {READING:g} s"
+            text = f"{place}read the current at rest with the motor switched off, for {READING:g} s"
             said = f"{text} (an offset of the sensor of {size:.2g}; none with asymmetric friction)"
             found.append(Test(said, rows * float(np.log1p((size / noise) ** 2))))
         elif effect == "backlash" and joint is not None:
             play = values.get("play", 0.0)
-            found.append(Test(f"read {COMPLIANT} (a gap of {play:.2g})", (play / SEEN) ** 2))
+            found.append(Test(f"{place}read {COMPLIANT} (a gap of {play:.2g})", (play / SEEN) ** 2))
     return found
 
 
