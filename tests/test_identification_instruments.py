@@ -11,6 +11,7 @@ from witness.rigid_bodies import RigidBodies
 from modelgen.dataset import Record, Settings, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.functions import build_model
 from modelgen.identification import Instruments, identify, verdict
 from modelgen.identification.consistent import base_matrix
 from modelgen.simulation import Reference
@@ -115,6 +116,15 @@ def test_a_reference_of_another_time_is_refused() -> None:
         )
     with pytest.raises(InputError, match="expected auto, period, simulated"):
         identify(prepared, arm, instruments=Instruments("simulation"))
+
+
+def test_parameters_that_cannot_be_simulated_are_refused() -> None:
+    bodies = tapering(3)
+    arm = bare("rx90", bodies)
+    prepared = prepare(record(arm, bodies, 1e-4, 1, periods=2), SETTINGS)
+    names = [b.name for b in build_model(arm).grouping.base]
+    with pytest.raises(InputError, match=r"does not get through simulated: .*; expected records"):
+        Tracking(arm)(prepared, dict.fromkeys(names, 0.0))
 
 
 def test_without_periods_there_are_no_instruments() -> None:

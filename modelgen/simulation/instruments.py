@@ -57,11 +57,16 @@ class Tracking:
         low, high = made.strokes
         duration = float(p.time[-1] - p.time[0])
         law = controller(made, self.control, shifted, bandwidth, rate)
-        found = simulate(made, np.clip(q0, low, high), dq0, duration, rate, law)
-        if found.ended or len(found.q) != len(p.time):
+        try:
+            found = simulate(made, np.clip(q0, low, high), dq0, duration, rate, law)
+            ended = found.ended
+        except InputError as error:
+            ended = error.message
+        if ended or len(found.q) != len(p.time):
             raise InputError(
-                f"--instrument simulated: the model does not get through {record.name}: {found.ended}; "
-                "expected parameters from better records, or another --bandwidth"
+                f"--instrument simulated: the model does not get through {record.name}: {ended}; expected "
+                "records that determine the inertias well enough, a motion that repeats, or another "
+                "--bandwidth"
             )
         motor = np.stack([d.motor(x) for d, x in zip(drives_of(self.arm), found.q.T, strict=True)], axis=1)
         changed = replace(record, q=found.q, motor=motor, motor_side=(), arm=self.arm)
