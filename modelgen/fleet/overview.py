@@ -46,6 +46,7 @@ def overview(rows: Sequence[Row]) -> str:
     counts = verdicts(rows)
     text: str = environment.get_template("report/fleet.html.j2").render(
         total=len(rows),
+        heading=f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}",
         arms=len({row["arm"] for row in rows}),
         counts=[(key, WORDS[key], counts[key], COLOURS[key]) for key in WORDS if counts[key]],
         verdict_picture=_inline(verdict_bars(counts)),
@@ -147,15 +148,18 @@ def _row(row: Row) -> dict[str, Any]:
     return {
         "unit": row["unit"],
         "report": row.get("report"),
+        "unlinked": "" if row.get("report") else row["unit"],
         "arm": row["arm"] or "",
         "verdict": WORDS[found],
         "colour": COLOURS[found],
         "order": list(WORDS).index(found),
         "causes": [(e if j is None else f"{e} at joint {j}", ", ".join(rivals)) for e, j, rivals in named],
-        "evidence": _number(max(row.get("delta_bic") or (), default=None), ".1f"),
-        "gain": _number(row.get("best_gain_percent"), ".1f"),
-        "fit": _number(None if fit is None else fit / threshold, ".2f"),
-        "seconds": _number(row.get("seconds"), ".1f"),
+        "figures": [
+            _number(max(row.get("delta_bic") or (), default=None), ".1f"),
+            _number(row.get("best_gain_percent"), ".1f"),
+            _number(None if fit is None else fit / threshold, ".2f"),
+            _number(row.get("seconds"), ".1f"),
+        ],
         "said": row.get("error") or row.get("reason") or "",
     }
 
