@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
     shapes = [("chain", n) for n in given.joints]
     if tuple(given.joints) == CHAINS:
         shapes += [(shape, 30) for shape in TREES]
-    result: dict[str, Any] = {"limit": growth.LIMIT, "arms": {}}
+    result: dict[str, Any] = {"limit": growth.LIMIT, "remarks": [], "arms": {}}
     tired: dict[str, set[str]] = {"modelgen": set(), "traced": set()}
     for shape, joints in shapes:
         print(shape, joints, file=sys.stderr, flush=True)

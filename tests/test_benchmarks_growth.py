@@ -23,6 +23,7 @@ def test_trees_have_the_shape_that_they_are_named_after() -> None:
     assert max(carried.count(i) for i in range(30)) == 2
     limbs = growing.arm("limbs", 31)
     assert [joint.antecedent for joint in limbs.joints].count(0) == 5
+    assert [joint.antecedent for joint in limbs.joints][1:8] == [0, 1, 2, 3, 4, 5, 0]
     with pytest.raises(ValueError, match="unknown shape 'star'"):
         growing.arm("star", 3)
 

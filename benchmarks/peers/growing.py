@@ -17,28 +17,32 @@ from peers.ours import write
 _LIMB = 6  # joints of a limb, in "limbs"
 
 
-def antecedent(shape: str, i: int) -> int | None:
-    """The joint before joint i.
+def antecedents(shape: str, joints: int) -> list[int | None]:
+    """The joint before each joint, branch after branch (Pinocchio's mass matrix needs that order).
 
     chain; binary: every link carries two; limbs: the first link carries limbs of six joints. Raises
     ValueError for another shape.
     """
-    if i == 0:
-        return None
     if shape == "chain":
-        return i - 1
-    if shape == "binary":
-        return (i - 1) // 2
+        return [None, *range(joints - 1)]
     if shape == "limbs":
-        return 0 if (i - 1) % _LIMB == 0 else i - 1
-    raise ValueError(f"unknown shape {shape!r}, expected chain, binary or limbs")
+        return [None, *(0 if i % _LIMB == 0 else i for i in range(joints - 1))]
+    if shape != "binary":
+        raise ValueError(f"unknown shape {shape!r}, expected chain, binary or limbs")
+    found: list[int | None] = []
+    waiting: list[tuple[int, int | None]] = [(0, None)]  # place in the heap, joint before
+    while waiting:
+        place, before = waiting.pop()
+        number = len(found)
+        found.append(before)
+        waiting += [(child, number) for child in (2 * place + 2, 2 * place + 1) if child < joints]
+    return found
 
 
 def arm(shape: str, joints: int) -> Arm:
     """Parallel and perpendicular axes in turn, every link with the same inertials."""
     made = []
-    for i in range(joints):
-        before = antecedent(shape, i)
+    for i, before in enumerate(antecedents(shape, joints)):
         second = before is not None and before != i - 1  # a branch leaves at an angle of its own
         made.append(
             Joint(
