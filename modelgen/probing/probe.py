@@ -78,11 +78,11 @@ class Prober:
         function = self._function(model, "regressor")
         names = {a.name for a in function.function.arguments}
         loads = states = None
+        if self._own.state_names() and names & {"load", "state"}:
+            states = self._states(self._own, motion, (), parameters)
         if "load" in names:
             made = self._function(model, "load")
-            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
-        if "state" in names:
-            states = self._states(self._own, motion, (), parameters)
+            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, states)))
         found = function(**self._given(function.function, motion, (), parameters, loads, states))
         return np.asarray(found).reshape(len(motion.t), self.n, -1)
 
