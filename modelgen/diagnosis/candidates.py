@@ -90,10 +90,21 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
         if free and name in DRIVEN:
             continue
         for joint in places(arm, name):
+            if name in COMPLIANT and not at_motor(joint, rows):
+                continue
             searched = tuple(p for p in effect.nonlinear if p.grid)
             for fixed in _fixed(name, joint, rows, prober):
                 found.append(Candidate(name, joint, fixed, () if name in STEPS else searched))
     return found
+
+
+def at_motor(joint: int | None, rows: Sequence[Rows]) -> bool:
+    """Whether the joint's position was measured at its motor in all records.
+
+    What lies between motor and link is searched for as the link's motion behind a known one of the motor.
+    """
+    sides = [r.prepared.record.motor_side for r in rows]
+    return joint is not None and all(side and side[joint - 1] for side in sides)
 
 
 def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:

@@ -12,7 +12,7 @@ from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.baseline import estimated, held
-from modelgen.diagnosis.candidates import LATER, Candidate, candidates
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_motor, candidates
 from modelgen.diagnosis.checks import Place, asked, check_excitation, check_motion, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
@@ -30,7 +30,7 @@ from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares, weighted_fit
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
-from modelgen.probing import Prober
+from modelgen.probing import Prober, places
 
 Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
@@ -243,5 +243,9 @@ def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tup
     if "drive_gain_error" not in named and len(arm.coordinates) == 1:
         found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))
     still = [n + 1 for n in range(rows[0].effort.shape[1]) if not any(r.moving[:, n].any() for r in rows)]
+    behind = [j for j in places(arm, COMPLIANT[0]) if not at_motor(j, rows)]
+    if behind and any(r.prepared.input is not None for r in rows):
+        joints = "joint " + ", ".join(str(j) for j in behind)
+        found += [(name, f"the position of {joints} was not measured at the motor") for name in COMPLIANT]
     found += [("coulomb_friction", f"joint {n} does not move in the training records") for n in still]
     return tuple(found)
