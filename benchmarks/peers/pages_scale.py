@@ -21,6 +21,8 @@ left out. Exponent: log of the ratio over log of the ratio of joints, from the a
 Forward dynamics: modelgen solves with the mass matrix, of the order of the cube of a chain's length; the traced `aba`,
 of the order of its length, takes fewer instructions for chains of more than about twenty joints.
 
+Solid: modelgen; dashed: the trace; crosses: modelgen, the trees.
+
 ![growth with the number of joints](benchmarks-scale.svg)
 """
 
