@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.functions import Model, nominal_base
-from peers import build, cost, mujoco_model, operations, ours, symbolic, symforce_newton, sympy_kane
+from peers import build, cost, mujoco_model, operations, ours, symbolic, sympy_kane
 from peers.arms import BENCH, Subject, links_alone, subject
 from peers.bodies import Body
 from peers.build import Built
@@ -102,7 +102,7 @@ def _built(case: Subject, model: Model, common: Shared, folder: Path) -> dict[st
         add(TRACED, symbolic.traced(sources, case.joints), counts, spent)
     if build.package("symforce") and build.pinocchio_flags():
         where = place("symforce")
-        spent = cost.generated(symforce_newton.__name__, name, str(where))
+        spent = cost.generated("peers.symforce_newton", name, str(where))
         texts = {key: (where / f"{key}.h").read_text(encoding="utf-8") for key in FUNCTIONS}
         counts = {key: operations.symforce(text) for key, text in texts.items()}
         add(SYMFORCE, symbolic.symforce(where, case.joints), counts, spent)
