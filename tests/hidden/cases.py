@@ -76,7 +76,7 @@ class Bench:
                 self.arm.plant[gain] = value
         free = case.arm in arms.FREE
         self.paths: list[Plant] = [
-            self._release(_random(case, 2, k)) if free else trajectories.draw(self.arm, _random(case, 2, k))
+            self._release(k) if free else trajectories.draw(self.arm, _random(case, 2, k))
             for k in range(len(RECORDS))
         ]
         self.duration = case.periods / float(self.arm.plant["frequency"])
@@ -91,12 +91,23 @@ class Bench:
             plant["joint_side"][: self.arm.n] = 1.0
             plant["count"][: self.arm.n] = 2 * math.pi / 2**bits
 
-    def _release(self, random: Generator) -> Plant:
-        plant = self.arm.plant.copy()
-        plant["free"] = 1.0
-        for j in range(self.arm.n):
-            plant["q0"][j] = random.uniform(0.6, 1.0) * self.arm.position[j][1] * random.choice((-1.0, 1.0))
-        return plant
+    def _release(self, k: int) -> Plant:
+        """Let go at an angle from which no joint swings beyond its limits: no arm turns over its top."""
+        duration = self.case.periods / float(self.arm.plant["frequency"])
+        for attempt in range(20):
+            random = _random(self.case, 2, k, *([attempt] if attempt else []))
+            plant = self.arm.plant.copy()
+            plant["free"] = 1.0
+            for j in range(self.arm.n):
+                most = self.arm.position[j][1] * 0.9**attempt
+                plant["q0"][j] = random.uniform(0.6, 1.0) * most * random.choice((-1.0, 1.0))
+            q = native.simulate(plant, self.case.rate, duration, self._substeps([]))[0]
+            if all(
+                low <= q[:, j].min() and q[:, j].max() <= high
+                for j, (low, high) in enumerate(self.arm.position)
+            ):
+                return plant
+        raise PlantError(f"{self.case.arm} swings beyond its limits from every angle drawn")
 
     def _substeps(self, hidden: list[str]) -> int:
         longest = FINE if any(EFFECTS[name].fine for name in hidden) else COARSE
