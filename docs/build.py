@@ -109,15 +109,12 @@ def gather(folder: Path) -> None:
 def reference(package: str) -> str:
     """A page of everything public in a package."""
     module = importlib.import_module(f"modelgen.{package}")
-    names = [module.__name__]
-    if not hasattr(module, "__all__") and hasattr(module, "__path__"):
+    options, names = "   :members:\n", [module.__name__]
+    if hasattr(module, "__all__"):
+        options += "   :imported-members:\n"
+    elif hasattr(module, "__path__"):
         names += modules(package)
-    text = "".join(
-        f".. automodule:: {name}\n   :members:\n   :imported-members:\n\n"
-        if hasattr(module, "__all__")
-        else f".. automodule:: {name}\n   :members:\n\n"
-        for name in names
-    )
+    text = "".join(f".. automodule:: {name}\n{options}\n" for name in names)
     return f"# modelgen.{package}\n\n```{{eval-rst}}\n{text}```\n"
 
 

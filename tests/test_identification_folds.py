@@ -60,6 +60,18 @@ def test_a_fold_is_the_identification_of_the_rest(log: Path) -> None:
     assert folds["rmse"][0] == pytest.approx(0.1 * np.sqrt(5 / 50), rel=0.15)
 
 
+def test_what_is_held_out_has_no_part_in_the_fit(log: Path) -> None:
+    # friction three times as large in the second third: who has not seen it misses it, who has finds some
+    table = np.loadtxt(log, delimiter=",", skiprows=1)
+    middle = (table[:, 0] >= 10) & (table[:, 0] < 20)
+    table[middle, 2] += 1.0 * np.gradient(table[:, 1], 0.01)[middle]
+    np.savetxt(log, table, "%.12g", ",", header="t,q1,tau1", comments="")
+    folds = run(log, "--train", str(log), "--folds", "3")["folds"]
+    assert isinstance(folds, dict)
+    speed = np.sqrt(np.mean(np.gradient(table[:, 1], 0.01)[middle] ** 2))
+    assert folds["parts"][1]["rmse"][0] == pytest.approx(1.0 * speed, rel=0.05)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ class Outcome:
     chosen: Chosen
     folds: Folds | None = None
 
+    @cached_property
     def data(self) -> dict[str, Any]:
         """identification.json."""
         beside = [{"model": o.name, **errors(o.test)} for o in self.others]
@@ -54,7 +56,7 @@ class Outcome:
 
 def write(o: Outcome, file: Path, out: Path) -> None:
     """Every file, or none. file: the description. Raises InputError."""
-    found, data = o.found, o.data()
+    found, data = o.found, o.data
     name = found.arm.name
     values = "".join(f"  {e.name}: {e.value:.12g}\n" for e in found.estimates)
     spectra = spectra_svg(o.first)
@@ -74,7 +76,7 @@ def write(o: Outcome, file: Path, out: Path) -> None:
 
 def show(o: Outcome, *, as_json: bool) -> None:
     """On stdout."""
-    data, found = o.data(), o.found
+    data, found = o.data, o.found
     if as_json:
         print_json(data)
         return

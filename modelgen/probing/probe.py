@@ -255,14 +255,13 @@ class Prober:
         if e not in self._series:
             self._series[e] = Series(e, self.base)
         series = self._series[e]
-
-        def head() -> Array:
-            return series.head(
-                self._given(series.heads.function, motion, (), parameters, None, None), len(motion.t)
-            )
-
         elastic = any(getattr(effect.effect, "place", "") == "transmission" for effect in e.effects)
         ahead = round(SETTLING / motion.step) if elastic else 0
+
+        def head() -> Array:
+            given = self._given(series.heads.function, motion, (), parameters, None, None)
+            return series.head(given, len(motion.t), ahead)
+
         return series(self._kept((e, "head"), motion, parameters, head), free, ahead)
 
     def _kept(self, what: object, motion: Motion, parameters: Array, make: Callable[[], Array]) -> Array:

@@ -55,15 +55,17 @@ class Series:
         """Names of the inputs of `head`."""
         return [a.name for a in self.heads.function.arguments]
 
-    def head(self, given: Mapping[str, Array], count: int) -> Array:
-        """What the steps need of every sample (N, h). given: inputs by name, (N or 1, m)."""
+    def head(self, given: Mapping[str, Array], count: int, ahead: int = 0) -> Array:
+        """What the steps need of every sample, (ahead + N, h), the first ones like the motion's first.
+
+        given: inputs by name, (N or 1, m).
+        """
         found = np.asarray(self.heads(**{name: given[name] for name in self.arguments}))
-        return np.ascontiguousarray(np.broadcast_to(found, (count, self.rest.arguments[1].size)))
+        whole = np.broadcast_to(found, (count, self.rest.arguments[1].size))
+        return np.concatenate([np.repeat(whole[:1], ahead, axis=0), whole])
 
     def __call__(self, head: Array, free: Sequence[float], ahead: int = 0) -> Array:
-        """States (N, s) from zero `ahead` steps before the first sample, all like the first."""
-        if ahead:
-            head = np.concatenate([np.repeat(head[:1], ahead, axis=0), head])
+        """States (N, s) from zero `ahead` steps before the first sample."""
         state = np.zeros((len(head) + 1, self.rest.arguments[0].size))
         self._run(head, np.array([*free, 0.0]), state)
         return state[ahead:-1]
