@@ -7,27 +7,27 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset import Record, Settings, check_separate, choose, prepare, read, split
-from modelgen.dataset.periods import period_of, with_whole_rows
+from modelgen.dataset import Record, Settings, check_separate, read, split
+from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
-from modelgen.diagnosis.baseline import estimated, held
+from modelgen.diagnosis.band import equations
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_motor, candidates
-from modelgen.diagnosis.checks import Place, asked, check_excitation, check_motion, check_one_arm
+from modelgen.diagnosis.checks import Place, asked, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
-from modelgen.diagnosis.free import away_from_rest, released, settings_of_swings
+from modelgen.diagnosis.free import released, settings_of_swings
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
-from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, rows_twice, unit_of_efforts
-from modelgen.diagnosis.positions import blur, feigned
+from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
+from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, select
+from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, practical, select
 from modelgen.diagnosis.standing import standing
-from modelgen.diagnosis.system import mean_squares, weighted_fit
+from modelgen.diagnosis.system import mean_squares
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober, places
@@ -95,22 +95,16 @@ def diagnose(
     if free:
         found = [released(record, settings) for record in found]
     lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
-    chosen = with_whole_rows(choose(list(found), settings), lengths)
-    periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
-    prepared = [prepare(record, chosen) for record in found]
-    if free:
-        prepared = [away_from_rest(p) for p in prepared]
     model, prober = build_model(arm), Prober(arm)
-    train, test = prepared[:-1], prepared[-1]
-    rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
-    check_motion(arm, rows)
-    check_excitation(arm, model, rows)
-    first = weighted_fit(rows, [r.columns for r in rows])
-    start = rows[0].baseline.base(first)
+    made = equations(model, prober, found, lengths, settings, cutoff is None and not free)
+    chosen, rows, blurs = made.chosen, made.rows, made.blur
+    train, test = made.prepared[:-1], made.prepared[-1]
+    start = rows[0].baseline.base(made.theta)
     check_one_arm(arm, model, rows, prober, start)
     pool = asked(arm, candidates(arm, prober, rows), effects, rows, prober, start)
-    blurs = blur(train, rows, prober, model, first)
-    selection, beside = standing(select(rows, prober, pool, periods, progress, blur=blurs), rows)
+    selection, beside = standing(
+        select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed), rows
+    )
     baseline = rows[0].baseline
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
@@ -156,7 +150,7 @@ def diagnose(
                 for p, r in zip(lengths, found[:-1], strict=True)
             ],
             "evidence_threshold": EVIDENCE,
-            "practical_gain_percent": PRACTICAL,
+            "practical_gain_percent": round(practical(PRACTICAL, made.narrowed), 3),
         },
         Positions(share, noisy),
     )

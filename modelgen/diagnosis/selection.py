@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.instruments import Pairs
-from modelgen.diagnosis.positions import feigned
+from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Court, Trial, sensible
@@ -71,9 +71,11 @@ def select(
     report: Report | None = None,
     evidence: float = EVIDENCE,
     blur: Array | None = None,
+    narrowed: float = 1.0,
 ) -> Selection:
     """Causes in the order in which they were found. blur: what errors of the positions leave in the
-    residuals, mean squares by joint (n,): a cause must explain more than they could feign.
+    residuals, mean squares by joint (n,): a cause must explain more than they could feign. narrowed: the
+    usual band over that of the rows, where coarse positions asked for a narrower one.
     """
     baseline = [r.columns for r in rows]
     p = baseline[0].shape[2]
@@ -82,6 +84,7 @@ def select(
     known: dict[object, list[Array] | None] = {}
     correlated = endogeneity(system)
     noisy = correlated is not None and correlated.found and float(correlated.share.max()) > PRACTICAL
+    noisy = noisy and not repeating_errors(rows, periods).any()  # those of known steps: `blur` is their price
     turns: list[list[Ranked]] = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
@@ -104,7 +107,7 @@ def select(
                 trials.append(found)
         eligible: list[tuple[Trial, float]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
-            gain, refused = judged(t, rows, [c.trial for c in causes], blur, system)
+            gain, refused = judged(t, rows, [c.trial for c in causes], blur, system, narrowed)
             if noisy and not refused and not instrumented(t, system):
                 refused = "positions"
             ranking.append(_ranked(t, gain, refused))
@@ -178,6 +181,7 @@ def judged(
     before: Sequence[Trial],
     blur: Array | None = None,
     system: System | None = None,
+    narrowed: float = 1.0,
 ) -> tuple[float, str]:
     """Percent of the RMSE gained on rows that the cause's fit has not seen, and the gate that stays shut.
 
@@ -214,14 +218,25 @@ def judged(
     ratio = np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))[counts > 0]
     judged = [j for j in trial.candidate.joints(n) if counts[j] > 0]
     gains = 100.0 * (1.0 - np.sqrt(sums[1, judged] / np.maximum(sums[0, judged], 1e-300)))
-    least = np.full(len(judged), DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL)
+    worth = practical(DELAYED if trial.candidate.effect == "time_delay" else PRACTICAL, narrowed)
+    least = np.full(len(judged), worth)
     if blur is not None and (gains >= least).any() and not (system and instrumented(trial, system)):
         least = np.maximum(least, feigned(blur[judged], sums[0, judged] / counts[judged]))
     best = float(gains[gains >= least].max(initial=-np.inf))
     if not np.isfinite(best):
         most = float(gains.max(initial=-np.inf))
-        return most, "gain" if (gains < PRACTICAL).all() or blur is None else "positions"
+        return most, "gain" if (gains < worth).all() or blur is None else "positions"
     return best, "" if float((ratio**2).mean()) < 1.0 else "other joints"
+
+
+def practical(percent: float, narrowed: float) -> float:
+    """Percent of the RMSE in a narrowed band that is `percent` in the usual one.
+
+    A band `narrowed` times as wide has that many times the power of white noise, and the cause as much as
+    before: what is worth naming does not become less for being seen better.
+    """
+    odds = narrowed * ((1.0 - percent / 100.0) ** -2 - 1.0)  # power of the cause over that of the noise
+    return 100.0 * (1.0 - float((1.0 + odds) ** -0.5))
 
 
 def instrumented(trial: Trial, system: System) -> bool:
@@ -232,7 +247,7 @@ def instrumented(trial: Trial, system: System) -> bool:
         return False
     table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
     pairs = Pairs(system.rows, table, system.periods, system.plain.sizes)
-    if not pairs.enough:
+    if not pairs.enough or repeating_errors(system.rows, system.periods).any():
         return False
     values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]
     return bool(np.abs(values).max(initial=0.0) > SIGNIFICANT)

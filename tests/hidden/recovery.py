@@ -19,9 +19,10 @@ from modelgen.functions import build_model
 from modelgen.probing import Prober
 
 
-def reachable(case: Case, folder: Path) -> list[float]:
+def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[float]:
     """RMSE (n,) [A] on `test`, of the model fitted to the training records, all without the effect: same arm,
-    motions and noise, and the filters of the diagnosis. folder: where the case was made.
+    motions and noise, and the filters of the diagnosis, which chose `cutoff` [Hz].
+    folder: where the case was made.
     """
     bench, arm = Bench(case), load(folder / "arms.yaml")[case.name]
     paths = [folder / f"{name}_without.csv" for name in RECORDS[:3]]
@@ -29,7 +30,7 @@ def reachable(case: Case, folder: Path) -> list[float]:
         logs.write(path, bench.record(k, {}))
     found = records(arm, [str(path) for path in paths[:2]], [str(paths[2])], None)
     lengths = [period_of(record, None) for record in found[:-1]]
-    settings = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
+    settings = with_whole_rows(choose(list(found), settings_for(found, cutoff)), lengths)
     model, prober = build_model(arm), Prober(arm)
     *train, test = rows_twice(prober, model, [prepare(r, settings) for r in found], estimated(model))
     theta = weighted_fit(train, [r.columns for r in train])

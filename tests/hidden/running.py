@@ -46,5 +46,6 @@ def run(case: Case, folder: Path) -> tuple[Outcome, list[float], float]:
     answer, seconds = diagnose(folder, case.name)
     label = unseal(sealed)
     free = case.arm in FREE
-    floor = reachable(case, folder) if case.hidden and answer["causes"] and not free else None
+    measured = case.hidden and answer["causes"] and not free
+    floor = reachable(case, folder, answer["settings"]["cutoff_hz"]) if measured else None
     return judge(answer, label, floor), label.strength, seconds

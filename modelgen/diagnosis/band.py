@@ -1,0 +1,97 @@
+"""The equations of the records, in the band that the encoders leave.
+
+Errors of the positions come into the equations by way of accelerations: below a cut-off f their power grows
+as f^5, that of the motion does not. Where a wide band is lost in them, a narrow one, still far above the
+motion, is not. Effort and regressor pass one filter, so that a narrow band biases nothing; it sees less of
+what is fast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from modelgen.dataset import Chosen, Prepared, Record, Settings, choose, prepare
+from modelgen.dataset.choice import motion_bandwidth
+from modelgen.dataset.periods import with_whole_rows
+from modelgen.diagnosis.baseline import estimated, held
+from modelgen.diagnosis.checks import check_excitation, check_motion
+from modelgen.diagnosis.free import away_from_rest
+from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.positions import blur, feigned
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import PRACTICAL
+from modelgen.diagnosis.system import rmse, weighted_fit
+from modelgen.functions import Model
+from modelgen.probing import Prober
+
+OVER_MOTION = 10.0  # narrow cut-off over the bandwidth of the motion
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Of the training records; the last of `prepared` is the test record.
+
+    lengths: samples in a period of each training record; periods: rows. theta: of a first fit. blur: what
+    errors of the positions leave in the residuals, mean squares by joint (n,). narrowed: the usual cut-off
+    over that of the rows.
+    """
+
+    chosen: Chosen
+    lengths: Sequence[int | None]
+    periods: Sequence[int | None]
+    prepared: Sequence[Prepared]
+    rows: Sequence[Rows]
+    theta: Array
+    blur: Array
+    narrowed: float = 1.0
+
+    @property
+    def lost(self) -> bool:
+        """Whether errors of the positions alone could feign a gain that counts."""
+        squares = rmse(self.rows, [r.columns for r in self.rows], self.theta) ** 2
+        return bool(feigned(self.blur, squares).max() > PRACTICAL)
+
+
+def equations(
+    model: Model,
+    prober: Prober,
+    found: Sequence[Record],
+    lengths: Sequence[int | None],
+    settings: Settings,
+    narrower: bool,
+) -> Equations:
+    """Of records of which the last is the test record.
+
+    narrower: whether a band in which coarse positions are lost may give way to a narrower one.
+    Raises InputError where the records are too short, rest, or excite too little.
+    """
+    wide = _equations(model, prober, found, lengths, settings)
+    if not (narrower and wide.lost):
+        return wide
+    cutoff = OVER_MOTION * max(motion_bandwidth(record) for record in found[:-1])
+    if cutoff >= wide.chosen.cutoff:
+        return wide
+    narrow = _equations(model, prober, found, lengths, replace(settings, cutoff=cutoff))
+    return replace(narrow, narrowed=wide.chosen.cutoff / cutoff)
+
+
+def _equations(
+    model: Model,
+    prober: Prober,
+    found: Sequence[Record],
+    lengths: Sequence[int | None],
+    settings: Settings,
+) -> Equations:
+    chosen = with_whole_rows(choose(list(found), settings), lengths)
+    periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
+    prepared = [prepare(record, chosen) for record in found]
+    free = found[0].input is None
+    if free:
+        prepared = [away_from_rest(p) for p in prepared]
+    train = prepared[:-1]
+    rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
+    check_motion(model.arm, rows)
+    check_excitation(model.arm, model, rows)
+    theta = weighted_fit(rows, [r.columns for r in rows])
+    return Equations(chosen, lengths, periods, prepared, rows, theta, blur(train, rows, prober, model, theta))
