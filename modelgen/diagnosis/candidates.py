@@ -40,6 +40,11 @@ SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
         "relaxation": (0.02,),
     },
 }
+# Behind a link's own position: the drive rings within less; a gap's own width shows at its edges alone.
+LINK_SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    "joint_flexibility": {**SEARCHES["joint_flexibility"], "relaxation": (0.005,)},
+    "backlash": {"play": (3e-4, 1e-3, 3e-3, 6e-3, 1.2e-2)},
+}
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
@@ -90,7 +95,7 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
         if free and name in DRIVEN:
             continue
         for joint in places(arm, name):
-            if name in COMPLIANT and not at_motor(joint, rows):
+            if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
                 continue
             searched = tuple(p for p in effect.nonlinear if p.grid)
             for fixed in _fixed(name, joint, rows, prober):
@@ -99,12 +104,30 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
 
 
 def at_motor(joint: int | None, rows: Sequence[Rows]) -> bool:
-    """Whether the joint's position was measured at its motor in all records.
+    """Whether the joint's position was measured at its motor in all records."""
+    return joint is not None and all(r.motion.motor_side[joint - 1] for r in rows)
 
-    What lies between motor and link is searched for as the link's motion behind a known one of the motor.
-    """
-    sides = [r.prepared.record.motor_side for r in rows]
-    return joint is not None and all(side and side[joint - 1] for side in sides)
+
+def at_links(joint: int | None, rows: Sequence[Rows]) -> bool:
+    """Whether the joint has a drive, and its position was measured at the link in all records."""
+    if joint is None or any(r.motion.motor_side[joint - 1] for r in rows):
+        return False
+    arm = rows[0].prepared.record.arm
+    return arm is None or drives_of(arm)[joint - 1].driven
+
+
+def search_of(candidate: Candidate, rows: Sequence[Rows]) -> Mapping[str, tuple[float, ...]]:
+    """Values over which an elastic joint or play is searched for."""
+    behind = at_links(candidate.joint, rows)
+    return (LINK_SEARCHES if behind else SEARCHES)[candidate.effect]
+
+
+def gap_instead(candidate: Candidate, rows: Sequence[Rows], prober: Prober) -> Candidate | None:
+    """Play for an elastic joint, behind a link's own position."""
+    if candidate.effect != "joint_flexibility" or not at_links(candidate.joint, rows):
+        return None
+    (fixed,) = _fixed("backlash", candidate.joint, rows, prober)
+    return Candidate("backlash", candidate.joint, fixed)
 
 
 def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:
@@ -113,6 +136,11 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
         return [{"other": float(k), "ratio": r} for k in range(1, joint) for r in (1.0, -1.0)]
     if name == "nonlinear_viscous_friction":
         return [{"scale": scale("speed", name, joint, rows, prober)}]
+    if name == "backlash" and at_links(joint, rows):
+        (hardest,), (relaxation,) = (SEARCHES[name][p] for p in ("stiffness", "relaxation"))
+        return [
+            {"stiffness": hardest * scale("stiffness", name, joint, rows, prober), "relaxation": relaxation}
+        ]
     if name == PERIODIC:
         assert joint is not None
         unit = drives_of(prober.arm)[joint - 1].unit

@@ -114,7 +114,10 @@ def replay(fitted: Fitted, rows: Rows) -> Windows | None:
         starts = trim + length * np.linspace(0, count - 1, min(count, MOST)).astype(int)
     states = None
     if any(f.name == "effects_step" for f in fitted.model.functions):
-        states = Prober(fitted.arm).states(rows.motion, fitted.parameters)
+        prober = Prober(fitted.arm)
+        states = prober.states(rows.motion, fitted.parameters)
+        moved = prober.link_side.at_drives(rows.motion, fitted.parameters)  # what the model's coordinates are
+        p = replace(p, q=moved.q, dq=moved.dq, ddq=moved.ddq)
     return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
 
 

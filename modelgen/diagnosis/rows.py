@@ -31,8 +31,7 @@ class Rows:
     @cached_property
     def motion(self) -> Motion:
         """At full rate."""
-        p = self.prepared
-        return Motion(p.time, p.q, p.dq, p.ddq, p.record.motor_side)
+        return motion_of(self.prepared)
 
     @property
     def gain(self) -> Array:
@@ -53,6 +52,13 @@ class Rows:
         return result
 
 
+def motion_of(prepared: Prepared) -> Motion:
+    """At full rate, with the side of the joints that was measured."""
+    p = prepared
+    sides = p.record.motor_side or (False,) * p.n
+    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff)
+
+
 def rows_of(
     prober: Prober,
     model: Model,
@@ -66,10 +72,10 @@ def rows_of(
     """
     known = baseline or estimated(model)
     parameters = known.base(np.zeros(known.lift.shape[1]) if theta is None else theta)
-    motion = Motion(prepared.time, prepared.q, prepared.dq, prepared.ddq)
+    motion = motion_of(prepared)
     columns = prober.regressor(model, motion, parameters)
     given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
-    effort = prober.ideal(model, motion, given)
+    effort = prober.ideal(model, motion, given) - prober.link_side.led(motion, parameters)
     if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift

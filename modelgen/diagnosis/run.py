@@ -12,7 +12,7 @@ from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.band import equations
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_motor, candidates
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_links, at_motor, candidates
 from modelgen.diagnosis.checks import Place, asked, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
@@ -237,9 +237,10 @@ def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tup
     if "drive_gain_error" not in named and len(arm.coordinates) == 1:
         found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))
     still = [n + 1 for n in range(rows[0].effort.shape[1]) if not any(r.moving[:, n].any() for r in rows)]
-    behind = [j for j in places(arm, COMPLIANT[0]) if not at_motor(j, rows)]
+    behind = [j for j in places(arm, COMPLIANT[0]) if not (at_motor(j, rows) or at_links(j, rows))]
     if behind and any(r.prepared.input is not None for r in rows):
         joints = "joint " + ", ".join(str(j) for j in behind)
-        found += [(name, f"the position of {joints} was not measured at the motor") for name in COMPLIANT]
+        reason = "has no drive, or was measured now at the motor, now at the link"
+        found += [(name, f"the position of {joints} {reason}") for name in COMPLIANT]
     found += [("coulomb_friction", f"joint {n} does not move in the training records") for n in still]
     return tuple(found)

@@ -34,6 +34,7 @@ WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play,
 REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and others are searched
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
+CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
 WORTH = 4.0  # evidence below which a grid's best is not refined
 
 
@@ -118,7 +119,13 @@ class Court:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
         if candidate.effect in of.COMPLIANT:
-            return self._compliant(candidate)
+            if of.at_links(candidate.joint, self.rows) and self._elastic(candidate.joint):
+                return None  # what is left of one looks like the other
+            found = self._compliant(candidate)
+            gap = None if found is None else of.gap_instead(candidate, self.rows, self.prober)
+            # impacts of a loose link look elastic; the other way round they do not
+            other = None if gap is None else self._compliant(gap)
+            return None if found and other and ahead(other, found) else found
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
@@ -164,7 +171,7 @@ class Court:
 
     def _compliant(self, candidate: Candidate) -> Trial | None:
         """A scan over the first value, then a section over each in turn."""
-        search = of.SEARCHES[candidate.effect]
+        search = of.search_of(candidate, self.rows)
         kinds = {"play": "span", "stiffness": "stiffness"}
         units = {
             name: of.scale(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
@@ -175,7 +182,7 @@ class Court:
         extra = float(len(search))
         start = {name: units[name] * grid[0] for name, grid in search.items()}
         (first, grid), *_ = search.items()
-        best = _best([self._at(candidate, {**start, first: units[first] * g}, extra) for g in grid])
+        best = _best([self._whole(candidate, {**start, first: units[first] * g}, extra) for g in grid])
         if best is None or best.gain.delta_bic < WORTH:
             return best
         for turn in range(ROUNDS):
@@ -185,11 +192,28 @@ class Court:
                 reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
 
                 def at(x: float, name: str = name, held: Trial = best) -> Trial | None:
-                    return self._at(candidate, {**held.values, name: math.exp(x)}, extra)
+                    return self._whole(candidate, {**held.values, name: math.exp(x)}, extra)
 
                 middle = math.log(best.values[name])
                 best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
         return best
+
+    def _elastic(self, joint: int | None) -> bool:
+        """Whether an elastic joint or play is among the system's causes there."""
+        causes = self.system.columns[0][:, :, self.rows[0].columns.shape[2] :]
+        tried = (
+            found[0][:, :, 0]
+            for key, found in self.known.items()
+            if found is not None and isinstance(key, tuple) and key[0] in of.COMPLIANT and key[1] == joint
+        )
+        return any((column[:, :, None] == causes).all(axis=(0, 1)).any() for column in tried)
+
+    def _whole(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
+        """Behind a link's own position, only what is found about as large as it was simulated."""
+        found = self._at(candidate, values, extra)
+        if found is None or not of.at_links(candidate.joint, self.rows):
+            return found
+        return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
 
     def _periodic(self, candidate: Candidate) -> Trial | None:
         assert candidate.joint is not None
@@ -220,6 +244,11 @@ class Court:
                 )
             best = _best([best, found])
         return best
+
+
+def ahead(one: Trial, other: Trial) -> bool:
+    """Whether one explains more than the other for certain."""
+    return one.gain.delta_bic - other.gain.delta_bic > CERTAIN
 
 
 def golden(

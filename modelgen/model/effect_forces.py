@@ -51,12 +51,16 @@ class EffectForces:
 
     def inputs(self) -> list[Expr]:
         """What the effects add to the input, by coordinate."""
-        motor, joint = self._forces("motor"), self._forces("others")
-        total = self.e.zeros()
-        for n, drive in enumerate(self.e.drives):
-            constant = self.graph.const(drive.transmission.torque_constant)
-            total[n] = motor[n] / constant + joint[n] * drive.inverse_gain
-        return total
+        motor, joint = self.at_motors(), self._forces("others")
+        return [motor[n] + joint[n] * drive.inverse_gain for n, drive in enumerate(self.e.drives)]
+
+    def at_motors(self) -> list[Expr]:
+        """What those at the motors add to it."""
+        forces = self._forces("motor")
+        return [
+            forces[n] / self.graph.const(drive.transmission.torque_constant)
+            for n, drive in enumerate(self.e.drives)
+        ]
 
     def efforts(self) -> list[Expr]:
         """The effects as efforts at the joints [N m or N], by coordinate."""

@@ -48,6 +48,12 @@ def reread(motion: Motion, before: Arm, after: Arm, joint: int) -> Motion:
     return replace(motion, q=tables[0], dq=tables[1], ddq=tables[2])
 
 
+def gain(arm: Arm, joint: int, q: Array) -> Array:
+    """Joint effort per input of coordinate number `joint` (from 1) at its positions q (N,)."""
+    drive = of_joint(arm, arm.joints[arm.coordinates[joint - 1]])
+    return np.asarray(float(drive.torque_constant) * _curves(drive, tuple(arm.symbols.items())).k1(q))
+
+
 @lru_cache(maxsize=256)
 def _curves(drive: Transmission, symbols: tuple[tuple[str, float], ...]) -> _Curves:
     known = {geometry_symbol(name): value for name, value in symbols}

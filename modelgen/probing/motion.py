@@ -14,7 +14,8 @@ Array = NDArray[np.float64]
 class Motion:
     """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates].
 
-    motor_side: by coordinate, whether q was derived from a reading at the motor.
+    motor_side: by coordinate, whether q was derived from a reading at the motor; empty: not known, q is taken
+    as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none.
     """
 
     t: Array
@@ -22,6 +23,7 @@ class Motion:
     dq: Array
     ddq: Array
     motor_side: tuple[bool, ...] = ()
+    cutoff: float = 0.0
 
     @property
     def step(self) -> float:

@@ -14,7 +14,9 @@ from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
-from modelgen.probing.levers import reread
+from modelgen.probing.delays import acting, added
+from modelgen.probing.levers import gain, reread
+from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
 from modelgen.probing.motion import Array, Motion
 from modelgen.probing.places import changes_description, with_effect
 from modelgen.probing.programs import (
@@ -71,7 +73,13 @@ class Prober:
 
     def inputs(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the arm as described, (N, n), for its base parameters."""
+        if led_by(self.arm, motion):
+            return self._rigid.inputs(motion, parameters) + self.link_side.led(motion, parameters)
         return self._inputs_of("described", self.arm, motion, parameters)
+
+    @cached_property
+    def _rigid(self) -> Prober:
+        return Prober(rigid(self.arm))
 
     def regressor(self, model: Model, motion: Motion, parameters: Array) -> Array:
         """The regressor of the arm's own model (N, n, p); `parameters` where its columns depend on them."""
@@ -88,15 +96,7 @@ class Prober:
 
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
         """Inputs of ideal drives with the efforts of the measured ones (N, n)."""
-        for use, joint in [(u, None) for u in self.arm.effects] + [
-            (u, n) for n, i in enumerate(self.arm.coordinates) for u in self.arm.joints[i].effects
-        ]:
-            if use.name == "time_delay":  # what was commanded a delay ago acts now
-                shifted = [np.interp(motion.t - use.values["delay"], motion.t, x) for x in given.T]
-                columns = range(self.n) if joint is None else [joint]
-                given = given.copy()
-                for k in columns:
-                    given[:, k] = shifted[k]
+        given = acting(self.arm, motion.t, given)
         if not any(f.name == "effective_input" for f in model.functions):
             return given
         function = self._function(model, "effective_input")
@@ -110,7 +110,13 @@ class Prober:
 
     def states(self, motion: Motion, parameters: Array) -> Array:
         """States of the arm's own effects at every sample (N, s), from zero at the first."""
-        return self._states(self._own, motion, (), parameters)
+        found = self._states(self._own, motion, (), parameters)
+        return lagging(found, self._own, motion, self.link_side.at_drives(motion, parameters))
+
+    @cached_property
+    def link_side(self) -> LinkSide:
+        """Of drives whose links' positions were measured."""
+        return LinkSide(self._own, self.base, self._links, lambda joint, q: gain(self.arm, joint, q))
 
     @cached_property
     def _own(self) -> Equations:
@@ -149,10 +155,7 @@ class Prober:
         """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
         definition = CATALOGUE[effect]
         if effect == "time_delay":
-            delayed = self._delayed(motion, values["delay"], parameters)
-            if joint is not None:
-                delayed[:, [k for k in range(self.n) if k != joint - 1]] = 0.0
-            return delayed
+            return added(motion.t, self.inputs(motion, parameters), values["delay"], joint)
         if changes_description(effect) or effect == "torque_constant_saturation":
             key = (effect, joint, tuple(sorted(values.items())))
             other = with_effect(self.arm, effect, joint, values)
@@ -165,6 +168,8 @@ class Prober:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
             columns = self.columns(effect, joint, motion, values, parameters)
             return np.asarray(columns @ weights)
+        if joint is not None and at_link(motion, joint):
+            return self.link_side.added(joint, motion, dict(values), parameters)
         e = self._of_effect(effect, joint, values)
         if (e, "added") not in self._made:
             self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
@@ -199,11 +204,6 @@ class Prober:
         """Inputs of an arm whose own effects may have states."""
         states = self._states(e, motion, (), parameters) if e.state_names() else None
         return np.asarray(call(**self._given(call.function, motion, (), parameters, None, states)))
-
-    def _delayed(self, motion: Motion, delay: float, parameters: Array) -> Array:
-        now = self.inputs(motion, parameters)
-        later = [np.interp(motion.t + delay, motion.t, now[:, k]) for k in range(self.n)]
-        return np.column_stack(later) - now
 
     def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
         """Equations of the arm with this effect alone, what is not fixed left free."""
@@ -262,7 +262,8 @@ class Prober:
             given = self._given(series.heads.function, motion, (), parameters, None, None)
             return series.head(given, len(motion.t), ahead)
 
-        return series(self._kept((e, "head"), motion, parameters, head), free, ahead)
+        found = series(self._kept((e, "head"), motion, parameters, head), free, ahead)
+        return lagging(found, e, motion, motion)  # a measured link is where it is
 
     def _kept(self, what: object, motion: Motion, parameters: Array, make: Callable[[], Array]) -> Array:
         """What `make` gives, made once for a motion and parameters; the last few are remembered."""

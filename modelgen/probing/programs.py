@@ -53,6 +53,12 @@ def loads_of(arm: Arm, base: Grouping) -> Function:
     return bare("loads", e, len(base.base), Dynamics(e, base_values(e, base)).loads())
 
 
+def at_motors(e: Equations, base: Grouping) -> Function:
+    """What the effects at the motors add to the inputs, with the base parameters of `e`'s own arm."""
+    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), base_values(e, base))
+    return bare("at_motors", e, len(base.base), forces.at_motors())
+
+
 def columns_of(e: Equations) -> tuple[Function, list[tuple[str, int]]]:
     """Columns of the only effect of `e`: a function, and what its outputs are: (parameter, coordinate)."""
     columns = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq"))).columns()

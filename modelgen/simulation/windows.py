@@ -37,7 +37,8 @@ def simulated_windows(
     By the midpoint rule, all windows at once. parameters: base parameters (p,). states: of the effects at
     every sample of the record (N, s), as the measured motion has brought them there.
     """
-    path = _path(model, parameters, states, prepared, starts, length)
+    with np.errstate(invalid="ignore", over="ignore"):  # of those that leave their bounds
+        path = _path(model, parameters, states, prepared, starts, length)
     good = np.isfinite(path).all(axis=(1, 2))
     if not good.any():
         return None

@@ -1,0 +1,28 @@
+"""Delays of the inputs, of one joint or of all."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.description.objects import Arm
+from modelgen.probing.motion import Array
+
+
+def acting(arm: Arm, t: Array, given: Array) -> Array:
+    """Inputs (N, n) given at times t (N,) [s] as they act on an arm whose own inputs are delayed."""
+    uses = [(u, list(range(given.shape[1]))) for u in arm.effects]
+    uses += [(u, [n]) for n, i in enumerate(arm.coordinates) for u in arm.joints[i].effects]
+    for use, columns in uses:
+        if use.name == "time_delay":  # what was commanded a delay ago acts now
+            given = given.copy()
+            for k in columns:
+                given[:, k] = np.interp(t - use.values["delay"], t, given[:, k])
+    return given
+
+
+def added(t: Array, now: Array, delay: float, joint: int | None) -> Array:
+    """What a delay [s] adds to inputs (N, n): of coordinate `joint` (from 1), None: of all."""
+    later = np.column_stack([np.interp(t + delay, t, x) for x in now.T]) - now
+    if joint is not None:
+        later[:, [k for k in range(now.shape[1]) if k != joint - 1]] = 0.0
+    return later

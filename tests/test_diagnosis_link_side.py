@@ -1,0 +1,77 @@
+"""Elastic joints and play behind a link's own encoder: what they add, and that they are named."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arms_support import base_vector, standard_vector
+from hidden.cases import Case, Hidden
+from hidden.judging import FOUND
+from hidden.running import run
+
+from modelgen.description import Arm, DirectDrive, EffectUse, Joint
+from modelgen.functions import build_model
+from modelgen.probing import Motion, Prober
+
+RATIO, CONSTANT = 100.0, 0.05
+EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "drive_inertia"))
+ARM = Arm(
+    "two",
+    (
+        Joint("j1", "revolute", alpha=np.pi / 2, drive=DirectDrive(80.0, 0.05), effects=EFFECTS),
+        Joint("j2", "revolute", d=0.4, antecedent=0, drive=DirectDrive(RATIO, CONSTANT), effects=EFFECTS),
+    ),
+    (None, None),
+    (0.0, 0.0, -9.81),
+)
+
+
+def test_the_drive_of_an_elastic_joint_leads_by_what_moves_the_link() -> None:
+    model, prober = build_model(ARM), Prober(ARM)
+    standard = standard_vector(model, np.random.default_rng(3))
+    base = base_vector(model, standard)
+    values = dict(zip((p.name for p in model.standard), standard, strict=True))
+    t = np.arange(0.0, 8.0, 0.002)
+    w, size, stiffness, relaxation = 2 * np.pi * 1.0, 0.2, 300.0, 0.01
+    q = np.column_stack([np.zeros_like(t), size * np.sin(w * t)])
+    dq = np.column_stack([np.zeros_like(t), size * w * np.cos(w * t)])
+    ddq = -(w**2) * q
+    motion = Motion(t, q, dq, ddq, (False, False), 18.0)
+    found = prober.contribution(
+        "joint_flexibility", 2, motion, {"stiffness": stiffness, "damping": relaxation * stiffness}, base
+    )
+    # a pendulum in the vertical plane of joint 2: inertia about its axis, first moments, gravity along x
+    effort = values["ZZ2"] * ddq[:, 1]
+    lift = 9.81 * (values["MX2"] * np.cos(q[:, 1]) - values["MY2"] * np.sin(q[:, 1]))
+    effort += lift if abs(lift[0] - weight(prober, motion, base)) < 1e-6 else -lift
+    # the spring and the damper: relaxation * rate + lead = effort / stiffness, period by period
+    spectrum = np.fft.rfft(effort[:4000]) / stiffness
+    s = 2j * np.pi * np.fft.rfftfreq(4000, 0.002)
+    lead = spectrum / (1 + relaxation * s)
+    rate, acceleration = (np.fft.irfft(lead * s**k, 4000) for k in (1, 2))
+    wanted = RATIO**2 * (values["IA2"] * acceleration + values["FV2"] * rate) / (RATIO * CONSTANT)
+    middle = slice(1000, 3000)
+    assert np.abs(found[middle, 0]).max() == 0.0
+    assert found[middle, 1] == pytest.approx(wanted[middle], abs=0.03 * np.abs(wanted).max())
+
+
+def weight(prober: Prober, motion: Motion, base: np.ndarray) -> float:
+    """Effort at joint 2 that holds the arm where the motion begins."""
+    still = np.zeros((2, 2))
+    held = prober.inputs(Motion(motion.t[:2], motion.q[:2], still, still), base)
+    return float(held[0, 1]) * RATIO * CONSTANT
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        Case("direct2", 485685058, (Hidden("backlash", 1, 1.3, 1.2592284511),), "joint"),
+        Case("direct2", 863385758, (Hidden("joint_flexibility", 1, 1.3, 0.1508572733),), "joint"),
+    ],
+    ids=lambda case: case.hidden[0].effect,
+)
+def test_it_is_named_from_the_motion_of_the_link_alone(case: Case, tmp_path: Path) -> None:
+    outcome, _, _ = run(case, tmp_path / "case")
+    assert outcome.result == FOUND, outcome
+    assert outcome.recovered is not None
+    assert outcome.recovered > 0.5
