@@ -10,10 +10,10 @@ from test_diagnosis_selection import ARM, three
 from modelgen.dataset import Record, prepare
 from modelgen.dataset.periods import period_of
 from modelgen.diagnosis.band import Equations, equations
+from modelgen.diagnosis.gates import practical
 from modelgen.diagnosis.positions import repeating_errors
 from modelgen.diagnosis.rows import rows_of
 from modelgen.diagnosis.run import diagnose, settings_for
-from modelgen.diagnosis.selection import practical
 from modelgen.functions import build_model
 from modelgen.probing import Prober
 

@@ -17,10 +17,10 @@ from modelgen.dataset.periods import with_whole_rows
 from modelgen.diagnosis.baseline import estimated, held
 from modelgen.diagnosis.checks import check_excitation, check_motion
 from modelgen.diagnosis.free import away_from_rest
+from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.positions import blur, feigned
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import PRACTICAL
 from modelgen.diagnosis.system import rmse, weighted_fit
 from modelgen.functions import Model
 from modelgen.probing import Prober

@@ -77,6 +77,12 @@ class Candidate:
             return ("share",)
         return tuple(p.name for p in CATALOGUE[self.effect].linear)
 
+    @property
+    def positive(self) -> tuple[bool, ...]:
+        """Of each column, whether its parameter may not be negative."""
+        bounds = {p.name: p.bounds for p in CATALOGUE[self.effect].accepted()}
+        return tuple(name in bounds and bounds[name][0] == 0.0 for name in self.names)
+
     def joints(self, n: int) -> list[int]:
         """Coordinates (from 0) that it is judged by."""
         if self.joint is None or self.effect in SPREADING:

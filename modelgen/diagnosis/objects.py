@@ -33,7 +33,8 @@ class Estimate:
 @dataclass(frozen=True)
 class Named:
     """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
-    how far their evidence lies behind; aliases: effects that no motion tells apart from it.
+    how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
+    expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.
     """
 
     effect: str
@@ -41,6 +42,7 @@ class Named:
     parameters: Mapping[str, Estimate]
     delta_bic: float
     cross_gain: float
+    expected_gain: float
     aliases: tuple[tuple[str, int | None], ...] = ()
     ambiguous_with: tuple[tuple[str, int | None, float], ...] = ()
 
@@ -134,12 +136,12 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
 
 
 def _rank(r: Ranked) -> dict[str, Any]:
-    gain = None if r.cross_gain is None else rounded(r.cross_gain)
     return {
         "effect": r.effect,
         "joint": r.joint,
         "delta_bic": rounded(r.delta_bic),
-        "cross_gain_percent": gain,
+        "cross_gain_percent": None if r.cross_gain is None else rounded(r.cross_gain),
+        "expected_gain_percent": None if r.expected_gain is None else rounded(r.expected_gain),
         "refused": r.refused or None,
     }
 
@@ -168,7 +170,11 @@ def _cause(c: Named) -> dict[str, Any]:
             name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in c.parameters.items()
         },
-        "evidence": {"delta_bic": rounded(c.delta_bic), "cross_gain_percent": rounded(c.cross_gain)},
+        "evidence": {
+            "delta_bic": rounded(c.delta_bic),
+            "cross_gain_percent": rounded(c.cross_gain),
+            "expected_gain_percent": rounded(c.expected_gain),
+        },
         "aliases": [{"effect": effect, "joint": joint} for effect, joint in c.aliases],
         "ambiguous_with": [
             {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}

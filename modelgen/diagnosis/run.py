@@ -19,13 +19,14 @@ from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import released, settings_of_swings
+from modelgen.diagnosis.gates import PRACTICAL, practical
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, PRACTICAL, Cause, Selection, practical, select
+from modelgen.diagnosis.selection import EVIDENCE, Cause, Selection, select
 from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares
 from modelgen.errors import InputError
@@ -222,7 +223,8 @@ def _named(
             for t, behind in cause.rivals
             if (t.candidate.effect, t.candidate.joint) not in alias
         )
-        result.append(Named(c.effect, c.joint, values, cause.delta_bic, cause.cross_gain, alias, rivals))
+        gains = cause.cross_gain, cause.expected_gain
+        result.append(Named(c.effect, c.joint, values, cause.delta_bic, *gains, alias, rivals))
     return tuple(result)
 
 

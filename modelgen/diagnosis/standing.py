@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.lack_of_fit import lack_of_fit, repeating
 from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.selection import Cause, Selection, with_causes
+from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,22 +91,26 @@ class System:
         """Sums of squares, (n,)."""
         return np.asarray(np.bincount(self.joint, weights=left**2, minlength=self.n), dtype=float)
 
-    def gain(self, columns: Sequence[Array], extra: float = 0.0) -> Gain | None:
+    def gain(
+        self, columns: Sequence[Array], extra: float = 0.0, positive: Sequence[bool] = ()
+    ) -> Gain | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
-        extra: parameters that were searched for besides. The evidence is that of the whitened equations, or
-        of the plain ones with as many of their rows as are independent, whichever is more: whitening takes
-        slow effects for slow noise.
+        extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
+        negative; empty for none. The evidence is that of the whitened equations, or of the plain ones with
+        as many of their rows as are independent, whichever is more: whitening takes slow effects for slow
+        noise.
         """
-        white = self.gain_of(self.whitened(columns), extra)
-        plain = self.plain.gain(columns, extra)
+        white = self.gain_of(self.whitened(columns), extra, positive)
+        plain = self.plain.gain(columns, extra, positive)
         if white is None or plain is None:
             return white or plain
         return plain if plain.delta_bic > white.delta_bic else white
 
-    def gain_of(self, stacked: Array, extra: float = 0.0) -> Gain | None:
+    def gain_of(self, stacked: Array, extra: float = 0.0, positive: Sequence[bool] = ()) -> Gain | None:
         """The same for columns that have been whitened and stacked."""
-        return explained(stacked, self.basis, self.left, self.by_joint, self.counts.astype(float), extra)
+        counts = self.counts.astype(float)
+        return explained(stacked, self.basis, self.left, self.by_joint, counts, extra, positive)
 
 
 class _Plain:
@@ -141,9 +146,10 @@ class _Plain:
         """Sums of squares, (n,)."""
         return np.asarray(np.bincount(self.joint, weights=left**2, minlength=self.n), dtype=float)
 
-    def gain(self, columns: Sequence[Array], extra: float) -> Gain | None:
+    def gain(self, columns: Sequence[Array], extra: float, positive: Sequence[bool] = ()) -> Gain | None:
         """As that of the system."""
-        return explained(self.stacked(columns), self.basis, self.left, self.by_joint, self.counts, extra)
+        stacked = self.stacked(columns)
+        return explained(stacked, self.basis, self.left, self.by_joint, self.counts, extra, positive)
 
 
 def _size(system: System, j: int) -> float:
@@ -178,27 +184,49 @@ def explained(
     by_joint: Callable[[Array], Array],
     counts: Array,
     extra: float,
+    positive: Sequence[bool] = (),
 ) -> Gain | None:
-    """What columns explain of `left`, beyond `basis`; `counts`: rows that count, by joint."""
+    """What columns explain of `left`, beyond `basis`; `counts`: rows that count, by joint.
+
+    positive: columns whose value may not be negative: it is zero where it would be.
+    """
     norms = np.linalg.norm(stacked, axis=0)
-    if not norms.all() or not np.isfinite(norms).all():
-        if not norms.any() or not np.isfinite(norms).all():
-            return None
-        stacked, norms = stacked[:, norms > 0], norms[norms > 0]
-    unit = stacked / norms
+    if not norms.any() or not np.isfinite(norms).all():
+        return None
+    there = norms > 0
+    unit = stacked[:, there] / norms[there]
     own = unit - basis @ (basis.T @ unit)
     u, s, vt = np.linalg.svd(own, full_matrices=False)
     kept = s > NOTHING
     if not kept.any():
         return None
     scores = u[:, kept].T @ left
-    values = (vt[kept].T @ (scores / s[kept])) / norms
+    found, values = vt[kept].T @ (scores / s[kept]), np.zeros(len(norms))
+    limited = np.flatnonzero(np.asarray(positive or [False] * len(norms))[there])
+    if (found[limited] < 0).any():
+        found = not_negative(s[kept, None] * vt[kept], scores, limited)
+        scores = s[kept] * (vt[kept] @ found)
+    values[there] = found / norms[there]
     rss0, rss1 = by_joint(left), by_joint(left - u[:, kept] @ scores)
     rank = int(kept.sum())
     used = counts > 0
     drop = (counts[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(counts.sum())))
     return Gain(float(drop - penalty), values, rss0, rss1, rank)
+
+
+def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:
+    """Least squares (k,) with the values at places `limited` not negative: the best of all active sets."""
+    best, least = np.zeros(matrix.shape[1]), math.inf
+    for count in range(len(limited) + 1):
+        for zero in combinations(limited, count):
+            free = np.setdiff1d(np.arange(matrix.shape[1]), zero)
+            found = np.zeros(matrix.shape[1])
+            found[free] = np.linalg.lstsq(matrix[:, free], right, rcond=NOTHING)[0]
+            size = float(((right - matrix @ found) ** 2).sum())
+            if (found[limited] >= 0).all() and size < least:
+                best, least = found, size
+    return best
 
 
 def orthonormal(matrix: Array) -> Array:

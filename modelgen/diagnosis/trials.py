@@ -13,21 +13,12 @@ from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import PERIODIC, Candidate
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import Gain, System
-from modelgen.effects import CATALOGUE, described
+from modelgen.effects import described
 from modelgen.errors import InputError
 from modelgen.probing import Prober, with_effect
 
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
 SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
-ONE_SIGNED = (
-    "drive_inertia",
-    "spring",
-    "load_dependent_friction",
-    "stribeck_friction",
-    "fluid_drag",
-    "added_mass",
-    "torque_constant_saturation",
-)
 GOLDEN = (math.sqrt(5) - 1) / 2
 WHOLE = 0.02  # off a whole number of waves, of that number
 WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play, that is found
@@ -66,7 +57,7 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
 
 
 def sensible(trial: Trial, arm: Arm) -> bool:
-    """Whether the values have the sign that the effect must have, and the arm admits them."""
+    """Whether something is left of what may not be negative, and the arm admits the values."""
     c = trial.candidate
     if c.effect in of.STEPS:
         try:
@@ -75,11 +66,8 @@ def sensible(trial: Trial, arm: Arm) -> bool:
             return False
     if trial.candidate.effect in of.COMPLIANT:
         return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
-    bounds = {p.name: p.bounds for p in CATALOGUE[trial.candidate.effect].accepted()}
-    if trial.candidate.effect in ONE_SIGNED:
-        found = trial.parameters
-        return all(bounds[name][0] <= found[name] <= bounds[name][1] for name in trial.candidate.names)
-    return True
+    limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
+    return not limited or max(limited) > 0
 
 
 class Court:
@@ -145,8 +133,13 @@ class Court:
         columns = self._columns(candidate, values)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
-        gain = self.system.gain(columns, extra)
-        return None if gain is None else Trial(candidate, dict(values), columns, gain)
+        gain = self.system.gain(columns, extra, candidate.positive)
+        if gain is None:
+            return None
+        held = np.array(candidate.positive) & (gain.values == 0.0)
+        if held.any():  # stays zero in every fit to come
+            columns = [np.where(held, 0.0, c) for c in columns]
+        return Trial(candidate, dict(values), columns, gain)
 
     def _columns(self, candidate: Candidate, values: Mapping[str, float]) -> list[Array] | None:
         given = {**candidate.fixed, **values}

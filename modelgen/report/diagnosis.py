@@ -107,8 +107,8 @@ def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
     for r in turn[:_SHOWN]:
         word = _REFUSED.get(r.refused, "passes every gate too" if taken else "taken")
         taken = taken or not r.refused
-        gain = "" if r.cross_gain is None else f"{r.cross_gain:.1f}"
-        rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", gain, word))
+        gains = ["" if g is None else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
+        rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", *gains, word))
     return rows
 
 
@@ -135,6 +135,7 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
         ],
         "delta_bic": f"{c.delta_bic:.1f}",
         "gain": f"{c.cross_gain:.1f}",
+        "expected": f"{c.expected_gain:.1f}",
         "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
         "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
         "experiment": CATALOGUE[c.effect].experiment,

@@ -1,0 +1,76 @@
+"""Gates on equations of which everything is known: no arm, no filter, white noise."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.random import Generator, default_rng
+from scipy.optimize import lsq_linear
+
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.gates import judged
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System, not_negative, rmse, weighted_fit
+from modelgen.diagnosis.trials import Trial
+
+LONG, UNKNOWNS = 300, 6
+UNUSED: Any = None  # records and baseline, of which the gates know nothing
+
+
+def record(random: Generator, size: float) -> tuple[Rows, Array]:
+    """One joint. A column that others take up in part, and differently in every record."""
+    slow = random.normal(size=(LONG, UNKNOWNS))
+    own = slow @ random.normal(size=(UNKNOWNS, 1)) / np.sqrt(UNKNOWNS) + 0.6 * random.normal(size=(LONG, 1))
+    effort = slow @ np.ones((UNKNOWNS, 1)) + size * own + random.normal(size=(LONG, 1))
+    return Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED), own[:, None, :]
+
+
+def gains(random: Generator, size: float) -> tuple[float, float, float]:
+    """Expected and measured gain [%] from two records, and what it is on twenty others."""
+    made = [record(random, size) for _ in range(22)]
+    rows, columns = [r for r, _ in made], [c for _, c in made]
+    system = System(rows[:2], [r.columns for r in rows[:2]])
+    gain = system.gain(columns[:2])
+    assert gain is not None
+    trial = Trial(Candidate("friction_offset", 1), {}, columns[:2], gain)
+    found = judged(trial, rows[:2], [], None, system)
+    both = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
+    left = []
+    for tables in ([r.columns for r in rows], both):
+        squares = [
+            rmse(rows[2:], tables[2:], weighted_fit(rows[k : k + 1], tables[k : k + 1]))[0] ** 2
+            for k in range(2)
+        ]
+        left.append(np.sqrt(np.mean(squares)))
+    return found.expected, found.gain, float(100 * (1 - left[1] / left[0]))
+
+
+@pytest.mark.parametrize("size", [0.4, 0.8])
+def test_expected_gain_is_what_other_records_show(size: float) -> None:
+    """In the median over draws, and so is the measured one."""
+    expected, measured, truth = np.median([gains(default_rng([7, k]), size) for k in range(20)], axis=0)
+    assert expected == pytest.approx(truth, rel=0.25)
+    assert measured == pytest.approx(truth, rel=0.25)
+
+
+def test_what_is_not_there_is_expected_to_gain_nothing() -> None:
+    """Where the evidence would not stop it."""
+    table = np.array([gains(default_rng([9, k]), 0.0)[0] for k in range(20)])
+    assert np.median(table) < 0.5
+
+
+def test_values_that_may_not_be_negative() -> None:
+    """Against SciPy's bounded least squares, also where columns are nearly the same."""
+    random = default_rng(1)
+    for _ in range(200):
+        matrix = random.normal(size=(4, 4))
+        matrix[:, 1] = matrix[:, 0] + 0.01 * random.normal(size=4)
+        right = random.normal(size=4)
+        limited = np.flatnonzero(random.uniform(size=4) < 0.6)
+        low = np.full(4, -np.inf)
+        low[limited] = 0.0
+        witness = lsq_linear(matrix, right, (low, np.inf), tol=1e-14).x
+        found = not_negative(matrix, right, limited)
+        assert (found[limited] >= 0).all()
+        left = [np.linalg.norm(right - matrix @ x) for x in (found, witness)]
+        assert left[0] <= left[1] * (1 + 1e-9) + 1e-12
