@@ -29,7 +29,7 @@ def gains(random: Generator, size: float) -> tuple[float, float, float]:
     """Expected and measured gain [%] from two records, and what it is on twenty others."""
     made = [record(random, size) for _ in range(22)]
     rows, columns = [r for r, _ in made], [c for _, c in made]
-    system = System(rows[:2], [r.columns for r in rows[:2]])
+    system = System(rows[:2], [r.columns for r in rows[:2]], [LONG // 3] * 2)
     gain = system.gain(columns[:2])
     assert gain is not None
     trial = Trial(Candidate("friction_offset", 1), {}, columns[:2], gain)

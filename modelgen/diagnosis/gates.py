@@ -65,7 +65,8 @@ def judged(
     expected: what a model without it gets wrong on unseen rows if the cause is there as found, against the
     noise. That has the scatter of one value, where a measured gain has that of all parameters of a part.
     What errors of the positions could feign (`blur`) must be exceeded by the gain where the rest is fitted
-    anew, unless the estimate by instruments is not zero; what they look like most must pass by that gain.
+    anew, unless the estimate by instruments is not zero; by that gain must pass what they look like most, and
+    everything where no period repeats: slow noise, of a size that nobody knows, looks like a slow cause.
     narrowed: the usual band over that of the rows.
     """
     n = rows[0].effort.shape[1]
@@ -149,7 +150,8 @@ def _ruled(
     could = np.zeros(len(places))
     if blur is not None and system is not None and not instrumented(trial, system):
         could = feigned(blur[places], again[0, places] / counts[places])
-    if trial.candidate.effect in FEIGNABLE or (could > least).any():
+    unsure = system is None or not system.noise_known or (could > least).any()
+    if unsure or trial.candidate.effect in FEIGNABLE:
         best = float(refitted[refitted >= np.maximum(least, could)].max(initial=-np.inf))
         most = float(refitted.max(initial=-np.inf))
         if not np.isfinite(best):

@@ -46,13 +46,10 @@ class Hypothesis:
 
 def hypothesis(trial: Trial) -> Hypothesis:
     """The cause as it was fitted to the training records."""
-    used = np.any([np.abs(c).max(axis=(0, 1)) > 0 for c in trial.columns], axis=0)
-    theta = np.zeros(trial.columns[0].shape[2])
-    theta[used] = trial.gain.values
     others: list[Mapping[str, float]] = []
     for name, value in trial.values.items():
         others += [{**trial.values, name: factor * value} for factor in AROUND if name != "harmonic"]
-    return Hypothesis(trial.candidate, dict(trial.values), theta, tuple(others))
+    return Hypothesis(trial.candidate, dict(trial.values), trial.gain.values, tuple(others))
 
 
 @dataclass(frozen=True)

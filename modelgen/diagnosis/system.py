@@ -74,6 +74,11 @@ class System:
                 return whitener([x for x, _ in noise], [flags for _, flags in noise])
         return whitener(residuals, moving)
 
+    @property
+    def noise_known(self) -> bool:
+        """Whether periods repeat, by which noise is told from what the model lacks."""
+        return any(p is not None for p in self.periods)
+
     def whitened(self, columns: Sequence[Array]) -> Array:
         """Columns (M, n, k) of each record, whitened and stacked."""
         parts = []
