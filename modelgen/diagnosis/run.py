@@ -102,7 +102,12 @@ def diagnose(
     train, test = made.prepared[:-1], made.prepared[-1]
     start = rows[0].baseline.base(made.theta)
     check_one_arm(arm, model, rows, prober, start)
-    pool = asked(arm, candidates(arm, prober, rows), effects, rows, prober, start)
+    pool = [
+        c
+        for c in candidates(arm, prober, rows)
+        if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
+    ]
+    pool = asked(arm, pool, effects, rows, prober, start)
     selection, beside = standing(
         select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed), rows
     )
@@ -127,7 +132,7 @@ def diagnose(
         verdict,
         reason,
         named,
-        _absorbed(arm, rows, selection),
+        _absorbed(arm, rows, selection, made.narrowed > 1.0),
         fit,
         motion_errors(found[-1], *played) if free else errors(last, *pair, unit_of_efforts(test)),
         played,
@@ -228,7 +233,9 @@ def _named(
     return tuple(result)
 
 
-def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tuple[str, str], ...]:
+def _absorbed(
+    arm: Arm, rows: Sequence[Rows], selection: Selection, coarse: bool
+) -> tuple[tuple[str, str], ...]:
     """What these records could not show, whatever is there."""
     found = []
     named = {c.trial.candidate.effect for c in selection.causes}
@@ -239,10 +246,15 @@ def _absorbed(arm: Arm, rows: Sequence[Rows], selection: Selection) -> tuple[tup
     if "drive_gain_error" not in named and len(arm.coordinates) == 1:
         found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))
     still = [n + 1 for n in range(rows[0].effort.shape[1]) if not any(r.moving[:, n].any() for r in rows)]
-    behind = [j for j in places(arm, COMPLIANT[0]) if not (at_motor(j, rows) or at_links(j, rows))]
+    known = [j for j in places(arm, COMPLIANT[0]) if at_motor(j, rows) or (at_links(j, rows) and not coarse)]
+    behind = [j for j in places(arm, COMPLIANT[0]) if j not in known]
     if behind and any(r.prepared.input is not None for r in rows):
         joints = "joint " + ", ".join(str(j) for j in behind)
-        reason = "has no drive, or was measured now at the motor, now at the link"
+        reason = (
+            "is too coarse to show it"
+            if coarse
+            else "has no drive, or was measured now at the motor, now at the link"
+        )
         found += [(name, f"the position of {joints} {reason}") for name in COMPLIANT]
     found += [("coulomb_friction", f"joint {n} does not move in the training records") for n in still]
     return tuple(found)
