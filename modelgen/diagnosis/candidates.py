@@ -26,6 +26,7 @@ STEPS: Mapping[str, Mapping[str, float]] = {
     "torque_constant_saturation": {"coefficient": 1e-8},
     "time_delay": {"delay": 1e-4},
 }
+TAIL = 1e-6  # of the largest of all records
 INVISIBLE = 1e-5  # of the largest column of a sensitivity
 # Elastic joints and play move in proportion to nothing that they have: all of it is searched for,
 # stiffness in its scale, relaxation (damping over stiffness) in s, play in the range of the motion.
@@ -190,9 +191,13 @@ def columns(
 ) -> list[Array] | None:
     """Its columns (M, n, k) in every record for values of what is searched; None where it cannot stand."""
     try:
-        return [r.filtered(_at_full_rate(candidate, values, r, k, prober, base)) for k, r in enumerate(rows)]
+        found = [r.filtered(_at_full_rate(candidate, values, r, k, prober, base)) for k, r in enumerate(rows)]
     except InputError:
         return None
+    if candidate.effect in COMPLIANT:  # the tail of a filter, of what lies outside the rows, is nothing
+        largest = max((np.abs(table).max(initial=0.0) for table in found), default=0.0)
+        found = [t if np.abs(t).max(initial=0.0) > TAIL * largest else np.zeros_like(t) for t in found]
+    return found
 
 
 def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Prober, base: Array) -> Array:
