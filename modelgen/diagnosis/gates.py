@@ -59,22 +59,23 @@ def judged(
 ) -> Judgement:
     """Whether the cause helps and matters at a joint that it is judged by.
 
-    Gains are measured of the whole prediction, from record to record and from half to half of all records,
-    and where the rest of the model is fitted anew to the unseen rows with and without the cause, which takes
-    up much of what is slow. One of them must not be a loss. That the cause matters is asked of the gain to be
-    expected: what a model without it gets wrong on unseen rows if the cause is there as found, against the
-    noise. That has the scatter of one value, where a measured gain has that of all parameters of a part.
-    What errors of the positions could feign (`blur`) must be exceeded by the gain where the rest is fitted
-    anew, unless the estimate by instruments is not zero; by that gain must pass what they look like most, and
-    everything where no period repeats: slow noise, of a size that nobody knows, looks like a slow cause.
+    Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the unseen
+    rows with and without the cause, which takes up much of what is slow. One must not be a loss. That the
+    cause matters is asked of the gain to be expected: what a model without it gets wrong on unseen rows if
+    the cause is there as found, against the noise. That has the scatter of one value, where a measured gain
+    has that of all parameters of a part. What errors of the positions could feign (`blur`) must be exceeded
+    by the gain where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain
+    must pass what such errors look like most; everything where no period repeats, since slow noise, of a size
+    that nobody knows, looks like a slow cause; and causes after the first, whose form may leave them something.
     narrowed: the usual band over that of the rows.
     """
     n = rows[0].effort.shape[1]
     old, new = with_causes(rows, before), with_causes(rows, [*before, trial])
     own = old[0].shape[2]
-    later = trial.candidate.effect == LATER  # shows between records: halves of all are tried instead
+    # what shows between records, or in some of them alone: halves of all are tried instead
+    later = trial.candidate.effect == LATER or any(not c.any() for c in trial.columns)
     again = _refitted(rows, old, new, halves=later)
-    whole = [np.array([_left(rows, x, halves=h) for x in (old, new)]) for h in sorted({later, True})]
+    whole = np.array([_left(rows, x, halves=later) for x in (old, new)])
     theta = weighted_fit(rows, new)
     shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(rows, new, strict=True)]
     counts = _moving(rows)
@@ -83,7 +84,8 @@ def judged(
     noise = rmse(rows, new, theta) ** 2
     expected = 100.0 * (1.0 - np.sqrt(noise / (noise + bias)))[places]
     least = practical(_least(trial, before), narrowed)
-    return _ruled(trial, least, again, whole, expected, places, counts, blur, system)
+    strict = bool(before) or trial.candidate.effect in FEIGNABLE
+    return _ruled(trial, least, strict, again, whole, expected, places, counts, blur, system)
 
 
 def _least(trial: Trial, before: Sequence[Trial]) -> float:
@@ -136,8 +138,9 @@ def _refitted(rows: Sequence[Rows], old: Sequence[Array], new: Sequence[Array], 
 def _ruled(
     trial: Trial,
     limit: float,
+    strict: bool,
     again: Array,
-    whole: Sequence[Array],
+    whole: Array,
     expected: Array,
     places: list[int],
     counts: Array,
@@ -150,17 +153,17 @@ def _ruled(
     could = np.zeros(len(places))
     if blur is not None and system is not None and not instrumented(trial, system):
         could = feigned(blur[places], again[0, places] / counts[places])
-    unsure = system is None or not system.noise_known or (could > least).any()
-    if unsure or trial.candidate.effect in FEIGNABLE:
+    if strict or system is None or not system.noise_known or (could > least).any():
         best = float(refitted[refitted >= np.maximum(least, could)].max(initial=-np.inf))
         most = float(refitted.max(initial=-np.inf))
         if not np.isfinite(best):
             return Judgement(most, hoped, "gain" if (refitted < least).all() else "positions")
         return Judgement(best, hoped, "" if _total(again, counts) < 1.0 else "other joints")
-    measured = float(max(_gains(s)[places].max(initial=-np.inf) for s in (again, *whole)))
-    if hoped < limit or measured < 0.0:
-        return Judgement(measured, hoped, "gain")
-    worse = min(_total(s, counts) for s in (again, *whole)) > 1.0 + WORSE
+    gains = np.maximum(refitted, _gains(whole)[places])
+    measured = float(gains[expected >= limit].max(initial=-np.inf))
+    if measured < 0.0:
+        return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
+    worse = min(_total(s, counts) for s in (again, whole)) > 1.0 + WORSE
     return Judgement(measured, hoped, "other joints" if worse else "")
 
 

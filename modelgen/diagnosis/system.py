@@ -17,6 +17,7 @@ from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
 
 LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats
+EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this
 NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
@@ -255,7 +256,8 @@ def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
         norms[norms == 0] = 1.0
         theta = lstsq(left / norms, right, cond=1e-10, lapack_driver="gelsy", check_finite=False)[0] / norms
         if turn < 2:
-            weights = 1.0 / np.maximum(rmse(rows, columns, theta), 1e-300)
+            left = rmse(rows, columns, theta)
+            weights = 1.0 / np.maximum(left, max(EXACT * float(left.max()), 1e-150))
     return theta
 
 
