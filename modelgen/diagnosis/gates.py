@@ -66,7 +66,7 @@ def judged(
     has that of all parameters of a part. What errors of the positions could feign (`blur`) must be exceeded
     by the gain where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain
     must pass what such errors look like most; everything where no period repeats, since slow noise, of a size
-    that nobody knows, looks like a slow cause; and causes after the first, whose form may leave them something.
+    that nobody knows, looks like a slow cause; and causes after the first, to which its form may leave some.
     narrowed: the usual band over that of the rows.
     """
     n = rows[0].effort.shape[1]
