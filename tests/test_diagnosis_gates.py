@@ -8,7 +8,7 @@ from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
 from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.gates import judged
+from modelgen.diagnosis.gates import Gates
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, not_negative, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
@@ -33,7 +33,7 @@ def gains(random: Generator, size: float) -> tuple[float, float, float]:
     gain = system.gain(columns[:2])
     assert gain is not None
     trial = Trial(Candidate("friction_offset", 1), {}, columns[:2], gain)
-    found = judged(trial, rows[:2], [], None, system)
+    found = Gates(rows[:2], [], system).judged(trial)
     both = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
     left = []
     for tables in ([r.columns for r in rows], both):

@@ -36,7 +36,8 @@ Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
 @dataclass(frozen=True)
 class Judgement:
     """gain: percent of the RMSE measured on rows that the fit has not seen; expected: what the value found in
-    all records must gain there; refused: the gate that stays shut, empty where none does.
+    all records must gain there, nan where that was not asked; refused: the gate that stays shut, empty where
+    none does.
     """
 
     gain: float
@@ -49,51 +50,114 @@ def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
     return [np.concatenate([r.columns, *(t.columns[i] for t in trials)], axis=2) for i, r in enumerate(rows)]
 
 
-def judged(
-    trial: Trial,
-    rows: Sequence[Rows],
-    before: Sequence[Trial],
-    blur: Array | None = None,
-    system: System | None = None,
-    narrowed: float = 1.0,
-) -> Judgement:
-    """Whether the cause helps and matters at a joint that it is judged by.
-
-    Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the unseen
-    rows with and without the cause, which takes up much of what is slow. One must not be a loss. That the
-    cause matters is asked of the gain to be expected: what a model without it gets wrong on unseen rows if
-    the cause is there as found, against the noise. That has the scatter of one value, where a measured gain
-    has that of all parameters of a part. What errors of the positions could feign (`blur`) must be exceeded
-    by the gain where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain
-    must pass what such errors look like most; everything where no period repeats, since slow noise, of a size
-    that nobody knows, looks like a slow cause; and causes after the first, to which its form may leave some.
-    narrowed: the usual band over that of the rows.
+class Gates:
+    """Of one turn. before: causes that were taken; blur: what errors of the positions leave in the residuals,
+    mean squares by joint (n,); narrowed: the usual band over that of the rows.
     """
-    n = rows[0].effort.shape[1]
-    old, new = with_causes(rows, before), with_causes(rows, [*before, trial])
-    own = old[0].shape[2]
-    # what shows between records, or in some of them alone: halves of all are tried instead
-    later = trial.candidate.effect == LATER or any(not c.any() for c in trial.columns)
-    again = _refitted(rows, old, new, halves=later)
-    whole = np.array([_left(rows, x, halves=later) for x in (old, new)])
-    theta = weighted_fit(rows, new)
-    shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(rows, new, strict=True)]
-    counts = _moving(rows)
-    places = [j for j in trial.candidate.joints(n) if counts[j] > 0]
-    bias = _left(shows, old, halves=later) / np.maximum(counts, 1.0)
-    noise = rmse(rows, new, theta) ** 2
-    expected = 100.0 * (1.0 - np.sqrt(noise / (noise + bias)))[places]
-    least = practical(_least(trial, before), narrowed)
-    strict = bool(before) or trial.candidate.effect in FEIGNABLE
-    return _ruled(trial, least, strict, again, whole, expected, places, counts, blur, system)
 
+    def __init__(
+        self,
+        rows: Sequence[Rows],
+        before: Sequence[Trial],
+        system: System,
+        blur: Array | None = None,
+        narrowed: float = 1.0,
+    ) -> None:
+        self.rows = rows
+        self.before = before
+        self.system = system
+        self.blur = np.zeros(system.n) if blur is None else blur
+        self.narrowed = narrowed
+        self.old = with_causes(rows, before)
+        self.counts = _moving(rows)
+        self._known: dict[bool, Array] = {}
 
-def _least(trial: Trial, before: Sequence[Trial]) -> float:
-    """Percent of the RMSE that the cause must gain."""
-    c = trial.candidate
-    delayed = [t.candidate.joint for t in before if t.candidate.effect == DELAY]
-    beside = c.effect in REVERSING and (c.joint in delayed or None in delayed)
-    return DELAYED if c.effect == DELAY or beside else PRACTICAL
+    def judged(self, trial: Trial) -> Judgement:
+        """Whether the cause helps and matters at a joint that it is judged by.
+
+        Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the
+        unseen rows with and without the cause, which takes up much of what is slow. One must not be a loss.
+        That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
+        unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
+        where a measured gain has that of all parameters of a part. What errors of the positions could feign
+        must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments is not
+        zero. By that gain must pass what such errors look like most; everything where no period repeats,
+        since slow noise, of a size that nobody knows, looks like a slow cause; and causes after the first,
+        to which its form may leave some.
+        """
+        new = with_causes(self.rows, [*self.before, trial])
+        # what shows between records, or in some of them alone: halves of all are tried instead
+        halves = trial.candidate.effect == LATER or any(not c.any() for c in trial.columns)
+        whole, again = np.stack([self._without(halves), self._with(new, halves)], axis=1)
+        places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
+        refitted = _gains(again)[places]
+        least = np.full(len(places), practical(self._least(trial), self.narrowed))
+        could = feigned(self.blur[places], again[0, places] / self.counts[places])
+        if (could > least).any() and instrumented(trial, self.system):
+            could = np.zeros(len(places))
+        doubtful = not self.system.noise_known or bool((could > least).any())
+        strict = doubtful or bool(self.before) or trial.candidate.effect in FEIGNABLE
+        best = -np.inf
+        if strict:
+            best = float(refitted[refitted >= np.maximum(least, could)].max(initial=-np.inf))
+            if not np.isfinite(best):
+                shut = "gain" if (refitted < least).all() else "positions"
+                return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
+        expected = self._expected(new, halves)[places]
+        hoped = float(expected.max(initial=0.0))
+        if strict:
+            return Judgement(best, hoped, "" if self._total(again) < 1.0 else "other joints")
+        gains = np.maximum(refitted, _gains(whole)[places])
+        measured = float(gains[expected >= least].max(initial=-np.inf))
+        if measured < 0.0:
+            return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
+        worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
+        return Judgement(measured, hoped, "other joints" if worse else "")
+
+    def _least(self, trial: Trial) -> float:
+        """Percent of the RMSE that the cause must gain in the usual band."""
+        c = trial.candidate
+        delayed = [t.candidate.joint for t in self.before if t.candidate.effect == DELAY]
+        beside = c.effect in REVERSING and (c.joint in delayed or None in delayed)
+        return DELAYED if c.effect == DELAY or beside else PRACTICAL
+
+    def _without(self, halves: bool) -> Array:
+        """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
+        if halves not in self._known:
+            again = np.zeros(self.system.n)
+            for _, (tried, to) in _folds(self.rows, halves=halves):
+                table = [self.old[i] for i in to]
+                again += _moving(tried) * rmse(tried, table, weighted_fit(tried, table)) ** 2
+            self._known[halves] = np.array([_left(self.rows, self.old, halves=halves), again])
+        return self._known[halves]
+
+    def _with(self, new: Sequence[Array], halves: bool) -> Array:
+        """The same with the cause, as it was fitted to the other part."""
+        own = self.old[0].shape[2]
+        found = np.zeros((2, self.system.n))
+        for (fitted, at), (tried, to) in _folds(self.rows, halves=halves):
+            theta = weighted_fit(fitted, [new[i] for i in at])
+            carried = [
+                replace(r, effort=r.effort - new[i][:, :, own:] @ theta[own:])
+                for r, i in zip(tried, to, strict=True)
+            ]
+            table = [self.old[i] for i in to]
+            found[0] += _moving(tried) * rmse(tried, [new[i] for i in to], theta) ** 2
+            found[1] += _moving(tried) * rmse(carried, table, weighted_fit(carried, table)) ** 2
+        return found
+
+    def _expected(self, new: Sequence[Array], halves: bool) -> Array:
+        """Percent of the RMSE (n,) that a model without the cause, which is there as found, loses unseen."""
+        own = self.old[0].shape[2]
+        theta = weighted_fit(self.rows, new)
+        shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(self.rows, new, strict=True)]
+        bias = _left(shows, self.old, halves=halves) / np.maximum(self.counts, 1.0)
+        noise = rmse(self.rows, new, theta) ** 2
+        return np.asarray(100.0 * (1.0 - np.sqrt(noise / (noise + bias))))
+
+    def _total(self, sums: Array) -> float:
+        """Mean over the joints of the squares with the cause over those without."""
+        return float((sums[1] / np.maximum(sums[0], 1e-300))[self.counts > 0].mean())
 
 
 def practical(percent: float, narrowed: float) -> float:
@@ -120,61 +184,9 @@ def _left(rows: Sequence[Rows], columns: Sequence[Array], *, halves: bool) -> Ar
     return found
 
 
-def _refitted(rows: Sequence[Rows], old: Sequence[Array], new: Sequence[Array], *, halves: bool) -> Array:
-    """The same (2, n), without and with the cause carried over, the rest fitted to what it is tried on."""
-    own = old[0].shape[2]
-    found = np.zeros((2, rows[0].effort.shape[1]))
-    for (fitted, at), (tried, to) in _folds(rows, halves=halves):
-        theta = weighted_fit(fitted, [new[i] for i in at])[own:]
-        carried = [
-            replace(r, effort=r.effort - new[i][:, :, own:] @ theta) for r, i in zip(tried, to, strict=True)
-        ]
-        table = [old[i] for i in to]
-        for k, part in enumerate((tried, carried)):
-            found[k] += _moving(tried) * rmse(part, table, weighted_fit(part, table)) ** 2
-    return found
-
-
-def _ruled(
-    trial: Trial,
-    limit: float,
-    strict: bool,
-    again: Array,
-    whole: Array,
-    expected: Array,
-    places: list[int],
-    counts: Array,
-    blur: Array | None,
-    system: System | None,
-) -> Judgement:
-    refitted = _gains(again)[places]
-    hoped = float(expected.max(initial=0.0))
-    least = np.full(len(places), limit)
-    could = np.zeros(len(places))
-    if blur is not None and system is not None and not instrumented(trial, system):
-        could = feigned(blur[places], again[0, places] / counts[places])
-    if strict or system is None or not system.noise_known or (could > least).any():
-        best = float(refitted[refitted >= np.maximum(least, could)].max(initial=-np.inf))
-        most = float(refitted.max(initial=-np.inf))
-        if not np.isfinite(best):
-            return Judgement(most, hoped, "gain" if (refitted < least).all() else "positions")
-        return Judgement(best, hoped, "" if _total(again, counts) < 1.0 else "other joints")
-    gains = np.maximum(refitted, _gains(whole)[places])
-    measured = float(gains[expected >= limit].max(initial=-np.inf))
-    if measured < 0.0:
-        return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
-    worse = min(_total(s, counts) for s in (again, whole)) > 1.0 + WORSE
-    return Judgement(measured, hoped, "other joints" if worse else "")
-
-
 def _gains(sums: Array) -> Array:
     """Percent of the RMSE by joint, from sums of squares without and with (2, n)."""
     return np.asarray(100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))))
-
-
-def _total(sums: Array, counts: Array) -> float:
-    """Mean over the joints of the squares with the cause over those without."""
-    return float((sums[1] / np.maximum(sums[0], 1e-300))[counts > 0].mean())
 
 
 def _folds(rows: Sequence[Rows], *, halves: bool) -> list[tuple[Part, Part]]:

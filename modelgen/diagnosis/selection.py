@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.endogeneity import endogeneity
-from modelgen.diagnosis.gates import PRACTICAL, Judgement, instrumented, judged, with_causes
+from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares
@@ -104,9 +104,10 @@ def select(
                 ranking.append(_ranked(found, None, "values"))
             else:
                 trials.append(found)
+        gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         eligible: list[tuple[Trial, Judgement]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
-            found_so = judged(t, rows, [c.trial for c in causes], blur, system, narrowed)
+            found_so = gates.judged(t)
             if noisy and not found_so.refused and not instrumented(t, system):
                 found_so = replace(found_so, refused="positions")
             ranking.append(_ranked(t, found_so, found_so.refused))

@@ -107,7 +107,7 @@ def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
     for r in turn[:_SHOWN]:
         word = _REFUSED.get(r.refused, "passes every gate too" if taken else "taken")
         taken = taken or not r.refused
-        gains = ["" if g is None else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
+        gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
         rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", *gains, word))
     return rows
 
