@@ -101,7 +101,9 @@ class Bench:
             for j in range(self.arm.n):
                 most = self.arm.position[j][1] * 0.9**attempt
                 plant["q0"][j] = random.uniform(0.6, 1.0) * most * random.choice((-1.0, 1.0))
-            q = native.simulate(plant, self.case.rate, duration, self._substeps([]))[0]
+            steps, noise = self._substeps([]), _random(self.case, 4, k)
+            taken = logs.take(plant, self.case.rate, duration, noise, steps, self.case.noise)
+            q = logs.joints_of(taken, plant)
             if all(
                 low <= q[:, j].min() and q[:, j].max() <= high
                 for j, (low, high) in enumerate(self.arm.position)
