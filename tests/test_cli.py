@@ -295,9 +295,13 @@ def test_generating_does_not_import_casadi(tmp_path: Path, checkout: Path) -> No
 def test_ctrl_c_is_one_line_and_leaves_nothing_half_written(tmp_path: Path, checkout: Path) -> None:
     variables = os.environ | {"PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, "-P", "-m", "modelgen", "generate", "-j", "1"]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job's child ignores it
+    try:
+        process = subprocess.Popen(
+            command, cwd=tmp_path, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
     time.sleep(2.5)  # in the middle of generating
     process.send_signal(signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
