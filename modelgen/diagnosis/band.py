@@ -32,13 +32,12 @@ OVER_MOTION = 10.0  # narrow cut-off over the bandwidth of the motion
 class Equations:
     """Of the training records; the last of `prepared` is the test record.
 
-    lengths: samples in a period of each training record; periods: rows. theta: of a first fit. blur: what
-    errors of the positions leave in the residuals, mean squares by joint (n,). narrowed: the usual cut-off
-    over that of the rows.
+    periods: rows in a period of each training record. theta: of a first fit. blur: what errors of the
+    positions leave in the residuals, mean squares by joint (n,). narrowed: the usual cut-off over that of the
+    rows.
     """
 
     chosen: Chosen
-    lengths: Sequence[int | None]
     periods: Sequence[int | None]
     prepared: Sequence[Prepared]
     rows: Sequence[Rows]
@@ -94,4 +93,4 @@ def _equations(
     check_motion(model.arm, rows)
     check_excitation(model.arm, model, rows)
     theta = weighted_fit(rows, [r.columns for r in rows])
-    return Equations(chosen, lengths, periods, prepared, rows, theta, blur(train, rows, prober, model, theta))
+    return Equations(chosen, periods, prepared, rows, theta, blur(train, rows, prober, model, theta))

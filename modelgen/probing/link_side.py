@@ -45,7 +45,7 @@ def led_by(arm: Arm, motion: Motion) -> list[tuple[str, int, dict[str, float]]]:
         for number, index in enumerate(arm.coordinates, 1)
         if at_link(motion, number)
         for use in arm.joints[index].effects
-        if getattr(CATALOGUE[use.name], "place", "") == "transmission"
+        if _compliant(use.name)
     ]
 
 
@@ -53,8 +53,8 @@ def rigid(arm: Arm) -> Arm:
     """The arm without elastic joints and play."""
     joints = []
     for joint in arm.joints:
-        kept = (u for u in joint.effects if getattr(CATALOGUE[u.name], "place", "") != "transmission")
-        joints.append(replace(joint, effects=tuple(kept)))
+        kept = tuple(use for use in joint.effects if not _compliant(use.name))
+        joints.append(replace(joint, effects=kept))
     return replace(arm, joints=tuple(joints))
 
 
@@ -69,6 +69,11 @@ def lagging(states: Array, e: Equations, before: Motion, after: Motion) -> Array
             lag, rate = (names.index(symbol.name) for symbol in effect.states.values())
             found[:, lag], found[:, rate] = (after.q - before.q)[:, n], (after.dq - before.dq)[:, n]
     return found
+
+
+def _compliant(name: str) -> bool:
+    """Whether an effect lies between a drive and its link."""
+    return getattr(CATALOGUE[name], "place", "") == "transmission"
 
 
 class LinkSide:
@@ -160,7 +165,7 @@ class LinkSide:
     def _torque(self, joint: int, motion: Motion, parameters: Array) -> dict[str, Array]:
         """Of a coordinate, (N,): gain; effort that moves the links, below the cut-off (`passed`), its slow
         part (`steady`); effort that moves links and drive (`all`), and its slow part; inertia of the drive,
-        and what of it the parameters tell, as efforts per acceleration of the joint.
+        as effort per acceleration of the joint.
         """
         at = joint, id(motion), np.asarray(parameters).tobytes()
         if at not in self._known:
@@ -168,7 +173,7 @@ class LinkSide:
                 del self._known[next(iter(self._known))]
             # the motion is kept: its place in memory is the key
             self._known[at] = motion, self._made(joint, motion, parameters)
-        names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia", "told")
+        names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia")
         return dict(zip(names, self._known[at][1], strict=True))
 
     def _made(self, joint: int, motion: Motion, parameters: Array) -> Array:
@@ -186,7 +191,7 @@ class LinkSide:
         passed = _low_pass(here, cutoff, motion.step)
         slow = (_low_pass(x, STEADY * cutoff, motion.step) for x in (here, together))
         steady, whole = slow
-        return np.stack([gain, here, passed, steady, together, whole, inertia, told])
+        return np.stack([gain, here, passed, steady, together, whole, inertia])
 
 
 def _torque_of(play: float, t: dict[str, Array], motion: Motion) -> float:
