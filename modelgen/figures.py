@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib import rc_context
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COLOURS = ("#1f5fa8", "#d1661a", "#3a8f4d", "#8a4fa3", "#666666")
 _STYLE: Any = {
@@ -28,6 +28,10 @@ _STYLE: Any = {
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 3.0)) -> tuple[Figure, Any]:
     """A figure of `size` [inch] and its axes as a rows x columns array."""
+    # Matplotlib takes long to load, and is needed last of all.
+    from matplotlib import rc_context  # noqa: PLC0415
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
     with rc_context(_STYLE):
         made = Figure(figsize=size, layout="constrained")
         axes = made.subplots(rows, columns, squeeze=False)
@@ -36,6 +40,8 @@ def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 3.
 
 def svg(made: Figure) -> str:
     """The figure as SVG, without date."""
+    from matplotlib import rc_context  # noqa: PLC0415
+
     out = io.StringIO()
     with rc_context(_STYLE):
         made.savefig(out, format="svg", metadata={"Date": None, "Creator": None})

@@ -1,15 +1,19 @@
 """The report in a browser."""
 
+import multiprocessing
 import shutil
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_diagnosis_selection import ARM, three
 
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.run import diagnose
+from modelgen.figures import figure, svg
 from modelgen.report.diagnosis import report
+from modelgen.report.sketches import Pen, Sketch
 
 WORDS = ("stribeck_friction", "joint 2", "Error on the test record", "What these records cannot show")
 
@@ -26,6 +30,26 @@ def test_the_report_stands_alone_and_is_the_same_again(found: Diagnosis) -> None
         assert outside not in page
     assert page.count("<svg") >= 5
     assert all(word in page for word in WORDS)
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
+    sketch = Sketch(1, 2, (4.0, 2.0))
+    axes = sketch.axes()
+    axes[0, 0].plot(np.arange(5.0), np.sin(np.arange(5.0)), label="sine")
+    axes[0, 0].legend(loc="upper right")
+    axes[0, 1].set_xlabel("time [s]")
+    before = set(multiprocessing.active_children())
+    with Pen(beside=True) as pen:
+        for process in set(multiprocessing.active_children()) - before if ended else ():
+            process.kill()
+        pen.give({"sine": sketch})
+        drawn = pen.fetch("sine")
+    made, there = figure(1, 2, (4.0, 2.0))
+    there[0, 0].plot(np.arange(5.0), np.sin(np.arange(5.0)), label="sine")
+    there[0, 0].legend(loc="upper right")
+    there[0, 1].set_xlabel("time [s]")
+    assert drawn == svg(made)
 
 
 def test_a_browser_shows_the_verdict(found: Diagnosis, tmp_path: Path) -> None:

@@ -14,9 +14,20 @@ from modelgen.graph import Program, Term
 
 Array: TypeAlias = NDArray[np.float64]
 
-_CHUNK = 2048  # samples at a time: the live values then fit into the processor's cache
+_CHUNK = 4096  # samples at a time: the live values then stay in the processor's cache
+
+
+def _select(condition: Any, one: Any, other: Any, out: Array) -> None:
+    out[...] = np.where(condition > 0.0, one, other)
+
+
+def _store(value: Any, out: Array) -> None:
+    out[...] = value
+
 
 _CALLS: Mapping[str, Callable[..., Any]] = {
+    "": _store,
+    "select": _select,
     "neg": np.negative,
     "add": np.add,
     "sub": np.subtract,
@@ -137,12 +148,45 @@ class _Step:
 
 @dataclass(frozen=True)
 class _Tape:
-    steps: tuple[_Step, ...]
+    """Operations on places: registers, then elements of outputs, numbers, elements of inputs.
+
+    steps: what is called, the places of its operands, the place of its result.
+    """
+
+    steps: tuple[tuple[Callable[..., Any], tuple[int, ...], int], ...]
     registers: int
+    outputs: tuple[tuple[str, int], ...]
+    numbers: tuple[float, ...]
+    inputs: tuple[tuple[str, int], ...]
 
 
 def _tape(program: Program) -> _Tape:
-    """The program as operations on registers; a register is free again after its value's last use."""
+    """The program with a place for everything, so that a run looks nothing up."""
+    steps, registers = _steps(program)
+    operands = [o for step in steps for o in step.operands]
+    outputs = list(dict.fromkeys(step.output for step in steps if step.output is not None))
+    numbers = list(dict.fromkeys(repr(o) for o in operands if isinstance(o, float)))  # 0.0 is not -0.0
+    inputs = list(dict.fromkeys(o for o in operands if isinstance(o, tuple)))
+    first = registers + len(outputs)
+    of_number = {text: first + k for k, text in enumerate(numbers)}
+    of_input = {element: first + len(numbers) + k for k, element in enumerate(inputs)}
+
+    def place(o: _Operand) -> int:
+        return o if isinstance(o, int) else of_number[repr(o)] if isinstance(o, float) else of_input[o]
+
+    placed = [
+        (
+            _CALLS[step.operation],
+            tuple(place(o) for o in step.operands),
+            step.register if step.output is None else registers + outputs.index(step.output),
+        )
+        for step in steps
+    ]
+    return _Tape(tuple(placed), registers, tuple(outputs), tuple(map(float, numbers)), tuple(inputs))
+
+
+def _steps(program: Program) -> tuple[list[_Step], int]:
+    """Operations on registers, and how many; a register is free again after its value's last use."""
     last_use: dict[int, int] = {}
     wanted = [s for s in program.statements if not (isinstance(s.target, tuple) and s.target[0] == "guard")]
     for position, statement in enumerate(wanted):
@@ -188,7 +232,7 @@ def _tape(program: Program) -> _Tape:
                 free.append(value)
         used = {*_lets(statement.term), *([statement.target] if isinstance(statement.target, int) else [])}
         free += [holder[number] for number in sorted(used) if last_use[number] == position]
-    return _Tape(tuple(steps), count)
+    return steps, count
 
 
 def _lets(term: Term) -> list[int]:
@@ -200,17 +244,14 @@ def _lets(term: Term) -> list[int]:
 
 def _run(tape: _Tape, inputs: Mapping[str, Array], registers: Array, results: Mapping[str, Array]) -> None:
     """All steps for one chunk of samples."""
-
-    def operand(o: _Operand) -> Any:
-        if isinstance(o, tuple):
-            return inputs[o[0]][o[1]]
-        return registers[o] if isinstance(o, int) else o
-
-    for step in tape.steps:
-        values = [operand(o) for o in step.operands]
-        if step.output is not None:
-            results[step.output[0]][step.output[1]] = values[0]
-        elif step.operation == "select":
-            registers[step.register] = np.where(values[0] > 0.0, values[1], values[2])
+    places: list[Any] = [
+        *registers,
+        *(results[name][k] for name, k in tape.outputs),
+        *tape.numbers,
+        *(inputs[name][k] for name, k in tape.inputs),
+    ]
+    for call, operands, result in tape.steps:
+        if len(operands) == 2:
+            call(places[operands[0]], places[operands[1]], out=places[result])
         else:
-            _CALLS[step.operation](*values, out=registers[step.register])
+            call(*[places[o] for o in operands], out=places[result])

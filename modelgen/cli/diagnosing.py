@@ -15,6 +15,7 @@ from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
 from modelgen.report.experiment import followed
+from modelgen.report.sketches import Pen
 from modelgen.report.writing import write
 
 
@@ -45,11 +46,18 @@ def run(
         def progress(text: str, done: int, total: int) -> None:
             bar.update(task, description=text, completed=done, total=total)
 
-        result = diagnose(
-            arm, found, cutoff=cutoff, period=period, progress=progress, experiment=experiment, effects=wanted
-        )
-        bar.update(task, description="writing", completed=0, total=None)
-        write(result, file, out)
+        with Pen(beside=True) as pen:
+            result = diagnose(
+                arm,
+                found,
+                cutoff=cutoff,
+                period=period,
+                progress=progress,
+                experiment=experiment,
+                effects=wanted,
+            )
+            bar.update(task, description="writing", completed=0, total=None)
+            write(result, file, out, pen=pen)
     if as_json:
         print_json(to_json(result))
         return

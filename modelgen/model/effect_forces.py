@@ -42,8 +42,9 @@ class EffectForces:
         for effect in self.e.effects:
             for _, symbol in effect.parameters:
                 column: dict[int, Expr] = {}
+                unit = {s: sp.Integer(s == symbol) for _, s in effect.parameters}  # forces are linear in them
                 for part in self._parts(effect):
-                    slopes = [sp.diff(force, symbol) for force in part.forces]
+                    slopes = [sp.sympify(force).xreplace(unit) for force in part.forces]
                     for n, x in self._inputs(effect, part, slopes).items():
                         column[n] = column[n] + x if n in column else x
                 found.append(column)

@@ -20,7 +20,7 @@ def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple
     zero: Vector = (graph.zero, graph.zero, graph.zero)
     velocity: dict[int | None, Vector] = {None: zero}
     height: dict[int | None, Expr] = {None: graph.zero}  # g . p
-    x, y, z = (graph.const(component) for component in frames.arm.gravity)
+    x, y, z = (frames.scalars(component) for component in frames.arm.gravity)
     gravity: dict[int | None, Vector] = {None: (x, y, z)}
     spin: dict[int | None, Vector] = {None: zero}
     kinetic, potential = graph.zero, graph.zero

@@ -8,7 +8,7 @@ Row by row, with K = torque_constant k1 and the drive's own terms at the motor c
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import cached_property
 
 import sympy as sp
 
@@ -24,15 +24,36 @@ from modelgen.model.parameters import StandardParameter, effect_parameters, link
 from modelgen.transmission import Transmission, of_joint
 
 
-@dataclass(frozen=True)
 class Drive:
-    """A coordinate's transmission in the graph: k1 = dq_m/dq, slope = d^2 q_m/dq^2, 1/K."""
+    """A coordinate's transmission in the graph; what of it is not made yet is made when it is asked for."""
 
-    transmission: Transmission
-    motor: Expr
-    k1: Expr
-    slope: Expr
-    inverse_gain: Expr
+    def __init__(self, transmission: Transmission, convert: Callable[[sp.Expr], Expr]) -> None:
+        self.transmission = transmission
+        self._convert = convert
+
+    def make(self) -> None:
+        """All of it, in the order of the printed code."""
+        _ = self.motor, self.k1, self.slope, self.inverse_gain
+
+    @cached_property
+    def motor(self) -> Expr:
+        """q_m."""
+        return self._convert(self.transmission.motor())
+
+    @cached_property
+    def k1(self) -> Expr:
+        """dq_m/dq."""
+        return self._convert(self.transmission.k1())
+
+    @cached_property
+    def slope(self) -> Expr:
+        """d^2 q_m/dq^2."""
+        return self._convert(self.transmission.slope())
+
+    @cached_property
+    def inverse_gain(self) -> Expr:
+        """1/K."""
+        return self._convert(self.transmission.inverse_gain())
 
 
 class Equations:
@@ -40,11 +61,18 @@ class Equations:
 
     `runtime` keeps the arm's geometry symbols as inputs `geometry`; `sincos` takes sine and cosine
     of the joint angles as inputs; `free` names parameters of effects, otherwise fixed, that are the
-    input `free`.
+    input `free`. `lazy` leaves out of the graph what nothing asks for of the drives: quicker, but the order
+    of values, and with it of what is printed, then depends on who asks first.
     """
 
     def __init__(
-        self, arm: Arm, runtime: bool = False, sincos: bool = False, free: Sequence[str] = ()
+        self,
+        arm: Arm,
+        runtime: bool = False,
+        sincos: bool = False,
+        free: Sequence[str] = (),
+        *,
+        lazy: bool = False,
     ) -> None:
         self.arm = arm
         self.graph = Graph()
@@ -57,6 +85,8 @@ class Equations:
         self.n = len(arm.coordinates)
         self.free = {free_symbol(name): self.graph.input("free", k) for k, name in enumerate(free)}
         self.drives = [self._drive(n, index) for n, index in enumerate(arm.coordinates)]
+        for drive in () if lazy else self.drives:
+            drive.make()
         self.standard = standard_parameters(arm, self.effects)
         self.per_link = 14 if arm.fluid_density else 10
 
@@ -77,14 +107,7 @@ class Equations:
 
     def _drive(self, n: int, index: int) -> Drive:
         transmission = of_joint(self.arm, self.arm.joints[index])
-        convert = self._converter(n, transmission)
-        return Drive(
-            transmission,
-            convert(transmission.motor()),
-            convert(transmission.k1()),
-            convert(transmission.slope()),
-            convert(transmission.inverse_gain()),
-        )
+        return Drive(transmission, self._converter(n, transmission))
 
     def _converter(self, n: int, transmission: Transmission) -> Callable[[sp.Expr], Expr]:
         symbols = {**self.scalars.symbols, transmission.q: self.graph.input("q", n)}

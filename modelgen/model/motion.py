@@ -85,7 +85,7 @@ def of_links(frames: Frames, rates: Rates) -> Rates:
 def base_motion(frames: Frames) -> LinkMotion:
     """The base at rest, accelerated against gravity."""
     graph = frames.graph
-    x, y, z = (graph.const(component) for component in frames.arm.gravity)
+    x, y, z = (frames.scalars(component) for component in frames.arm.gravity)
     zero: Vector = (graph.zero, graph.zero, graph.zero)
     return LinkMotion(zero, zero, zero, (-x, -y, -z), (x, y, z))
 

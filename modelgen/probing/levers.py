@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from modelgen.description.objects import Arm, geometry_symbol
+from modelgen.description.objects import Arm, LeveredDrive, geometry_symbol
 from modelgen.probing.motion import Array, Motion
-from modelgen.transmission import Transmission, of_joint
+from modelgen.transmission import Levered, Transmission, of_joint
 
 Curve = Callable[[Array], Array]
 
@@ -57,19 +58,43 @@ def gain(arm: Arm, joint: int, q: Array) -> Array:
 @lru_cache(maxsize=256)
 def _curves(drive: Transmission, symbols: tuple[tuple[str, float], ...]) -> _Curves:
     known = {geometry_symbol(name): value for name, value in symbols}
-    return _Curves(
-        _curve(drive.motor(), drive.q, known),
-        _curve(drive.k1(), drive.q, known),
-        _curve(drive.slope(), drive.q, known),
-        _curve(drive.joint(), drive.q_m, known),
+    if not isinstance(drive, Levered):
+        return _bound(_compiled(drive, (), known), ())
+    d = drive.drive
+    figures = (d.l1, d.l2, *d.length, d.offset, *d.motor)
+    values = tuple(float(x.subs(known)) if isinstance(x, sp.Expr) else float(x) for x in figures)
+    return _bound(_lever(d.rev), values)
+
+
+@lru_cache(maxsize=2)
+def _lever(rev: int) -> tuple[Callable[..., Any], ...]:
+    """The curves of any lever over its figures."""
+    names = ("l1", "l2", "low", "high", "offset", "first", "last")
+    l1, l2, low, high, offset, first, last = figures = [sp.Symbol(name, real=True) for name in names]
+    motor: Any = (first, last)
+    return _compiled(Levered(LeveredDrive(l1, l2, (low, high), motor, rev, offset, 1.0), {}), figures, {})
+
+
+def _compiled(
+    drive: Transmission, figures: Sequence[sp.Symbol], known: Mapping[sp.Symbol, float]
+) -> tuple[Callable[..., Any], ...]:
+    """motor, k1, slope, joint of a drive over its coordinate and these figures, with what is known."""
+    curves = (
+        (drive.q, drive.motor()),
+        (drive.q, drive.k1()),
+        (drive.q, drive.slope()),
+        (drive.q_m, drive.joint()),
     )
+    return tuple(sp.lambdify([x, *figures], sp.sympify(y).subs(known), "numpy", cse=True) for x, y in curves)
 
 
-def _curve(expression: sp.Expr, symbol: sp.Symbol, known: Mapping[sp.Symbol, float]) -> Curve:
-    call = sp.lambdify(symbol, sp.sympify(expression).subs(known), "numpy", cse=True)
+def _bound(calls: Sequence[Callable[..., Any]], values: Sequence[float]) -> _Curves:
+    return _Curves(*(_curve(call, values) for call in calls))
 
+
+def _curve(call: Callable[..., Any], values: Sequence[float]) -> Curve:
     def evaluate(x: Array) -> Array:
         with np.errstate(invalid="ignore"):
-            return np.broadcast_to(np.asarray(call(x), dtype=np.float64), x.shape)
+            return np.broadcast_to(np.asarray(call(x, *values), dtype=np.float64), x.shape)
 
     return evaluate

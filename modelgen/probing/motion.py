@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from modelgen.functions.objects import Function
+
 Array = NDArray[np.float64]
 
 
@@ -29,3 +31,31 @@ class Motion:
     def step(self) -> float:
         """Sampling period [s]."""
         return float(self.t[-1] - self.t[0]) / max(1, len(self.t) - 1)
+
+
+def given_for(
+    function: Function,
+    motion: Motion,
+    parameters: Array,
+    *,
+    free: tuple[float, ...] = (),
+    geometry: Array | None = None,
+    loads: Array | None = None,
+    states: Array | None = None,
+) -> dict[str, Array]:
+    """What a function takes along a motion, by name; loads and states are zero where they are not given."""
+    count, n = motion.q.shape
+    known = {
+        "q": motion.q,
+        "dq": motion.dq,
+        "ddq": motion.ddq,
+        "time": motion.t[:, None],
+        "dt": np.full((count, 1), motion.step),
+        "parameters": np.asarray(parameters, dtype=float),
+        "free": np.asarray(free, dtype=float),
+        "geometry": np.zeros(0) if geometry is None else geometry,
+        "load": loads if loads is not None else np.zeros((count, n)),
+        "state": states if states is not None else np.zeros((count, 1)),
+        "input": np.zeros((count, n)),
+    }
+    return {a.name: known[a.name] for a in function.arguments}

@@ -17,7 +17,7 @@ from modelgen.model.equations import Equations
 from modelgen.probing.delays import acting, added
 from modelgen.probing.levers import gain, reread
 from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
-from modelgen.probing.motion import Array, Motion
+from modelgen.probing.motion import Array, Motion, given_for
 from modelgen.probing.places import changes_description, with_effect
 from modelgen.probing.programs import (
     columns_of,
@@ -27,6 +27,7 @@ from modelgen.probing.programs import (
     loads_of,
 )
 from modelgen.probing.series import Series
+from modelgen.probing.variations import Variations
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]
@@ -90,8 +91,8 @@ class Prober:
             states = self._states(self._own, motion, (), parameters)
         if "load" in names:
             made = self._function(model, "load")
-            loads = np.asarray(made(**self._given(made.function, motion, (), parameters, None, states)))
-        found = function(**self._given(function.function, motion, (), parameters, loads, states))
+            loads = np.asarray(made(**given_for(made.function, motion, parameters, states=states)))
+        found = function(**given_for(function.function, motion, parameters, loads=loads, states=states))
         return np.asarray(found).reshape(len(motion.t), self.n, -1)
 
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
@@ -121,7 +122,7 @@ class Prober:
     @cached_property
     def _own(self) -> Equations:
         """Equations of the arm with its own effects."""
-        return Equations(slid(described(self.arm)))
+        return Equations(slid(described(self.arm)), lazy=True)
 
     def _function(self, model: Model, name: str) -> NumpyFunction:
         if ("model", name) not in self._made:
@@ -156,6 +157,10 @@ class Prober:
         definition = CATALOGUE[effect]
         if effect == "time_delay":
             return added(motion.t, self.inputs(motion, parameters), values["delay"], joint)
+        if effect == "drive_gain_error" and joint is not None and self._proportional:
+            described(with_effect(self.arm, effect, joint, values))  # where the arm admits it
+            inputs = self.inputs(motion, parameters)
+            return np.asarray(inputs * (1 / (1 + values["error"]) - 1) * (np.arange(self.n) == joint - 1))
         if changes_description(effect) or effect == "torque_constant_saturation":
             key = (effect, joint, tuple(sorted(values.items())))
             other = with_effect(self.arm, effect, joint, values)
@@ -181,19 +186,35 @@ class Prober:
         if "links" not in self._made:
             joints = tuple(replace(j, effects=()) for j in described(self.arm).joints)
             alone = replace(described(self.arm), joints=joints, effects=())
-            self._made["links"] = NumpyFunction(links_and_effect(Equations(slid(alone)), self.base))
+            self._made["links"] = NumpyFunction(
+                links_and_effect(Equations(slid(alone), lazy=True), self.base)
+            )
         call = self._made["links"]
 
         def inputs() -> Array:
-            return np.asarray(call(**self._given(call.function, motion, (), parameters, None, None)))
+            return np.asarray(call(**given_for(call.function, motion, parameters)))
 
         return self._kept("links", motion, parameters, inputs)
 
     # -- inside -----------------------------------------------------------------------------
 
+    @cached_property
+    def _proportional(self) -> bool:
+        """Whether all inputs are efforts over torque constants: no drive bends them."""
+        return not any(part.place == "input" for effect in self._own.effects for part in effect.parts)
+
+    @cached_property
+    def _varied(self) -> Variations:
+        return Variations(described(self.arm), self.base)
+
     def _inputs_of(self, key: object, arm: Arm, motion: Motion, parameters: Array) -> Array:
+        if key != "described" and not self._own.state_names():
+            geometry = self._varied.values(described(arm))
+            if geometry is not None:
+                call = self._varied.call
+                return np.asarray(call(**given_for(call.function, motion, parameters, geometry=geometry)))
         if key not in self._arms:
-            made = Equations(slid(described(arm)))
+            made = Equations(slid(described(arm)), lazy=True)
             self._arms[key] = NumpyFunction(inputs_of(made, self.base)), made
         call, e = self._arms[key]
         if key != "described":
@@ -203,7 +224,7 @@ class Prober:
     def _along(self, call: NumpyFunction, e: Equations, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
         states = self._states(e, motion, (), parameters) if e.state_names() else None
-        return np.asarray(call(**self._given(call.function, motion, (), parameters, None, states)))
+        return np.asarray(call(**given_for(call.function, motion, parameters, states=states)))
 
     def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
         """Equations of the arm with this effect alone, what is not fixed left free."""
@@ -214,7 +235,7 @@ class Prober:
         if key not in self._equations:
             joints = tuple(replace(j, effects=()) for j in self.arm.joints)
             alone = with_effect(replace(self.arm, joints=joints, effects=()), effect, joint, fixed)
-            self._equations[key] = Equations(slid(alone), free=free)
+            self._equations[key] = Equations(slid(alone), free=free, lazy=True)
         return self._equations[key]
 
     def _run(
@@ -234,11 +255,13 @@ class Prober:
             made = self._made["loads"]
 
             def inputs() -> Array:
-                return np.asarray(made(**self._given(made.function, motion, (), parameters, None, None)))
+                return np.asarray(made(**given_for(made.function, motion, parameters)))
 
             loads = self._kept("loads", motion, parameters, inputs)
         states = self._states(e, motion, free, parameters) if e.state_names() else None
-        return np.asarray(call(**self._given(function, motion, free, parameters, loads, states)))
+        return np.asarray(
+            call(**given_for(function, motion, parameters, free=free, loads=loads, states=states))
+        )
 
     def _free(self, e: Equations, values: Values) -> tuple[float, ...]:
         """Values of what was left free, in order."""
@@ -259,7 +282,7 @@ class Prober:
         ahead = round(SETTLING / motion.step) if elastic else 0
 
         def head() -> Array:
-            given = self._given(series.heads.function, motion, (), parameters, None, None)
+            given = given_for(series.heads.function, motion, parameters)
             return series.head(given, len(motion.t), ahead)
 
         found = series(self._kept((e, "head"), motion, parameters, head), free, ahead)
@@ -274,27 +297,3 @@ class Prober:
             # the motion is kept: its place in memory is the key
             self._memory[at] = motion, make()
         return self._memory[at][1]
-
-    def _given(
-        self,
-        function: Function,
-        motion: Motion,
-        free: tuple[float, ...],
-        parameters: Array,
-        loads: Array | None,
-        states: Array | None,
-    ) -> dict[str, Array]:
-        count = len(motion.t)
-        known = {
-            "q": motion.q,
-            "dq": motion.dq,
-            "ddq": motion.ddq,
-            "time": motion.t[:, None],
-            "dt": np.full((count, 1), motion.step),
-            "parameters": np.asarray(parameters, dtype=float),
-            "free": np.asarray(free, dtype=float),
-            "load": loads if loads is not None else np.zeros((count, self.n)),
-            "state": states if states is not None else np.zeros((count, 1)),
-            "input": np.zeros((count, self.n)),
-        }
-        return {a.name: known[a.name] for a in function.arguments}

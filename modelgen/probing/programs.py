@@ -34,6 +34,7 @@ def bare(name: str, e: Equations, count: int, expressions: Sequence[Expr]) -> Fu
         "dt": 1,
         "state": len(e.state_names()),
         "free": len(e.free),
+        "geometry": sum(x.value is None for x in e.scalars.symbols.values()),
     }
     arguments = [Argument(a, size, "", "", float("inf")) for a, size in sizes.items() if size]
     output = Output("out", len(expressions), 1, "", "")
@@ -49,7 +50,7 @@ def inputs_of(e: Equations, base: Grouping) -> Function:
 
 def loads_of(arm: Arm, base: Grouping) -> Function:
     """Loads at the motor coordinates."""
-    e = Equations(slid(described(arm)))
+    e = Equations(slid(described(arm)), lazy=True)
     return bare("loads", e, len(base.base), Dynamics(e, base_values(e, base)).loads())
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,17 +13,35 @@ from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.selection import Ranked
 from modelgen.effects import CATALOGUE
 from modelgen.report.drawing import effort, inline, left_over, replayed, residuals
-from modelgen.report.experiment import described
+from modelgen.report.experiment import described, picture
+from modelgen.report.sketches import Sketch
 from modelgen.resources import templates_folder
 
+EFFORT, LEFT_OVER, REPLAY, NEXT = "effort", "left over", "replay", "next experiment"
+AGAINST = "left over against "
 
-def pictures(d: Diagnosis) -> dict[str, str]:
+
+def sketches(d: Diagnosis) -> dict[str, Sketch]:
+    """Sketches of all pictures, by name."""
+    found = {EFFORT: effort(d)}
+    found |= {AGAINST + name: sketch for name, sketch in residuals(d).items()}
+    replay = replayed(d)
+    if replay is not None:
+        found[REPLAY] = replay
+    if d.next_experiment is not None and d.next_experiment.proposal is not None:
+        found[NEXT] = picture(d.next_experiment)
+    return {**found, LEFT_OVER: left_over(d)}
+
+
+def pictures(drawn: Mapping[str, str]) -> dict[str, str]:
     """Pictures of the report that stand alone, by file name."""
-    return {"effort.svg": effort(d), "left_over.svg": left_over(d)}
+    return {"effort.svg": drawn[EFFORT], "left_over.svg": drawn[LEFT_OVER]}
 
 
-def report(d: Diagnosis) -> str:
-    """HTML that needs nothing beside it."""
+def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
+    """HTML that needs nothing beside it. drawn: SVG text of `sketches` by name, drawn here by default."""
+    if drawn is None:
+        drawn = {name: sketch.drawn() for name, sketch in sketches(d).items()}
     environment = Environment(
         loader=FileSystemLoader(templates_folder()),
         undefined=StrictUndefined,
@@ -43,15 +61,19 @@ def report(d: Diagnosis) -> str:
         errors=_errors(d),
         unit=d.errors.unit,
         simulation=_simulation(d),
-        effort_picture=inline(effort(d)),
-        residual_pictures=residuals(d),
-        replay_picture=replayed(d),
+        effort_picture=inline(drawn[EFFORT]),
+        residual_pictures=[
+            (name.removeprefix(AGAINST), inline(text))
+            for name, text in drawn.items()
+            if name.startswith(AGAINST)
+        ],
+        replay_picture=inline(drawn[REPLAY]) if REPLAY in drawn else Markup(),
         ranking=_rankings(d),
         error_text=_ERRORS[free],
         simulation_text=_SIMULATED[free],
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
         missing=d.not_identifiable,
-        experiment=described(d.next_experiment),
+        experiment=described(d.next_experiment, drawn.get(NEXT, "")),
         settings=[(name, _said(value)) for name, value in d.settings.items()],
     )
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"

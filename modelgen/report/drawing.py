@@ -1,4 +1,4 @@
-"""Pictures of a diagnosis: efforts, what is left over, simulated motion."""
+"""Sketches of the pictures of a diagnosis: efforts, what is left over, simulated motion."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from markupsafe import Markup
 from modelgen.description import NoDrive
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.rows import Array
-from modelgen.figures import COLOURS, figure, svg
+from modelgen.figures import COLOURS
+from modelgen.report.sketches import Sketch
 
 _WINDOWS = 12  # that the picture of the simulation shows
 _SECONDS = 10.0  # of the test record that the pictures over time show
 
 
-def effort(d: Diagnosis) -> str:
+def effort(d: Diagnosis) -> Sketch:
     """Measured and predicted effort, and what is left, over the first seconds of the test record."""
     held, t = d.test, d.test.prepared.t
     shown = t <= t[0] + _SECONDS
     n = held.effort.shape[1]
-    made, axes = figure(n, 2, (9.0, 1.9 * n))
+    made = Sketch(n, 2, (9.0, 1.9 * n))
+    axes = made.axes()
     measured = held.effort * held.gain
     free = held.prepared.input is None
     units = units_of(d)
@@ -38,7 +40,7 @@ def effort(d: Diagnosis) -> str:
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
-    return svg(made)
+    return made
 
 
 def units_of(d: Diagnosis) -> list[str]:
@@ -50,7 +52,7 @@ def units_of(d: Diagnosis) -> list[str]:
     return [u if isinstance(j.drive, NoDrive) else "A" for j, u in zip(joints, forces, strict=True)]
 
 
-def residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
+def residuals(d: Diagnosis) -> dict[str, Sketch]:
     """What is left over against speed, position, load, motor angle and time, before and after."""
     held, p = d.test, d.test.prepared
     n = held.effort.shape[1]
@@ -64,9 +66,10 @@ def residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
     ]
     if p.temperature is not None:
         against.append(("temperature [deg C]", p.picked(p.temperature)))
-    pictures = []
+    pictures = {}
     for name, x in against:
-        made, axes = figure(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
+        made = Sketch(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
+        axes = made.axes()
         for j in range(n):
             m = held.moving[:, j]
             for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
@@ -75,15 +78,16 @@ def residuals(d: Diagnosis) -> list[tuple[str, Markup]]:
             axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
             axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
         axes[0, 0].set_ylabel(f"left over [{units_of(d)[0]}]", fontsize=7)
-        pictures.append((name.split(" [")[0], inline(svg(made))))
+        pictures[name.split(" [")[0]] = made
     return pictures
 
 
-def left_over(d: Diagnosis) -> str:
+def left_over(d: Diagnosis) -> Sketch:
     """Means of what is left over by speed, motor position and effort, before and after."""
     held, p = d.test, d.test.prepared
     n = held.effort.shape[1]
-    made, axes = figure(n, 3, (9.0, 1.9 * n))
+    made = Sketch(n, 3, (9.0, 1.9 * n))
+    axes = made.axes()
     against = (p.picked(p.dq), p.picked(p.motor), np.abs(held.effort * held.gain))
     for j in range(n):
         m = held.moving[:, j]
@@ -94,7 +98,7 @@ def left_over(d: Diagnosis) -> str:
         axes[j, 0].set_ylabel(f"joint {j + 1} [{units_of(d)[j]}]", fontsize=7)
     for axis, name in zip(axes[-1], ("speed", "motor position", "size of the effort"), strict=True):
         axis.set_xlabel(name, fontsize=7)
-    return svg(made)
+    return made
 
 
 def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
@@ -109,13 +113,14 @@ def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
     return ((edges[1:] + edges[:-1]) / 2)[full], total[full] / count[full]
 
 
-def replayed(d: Diagnosis) -> Markup:
+def replayed(d: Diagnosis) -> Sketch | None:
     """Measured and simulated positions of the first windows of the test record, and their difference."""
     shown = [s for s in d.simulation if s is not None]
     if not shown:
-        return Markup()
+        return None
     n = shown[0].measured.shape[2]
-    made, axes = figure(n, 2, (9.0, 2.1 * n))
+    made = Sketch(n, 2, (9.0, 2.1 * n))
+    axes = made.axes()
     labels = (("model as described", COLOURS[0]), ("extended model", COLOURS[1]))
     unit = ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
     for j in range(n):
@@ -134,7 +139,7 @@ def replayed(d: Diagnosis) -> Markup:
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
-    return inline(svg(made))
+    return made
 
 
 def inline(text: str) -> Markup:

@@ -10,8 +10,9 @@ from modelgen.diagnosis.experiments import STEM, Experiment, differences
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.proposal import PERIODS
 from modelgen.excitation.writing import set_points, trajectory
-from modelgen.figures import COLOURS, figure, svg
+from modelgen.figures import COLOURS
 from modelgen.report.drawing import inline
+from modelgen.report.sketches import Sketch
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
 
@@ -25,8 +26,8 @@ def followed(e: Experiment) -> str:
     return f"{e.best}{said}"
 
 
-def described(e: Experiment | None) -> dict[str, Any] | None:
-    """For the page."""
+def described(e: Experiment | None, drawn: str) -> dict[str, Any] | None:
+    """For the page. drawn: its picture."""
     if e is None:
         return None
     return {
@@ -34,26 +35,27 @@ def described(e: Experiment | None) -> dict[str, Any] | None:
         "best": followed(e)[0].upper() + followed(e)[1:] + ".",
         "trajectory": _trajectory(e),
         "pairs": _pairs(e),
-        "picture": "" if e.proposal is None else inline(picture(e)),
+        "picture": "" if e.proposal is None else inline(drawn),
         "tests": [(t.text, "" if t.evidence is None else f"{t.evidence:.3g}") for t in e.tests],
     }
 
 
-def plans(d: Diagnosis) -> dict[str, str]:
-    """Files of the trajectory, by name; none where there is no trajectory."""
+def plans(d: Diagnosis, drawn: str) -> dict[str, str]:
+    """Files of the trajectory, by name; none where there is no trajectory. drawn: its picture."""
     e = d.next_experiment
     if e is None or e.proposal is None:
         return {}
     made = e.proposal.excitation
-    return dict(zip(NAMES, (trajectory(made), set_points(made), picture(e)), strict=True))
+    return dict(zip(NAMES, (trajectory(made), set_points(made), drawn), strict=True))
 
 
-def picture(e: Experiment) -> str:
-    """SVG: the joints' positions over a period, and what a wrong cause would leave over."""
+def picture(e: Experiment) -> Sketch:
+    """The joints' positions over a period, and what a wrong cause would leave over."""
     assert e.proposal is not None
     made, rows = e.proposal.excitation, e.proposal.rows
     pairs = differences(e, e.proposal)
-    figure_, axes = figure(1 + len(pairs), 1, (9.0, 2.0 * (1 + len(pairs))))
+    sketch = Sketch(1 + len(pairs), 1, (9.0, 2.0 * (1 + len(pairs))))
+    axes = sketch.axes()
     q = made.signals["q"]
     for k in range(q.shape[1]):
         axes[0, 0].plot(made.t, q[:, k], color=COLOURS[k % len(COLOURS)], label=f"joint {k + 1}")
@@ -69,7 +71,7 @@ def picture(e: Experiment) -> str:
         axis.set_ylabel("input")
         axis.legend(loc="upper right", fontsize=7)
     axes[-1, 0].set_xlabel("time [s]")
-    return svg(figure_)
+    return sketch
 
 
 def _trajectory(e: Experiment) -> str:

@@ -13,19 +13,23 @@ from modelgen.errors import InputError
 from modelgen.extension import extended_yaml
 from modelgen.functions import Options
 from modelgen.generation import generate
-from modelgen.report.diagnosis import pictures, report
+from modelgen.report.diagnosis import NEXT, pictures, report, sketches
 from modelgen.report.experiment import NAMES, plans
+from modelgen.report.sketches import Pen
 
 
-def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True) -> None:
+def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:
     """diagnosis.json, report.html, the extended description and its code into `out`: whole, or nothing.
 
-    file: the description that is extended. code: False leaves the code out. Raises InputError.
+    file: the description that is extended. code: False leaves the code out. pen: draws the
+    pictures, a new one in this process by default. Raises InputError.
     """
     trials = [c.trial for c in d.selection.causes]
     causes = [(t.candidate.effect, t.candidate.joint, t.parameters) for t in trials]
     name = d.arm.name
     new = out.with_name(f".{out.name}.new")
+    pen, wanted = pen or Pen(), sketches(d)
+    pen.give(wanted)
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
@@ -37,9 +41,10 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True) -> None:
             generate([arm], new / "generated", Options(identified=values), processes=1)
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
-        (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
-        for picture, drawn in {**pictures(d), **plans(d)}.items():
-            (new / picture).write_text(drawn, encoding="utf-8", newline="\n")
+        drawn = {name: pen.fetch(name) for name in wanted}
+        (new / "report.html").write_text(report(d, drawn), encoding="utf-8", newline="\n")
+        for picture, text in {**pictures(drawn), **plans(d, drawn.get(NEXT, ""))}.items():
+            (new / picture).write_text(text, encoding="utf-8", newline="\n")
         out.mkdir(parents=True, exist_ok=True)
         for stale in NAMES:  # of a diagnosis before
             (out / stale).unlink(missing_ok=True)
