@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import sympy as sp
 
 from modelgen.dataset.objects import Array
 from modelgen.description import Arm, geometry_symbol
-from modelgen.transmission import of_joint
+from modelgen.transmission import Transmission, of_joint
 
 Curve = Callable[[Array], Array]
 
@@ -53,33 +54,34 @@ def drives_of(arm: Arm) -> tuple[Drive, ...]:
 
 
 def _made(arm: Arm) -> tuple[Drive, ...]:
-    symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
-    found = []
-    for i in arm.coordinates:
-        t = of_joint(arm, arm.joints[i])
+    symbols = tuple(arm.symbols.items())
+    joints = [arm.joints[i] for i in arm.coordinates]
+    return tuple(_drive(of_joint(arm, joint), symbols, joint.type == "prismatic") for joint in joints)
 
-        def curve(expression: sp.Expr, symbol: sp.Symbol) -> Curve:
-            call = sp.lambdify(symbol, sp.sympify(expression).subs(symbols), "numpy", cse=True)
 
-            def evaluate(x: Array) -> Array:
-                with np.errstate(invalid="ignore"):
-                    return np.broadcast_to(np.asarray(call(x), dtype=np.float64), np.shape(x)).copy()
+@lru_cache(maxsize=64)
+def _drive(t: Transmission, given: tuple[tuple[str, float], ...], prismatic: bool) -> Drive:
+    symbols = {geometry_symbol(name): value for name, value in given}
 
-            return evaluate
+    def curve(expression: sp.Expr, symbol: sp.Symbol) -> Curve:
+        call = sp.lambdify(symbol, sp.sympify(expression).subs(symbols), "numpy", cse=True)
 
-        found.append(
-            Drive(
-                motor=curve(t.motor(), t.q),
-                joint=curve(t.joint(), t.q_m),
-                k1=curve(t.k1(), t.q),
-                slope=curve(t.slope(), t.q),
-                torque_constant=float(t.torque_constant),
-                driven=t.driven,
-                unit=t.unit if t.driven else ("m" if arm.joints[i].type == "prismatic" else "rad"),
-                ratio=_ratio(t.motor().subs(symbols), t.q),
-            )
-        )
-    return tuple(found)
+        def evaluate(x: Array) -> Array:
+            with np.errstate(invalid="ignore"):
+                return np.broadcast_to(np.asarray(call(x), dtype=np.float64), np.shape(x)).copy()
+
+        return evaluate
+
+    return Drive(
+        motor=curve(t.motor(), t.q),
+        joint=curve(t.joint(), t.q_m),
+        k1=curve(t.k1(), t.q),
+        slope=curve(t.slope(), t.q),
+        torque_constant=float(t.torque_constant),
+        driven=t.driven,
+        unit=t.unit if t.driven else ("m" if prismatic else "rad"),
+        ratio=_ratio(t.motor().subs(symbols), t.q),
+    )
 
 
 def _ratio(motor: sp.Expr, q: sp.Symbol) -> float | None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sympy as sp
-
 from modelgen.errors import InputError
 from modelgen.functions.arguments import effort_units, input_units, joint_units, motor_units
 from modelgen.functions.assembly import Assembly, vector
@@ -74,8 +72,7 @@ def _joint_from_motor(a: Assembly) -> Function:
         t = drive.transmission
         symbols = {**e.scalars.symbols, t.q_m: graph.input("q_m", n)}
         inverse = t.joint()
-        first, second = sp.diff(inverse, t.q_m), sp.diff(inverse, t.q_m, 2)
-        value, slope, bend = (from_sympy(graph, x, symbols) for x in (inverse, first, second))
+        value, slope, bend = (from_sympy(graph, x, symbols) for x in (inverse, *t.inverse_rates()))
         speed, acceleration = graph.input("dq_m", n), graph.input("ddq_m", n)
         joint[0].append(value)
         joint[1].append(slope * speed)

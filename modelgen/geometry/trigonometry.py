@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 
 import sympy as sp
 
@@ -56,11 +57,21 @@ class Trigonometry:
         """Sine and cosine of `angle` = +-symbol + constant, the drive's; None for any other angle."""
         if coordinate in self.lags:
             return None
-        slope = sp.diff(angle, symbol)
-        if slope not in (1, -1):
+        found = _turned(angle, symbol)
+        if found is None:
             return None
-        shift = sp.expand(slope * angle - symbol)
-        if shift.has(symbol):
-            return None
-        sine, cosine = self.of(coordinate, float(shift) if shift.is_number else shift)
-        return (sine if slope == 1 else -sine), cosine
+        forwards, shift = found
+        sine, cosine = self.of(coordinate, shift)
+        return (sine if forwards else -sine), cosine
+
+
+@lru_cache(maxsize=1024)
+def _turned(angle: sp.Expr, symbol: sp.Symbol) -> tuple[bool, Scalar] | None:
+    """Of +-(symbol + constant), whether the sign is plus, and the constant; None for any other angle."""
+    slope = sp.diff(angle, symbol)
+    if slope not in (1, -1):
+        return None
+    shift = sp.expand(slope * angle - symbol)
+    if shift.has(symbol):
+        return None
+    return slope == 1, float(shift) if shift.is_number else shift

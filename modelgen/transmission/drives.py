@@ -12,7 +12,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -58,6 +58,13 @@ class Transmission(ABC):
     def slope(self) -> sp.Expr:
         """d^2 q_m/dq^2: k2 is this times dq^2."""
         return self._once("slope", lambda: sp.diff(self.motor(), self.q, 2))
+
+    def inverse_rates(self) -> tuple[sp.Expr, sp.Expr]:
+        """dq/dq_m and d^2 q/dq_m^2 as functions of q_m."""
+        return (
+            self._once("first", lambda: sp.diff(self.joint(), self.q_m)),
+            self._once("second", lambda: sp.diff(self.joint(), self.q_m, 2)),
+        )
 
     def _once(self, name: str, make: Callable[[], sp.Expr]) -> sp.Expr:
         """What symbolic differentiation gives, made when first asked for."""
@@ -170,6 +177,10 @@ class Levered(Transmission):
 
     def joint_range(self) -> Range | None:
         """From the ends of the stroke."""
+        return self._ends
+
+    @cached_property
+    def _ends(self) -> Range:
         ends = [float(self.joint().subs(self.q_m, m).subs(self.values)) for m in self.drive.motor]
         return min(ends), max(ends)
 
