@@ -9,14 +9,15 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import noise_of
-from modelgen.diagnosis.fitting import rmse, stacked, weighted_fit
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
 
 LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats
+EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this
 NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
@@ -242,6 +243,53 @@ def orthonormal(matrix: Array) -> Array:
     return np.asarray(u[:, s > 1e-10 * s[0]]) if len(s) else np.zeros((len(matrix), 0))
 
 
+def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
+    """Least squares over the moving rows, each joint weighted by what it leaves; two passes."""
+    n = rows[0].effort.shape[1]
+    weights = np.ones(n)
+    theta = np.zeros(columns[0].shape[2])
+    if not len(theta):
+        return theta
+    for turn in range(3):
+        left, right = stacked(rows, columns, weights)
+        norms = np.linalg.norm(left, axis=0)
+        norms[norms == 0] = 1.0
+        theta = lstsq(left / norms, right, cond=1e-10, lapack_driver="gelsy", check_finite=False)[0] / norms
+        if turn < 2:
+            left = rmse(rows, columns, theta)
+            weights = 1.0 / np.maximum(left, max(EXACT * float(left.max()), 1e-150))
+    return theta
+
+
+def stacked(
+    rows: Sequence[Rows], columns: Sequence[Array], weights: Array | None = None
+) -> tuple[Array, Array]:
+    """Moving rows of all records and joints, weighted by joint: (R, p) and (R,)."""
+    left, right = [], []
+    for r, c in zip(rows, columns, strict=True):
+        for j in range(r.effort.shape[1]):
+            m = r.moving[:, j]
+            w = 1.0 if weights is None else weights[j]
+            left.append(c[m, j] * w)
+            right.append(r.effort[m, j] * w)
+    return np.concatenate(left), np.concatenate(right)
+
+
+def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
+    """Of the moving rows, by joint (n,); nan where a joint never moves."""
+    n = rows[0].effort.shape[1]
+    found = np.full(n, np.nan)
+    for j in range(n):
+        errors = [
+            (r.effort[r.moving[:, j], j] - c[r.moving[:, j], j] @ theta)
+            for r, c in zip(rows, columns, strict=True)
+        ]
+        together = np.concatenate(errors)
+        if len(together):
+            found[j] = math.sqrt(float(np.mean(together**2)))
+    return np.where(np.isnan(found), 1.0, found)
+
+
 def mean_squares(system: System) -> Array:
     """Of what the fit leaves on the moving rows, by joint (n,)."""
     return rmse(system.rows, system.columns, system.theta) ** 2
@@ -252,4 +300,4 @@ def moving_share(rows: Sequence[Rows]) -> NDArray[np.float64]:
     return np.asarray(np.mean(np.concatenate([r.moving for r in rows]), axis=0))
 
 
-__all__ = ["Gain", "System", "Whitener", "moving_share", "orthonormal", "rmse", "stacked", "weighted_fit"]
+__all__ = ["Gain", "System", "Whitener", "moving_share", "orthonormal", "rmse", "weighted_fit"]
