@@ -241,7 +241,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(
     "arguments",
     [
         ["generate", "--no-such"],
-        ["show"],
+        ["identify"],
         ["generate", "--gains", "guessed"],
         ["generate", "-j", "0"],
         ["nothing"],
@@ -343,3 +343,17 @@ def test_progress_is_for_terminals_and_goes_to_stderr(tmp_path: Path, checkout: 
 def test_every_shipped_arm_is_offered(tmp_path: Path, checkout: Path) -> None:
     line = refused(call("show", "--arm", "?", cwd=tmp_path, checkout=checkout))
     assert line.endswith(f"(available: {', '.join(ARMS)})")
+
+
+def test_the_arm_is_named_where_the_file_has_several(tmp_path: Path, checkout: Path) -> None:
+    done = call("show", cwd=tmp_path, checkout=checkout)
+    assert done.returncode == 2
+    assert "found 18 arms and no --arm, expected --arm with one of ariane4, " in done.stderr
+    assert done.stdout == ""
+
+
+def test_the_only_arm_of_a_file_needs_no_name(tmp_path: Path, checkout: Path) -> None:
+    assert call("init", "mine", cwd=tmp_path, checkout=checkout).returncode == 0
+    one, other = (call("show", *more, cwd=tmp_path, checkout=checkout) for more in ([], ["--arm", "mine"]))
+    assert one.returncode == 0
+    assert one.stdout == other.stdout

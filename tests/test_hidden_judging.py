@@ -6,7 +6,7 @@ import pytest
 from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 
-from modelgen.diagnosis.lack_of_fit import inflation
+from modelgen.diagnosis.lack_of_fit import PART, WHITENED, WHOLE, inflation
 from modelgen.diagnosis.null_distribution import NULLS
 
 
@@ -61,6 +61,8 @@ def test_two_effects() -> None:
 
 
 def test_the_null_distribution_lies_beside_the_nominal_threshold() -> None:
-    assert len(NULLS) >= 200
-    assert list(NULLS) == sorted(NULLS)
-    assert 1.0 < inflation() < 1.5
+    assert set(NULLS) == {WHOLE, PART, WHITENED}
+    for kind, values in NULLS.items():
+        assert len(values) >= 200
+        assert list(values) == sorted(values)
+        assert 0.5 < inflation(kind) < 1.5

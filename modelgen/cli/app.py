@@ -84,8 +84,8 @@ def generate(
 @app.command()
 @guarded
 def show(
-    arm: given.OneArm,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     without: given.Without = "",
     gains: given.DriveGains = given.Gains.KNOWN,
     runtime_geometry: given.RuntimeGeometry = False,
@@ -94,11 +94,11 @@ def show(
     as_json: given.Json = False,
 ) -> None:
     """Print base parameters, their grouping, and what the functions cost."""
-    from modelgen.cli.selecting import options, selected
+    from modelgen.cli.selecting import one, options
     from modelgen.cli.showing import run
 
     chosen = options(without, gains, runtime_geometry, sincos_inputs, jacobian_link)
-    _, (found,) = selected(arms, [arm])
+    _, found = one(arms, arm)
     run(found, chosen, as_json=as_json)
 
 
@@ -108,11 +108,11 @@ app.command()(identify)
 @app.command()
 @guarded
 def diagnose(
-    arm: given.OneArm,
     train: given.Train,
     out: given.Folder,
     test: given.DiagnosisTest = None,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
     period: given.Period = None,
@@ -122,9 +122,9 @@ def diagnose(
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.cli.diagnosing import run
-    from modelgen.cli.selecting import selected
+    from modelgen.cli.selecting import one
 
-    file, (found,) = selected(arms, [arm])
+    file, found = one(arms, arm)
     run(
         Path(file),
         found,
@@ -148,8 +148,8 @@ app.command()(fleet)
 @app.command()
 @guarded
 def excite(
-    arm: given.OneArm,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     out: given.TrajectoryFile = Path("trajectory.csv"),
     period: given.ExcitationPeriod = 80.0,
     harmonics: given.Harmonics = 5,
@@ -169,7 +169,7 @@ def excite(
 ) -> None:
     """Compute a trajectory that determines the base parameters well, within the arm's limits."""
     from modelgen.cli.exciting import run
-    from modelgen.cli.selecting import selected
+    from modelgen.cli.selecting import one
     from modelgen.excitation import Settings
     from modelgen.excitation import box as parsed
 
@@ -189,7 +189,7 @@ def excite(
         processes=jobs,
         dask=dask,
     )
-    _, (found,) = selected(arms, [arm])
+    _, found = one(arms, arm)
     run(found, settings, out, as_json=as_json)
 
 
@@ -197,20 +197,20 @@ def excite(
 @guarded
 def calibrate(
     files: given.ArmsAndLog,
-    arm: given.OneArm,
     joint: given.LeverJoint,
+    arm: given.OneArm = "",
     out: given.Folder = Path("calibration"),
     length_std: given.LengthStd = 0.01,
     as_json: given.Json = False,
 ) -> None:
     """Fit a lever's geometry to motor counts and measured joint angles."""
     from modelgen.cli.calibrating import run
-    from modelgen.cli.selecting import selected
+    from modelgen.cli.selecting import one
     from modelgen.errors import InputError
 
     if len(files) > 2:
         raise InputError(f"found {len(files)} files ({', '.join(files)}), expected [ARMS] LOG")
-    file, (found,) = selected(Path(files[0]) if len(files) == 2 else None, [arm])
+    file, found = one(Path(files[0]) if len(files) == 2 else None, arm)
     run(Path(file), found, joint, files[-1], out, length_std=length_std, as_json=as_json)
 
 

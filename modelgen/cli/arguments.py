@@ -108,7 +108,10 @@ Pages = Annotated[
 OnlyArms = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
 ]
-OneArm = Annotated[str, typer.Option(metavar="NAME", help="The arm.", show_default=False)]
+OneArm = Annotated[
+    str,
+    typer.Option("--arm", metavar="NAME", help="The arm; not needed where there is one.", show_default=False),
+]
 OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
 OutFile = Annotated[Path, typer.Option(metavar="FILE", help="File to write; it must not exist.")]
 Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]

@@ -75,11 +75,11 @@ NumberOfFolds = Annotated[
 
 @guarded
 def identify(
-    arm: given.OneArm,
     train: given.Train,
     out: given.Folder,
     test: given.OptionalTest = None,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     mapping: given.Mapping = None,
     cutoff: given.CutOff = None,
     preset: given.Preset = "default",
@@ -100,10 +100,10 @@ def identify(
 ) -> None:
     """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
     from modelgen.cli.identifying import Request, run
-    from modelgen.cli.selecting import options, selected
+    from modelgen.cli.selecting import one, options
 
     chosen = options(without, gains, False, False, None)
-    file, (found,) = selected(arms, [arm])
+    file, found = one(arms, arm)
     request = Request(
         file=Path(file),
         train=train,

@@ -29,10 +29,10 @@ Free = Annotated[
 
 @guarded
 def refine(
-    arm: given.OneArm,
     log: Logs,
     out: given.Folder,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     mapping: given.Mapping = None,
     parameters: given.Parameters = None,
     free: Free = None,
@@ -41,9 +41,9 @@ def refine(
 ) -> None:
     """Tune base parameters until the simulated motion is the measured one, with or without efforts."""
     from modelgen.cli.refining import run
-    from modelgen.cli.selecting import selected, with_parameters
+    from modelgen.cli.selecting import one, with_parameters
     from modelgen.functions import Options
 
-    _, (found,) = selected(arms, [arm])
+    _, found = one(arms, arm)
     values = with_parameters(Options(), parameters, [found]).identified or None
     run(found, values, log, out, mapping=mapping, free=free or [], window=window, as_json=as_json)

@@ -38,6 +38,18 @@ def selected(path: Path | None, names: Sequence[str]) -> tuple[str, list[Arm]]:
     return str(path), chosen
 
 
+def one(path: Path | None, name: str) -> tuple[str, Arm]:
+    """The file as messages name it, and its arm of that name, its only one where no name is given.
+
+    Raises InputError as `selected` does, and where no name is given and the file has several arms.
+    """
+    file, arms = selected(path, [name] if name else [])
+    if len(arms) > 1:
+        names = ", ".join(arm.name for arm in arms)
+        raise InputError(f"{file}: found {len(arms)} arms and no --arm, expected --arm with one of {names}")
+    return file, arms[0]
+
+
 def options(
     without: str, gains: str, runtime_geometry: bool, sincos: bool, jacobian_link: str | None
 ) -> Options:

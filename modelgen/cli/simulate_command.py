@@ -10,8 +10,8 @@ from modelgen.cli.guard import guarded
 
 @guarded
 def simulate(
-    arm: given.OneArm,
     arms: given.Arms = None,
+    arm: given.OneArm = "",
     q0: given.Begin = "",
     dq0: given.BeginSpeed = "0",
     duration: given.Duration = None,
@@ -35,12 +35,12 @@ def simulate(
     as_json: given.Json = False,
 ) -> None:
     """Simulate the model: free, under control, or with the inputs of a log to be held against it."""
-    from modelgen.cli.selecting import options, selected, with_parameters
+    from modelgen.cli.selecting import one, options, with_parameters
     from modelgen.cli.simulating import Request, run
     from modelgen.functions import Options
     from modelgen.functions.options import prepared
 
-    _, (found,) = selected(arms, [arm])
+    _, found = one(arms, arm)
     found = prepared(found, options(without, given.Gains.KNOWN, False, False, None))
     values = with_parameters(Options(), parameters, [found]).identified or None
     run(

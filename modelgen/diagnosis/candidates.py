@@ -46,18 +46,26 @@ LINK_SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
     "joint_flexibility": {**SEARCHES["joint_flexibility"], "relaxation": (0.005,)},
     "backlash": {"play": (3e-4, 1e-3, 3e-3, 6e-3, 1.2e-2)},
 }
+# Of several parameters some are often as they were: asked for by fewer, at the price of fewer.
+PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
+    "actuator_mass": (("inertia", "moment_x"),),
+    "lever_geometry": (("l1",), ("l2",), ("length",)),
+}
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
 PERIODIC = "torque_ripple"
 # About what the drives are given, or what working warms: of no meaning in a free motion.
 DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", "friction_warm_up", *COMPLIANT)
+STRIBECK = (1.0, 2.0)  # exponents: Bo and Pavelescu 1982; Armstrong-Helouvry 1991
 LATER = "payload_change"
+WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is lost in noise
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are.
+    """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are;
+    part: of the parameters that are estimated, those that are asked for, empty for all.
 
     joint counts coordinates from 1, None for the whole arm.
     """
@@ -66,10 +74,16 @@ class Candidate:
     joint: int | None
     fixed: Values = field(default_factory=dict)
     searched: tuple[Parameter, ...] = ()
+    part: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
         """Parameters that the columns belong to."""
+        return self.part or self.every
+
+    @property
+    def every(self) -> tuple[str, ...]:
+        """Parameters that are estimated where all are asked for."""
         if self.effect in STEPS:
             return tuple(STEPS[self.effect])
         if self.effect == LATER:
@@ -106,7 +120,8 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
                 continue
             searched = tuple(p for p in effect.nonlinear if p.grid)
             for fixed in _fixed(name, joint, rows, prober):
-                found.append(Candidate(name, joint, fixed, () if name in STEPS else searched))
+                for part in ((), *PARTS.get(name, ())):
+                    found.append(Candidate(name, joint, fixed, () if name in STEPS else searched, part))
     return found
 
 
@@ -141,6 +156,8 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
     if name == "transmission_coupling":
         assert joint is not None
         return [{"other": float(k), "ratio": r} for k in range(1, joint) for r in (1.0, -1.0)]
+    if name == "stribeck_friction":
+        return [{"exponent": exponent} for exponent in STRIBECK]
     if name == "nonlinear_viscous_friction":
         return [{"scale": scale("speed", name, joint, rows, prober)}]
     if name == "backlash" and at_links(joint, rows):
@@ -197,7 +214,15 @@ def columns(
     if candidate.effect in COMPLIANT:  # the tail of a filter, of what lies outside the rows, is nothing
         largest = max((np.abs(table).max(initial=0.0) for table in found), default=0.0)
         found = [t if np.abs(t).max(initial=0.0) > TAIL * largest else np.zeros_like(t) for t in found]
-    return found
+    return of_part(candidate, found)
+
+
+def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
+    """Of columns (M, n, k) of all parameters, those that are asked for."""
+    if not candidate.part:
+        return list(tables)
+    kept = [candidate.every.index(name) for name in candidate.names]
+    return [table[:, :, kept] for table in tables]
 
 
 def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Prober, base: Array) -> Array:

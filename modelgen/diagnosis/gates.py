@@ -21,6 +21,7 @@ from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
+CARRIED = 0.45  # of the gain to be expected, measured at least: less carries from record to record by chance
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
 FEW = 4  # records that are tried one by one
@@ -76,14 +77,15 @@ class Gates:
         """Whether the cause helps and matters at a joint that it is judged by.
 
         Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the
-        unseen rows with and without the cause, which takes up much of what is slow. One must not be a loss.
+        unseen rows with and without the cause, which takes up much of what is slow; the larger one counts.
         That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
-        where a measured gain has that of all parameters of a part. What errors of the positions could feign
-        must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments is not
-        zero. By that gain must pass what such errors look like most; everything where no period repeats,
-        since slow noise, of a size that nobody knows, looks like a slow cause; and causes after the first,
-        to which its form may leave some.
+        where a measured gain has that of all parameters of a part. A share of it must be measured: what
+        stands for something else does not carry from record to record. What errors of the positions could
+        feign must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments
+        is not zero. By that gain must pass what such errors look like most; everything where no period
+        repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes after the
+        first, to which its form may leave some.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -108,8 +110,9 @@ class Gates:
         if strict:
             return Judgement(best, hoped, "" if self._total(again) < 1.0 else "other joints")
         gains = np.maximum(refitted, _gains(whole)[places])
-        measured = float(gains[expected >= least].max(initial=-np.inf))
-        if measured < 0.0:
+        kept = (expected >= least) & (gains >= CARRIED * expected)
+        measured = float(gains[kept].max(initial=-np.inf))
+        if not kept.any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
         worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         return Judgement(measured, hoped, "other joints" if worse else "")

@@ -3,33 +3,51 @@
 With k periods of the excitation, the mean residual over periods has the variance of the noise over k
 where the model is complete; what it has beyond that is deterministic (Draper and Smith 1998, 1.5;
 Swevers, Verdonck and De Schutter 2007 for periodic excitation). The test is made on the residuals as they
-are, with the degrees of freedom that their colour leaves, and on the whitened ones.
+are, with the degrees of freedom that their colour leaves, over all rows and over short parts of the period,
+where a contact or a hard spot shows; and on the whitened residuals over all rows.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy import special
 
 from modelgen.dataset.periods import folded
 from modelgen.diagnosis.null_distribution import NULLS
-from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, independent
 
 SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
 CLEAN = 0.99  # share of the nulls that stay below their threshold
+PARTS = 16  # of a period, and as many halfway between them
+FEWEST = 2.0  # independent rows of a part
+WHOLE, PART, WHITENED = "whole", "part", "whitened"
 
 
 @dataclass(frozen=True)
-class LackOfFit:
-    """statistic, threshold: of the joint and test that come nearest or exceed most. by_joint: (n,), plain."""
+class Test:
+    """Statistic and quantile of F. kind: WHOLE, PART or WHITENED; joint from 0.
 
+    record, begin, end: of a part, its record and its phases in rows of the period; excess: what repeats
+    there, in units of the noise's variance.
+    """
+
+    kind: str
+    joint: int
     statistic: float
-    threshold: float
-    by_joint: Array
-    periods: int
+    quantile: float
+    record: int = -1
+    begin: int = 0
+    end: int = 0
+    excess: float = 0.0
+
+    @property
+    def threshold(self) -> float:
+        """The quantile, and how far above it complete models come."""
+        return inflation(self.kind) * self.quantile
 
     @property
     def found(self) -> bool:
@@ -37,14 +55,41 @@ class LackOfFit:
         return self.statistic > self.threshold
 
 
+@dataclass(frozen=True)
+class LackOfFit:
+    """statistic, threshold: of the test that comes nearest or exceeds most. by_joint: (n,), plain."""
+
+    worst: Test
+    by_joint: Array
+    periods: int
+
+    @property
+    def statistic(self) -> float:
+        """Of the worst test."""
+        return self.worst.statistic
+
+    @property
+    def threshold(self) -> float:
+        """Of the worst test."""
+        return self.worst.threshold
+
+    @property
+    def found(self) -> bool:
+        """Whether something deterministic is left."""
+        return self.worst.found
+
+
 @dataclass
 class _Sums:
+    """Of one joint: between and within periods, and by record the squares of the means by phase."""
+
     between: float = 0.0
     within: float = 0.0
     free_between: float = 0.0
     free_within: float = 0.0
+    phases: list[tuple[int, Array, Array]] = field(default_factory=list)
 
-    def add(self, table: Array, share: float) -> None:
+    def add(self, record: int, table: Array, share: float) -> None:
         """A record of one joint, one line a period; `share` of its rows are independent."""
         there = np.isfinite(table)
         count = there.sum(axis=0)
@@ -53,41 +98,89 @@ class _Sums:
             return
         part, k = table[:, full], count[full]
         mean = np.nanmean(part, axis=0)
-        self.between += float((k * mean**2).sum())
+        squares, free = np.zeros(len(full)), np.where(full, share, 0.0)
+        squares[full] = k * mean**2
+        self.between += float(squares.sum())
         self.within += float(np.nansum((part - mean) ** 2))
-        self.free_between += share * float(full.sum())
+        self.free_between += float(free.sum())
         self.free_within += share * float((k - 1).sum())
+        self.phases.append((record, squares, free))
 
-    def ratio(self, taken: float, tests: int) -> tuple[float, float]:
-        """F and its quantile; the fit has taken `taken` degrees of freedom from the means."""
+    def whole(self, kind: str, joint: int, taken: float, tests: int) -> Test:
+        """Of all rows; the fit has taken `taken` degrees of freedom from the means."""
         if self.free_within < 10 or self.within <= 0:
-            return 0.0, np.inf
+            return Test(kind, joint, 0.0, np.inf)
         free = max(5.0, self.free_between - taken)
         statistic = (self.between / free) / (self.within / self.free_within)
-        return statistic, float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))
+        return Test(kind, joint, statistic, self._quantile(free, tests))
+
+    def parts(self, joint: int, tests: int) -> Iterator[Test]:
+        """Of every part of every record."""
+        if self.free_within < 10 or self.within <= 0:
+            return
+        tests *= 2 * PARTS * len(self.phases)
+        for record, squares, free in self.phases:
+            for begin, end in parts(len(squares)):
+                phases = np.arange(begin, end) % len(squares)
+                count = float(free[phases].sum())
+                if count < FEWEST:
+                    continue
+                statistic = (float(squares[phases].sum()) / count) / (self.within / self.free_within)
+                quantile, excess = self._quantile(count, tests), count * (statistic - 1.0)
+                yield Test(PART, joint, statistic, quantile, record, begin, end, excess)
+
+    def _quantile(self, free: float, tests: int) -> float:
+        return float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))
+
+
+def parts(rows: int) -> Iterator[tuple[int, int]]:
+    """First and last phase (exclusive, beyond the end: of the next period) of each part of `rows` phases."""
+    for half in range(2 * PARTS):
+        begin, end = (round((half + shift) / 2 * rows / PARTS) for shift in (0, 2))
+        yield begin, end
 
 
 def lack_of_fit(system: System) -> LackOfFit | None:
     """Of the training records; None where nothing repeats."""
     found, most = _tests(system)
-    if not any(np.isfinite(limit) for _, limit in found):
+    if not any(np.isfinite(t.quantile) for t in found):
         return None
-    statistic, quantile = max(found, key=lambda pair: pair[0] / pair[1])
-    return LackOfFit(statistic, inflation() * quantile, np.array([s for s, _ in found[: system.n]]), most)
+    worst = max(found, key=lambda t: t.statistic / t.threshold)
+    by_joint = [t.statistic for t in found if t.kind == WHOLE]
+    return LackOfFit(worst, np.array(by_joint), most)
 
 
-def inflation() -> float:
-    """Of the nominal thresholds, from the calibrated null distribution."""
-    return float(np.quantile(NULLS, CLEAN))
+def in_parts(system: System) -> list[Test]:
+    """Of every part of the period of every joint and record."""
+    return [t for t in _tests(system)[0] if t.kind == PART]
 
 
-def ratios(system: System) -> list[float]:
-    """Statistic over the quantile of F, of every joint's residuals as they are, then whitened (2 n,)."""
-    return [statistic / quantile for statistic, quantile in _tests(system)[0]]
+def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | None:
+    """Record, and times from and to in its first period [s], of the part that shows most; None where it is no
+    part.
+    """
+    worst = fit.worst
+    if worst.kind != PART:
+        return None
+    p = rows[worst.record].prepared
+    time = p.picked(p.time)
+    return p.record.name, float(time[worst.begin]), float(time[min(worst.end, len(time) - 1)])
 
 
-def _tests(system: System) -> tuple[list[tuple[float, float]], int]:
-    """Statistic and quantile of F of every joint, plain, then whitened; and the most periods of a record."""
+def inflation(kind: str) -> float:
+    """Of the nominal thresholds of a kind of test, from the calibrated null distribution."""
+    return float(np.quantile(NULLS[kind], CLEAN))
+
+
+def ratios(system: System) -> dict[str, float]:
+    """The largest statistic over its quantile of F, of every kind of test."""
+    found, _ = _tests(system)
+    kinds = (WHOLE, PART, WHITENED)
+    return {k: max((t.statistic / t.quantile for t in found if t.kind == k), default=0.0) for k in kinds}
+
+
+def _tests(system: System) -> tuple[list[Test], int]:
+    """All tests of all joints, and the most periods of a record."""
     n = system.n
     plain, white = [_Sums() for _ in range(n)], [_Sums() for _ in range(n)]
     most = 0
@@ -95,17 +188,17 @@ def _tests(system: System) -> tuple[list[tuple[float, float]], int]:
         rows = system.periods[i]
         if rows is None:
             continue
+        most = max(most, -(-len(r.effort) // rows))
         for j in range(n):
-            moving = r.moving[:, j]
-            residual = np.where(moving, system.residuals[i][:, j], np.nan)
-            table = folded(residual, rows)
-            most = max(most, -(-len(r.effort) // rows))
-            plain[j].add(table, independent_rows(table))
-            left = np.full(len(moving), np.nan)
+            table = folded(np.where(r.moving[:, j], system.residuals[i][:, j], np.nan), rows)
+            plain[j].add(i, table, independent_rows(table))
+            left = np.full(len(r.moving), np.nan)
             left[system.usable[i][:, j]] = system.left[(system.record == i) & (system.joint == j)]
-            white[j].add(folded(left, rows), 1.0)
+            white[j].add(i, folded(left, rows), 1.0)
     taken = system.basis.shape[1] / n
-    return [s.ratio(taken * share, 2 * n) for share, part in ((0.0, plain), (1.0, white)) for s in part], most
+    found = [s.whole(WHOLE, j, 0.0, n) for j, s in enumerate(plain)]
+    found += [s.whole(WHITENED, j, taken, n) for j, s in enumerate(white)]
+    return found + [t for j, s in enumerate(plain) for t in s.parts(j, n)], most
 
 
 def repeating(system: System) -> Array:

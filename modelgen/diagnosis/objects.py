@@ -12,7 +12,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.endogeneity import Endogeneity
 from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.experiments import to_json as experiment_json
-from modelgen.diagnosis.lack_of_fit import LackOfFit
+from modelgen.diagnosis.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Ranked, Selection
@@ -98,6 +98,7 @@ class Diagnosis:
 def to_json(d: Diagnosis) -> dict[str, Any]:
     """diagnosis.json."""
     fit = d.lack_of_fit
+    where = None if fit is None else place(fit, d.selection.system.rows)
     return {
         "schema": 1,
         "arm": d.arm.name,
@@ -112,6 +113,11 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             "threshold": rounded(fit.threshold),
             "by_joint": numbers(fit.by_joint),
             "periods": fit.periods,
+            "test": fit.worst.kind,
+            "joint": fit.worst.joint + 1,
+            "part": None
+            if where is None
+            else {"record": where[0], "from_s": rounded(where[1]), "to_s": rounded(where[2])},
         },
         "error": {
             "unit": d.errors.unit,

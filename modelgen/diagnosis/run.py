@@ -20,7 +20,7 @@ from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import released, settings_of_swings
 from modelgen.diagnosis.gates import PRACTICAL, practical
-from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
+from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit, place
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
@@ -188,10 +188,13 @@ def _verdict(
         )
     if fit.found:
         near = ", ".join(_title(c.trial.candidate) for c in beside)
+        where = place(fit, selection.system.rows)
+        part = "" if where is None else f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]},"
         more = f"; {near} comes nearest and leaves most of it" if near else ""
         return (
             "outside_catalogue",
-            f"something deterministic remains that no effect of the catalogue explains{more}",
+            f"something deterministic remains at joint {fit.worst.joint + 1}{part} that no effect of the "
+            f"catalogue explains{more}",
         )
     if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
         joint = int(np.argmax(correlated.cost)) + 1

@@ -2,7 +2,8 @@
 
 An effect outside the catalogue has a share in common with those inside, and the most similar of them gains
 something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
-explained half of what repeats from period to period at the joints that it acts on.
+explained two thirds of what repeats from period to period at the joints that it acts on, and most of it in
+the part of the period that shows most; and what is left elsewhere must be less than what it explains.
 """
 
 from __future__ import annotations
@@ -10,13 +11,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from modelgen.diagnosis.gates import with_causes
-from modelgen.diagnosis.lack_of_fit import lack_of_fit, repeating
-from modelgen.diagnosis.rows import Rows
+from modelgen.diagnosis.lack_of_fit import in_parts, lack_of_fit, repeating
+from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained
+MOST = 1 / 4  # of what repeats in the part of the period that shows most, left
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -32,13 +36,25 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     sizes = mean_squares(old)
     first, last = repeating(old) / sizes, repeating(system) / sizes
     much = repeating(system) > MUCH * mean_squares(system)
+    worst, left = (_worst(s) for s in (old, system))
+    found = any(t.found for t in in_parts(system))
     dropped = []
     for cause in selection.causes:
         joints = cause.trial.candidate.joints(system.n)
-        if much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum():
+        little = much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum()
+        shown = worst[joints].max()
+        if little or (found and (left[joints].max() > MOST * shown or left.max() > shown)):
             dropped.append(cause)
     if not dropped:
         return selection, []
     kept = [cause for cause in selection.causes if cause not in dropped]
     system = System(rows, with_causes(rows, [c.trial for c in kept]), system.periods)
     return replace(selection, causes=kept, system=system), dropped
+
+
+def _worst(system: System) -> Array:
+    """What repeats in the part of the period that shows most, by joint (n,), over the noise's variance."""
+    found = np.zeros(system.n)
+    for t in in_parts(system):
+        found[t.joint] = max(found[t.joint], t.excess)
+    return found

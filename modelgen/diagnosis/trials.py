@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,7 +57,7 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
 
 
 def sensible(trial: Trial, arm: Arm) -> bool:
-    """Whether something is left of what may not be negative, and the arm admits the values."""
+    """Whether something is left where values may not be negative, and the arm admits them."""
     c = trial.candidate
     if c.effect in of.STEPS:
         try:
@@ -67,7 +67,7 @@ def sensible(trial: Trial, arm: Arm) -> bool:
     if trial.candidate.effect in of.COMPLIANT:
         return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
     limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
-    return not limited or max(limited) > 0
+    return not limited or max(limited) > 0 or c.effect == of.WEIGHING
 
 
 class Court:
@@ -146,11 +146,13 @@ class Court:
         key = candidate.effect, candidate.joint, tuple(sorted(given.items()))
         stays = of.unchanging(candidate, self.prober)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
-            self.known[key] = of.columns(candidate, values, self.rows, self.prober, self.base)
+            every = replace(candidate, part=())
+            self.known[key] = of.columns(every, values, self.rows, self.prober, self.base)
             self.renewed.add(key)
         elif not stays and key not in self.renewed:
             self.aged = True
-        return self.known[key]
+        found = self.known[key]
+        return None if found is None else of.of_part(candidate, found)
 
     def _refined(
         self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float

@@ -9,6 +9,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from modelgen.diagnosis.lack_of_fit import place
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.selection import Ranked
 from modelgen.effects import CATALOGUE
@@ -171,8 +172,17 @@ def _fit(d: Diagnosis) -> str:
         return "No period repeats in the training records, so the noise could not be measured."
     return (
         f"Lack of fit over {f.periods} repeated periods: {f.statistic:.2f}, threshold {f.threshold:.2f} "
-        "(1 for a complete model)."
+        f"(1 for a complete model), {_where(d)}."
     )
+
+
+def _where(d: Diagnosis) -> str:
+    """Of what repeats most."""
+    f = d.lack_of_fit
+    assert f is not None
+    found = place(f, d.selection.system.rows)
+    joint = f"joint {f.worst.joint + 1}"
+    return joint if found is None else f"{joint}, {found[0]} from {found[1]:.2f} to {found[2]:.2f} s"
 
 
 def _errors(d: Diagnosis) -> list[Sequence[str]]:

@@ -1,0 +1,100 @@
+"""What repeats in a short part of the period, in noise of which all is known: no arm, no filter."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.random import Generator, default_rng
+from scipy.signal import lfilter
+
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.gates import Judgement
+from modelgen.diagnosis.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import Cause, Selection
+from modelgen.diagnosis.standing import standing
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.trials import Trial
+
+PERIOD, PERIODS = 480, 3
+BUMP = slice(210, 240)  # a sixteenth of the period
+UNUSED: Any = None
+
+
+def record(random: Generator, repeats: Array, colour: float = 0.0) -> Rows:
+    """One joint; repeats: (PERIOD,), what every period has besides noise of unit size."""
+    noise = lfilter([np.sqrt(1 - colour**2)], [1.0, -colour], random.normal(size=PERIOD * PERIODS + 200))[
+        200:
+    ]
+    phase = 2 * np.pi * np.arange(PERIOD) / PERIOD
+    shapes = [np.sin(k * phase) for k in range(1, 6)]
+    columns = np.column_stack([np.tile(s, PERIODS) for s in shapes])
+    effort = columns.sum(axis=1) + np.tile(repeats, PERIODS) + noise
+    flags = np.ones((len(effort), 1), dtype=bool)
+    return Rows(UNUSED, effort[:, None], columns[:, None, :], flags, UNUSED)
+
+
+def system(seed: int, repeats: Array, colour: float = 0.0) -> System:
+    """Two records."""
+    random = default_rng([3, seed])
+    rows = [record(random, repeats, colour) for _ in range(2)]
+    return System(rows, [r.columns for r in rows], [PERIOD] * 2)
+
+
+def bump(size: float) -> Array:
+    """A contact in one place of the period."""
+    found = np.zeros(PERIOD)
+    found[BUMP] = size * (-1.0) ** np.arange(BUMP.stop - BUMP.start)  # of a form that the columns lack
+    return found
+
+
+def test_a_short_contact_is_found_and_placed() -> None:
+    """More clearly than by all rows together."""
+    for k in range(10):
+        made = system(k, bump(1.3))
+        fit, by_kind = lack_of_fit(made), ratios(made)
+        assert fit is not None
+        assert fit.found
+        assert fit.worst.kind == PART
+        assert fit.worst.begin < BUMP.stop
+        assert fit.worst.end > BUMP.start
+        assert by_kind[PART] > 1.2 * by_kind[WHOLE]
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.7])
+def test_noise_alone_is_not_found(colour: float) -> None:
+    """At a nominal 0.1 % for all tests of a kind together, not once in sixty."""
+    found = [ratios(system(k, np.zeros(PERIOD), colour)) for k in range(60)]
+    assert max(r[PART] for r in found) < 1.0
+    assert max(r[WHOLE] for r in found) < 1.0
+
+
+def test_excess_is_the_power_that_repeats() -> None:
+    """In units of the noise's variance, summed over the rows of a part."""
+    found = np.mean([max(t.excess for t in in_parts(system(k, bump(6.0)))) for k in range(10)])
+    assert found == pytest.approx(PERIODS * float((bump(6.0) ** 2).sum()), rel=0.2)
+
+
+def cause(column: Array, s: System) -> Cause:
+    """As if it had passed every gate."""
+    columns = [np.tile(column, PERIODS)[:, None, None] for _ in s.rows]
+    gain = s.gain(columns)
+    assert gain is not None
+    judged = Judgement(5.0, 5.0, "")
+    trial = Trial(Candidate("friction_offset", 1), {}, columns, gain)
+    return Cause(trial, gain.delta_bic, judged.gain, judged.expected)
+
+
+@pytest.mark.parametrize(("right", "kept"), [(True, 1), (False, 0)])
+def test_a_cause_that_leaves_the_contact_stands_in_for_it(right: bool, kept: bool) -> None:
+    """A wave over all the period explains a share of it only."""
+    s = system(1, bump(8.0))
+    wave = bump(0.2) + np.cos(2 * np.pi * (np.arange(PERIOD) - 225) / PERIOD) ** 8
+    one = cause(bump(1.0) if right else wave, s)
+    rows, tables = (
+        s.rows,
+        [np.concatenate([r.columns, c], axis=2) for r, c in zip(s.rows, one.trial.columns, strict=True)],
+    )
+    selection, dropped = standing(Selection([one], System(rows, tables, s.periods), []), rows)
+    assert len(selection.causes) == kept
+    assert len(dropped) == 1 - kept
