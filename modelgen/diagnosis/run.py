@@ -189,7 +189,9 @@ def _verdict(
     if fit.found:
         near = ", ".join(_title(c.trial.candidate) for c in beside)
         where = place(fit, selection.system.rows)
-        part = "" if where is None else f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]},"
+        part = ""
+        if where is not None:
+            part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
         more = f"; {near} comes nearest and leaves most of it" if near else ""
         return (
             "outside_catalogue",

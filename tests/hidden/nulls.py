@@ -1,8 +1,8 @@
 """python -m hidden.nulls [--count N] [--seed N] [--jobs N]
 
 The lack of fit of complete models: statistic over the quantile of F of every joint and test, the largest of
-each null, sorted. Writes modelgen/diagnosis/null_distribution.py. Run from the repository with tests/ on the
-path.
+each null by kind of test, sorted. Writes modelgen/diagnosis/null_distribution.py. Run from the repository
+with tests/ on the path.
 """
 
 from __future__ import annotations
@@ -32,17 +32,19 @@ OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.
 HEAD = '''\
 """Lack of fit of complete models, over its nominal threshold: the largest of all joints and tests of a null.
 
+By kind of test (lack_of_fit.py).
 Simulated records of {count} arms with nothing hidden (tests/hidden/nulls.py, seed {seed}), sorted. Above one
 where coloured residuals have fewer degrees of freedom than were counted, and where errors that repeat with
 the motion, as those of encoders, stand out of little noise.
 """
 
-NULLS: tuple[float, ...] = (
+# fmt: off
+NULLS: dict[str, tuple[float, ...]] = {{
 '''
 
 
-def ratio(arm: str, seed: int) -> float:
-    """Of one null: the largest statistic over its quantile of F."""
+def of_null(arm: str, seed: int) -> dict[str, float]:
+    """Of one null: the largest statistic over its quantile of F, by kind of test."""
     with tempfile.TemporaryDirectory(prefix="null-") as name:
         folder = Path(name)
         make(Case(arm, seed), folder)
@@ -54,7 +56,7 @@ def ratio(arm: str, seed: int) -> float:
     model, prober = build_model(described), Prober(described)
     rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
     periods = [None if p is None else p // chosen.factor for p in lengths]
-    return max(ratios(System(rows, [r.columns for r in rows], periods)))
+    return ratios(System(rows, [r.columns for r in rows], periods))
 
 
 def main() -> int:
@@ -69,12 +71,13 @@ def main() -> int:
     drawn = [
         (SMALL[int(random.integers(len(SMALL)))], int(random.integers(10**6))) for _ in range(given.count)
     ]
-    found = Parallel(n_jobs=given.jobs)(delayed(ratio)(arm, seed) for arm, seed in drawn)
-    values = [f"{value:.3f}" for value in sorted(found)]
-    lines = [", ".join(values[k : k + 15]) for k in range(0, len(values), 15)]
-    text = (
-        HEAD.format(count=given.count, seed=given.seed) + "".join(f"    {line},\n" for line in lines) + ")\n"
-    )
+    found = Parallel(n_jobs=given.jobs)(delayed(of_null)(arm, seed) for arm, seed in drawn)
+    text = HEAD.format(count=given.count, seed=given.seed)
+    for kind in found[0]:
+        values = [f"{value:.3f}" for value in sorted(ratio[kind] for ratio in found)]
+        lines = [", ".join(values[k : k + 14]) for k in range(0, len(values), 14)]
+        text += f'    "{kind}": (\n' + "".join(f"        {line},\n" for line in lines) + "    ),\n"
+    text += "}\n# fmt: on\n"
     OUT.write_text(text, encoding="utf-8")
     return 0
 
