@@ -71,6 +71,8 @@ class Gates:
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
         self.counts = _moving(rows)
+        own = [t.candidate.joint for t in before]
+        self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
 
     def judged(self, trial: Trial) -> Judgement:
@@ -84,8 +86,8 @@ class Gates:
         stands for something else does not carry from record to record. What errors of the positions could
         feign must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments
         is not zero. By that gain must pass what such errors look like most; everything where no period
-        repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes after the
-        first, to which its form may leave some.
+        repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes at a joint
+        of another, to which its form may leave some.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -98,24 +100,23 @@ class Gates:
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
         doubtful = not self.system.noise_known or bool((could > least).any())
-        strict = doubtful or bool(self.before) or trial.candidate.effect in FEIGNABLE
-        best = -np.inf
-        if strict:
-            best = float(refitted[refitted >= np.maximum(least, could)].max(initial=-np.inf))
-            if not np.isfinite(best):
-                shut = "gain" if (refitted < least).all() else "positions"
-                return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
+        doubtful = doubtful or trial.candidate.effect in FEIGNABLE
+        strict = np.array([doubtful or j in self.taken for j in places], dtype=bool)
+        anew = strict & (refitted >= np.maximum(least, could))
+        if strict.all() and not anew.any():
+            shut = "gain" if (refitted < least).all() else "positions"
+            return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
         expected = self._expected(new, halves)[places]
         hoped = float(expected.max(initial=0.0))
-        if strict:
-            return Judgement(best, hoped, "" if self._total(again) < 1.0 else "other joints")
-        gains = np.maximum(refitted, _gains(whole)[places])
-        kept = (expected >= least) & (gains >= CARRIED * expected)
-        measured = float(gains[kept].max(initial=-np.inf))
-        if not kept.any():
+        gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
+        carried = ~strict & (expected >= least) & (gains >= CARRIED * expected)
+        if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
-        worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
-        return Judgement(measured, hoped, "other joints" if worse else "")
+        if carried.any():
+            worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
+        else:
+            worse = self._total(again) >= 1.0
+        return Judgement(float(gains[anew | carried].max()), hoped, "other joints" if worse else "")
 
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
