@@ -21,7 +21,7 @@ from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, independent
 
 SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
-CLEAN = 0.99  # share of the nulls that stay below their threshold
+CLEAN = 1.0 - 0.01 / 3.0  # share of the nulls that stay below the threshold of each of three kinds
 PARTS = 16  # of a period, and as many halfway between them
 FEWEST = 2.0  # independent rows of a part
 WHOLE, PART, WHITENED = "whole", "part", "whitened"
