@@ -8,10 +8,11 @@ from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
 from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import Cause, Selection
+from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial

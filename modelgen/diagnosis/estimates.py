@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from modelgen.description import Arm
+from modelgen.diagnosis.causes import covariance
 from modelgen.diagnosis.objects import Estimate
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
@@ -15,14 +16,6 @@ from modelgen.effects import CATALOGUE
 from modelgen.functions import Model
 from modelgen.model.parameters import unit_of
 from modelgen.transmission import of_joint
-
-
-def covariance(system: System) -> Array:
-    """Of the least squares solution of the whitened equations, (p, p)."""
-    norms = np.linalg.norm(system.matrix, axis=0)
-    norms[norms == 0] = 1.0
-    inverse = np.linalg.pinv((system.matrix / norms).T @ (system.matrix / norms), rcond=1e-14)
-    return np.asarray(inverse / np.outer(norms, norms))
 
 
 def cause_estimates(selection: Selection, rows: Sequence[Rows], arm: Arm) -> list[dict[str, Estimate]]:

@@ -10,10 +10,10 @@ import numpy as np
 
 from modelgen.diagnosis.bench import Test, least, readings, tests
 from modelgen.diagnosis.candidates import LATER
+from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.proposal import PERIODS, Progress, Proposal, propose
 from modelgen.diagnosis.rows import Array
-from modelgen.diagnosis.selection import Cause
 from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE

@@ -53,7 +53,8 @@ def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
 
 class Gates:
     """Of one turn. before: causes that were taken; blur: what errors of the positions leave in the residuals,
-    mean squares by joint (n,); narrowed: the usual band over that of the rows.
+    mean squares by joint (n,); narrowed: the usual band over that of the rows; last: what is judged was taken
+    before those, which cannot have left it anything of theirs.
     """
 
     def __init__(
@@ -63,6 +64,8 @@ class Gates:
         system: System,
         blur: Array | None = None,
         narrowed: float = 1.0,
+        *,
+        last: bool = False,
     ) -> None:
         self.rows = rows
         self.before = before
@@ -71,7 +74,7 @@ class Gates:
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
         self.counts = _moving(rows)
-        own = [t.candidate.joint for t in before]
+        own = [] if last else [t.candidate.joint for t in before]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
 

@@ -13,6 +13,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.band import equations
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_links, at_motor, candidates
+from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.checks import Place, asked, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
@@ -26,7 +27,7 @@ from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, Cause, Selection, select
+from modelgen.diagnosis.selection import EVIDENCE, Selection, select
 from modelgen.diagnosis.standing import standing
 from modelgen.diagnosis.system import mean_squares
 from modelgen.errors import InputError

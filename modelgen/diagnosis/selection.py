@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.causes import Cause, eliminated
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
 from modelgen.diagnosis.positions import feigned, repeating_errors
@@ -21,21 +22,6 @@ AMBIGUOUS = 10.0  # delta BIC behind the winner
 MOST = 4  # causes, or one for each joint where there are more
 
 Report = Callable[[str, int, int], None]
-
-
-@dataclass
-class Cause:
-    """A candidate that passed. rivals: (candidate, delta BIC behind) that passed as well at its turn.
-
-    delta_bic: what leaving it out of the final model costs; cross_gain, expected_gain: percent of the RMSE on
-    rows that its fit had not seen, as measured and as it must be if the cause is there as found.
-    """
-
-    trial: Trial
-    delta_bic: float
-    cross_gain: float
-    expected_gain: float
-    rivals: list[tuple[Trial, float]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -126,7 +112,7 @@ def select(
         ]
         causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
-    causes, system = _eliminated(causes, rows, system, evidence)
+    causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
     named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
     for cause in causes:  # what is there beside it does not stand for it
         cause.rivals = [r for r in cause.rivals if (r[0].candidate.effect, r[0].candidate.joint) not in named]
@@ -145,28 +131,3 @@ def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> flo
     left = mean_squares(system) * (1.0 - gain / 100.0) ** 2
     found = float(feigned(blur, left)[best.candidate.joints(system.n)].max())
     return found if found > PRACTICAL else -np.inf
-
-
-def _eliminated(
-    causes: list[Cause], rows: Sequence[Rows], system: System, evidence: float
-) -> tuple[list[Cause], System]:
-    """Without causes that the others have made superfluous; evidence of the rest in the final model."""
-    while len(causes) > 1:
-        scores = [_worth(k, causes, system) for k in range(len(causes))]
-        worst = int(np.argmin(scores))
-        if scores[worst] >= evidence:
-            for cause, score in zip(causes, scores, strict=True):
-                cause.delta_bic = score
-            break
-        del causes[worst]
-        system = System(rows, with_causes(rows, [c.trial for c in causes]), system.periods)
-    return causes, system
-
-
-def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
-    """Delta BIC of cause k given all others."""
-    others = [c.trial for i, c in enumerate(causes) if i != k]
-    without = System(system.rows, with_causes(system.rows, others), system.periods)
-    trial = causes[k].trial
-    gain = without.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
-    return -np.inf if gain is None else gain.delta_bic

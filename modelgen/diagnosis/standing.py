@@ -13,10 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.lack_of_fit import in_parts, lack_of_fit, repeating
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import Cause, Selection
+from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained
