@@ -187,6 +187,13 @@ def _verdict(
             "nothing could be named, and no period repeats by which the noise could be measured: excite with "
             "two or more identical periods (--period gives their length where it is not found)"
         )
+    if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
+        joint = int(np.argmax(correlated.cost)) + 1
+        return "cannot_tell", (
+            "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
+            f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
+            f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
+        )
     if fit.found:
         near = ", ".join(_title(c.trial.candidate) for c in beside)
         where = place(fit, selection.system.rows)
@@ -198,13 +205,6 @@ def _verdict(
             "outside_catalogue",
             f"something deterministic remains at joint {fit.worst.joint + 1}{part} that no effect of the "
             f"catalogue explains{more}",
-        )
-    if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
-        joint = int(np.argmax(correlated.cost)) + 1
-        return "cannot_tell", (
-            "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
-            f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
-            f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 
