@@ -31,8 +31,8 @@ WHOLE, PART, WHITENED = "whole", "part", "whitened"
 class Test:
     """Statistic and quantile of F. kind: WHOLE, PART or WHITENED; joint from 0.
 
-    record, begin, end: of a part, its record and its phases in rows of the period; excess: what repeats
-    there, in units of the noise's variance.
+    record, begin, end: of a part, its record and its phases in rows of the period; excess: sum of
+    squares by which it repeats there, less noise [effort^2].
     """
 
     kind: str
@@ -126,8 +126,8 @@ class _Sums:
                 if count < FEWEST:
                     continue
                 statistic = (float(squares[phases].sum()) / count) / (self.within / self.free_within)
-                quantile, excess = self._quantile(count, tests), count * (statistic - 1.0)
-                yield Test(PART, joint, statistic, quantile, record, begin, end, excess)
+                excess = float(squares[phases].sum()) * (1.0 - 1.0 / statistic) if statistic > 0 else 0.0
+                yield Test(PART, joint, statistic, self._quantile(count, tests), record, begin, end, excess)
 
     def _quantile(self, free: float, tests: int) -> float:
         return float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))

@@ -21,7 +21,7 @@ from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained
-MOST = 1 / 4  # of what repeats in the part of the period that shows most, left
+MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -37,7 +37,7 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     sizes = mean_squares(old)
     first, last = repeating(old) / sizes, repeating(system) / sizes
     much = repeating(system) > MUCH * mean_squares(system)
-    worst, left = (_worst(s) for s in (old, system))
+    worst, left = (_worst(s) / sizes for s in (old, system))
     found = any(t.found for t in in_parts(system))
     dropped = []
     for cause in selection.causes:
@@ -54,7 +54,7 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
 
 
 def _worst(system: System) -> Array:
-    """What repeats in the part of the period that shows most, by joint (n,), over the noise's variance."""
+    """What repeats in the part of the period that shows most, by joint (n,) [effort^2]."""
     found = np.zeros(system.n)
     for t in in_parts(system):
         found[t.joint] = max(found[t.joint], t.excess)
