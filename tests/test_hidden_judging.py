@@ -6,7 +6,7 @@ import pytest
 from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 
-from modelgen.diagnosis.lack_of_fit import PART, WHITENED, WHOLE, inflation
+from modelgen.diagnosis.lack_of_fit import PART, WHOLE, inflation
 from modelgen.diagnosis.null_distribution import NULLS
 
 
@@ -61,7 +61,7 @@ def test_two_effects() -> None:
 
 
 def test_the_null_distribution_lies_beside_the_nominal_threshold() -> None:
-    assert set(NULLS) == {WHOLE, PART, WHITENED}
+    assert set(NULLS) == {WHOLE, PART}
     for kind, values in NULLS.items():
         assert len(values) >= 200
         assert list(values) == sorted(values)

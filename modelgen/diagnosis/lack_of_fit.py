@@ -4,7 +4,8 @@ With k periods of the excitation, the mean residual over periods has the varianc
 where the model is complete; what it has beyond that is deterministic (Draper and Smith 1998, 1.5;
 Swevers, Verdonck and De Schutter 2007 for periodic excitation). The test is made on the residuals as they
 are, with the degrees of freedom that their colour leaves, over all rows and over short parts of the period,
-where a contact or a hard spot shows; and on the whitened residuals over all rows.
+where a contact or a hard spot shows. Whitened residuals would show errors of the encoders, which repeat with
+the motion and are large at high frequencies alone.
 """
 
 from __future__ import annotations
@@ -21,15 +22,15 @@ from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, independent
 
 SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
-CLEAN = 1.0 - 0.01 / 3.0  # share of the nulls that stay below the threshold of each of three kinds
+CLEAN = 1.0 - 0.01 / 2.0  # share of the nulls that stay below the threshold of either kind
 PARTS = 16  # of a period, and as many halfway between them
 FEWEST = 2.0  # independent rows of a part
-WHOLE, PART, WHITENED = "whole", "part", "whitened"
+WHOLE, PART = "whole", "part"
 
 
 @dataclass(frozen=True)
 class Test:
-    """Statistic and quantile of F. kind: WHOLE, PART or WHITENED; joint from 0.
+    """Statistic and quantile of F. kind: WHOLE or PART; joint from 0.
 
     record, begin, end: of a part, its record and its phases in rows of the period; excess: sum of
     squares by which it repeats there, less noise [effort^2].
@@ -57,7 +58,7 @@ class Test:
 
 @dataclass(frozen=True)
 class LackOfFit:
-    """statistic, threshold: of the test that comes nearest or exceeds most. by_joint: (n,), plain."""
+    """statistic, threshold: of the test that comes nearest or exceeds most. by_joint: (n,), of all rows."""
 
     worst: Test
     by_joint: Array
@@ -106,13 +107,13 @@ class _Sums:
         self.free_within += share * float((k - 1).sum())
         self.phases.append((record, squares, free))
 
-    def whole(self, kind: str, joint: int, taken: float, tests: int) -> Test:
-        """Of all rows; the fit has taken `taken` degrees of freedom from the means."""
+    def whole(self, joint: int, tests: int) -> Test:
+        """Of all rows."""
         if self.free_within < 10 or self.within <= 0:
-            return Test(kind, joint, 0.0, np.inf)
-        free = max(5.0, self.free_between - taken)
+            return Test(WHOLE, joint, 0.0, np.inf)
+        free = max(5.0, self.free_between)
         statistic = (self.between / free) / (self.within / self.free_within)
-        return Test(kind, joint, statistic, self._quantile(free, tests))
+        return Test(WHOLE, joint, statistic, self._quantile(free, tests))
 
     def parts(self, joint: int, tests: int) -> Iterator[Test]:
         """Of every part of every record."""
@@ -175,14 +176,15 @@ def inflation(kind: str) -> float:
 def ratios(system: System) -> dict[str, float]:
     """The largest statistic over its quantile of F, of every kind of test."""
     found, _ = _tests(system)
-    kinds = (WHOLE, PART, WHITENED)
-    return {k: max((t.statistic / t.quantile for t in found if t.kind == k), default=0.0) for k in kinds}
+    return {
+        k: max((t.statistic / t.quantile for t in found if t.kind == k), default=0.0) for k in (WHOLE, PART)
+    }
 
 
 def _tests(system: System) -> tuple[list[Test], int]:
     """All tests of all joints, and the most periods of a record."""
     n = system.n
-    plain, white = [_Sums() for _ in range(n)], [_Sums() for _ in range(n)]
+    sums = [_Sums() for _ in range(n)]
     most = 0
     for i, r in enumerate(system.rows):
         rows = system.periods[i]
@@ -191,14 +193,9 @@ def _tests(system: System) -> tuple[list[Test], int]:
         most = max(most, -(-len(r.effort) // rows))
         for j in range(n):
             table = folded(np.where(r.moving[:, j], system.residuals[i][:, j], np.nan), rows)
-            plain[j].add(i, table, independent_rows(table))
-            left = np.full(len(r.moving), np.nan)
-            left[system.usable[i][:, j]] = system.left[(system.record == i) & (system.joint == j)]
-            white[j].add(i, folded(left, rows), 1.0)
-    taken = system.basis.shape[1] / n
-    found = [s.whole(WHOLE, j, 0.0, n) for j, s in enumerate(plain)]
-    found += [s.whole(WHITENED, j, taken, n) for j, s in enumerate(white)]
-    return found + [t for j, s in enumerate(plain) for t in s.parts(j, n)], most
+            sums[j].add(i, table, independent_rows(table))
+    found = [s.whole(j, n) for j, s in enumerate(sums)]
+    return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
 
 
 def repeating(system: System) -> Array:
