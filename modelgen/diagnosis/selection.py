@@ -99,7 +99,7 @@ def select(
             ranking.append(_ranked(t, found_so, found_so.refused))
             if not found_so.refused:
                 eligible.append((t, found_so))
-        turns.append(sorted(ranking, key=lambda r: -r.delta_bic))
+        turns.append(_best_of_each(ranking))
         if not eligible:
             break
         best, by = eligible[0]
@@ -115,13 +115,24 @@ def select(
     causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
     named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
     for cause in causes:  # what is there beside it does not stand for it
-        cause.rivals = [r for r in cause.rivals if (r[0].candidate.effect, r[0].candidate.joint) not in named]
+        others = {
+            (t.candidate.effect, t.candidate.joint): (t, behind) for t, behind in reversed(cause.rivals)
+        }
+        cause.rivals = [r for place, r in reversed(others.items()) if place not in named]
     return Selection(causes, system, turns)
 
 
 def _ranked(t: Trial, by: Judgement | None, refused: str) -> Ranked:
     gain, expected = (None, None) if by is None else (by.gain, by.expected)
     return Ranked(t.candidate.effect, t.candidate.joint, t.gain.delta_bic, gain, expected, refused)
+
+
+def _best_of_each(ranking: Sequence[Ranked]) -> list[Ranked]:
+    """Best first; of an effect that was tried in several forms at a joint the one that came farthest."""
+    best: dict[tuple[str, int | None], Ranked] = {}
+    for r in sorted(ranking, key=lambda r: (bool(r.refused), -r.delta_bic)):
+        best.setdefault((r.effect, r.joint), r)
+    return sorted(best.values(), key=lambda r: -r.delta_bic)
 
 
 def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> float:
