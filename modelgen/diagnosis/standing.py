@@ -3,7 +3,9 @@
 An effect outside the catalogue has a share in common with those inside, and the most similar of them gains
 something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
 explained two thirds of what repeats from period to period at the joints that it acts on, and most of it in
-the part of the period that shows most; and what is left elsewhere must be less than what it explains.
+the part of the period that shows most; and what is left elsewhere must be less than what it explains. Elastic
+joints and play are exempt: they are simulated with few values, which leaves much, and nothing else looks like
+them that passes their gates.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.lack_of_fit import in_parts, lack_of_fit, repeating
@@ -41,6 +44,8 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     found = any(t.found for t in in_parts(system))
     dropped = []
     for cause in selection.causes:
+        if cause.trial.candidate.effect in COMPLIANT:
+            continue
         joints = cause.trial.candidate.joints(system.n)
         little = much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum()
         shown = worst[joints].max()
