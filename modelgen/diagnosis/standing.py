@@ -4,8 +4,8 @@ An effect outside the catalogue has a share in common with those inside, and the
 something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
 explained two thirds of what repeats from period to period at the joints that it acts on, and most of it in
 the part of the period that shows most; and what is left elsewhere must be less than what it explains. Elastic
-joints and play are simulated with few values, which leaves much: they are exempt where their evidence is beyond
-that of a resemblance.
+joints and play are simulated with few values, which leaves much: they are exempt where their evidence is
+beyond that of a resemblance.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
-PLAIN = 250.0  # delta BIC: contacts gave 69 for an elastic joint, elastic joints and play 700 to 2800
+PLAIN = 250.0  # delta BIC; a contact gave 69 for an elastic joint, elastic joints and play 700 to 2800
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
