@@ -42,15 +42,21 @@ def eliminated(
     is not possible, then those that gain nothing, in the final model. Evidence of the rest in that model.
     """
     while len(causes) > 1:
-        scores = [_worth(k, causes, system) for k in range(len(causes))]
+        rest = [[c.trial for c in causes if c is not cause] for cause in causes]
+        without = [System(rows, with_causes(rows, others), system.periods) for others in rest]
+        scores = [_worth(c.trial, s) for c, s in zip(causes, without, strict=True)]
         worst = int(np.argmin(scores))
         if scores[worst] >= evidence:
             for cause, score in zip(causes, scores, strict=True):
                 cause.delta_bic = score
-            signs = [_least_value(k, causes, system) for k in range(len(causes))]
+            signs = _least_values(causes, system)
             worst = int(np.argmin(signs))
             if signs[worst] >= -CONTRADICTION:
-                gains = [_gain(k, causes, system, blur, narrowed) for k in range(len(causes))]
+                gates = [
+                    Gates(rows, others, s, blur, narrowed, last=True)
+                    for others, s in zip(rest, without, strict=True)
+                ]
+                gains = [_gain(c.trial, g) for c, g in zip(causes, gates, strict=True)]
                 worst = int(np.argmin(gains))
                 if gains[worst] > 0.0:
                     break
@@ -59,34 +65,37 @@ def eliminated(
     return causes, system
 
 
-def _gain(k: int, causes: Sequence[Cause], system: System, blur: Array | None, narrowed: float) -> float:
-    """Expected gain of cause k given all others, in percent; zero where a gate stays shut."""
-    others = [c.trial for i, c in enumerate(causes) if i != k]
-    without = System(system.rows, with_causes(system.rows, others), system.periods)
-    found = Gates(system.rows, others, without, blur, narrowed, last=True).judged(causes[k].trial)
+def _gain(trial: Trial, gates: Gates) -> float:
+    """Expected gain given all others, in percent; zero where a gate stays shut."""
+    found = gates.judged(trial)
     return 0.0 if found.refused else max(found.expected, found.gain)
 
 
-def _worth(k: int, causes: Sequence[Cause], system: System) -> float:
-    """Delta BIC of cause k given all others."""
-    others = [c.trial for i, c in enumerate(causes) if i != k]
-    without = System(system.rows, with_causes(system.rows, others), system.periods)
-    trial = causes[k].trial
+def _worth(trial: Trial, without: System) -> float:
+    """Delta BIC given all others."""
     gain = without.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
     return -np.inf if gain is None else gain.delta_bic
 
 
-def _least_value(k: int, causes: Sequence[Cause], system: System) -> float:
-    """Of what may not be negative in cause k, the least value in the whitened equations, in its standard
+def _least_values(causes: Sequence[Cause], system: System) -> list[float]:
+    """Of what may not be negative in each cause, the least value in the whitened equations, in its standard
     deviations; zero where there is nothing of the kind.
     """
-    limited = np.array(causes[k].trial.candidate.positive, dtype=bool)
-    shown = np.array([any(c[:, :, i].any() for c in causes[k].trial.columns) for i in range(len(limited))])
-    begin = system.rows[0].columns.shape[2] + sum(c.trial.columns[0].shape[2] for c in causes[:k])
-    places = begin + np.flatnonzero(limited & shown)
-    values = np.linalg.lstsq(system.matrix, system.right, rcond=1e-12)[0][places]
-    spread = np.sqrt(np.maximum(np.diag(covariance(system))[places], 1e-300))
-    return float((values / spread).min(initial=0.0))
+    values, spread = whitened_fit(system)
+    begin, found = system.rows[0].columns.shape[2], []
+    for cause in causes:
+        columns = cause.trial.columns
+        shown = np.any([c.any(axis=(0, 1)) for c in columns], axis=0)
+        places = begin + np.flatnonzero(np.array(cause.trial.candidate.positive, dtype=bool) & shown)
+        found.append(float((values[places] / np.maximum(spread[places], 1e-150)).min(initial=0.0)))
+        begin += columns[0].shape[2]
+    return found
+
+
+def whitened_fit(system: System) -> tuple[Array, Array]:
+    """Least squares solution of the whitened equations and its standard deviations, (p,) each."""
+    values = np.linalg.lstsq(system.matrix, system.right, rcond=1e-12)[0]
+    return np.asarray(values), np.asarray(np.sqrt(np.maximum(0.0, np.diag(covariance(system)))))
 
 
 def covariance(system: System) -> Array:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.causes import covariance
+from modelgen.diagnosis.causes import covariance, whitened_fit
 from modelgen.diagnosis.objects import Estimate
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
@@ -21,8 +21,7 @@ from modelgen.transmission import of_joint
 def cause_estimates(selection: Selection, rows: Sequence[Rows], arm: Arm) -> list[dict[str, Estimate]]:
     """Of every cause, its own parameters. Values of what was searched for have no standard deviation."""
     system = selection.system
-    spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
-    whitened = np.linalg.lstsq(system.matrix, system.right, rcond=1e-12)[0]
+    whitened, spread = whitened_fit(system)
     place = rows[0].columns.shape[2]
     result = []
     for cause in selection.causes:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from scipy import special
@@ -168,6 +169,7 @@ def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | No
     return p.record.name, float(time[worst.begin]), float(time[min(worst.end, len(time) - 1)])
 
 
+@cache
 def inflation(kind: str) -> float:
     """Of the nominal thresholds of a kind of test, from the calibrated null distribution."""
     return float(np.quantile(NULLS[kind], CLEAN))

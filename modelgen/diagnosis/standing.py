@@ -18,7 +18,7 @@ import numpy as np
 from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
-from modelgen.diagnosis.lack_of_fit import in_parts, lack_of_fit, repeating
+from modelgen.diagnosis.lack_of_fit import Test, in_parts, lack_of_fit, repeating
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, mean_squares
@@ -41,8 +41,9 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     sizes = mean_squares(old)
     first, last = repeating(old) / sizes, repeating(system) / sizes
     much = repeating(system) > MUCH * mean_squares(system)
-    worst, left = (_worst(s) / sizes for s in (old, system))
-    found = any(t.found for t in in_parts(system))
+    parts = in_parts(system)
+    worst, left = (_worst(tests, system.n) / sizes for tests in (in_parts(old), parts))
+    found = any(t.found for t in parts)
     dropped = []
     for cause in selection.causes:
         if cause.trial.candidate.effect in COMPLIANT and cause.delta_bic > PLAIN:
@@ -59,9 +60,9 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     return replace(selection, causes=kept, system=system), dropped
 
 
-def _worst(system: System) -> Array:
+def _worst(tests: Sequence[Test], n: int) -> Array:
     """What repeats in the part of the period that shows most, by joint (n,) [effort^2]."""
-    found = np.zeros(system.n)
-    for t in in_parts(system):
+    found = np.zeros(n)
+    for t in tests:
         found[t.joint] = max(found[t.joint], t.excess)
     return found
