@@ -52,6 +52,13 @@ def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
     assert drawn == svg(made)
 
 
+def test_an_error_leaves_no_process_behind() -> None:
+    before = set(multiprocessing.active_children())
+    with pytest.raises(ValueError, match="bad input"), Pen(beside=True):
+        raise ValueError("bad input")
+    assert not set(multiprocessing.active_children()) - before
+
+
 def test_a_browser_shows_the_verdict(found: Diagnosis, tmp_path: Path) -> None:
     browser = shutil.which("chromium")
     if browser is None:

@@ -83,7 +83,8 @@ class Pen:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._pool is not None:
-            self._pool.shutdown(wait=kind is None, cancel_futures=True)
+            # not waited for, it may write a traceback of its own as this process ends (CPython 3.11)
+            self._pool.shutdown(wait=True, cancel_futures=True)
 
     def give(self, sketches: Mapping[str, Sketch]) -> None:
         """Sketches to draw, by name."""
