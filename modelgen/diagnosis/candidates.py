@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,8 @@ WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is los
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are;
-    part: of the parameters that are estimated, those that are asked for, empty for all.
+    part: of the parameters that are estimated, those that are asked for, empty for all; forms: how many
+    candidates there are for the effect at the place.
 
     joint counts coordinates from 1, None for the whole arm.
     """
@@ -75,6 +77,7 @@ class Candidate:
     fixed: Values = field(default_factory=dict)
     searched: tuple[Parameter, ...] = ()
     part: tuple[str, ...] = ()
+    forms: int = 1
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -118,10 +121,9 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
         for joint in places(arm, name):
             if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
                 continue
-            searched = tuple(p for p in effect.nonlinear if p.grid)
-            for fixed in _fixed(name, joint, rows, prober):
-                for part in ((), *PARTS.get(name, ())):
-                    found.append(Candidate(name, joint, fixed, () if name in STEPS else searched, part))
+            searched = () if name in STEPS else tuple(p for p in effect.nonlinear if p.grid)
+            forms = list(product(_fixed(name, joint, rows, prober), ((), *PARTS.get(name, ()))))
+            found += [Candidate(name, joint, fixed, searched, part, len(forms)) for fixed, part in forms]
     return found
 
 

@@ -74,7 +74,7 @@ def _gain(trial: Trial, gates: Gates) -> float:
 def _worth(trial: Trial, without: System) -> float:
     """Delta BIC given all others."""
     gain = without.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
-    return -np.inf if gain is None else gain.delta_bic
+    return -np.inf if gain is None else gain.delta_bic - trial.doubt
 
 
 def _least_values(causes: Sequence[Cause], system: System) -> list[float]:

@@ -16,12 +16,13 @@ from modelgen.diagnosis.candidates import COMPLIANT, LATER
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, rmse, weighted_fit
+from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
+FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
 FEW = 4  # records that are tried one by one
@@ -29,6 +30,15 @@ SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 # What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
 FEIGNABLE = (*COMPLIANT, DELAY, LATER)
 REVERSING = ("presliding", "stribeck_friction")  # show where a delay shows most
+FRICTION = (
+    "presliding",
+    "stribeck_friction",
+    "nonlinear_viscous_friction",
+    "load_dependent_friction",
+    "position_dependent_friction",
+    "friction_warm_up",
+    "time_delay",  # looks like what sticking does at reversals
+)
 PASSING = "friction_warm_up"  # passes while the excitation and errors that correlate with it repeat
 
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
@@ -88,7 +98,7 @@ class Gates:
         where a measured gain has that of all parameters of a part. A share of it must be measured: what
         stands for something else does not carry from record to record. What errors of the positions could
         feign must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments
-        is not zero. By that gain must pass what such errors look like most; everything where no period
+        is not zero. Friction beside friction must be more than the form of the first may leave. By that gain must pass what such errors look like most; everything where no period
         repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes at a joint
         of another, to which its form may leave some.
         """
@@ -99,6 +109,8 @@ class Gates:
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
+        if trial.candidate.effect in FRICTION:
+            least = np.maximum(least, self._formed()[places])
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
@@ -120,6 +132,20 @@ class Gates:
         else:
             worse = self._total(again) >= 1.0
         return Judgement(float(gains[anew | carried].max()), hoped, "other joints" if worse else "")
+
+    def _formed(self) -> Array:
+        """Percent of the RMSE (n,) that the form of friction taken before may leave for another one to take:
+        no law is that of the arm to the last twentieth.
+        """
+        share = np.zeros(self.system.n)
+        rubbing = [t.candidate.joint for t in self.before if t.candidate.effect in FRICTION]
+        if rubbing:
+            baseline = [r.columns for r in self.rows]
+            left = mean_squares(self.system)
+            explained = rmse(self.rows, baseline, weighted_fit(self.rows, baseline)) ** 2 - left
+            at = np.array([None in rubbing or j + 1 in rubbing for j in range(self.system.n)])
+            share = np.where(at, np.clip(FORM * explained / np.maximum(left, 1e-300), 0.0, 1.0), 0.0)
+        return np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
 
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
@@ -67,11 +67,10 @@ def select(
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
     known: dict[object, list[Array] | None] = {}
-    correlated = endogeneity(system)
-    noisy = correlated is not None and correlated.found and float(correlated.share.max()) > PRACTICAL
-    noisy = noisy and not repeating_errors(rows, periods).any()  # those of known steps: `blur` is their price
+    steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
+        noisy = not steps and correlated(system)
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
@@ -95,7 +94,11 @@ def select(
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
             found_so = gates.judged(t)
             if noisy and not found_so.refused and not instrumented(t, system):
-                found_so = replace(found_so, refused="positions")
+                # an elastic joint moves otherwise in every period, which looks like errors without it
+                trials_so = [*(c.trial for c in causes), t]
+                elastic = t.candidate.effect in COMPLIANT
+                if not elastic or correlated(System(rows, with_causes(rows, trials_so), periods)):
+                    found_so = replace(found_so, refused="positions")
             ranking.append(_ranked(t, found_so, found_so.refused))
             if not found_so.refused:
                 eligible.append((t, found_so))
@@ -120,6 +123,12 @@ def select(
         }
         cause.rivals = [r for place, r in reversed(others.items()) if place not in named]
     return Selection(causes, system, turns)
+
+
+def correlated(system: System) -> bool:
+    """Whether errors of the positions matter: the regressor's correlation with those of the equations."""
+    found = endogeneity(system)
+    return found is not None and found.found and float(found.share.max()) > PRACTICAL
 
 
 def _ranked(t: Trial, by: Judgement | None, refused: str) -> Ranked:

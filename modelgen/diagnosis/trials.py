@@ -11,6 +11,7 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import PERIODIC, Candidate
+from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import Gain, System
 from modelgen.effects import described
@@ -31,12 +32,16 @@ WORTH = 4.0  # evidence below which a grid's best is not refined
 
 @dataclass(frozen=True)
 class Trial:
-    """A candidate with values for what is searched. columns: (M, n, k) of every training record."""
+    """A candidate with values for what is searched. columns: (M, n, k) of every training record.
+
+    gain: its evidence is what is left after `doubt`, see `plausible`.
+    """
 
     candidate: Candidate
     values: Mapping[str, float]
     columns: Sequence[Array]
     gain: Gain
+    doubt: float = 0.0
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -139,7 +144,10 @@ class Court:
         held = np.array(candidate.positive) & (gain.values == 0.0)
         if held.any():  # stays zero in every fit to come
             columns = [np.where(held, 0.0, c) for c in columns]
-        return Trial(candidate, dict(values), columns, gain)
+        estimated = zip(candidate.names, (float(v) for v in gain.values), strict=False)
+        charged = doubt(candidate, dict(estimated), self.prober.arm)
+        gain = replace(gain, delta_bic=gain.delta_bic - charged)
+        return Trial(candidate, dict(values), columns, gain, charged)
 
     def _columns(self, candidate: Candidate, values: Mapping[str, float]) -> list[Array] | None:
         given = {**candidate.fixed, **values}
