@@ -163,6 +163,9 @@ def _applied(
         x = joint_variables(number, effect.name, effect.states, of_joint(arm, arm.joints[joint]))
         try:
             parts = (Part(effect.place, joint, x, (effect.law(x, values),)),)
+            beside = effect.beside(x, values)
+            if beside != 0:
+                parts += (Part("joint", joint, x, (beside,)),)
         except ValueError as error:
             raise InputError(f"{use.name}: {error}", use.where) from None
         states, steps = x.state, effect.step(x, values, TIME_STEP)

@@ -99,6 +99,10 @@ class Effect(Definition):
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """Generalised force for the parameters `p`, by name."""
 
+    def beside(self, x: Variables, p: Values) -> sp.Expr:
+        """Effort at the joint besides, by position and states alone; zero for most."""
+        return sp.Integer(0)
+
     def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
         """The states after dt [s] at constant velocity; every name of `states`."""
         return {}

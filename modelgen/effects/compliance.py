@@ -21,27 +21,47 @@ DAMPING = Parameter("damping", "{f} s/{x}", "damping between drive and link", de
 
 
 class Compliance(Effect):
-    """What elastic joints and play share."""
+    """What elastic joints and play share.
+
+    It lies at the motor. Where a lever's ratio changes along the stroke, stiffness, damping and play are
+    those at the joint in the middle of it.
+    """
 
     place = "transmission"
     states = ("lag", "rate")
 
     @abstractmethod
-    def spring(self, x: Variables, p: Values) -> tuple[sp.Expr, sp.Expr]:
-        """Force of the spring at the present lag, and 1 where it touches, else 0."""
+    def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
+        """Force of the spring at a stretch, and 1 where it touches, else 0."""
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """Minus the acceleration of the lag: (spring + damping rate - transmitted) / inertia."""
-        force, touching = self.spring(x, p)
-        return (force + p["damping"] * touching * x.state["rate"] - x.transmitted) / x.inertia
+        return (self._effort(x, p) - x.transmitted) / x.inertia
+
+    def beside(self, x: Variables, p: Values) -> sp.Expr:
+        """The lever turns the actuator's force into effort where the link is, the drive's gain where it is."""
+        here, there = self._leverage(x)
+        return (here / there - 1) * self._effort(x, p) if here != there else sp.Integer(0)
 
     def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
         """The implicit midpoint rule, the spring taken as linear over the step: stable for any stiffness."""
         lag, rate = x.state["lag"], x.state["rate"]
-        force, touching = self.spring(x, p)
-        half = dt / 2 / x.inertia * touching * (p["damping"] + p["stiffness"] * dt / 2)
-        after = (rate * (1 - half) + dt * (x.transmitted - force) / x.inertia) / (1 + half)
+        _, lever = self._leverage(x)
+        force, touching = self.spring(lever * lag, p)
+        half = dt / 2 / x.inertia * touching * lever**2 * (p["damping"] + p["stiffness"] * dt / 2)
+        after = (rate * (1 - half) + dt * (x.transmitted - lever * force) / x.inertia) / (1 + half)
         return {"lag": lag + dt * (rate + after) / 2, "rate": after}
+
+    def _effort(self, x: Variables, p: Values) -> sp.Expr:
+        """What spring and damper do to the link."""
+        _, lever = self._leverage(x)
+        force, touching = self.spring(lever * x.state["lag"], p)
+        return lever * (force + p["damping"] * touching * lever * x.state["rate"])
+
+    def _leverage(self, x: Variables) -> tuple[sp.Expr, sp.Expr]:
+        """Ratio of the drive over that in the middle of its stroke, where the drive is and where the link is."""
+        found, q = x.transmission.leverage(), x.transmission.q
+        return found.subs(q, x.q), found.subs(q, x.q - x.state["lag"])
 
 
 class JointFlexibility(Compliance):
@@ -56,9 +76,9 @@ class JointFlexibility(Compliance):
     experiment = "a chirp up to the resonance, with encoders on motor and link"
     shown = at(stiffness=4000.0, damping=60.0)
 
-    def spring(self, x: Variables, p: Values) -> tuple[sp.Expr, sp.Expr]:
-        """stiffness times lag."""
-        return p["stiffness"] * x.state["lag"], sp.Integer(1)
+    def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
+        """stiffness times stretch."""
+        return p["stiffness"] * stretch, sp.Integer(1)
 
 
 class Backlash(Compliance):
@@ -84,8 +104,8 @@ class Backlash(Compliance):
     experiment = "a motion that reverses the load, with encoders on motor and link"
     shown = at(play=0.01, stiffness=30000.0, damping=300.0)
 
-    def spring(self, x: Variables, p: Values) -> tuple[sp.Expr, sp.Expr]:
-        """stiffness times what the lag exceeds the gap by."""
-        lag, half = x.state["lag"], p["play"] / 2
-        beyond = lag - sp.Max(-half, sp.Min(half, lag))
+    def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
+        """stiffness times what the stretch exceeds the gap by."""
+        half = p["play"] / 2
+        beyond = stretch - sp.Max(-half, sp.Min(half, stretch))
         return p["stiffness"] * beyond, sp.sign(sp.Abs(beyond))

@@ -55,6 +55,16 @@ def gain(arm: Arm, joint: int, q: Array) -> Array:
     return np.asarray(float(drive.torque_constant) * _curves(drive, tuple(arm.symbols.items())).k1(q))
 
 
+def leverage(arm: Arm, joint: int, q: Array) -> Array:
+    """The ratio of the drive of coordinate number `joint` at its positions q (N,) over that in the middle."""
+    drive = of_joint(arm, arm.joints[arm.coordinates[joint - 1]])
+    middle, k1 = drive.middle(), _curves(drive, tuple(arm.symbols.items())).k1
+    if middle is None:
+        return np.ones(q.shape)
+    known = {geometry_symbol(name): value for name, value in arm.symbols.items()}
+    return np.asarray(k1(q) / k1(np.array([float(middle.subs(known))])))
+
+
 @lru_cache(maxsize=256)
 def _curves(drive: Transmission, symbols: tuple[tuple[str, float], ...]) -> _Curves:
     known = {geometry_symbol(name): value for name, value in symbols}

@@ -80,7 +80,8 @@ class LinkSide:
     """Lead of drives over measured links, and what it adds to the inputs.
 
     e, base: of the arm. links: inputs (N, n) of the links alone along a motion, for base parameters.
-    gain: joint effort per input of coordinate number j at its positions, (N,).
+    gain: joint effort per input of coordinate number j at its positions, (N,); lever: the same for the ratio of
+    its drive over that in the middle of the stroke.
     """
 
     def __init__(
@@ -89,9 +90,10 @@ class LinkSide:
         base: Grouping,
         links: Callable[[Motion, Array], Array],
         gain: Callable[[int, Array], Array],
+        lever: Callable[[int, Array], Array],
     ) -> None:
         self._drives = NumpyFunction(at_motors(e, base))
-        self._links, self._gain, self._arm = links, gain, e.arm
+        self._links, self._gain, self._lever, self._arm = links, gain, lever, e.arm
         self._known: dict[object, tuple[Motion, Array]] = {}
 
     def added(self, joint: int, motion: Motion, values: dict[str, float], parameters: Array) -> Array:
@@ -109,16 +111,16 @@ class LinkSide:
         # friction turns with the sign of a speed, which noise must not; inertia is linear: all of it counts
         moved = replace(self.moved(joint, motion, values, parameters), ddq=motion.ddq)
         found[:, j] = self.drives(moved, parameters)[:, j] - self.drives(motion, parameters)[:, j]
-        lead = _relaxed(t["links"], values, motion.step)
+        lead = _relaxed(t["links"] / t["lever"] ** 2, values, motion.step)
         found[:, j] += t["inertia"] * _second(lead, motion.step) / t["gain"]
         return found
 
     def moved(self, joint: int, motion: Motion, values: dict[str, float], parameters: Array) -> Motion:
         """The motion with the drive's position of that coordinate for the link's."""
         t, play = self._torque(joint, motion, parameters), values.get("play", 0.0)
-        lead = _relaxed(t["passed"], values, motion.step)
+        lead = _relaxed(t["passed"] / t["lever"] ** 2, values, motion.step)
         if play > 0.0:
-            lead = lead + play / 2 * np.clip(t["steady"] / _torque_of(play, t, motion), -1.0, 1.0)
+            lead = lead + play / 2 / t["lever"] * np.clip(t["steady"] / _torque_of(play, t, motion), -1.0, 1.0)
         rate = np.gradient(lead, motion.step)
         tables = [motion.q.copy(), motion.dq.copy(), motion.ddq.copy()]
         for table, more in zip(tables, (lead, rate, np.gradient(rate, motion.step)), strict=True):
@@ -165,7 +167,7 @@ class LinkSide:
     def _torque(self, joint: int, motion: Motion, parameters: Array) -> dict[str, Array]:
         """Of a coordinate, (N,): gain; effort that moves the links, below the cut-off (`passed`), its slow
         part (`steady`); effort that moves links and drive (`all`), and its slow part; inertia of the drive,
-        as effort per acceleration of the joint.
+        as effort per acceleration of the joint; `lever`, the drive's ratio over that in the middle.
         """
         at = joint, id(motion), np.asarray(parameters).tobytes()
         if at not in self._known:
@@ -173,7 +175,7 @@ class LinkSide:
                 del self._known[next(iter(self._known))]
             # the motion is kept: its place in memory is the key
             self._known[at] = motion, self._made(joint, motion, parameters)
-        names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia")
+        names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia", "lever")
         return dict(zip(names, self._known[at][1], strict=True))
 
     def _made(self, joint: int, motion: Motion, parameters: Array) -> Array:
@@ -191,7 +193,8 @@ class LinkSide:
         passed = _low_pass(here, cutoff, motion.step)
         slow = (_low_pass(x, STEADY * cutoff, motion.step) for x in (here, together))
         steady, whole = slow
-        return np.stack([gain, here, passed, steady, together, whole, inertia])
+        lever = np.broadcast_to(self._lever(joint, motion.q[:, j]), gain.shape)
+        return np.stack([gain, here, passed, steady, together, whole, inertia, lever])
 
 
 def _torque_of(play: float, t: dict[str, Array], motion: Motion) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
 from modelgen.probing.delays import acting, added
-from modelgen.probing.levers import gain, reread
+from modelgen.probing.levers import gain, leverage, reread
 from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
 from modelgen.probing.motion import Array, Motion, given_for
 from modelgen.probing.places import changes_description, with_effect
@@ -32,7 +32,6 @@ from modelgen.probing.variations import Variations
 Values = Mapping[str, float]
 Place = tuple[str, int | None]
 
-SETTLING = 1.0  # s, for which an elastic transmission is loaded as at the first sample: not let loose there
 REMEMBERED = 40  # results that do not depend on an effect's own values
 # Not free: they choose the form of the law, or where it acts.
 _FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay")
@@ -117,7 +116,9 @@ class Prober:
     @cached_property
     def link_side(self) -> LinkSide:
         """Of drives whose links' positions were measured."""
-        return LinkSide(self._own, self.base, self._links, lambda joint, q: gain(self.arm, joint, q))
+        return LinkSide(
+            self._own, self.base, self._links, partial(gain, self.arm), partial(leverage, self.arm)
+        )
 
     @cached_property
     def _own(self) -> Equations:
@@ -274,18 +275,12 @@ class Prober:
         return tuple(float(value) for value in given if value is not None)
 
     def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
-        """States at every sample, (N, s), from zero; a transmission's from where it settles at the first."""
+        """States at every sample, (N, s), from zero; a transmission's from where its load holds it at first."""
         if e not in self._series:
             self._series[e] = Series(e, self.base)
         series = self._series[e]
-        elastic = any(getattr(effect.effect, "place", "") == "transmission" for effect in e.effects)
-        ahead = round(SETTLING / motion.step) if elastic else 0
-
-        def head() -> Array:
-            given = given_for(series.heads.function, motion, parameters)
-            return series.head(given, len(motion.t), ahead)
-
-        found = series(self._kept((e, "head"), motion, parameters, head), free, ahead)
+        head = self._kept((e, "head"), motion, parameters, lambda: series.head(motion, parameters))
+        found = series(head, free, motion)
         return lagging(found, e, motion, motion)  # a measured link is where it is
 
     def _kept(self, what: object, motion: Motion, parameters: Array, make: Callable[[], Array]) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import casadi as ca
@@ -15,9 +16,15 @@ from modelgen.base_parameters import Grouping
 from modelgen.compiled import compiler, shared_library
 from modelgen.functions.objects import Function
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array
+from modelgen.probing.motion import Array, Motion, given_for
 from modelgen.probing.programs import steps_of
 
+SPANS = np.geomspace(2e-4, 1.0, 13)  # s, of steps towards rest
+CYCLES = 6  # of them
+BEGINNING = 0.1  # s, over which the load tells how fast a transmission is wound at first
+CALM = 3.0  # s, in which ringing from the start shows
+TOUCH = 1e-7  # rad or m, and their rates
+_TABLES = ("t", "q", "dq", "ddq")
 # A library of the process may have a function of that name: glibc has a step().
 _PRIVATE = "#define CASADI_SYMBOL_EXPORT static\n"
 _DRIVER = """
@@ -49,26 +56,80 @@ class Series:
     def __init__(self, e: Equations, base: Grouping) -> None:
         heads, self.rest = steps_of(e, base)
         self.heads = NumpyFunction(heads)
+        names = e.state_names()
+        pairs = [
+            [names.index(symbol.name) for symbol in effect.states.values()]
+            for effect in e.effects
+            if any(part.place == "transmission" for part in effect.parts)
+        ]
+        self.lags, self.rates = [lag for lag, _ in pairs], [rate for _, rate in pairs]
 
-    @property
-    def arguments(self) -> list[str]:
-        """Names of the inputs of `head`."""
-        return [a.name for a in self.heads.function.arguments]
-
-    def head(self, given: Mapping[str, Array], count: int, ahead: int = 0) -> Array:
-        """What the steps need of every sample, (ahead + N, h), the first ones like the motion's first.
-
-        given: inputs by name, (N or 1, m).
+    def head(self, motion: Motion, parameters: Array) -> Array:
+        """What the steps need of every sample, (N, h); before them, where there are elastic transmissions,
+        what steps of all `SPANS` need of the first one and of one `BEGINNING` later.
         """
-        found = np.asarray(self.heads(**{name: given[name] for name in self.arguments}))
-        whole = np.broadcast_to(found, (count, self.rest.arguments[1].size))
-        return np.concatenate([np.repeat(whole[:1], ahead, axis=0), whole])
+        whole = self._head(given_for(self.heads.function, motion, parameters), len(motion.t))
+        if not self.lags:
+            return whole
+        ends = replace(motion, **{name: getattr(motion, name)[self._ends(motion)] for name in _TABLES})
+        given = given_for(self.heads.function, ends, parameters)
+        before = [self._head({**given, "dt": np.full((2, 1), dt)}, 2) for dt in SPANS]
+        return np.concatenate([*before, whole])
 
-    def __call__(self, head: Array, free: Sequence[float], ahead: int = 0) -> Array:
-        """States (N, s) from zero `ahead` steps before the first sample."""
-        state = np.zeros((len(head) + 1, self.rest.arguments[0].size))
-        self._run(head, np.array([*free, 0.0]), state)
-        return state[ahead:-1]
+    def _ends(self, motion: Motion) -> list[int]:
+        return [0, min(max(1, round(BEGINNING / motion.step)), len(motion.t) - 1)]
+
+    def _head(self, given: Mapping[str, Array], count: int) -> Array:
+        taken = {a.name: given[a.name] for a in self.heads.function.arguments}
+        return np.broadcast_to(np.asarray(self.heads(**taken)), (count, self.rest.arguments[1].size))
+
+    def __call__(self, head: Array, free: Sequence[float], motion: Motion) -> Array:
+        """States (N, s) from zero at the first sample; elastic transmissions as far behind there as their load
+        winds them, and as fast: let loose, a soft one would ring for as long as the record.
+        """
+        values, before = np.array([*free, 0.0]), len(head) - len(motion.t)
+        state = np.zeros((len(motion.t) + 1, self.rest.arguments[0].size))
+        if self.lags:
+            first, second = (self._at_rest(head[k:before:2], values) for k in (0, 1))
+            state[0, self.lags] = first
+            state[0, self.rates] = (second - first) / (self._ends(motion)[1] * motion.step)
+            calm = before + round(CALM / motion.step)
+            state[0] = self._calm(np.ascontiguousarray(head[before:calm]), values, state[0])
+        self._run(np.ascontiguousarray(head[before:]), values, state)
+        return state[:-1]
+
+    def _calm(self, head: Array, values: Array, start: Array) -> Array:
+        """The start (s,) from which the lags ring least: their accelerations over the first samples, as lags
+        and rates at the start change them, are as small as they can be. head: (N, h).
+        """
+
+        def bends(first: Array) -> Array:
+            state = np.zeros((len(head) + 1, len(first)))
+            state[0] = first
+            self._run(head, values, state)
+            return np.diff(state[:, self.lags], 2, axis=0).ravel()
+
+        places, found = [*self.lags, *self.rates], start.copy()
+        now, moved = bends(start), np.eye(len(start))[places] * TOUCH
+        slopes = np.stack([(bends(start + more) - now) / TOUCH for more in moved], axis=1)
+        if not np.isfinite(slopes).all() or not np.isfinite(now).all():
+            return start
+        found[places] -= np.linalg.lstsq(slopes, now, rcond=None)[0]
+        return found if np.sum(bends(found) ** 2) < np.sum(now**2) else start
+
+    def _at_rest(self, heads: Array, values: Array) -> Array:
+        """Lags at which the transmissions carry their load.
+
+        Steps of all lengths, the speeds taken away after each (dynamic relaxation, Day 1965). An implicit
+        step is one of Newton's where it is as long as 1/pi of the period in which the link rings; steps of
+        other lengths lead towards rest as well. heads: (D, h), of one sample, the shortest step first.
+        """
+        state = np.zeros((2, self.rest.arguments[0].size))
+        for _ in range(CYCLES):
+            for head in heads[::-1]:
+                self._run(np.ascontiguousarray(head[None]), values, state)
+                state[0, self.lags] = state[1, self.lags]
+        return state[0, self.lags]
 
     @cached_property
     def _run(self) -> Callable[[Array, Array, Array], None]:

@@ -160,7 +160,7 @@ def _kinks(e: Equations, values: Sequence[Expr], count: int, suffix: str) -> Fun
     forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), values)
     found: list[Expr] = []
     for effect in e.effects:
-        for part in effect.parts if effect.states else ():
+        for part in effect.parts[:1] if effect.states else ():
             choices = sorted({a for f in part.forces for a in f.atoms(sp.Max, sp.Min)}, key=str)
             found += [forces.in_graph(effect, part, a.args[0] - a.args[1]) for a in choices]
     return bare(f"kinks{suffix}", e, count, found) if found else None

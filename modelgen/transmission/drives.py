@@ -72,6 +72,19 @@ class Transmission(ABC):
             self._kept[name] = make()
         return self._kept[name]
 
+    def leverage(self) -> sp.Expr:
+        """k1 as a function of q over what it is in the middle of the motor's range, 1 where it is constant."""
+        return self._once("leverage", self._leverage)
+
+    def middle(self) -> sp.Expr | None:
+        """q in the middle of the motor's range, None where it has no end."""
+        ends = self.motor_range()
+        return None if ends is None else self.joint().subs(self.q_m, sum(ends) / 2)
+
+    def _leverage(self) -> sp.Expr:
+        middle, k1 = self.middle(), self.k1()
+        return sp.Integer(1) if middle is None or not k1.has(self.q) else k1 / k1.subs(self.q, middle)
+
     def inverse_gain(self) -> sp.Expr:
         """1/K [A per N m or N]."""
         return 1 / (self.torque_constant * self.k1())
