@@ -40,28 +40,37 @@ class Compliance(Effect):
 
     def beside(self, x: Variables, p: Values) -> sp.Expr:
         """The lever turns the actuator's force into effort where the link is, the drive's gain where it is."""
-        here, there = self._leverage(x)
-        return (here / there - 1) * self._effort(x, p) if here != there else sp.Integer(0)
+        lever = x.transmission.leverage()
+        if not lever.has(x.transmission.q):
+            return sp.Integer(0)
+        here, there = (lever.subs(x.transmission.q, q) for q in (x.q, x.q - x.state["lag"]))
+        return (here / there - 1) * self._effort(x, p)
 
     def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
         """The implicit midpoint rule, the spring taken as linear over the step: stable for any stiffness."""
         lag, rate = x.state["lag"], x.state["rate"]
-        _, lever = self._leverage(x)
-        force, touching = self.spring(lever * lag, p)
+        stretch, lever = self._stretch(x)
+        force, touching = self.spring(stretch, p)
         half = dt / 2 / x.inertia * touching * lever**2 * (p["damping"] + p["stiffness"] * dt / 2)
         after = (rate * (1 - half) + dt * (x.transmitted - lever * force) / x.inertia) / (1 + half)
         return {"lag": lag + dt * (rate + after) / 2, "rate": after}
 
     def _effort(self, x: Variables, p: Values) -> sp.Expr:
         """What spring and damper do to the link."""
-        _, lever = self._leverage(x)
-        force, touching = self.spring(lever * x.state["lag"], p)
+        stretch, lever = self._stretch(x)
+        force, touching = self.spring(stretch, p)
         return lever * (force + p["damping"] * touching * lever * x.state["rate"])
 
-    def _leverage(self, x: Variables) -> tuple[sp.Expr, sp.Expr]:
-        """Ratio of the drive over that in the middle of its stroke, where the drive is and where the link is."""
-        found, q = x.transmission.leverage(), x.transmission.q
-        return found.subs(q, x.q), found.subs(q, x.q - x.state["lag"])
+    def _stretch(self, x: Variables) -> tuple[sp.Expr, sp.Expr]:
+        """How far the drive is ahead, as the joint would move in the middle of the stroke, and the ratio of the
+        drive where the link is over that in the middle.
+        """
+        drive, lag = x.transmission, x.state["lag"]
+        lever = drive.leverage()
+        if not lever.has(drive.q):
+            return lag, lever
+        evened = drive.evened()
+        return evened.subs(drive.q, x.q) - evened.subs(drive.q, x.q - lag), lever.subs(drive.q, x.q - lag)
 
 
 class JointFlexibility(Compliance):

@@ -21,6 +21,7 @@ from modelgen.probing.programs import steps_of
 
 SPANS = np.geomspace(2e-4, 1.0, 13)  # s, of steps towards rest
 CYCLES = 6  # of them
+LONGEST = 0.05  # rad or m, by one of them: across a gap a long one would leave the lever's range
 BEGINNING = 0.1  # s, over which the load tells how fast a transmission is wound at first
 CALM = 3.0  # s, in which ringing from the start shows
 TOUCH = 1e-7  # rad or m, and their rates
@@ -128,7 +129,8 @@ class Series:
         for _ in range(CYCLES):
             for head in heads[::-1]:
                 self._run(np.ascontiguousarray(head[None]), values, state)
-                state[0, self.lags] = state[1, self.lags]
+                moved = state[1, self.lags] - state[0, self.lags]
+                state[0, self.lags] += np.clip(moved, -LONGEST, LONGEST)
         return state[0, self.lags]
 
     @cached_property

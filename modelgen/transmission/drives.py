@@ -72,18 +72,22 @@ class Transmission(ABC):
             self._kept[name] = make()
         return self._kept[name]
 
-    def leverage(self) -> sp.Expr:
-        """k1 as a function of q over what it is in the middle of the motor's range, 1 where it is constant."""
-        return self._once("leverage", self._leverage)
-
     def middle(self) -> sp.Expr | None:
         """q in the middle of the motor's range, None where it has no end."""
         ends = self.motor_range()
         return None if ends is None else self.joint().subs(self.q_m, sum(ends) / 2)
 
-    def _leverage(self) -> sp.Expr:
+    def evened(self) -> sp.Expr:
+        """q_m over k1 in the middle of the motor's range: q, up to a constant, where k1 is constant."""
+        return self._once("evened", self._evened)
+
+    def leverage(self) -> sp.Expr:
+        """Its slope: k1 over that in the middle."""
+        return self._once("leverage", lambda: sp.diff(self.evened(), self.q))
+
+    def _evened(self) -> sp.Expr:
         middle, k1 = self.middle(), self.k1()
-        return sp.Integer(1) if middle is None or not k1.has(self.q) else k1 / k1.subs(self.q, middle)
+        return self.q if middle is None or not k1.has(self.q) else self.motor() / k1.subs(self.q, middle)
 
     def inverse_gain(self) -> sp.Expr:
         """1/K [A per N m or N]."""
