@@ -3,9 +3,8 @@
 An effect outside the catalogue has a share in common with those inside, and the most similar of them gains
 something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
 explained two thirds of what repeats from period to period at the joints that it acts on, and most of it in
-the part of the period that shows most; and what is left elsewhere must be less than what it explains. Elastic
-joints and play are simulated with few values, which leaves much: they are exempt where their evidence is
-beyond that of a resemblance.
+the part of the period that shows most; and what is left elsewhere must be less than what it explains.
+Play, whose impacts are simulated roughly, is exempt where its evidence is beyond that of a resemblance.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.lack_of_fit import Test, in_parts, lack_of_fit, repeating
@@ -25,7 +23,8 @@ from modelgen.diagnosis.system import System, mean_squares
 
 LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
-PLAIN = 250.0  # delta BIC; a contact gave 69 for an elastic joint, elastic joints and play 700 to 2800
+PLAIN = 250.0  # delta BIC; play gave 500 to 2800
+ROUGH = "backlash"
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -46,7 +45,7 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     found = any(t.found for t in parts)
     dropped = []
     for cause in selection.causes:
-        if cause.trial.candidate.effect in COMPLIANT and cause.delta_bic > PLAIN:
+        if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:
             continue
         joints = cause.trial.candidate.joints(system.n)
         little = much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum()

@@ -16,7 +16,12 @@ import sympy as sp
 from modelgen.effects.base import POSITIVE, Effect, Parameter, Values, at
 from modelgen.effects.variables import Variables
 
-STIFFNESS = Parameter("stiffness", "{f}/{x}", "stiffness between drive and link", bounds=POSITIVE)
+STIFFNESS = Parameter(
+    "stiffness",
+    "{f}/{x}",
+    "stiffness between drive and link; of a lever, at the joint in mid-stroke",
+    bounds=POSITIVE,
+)
 DAMPING = Parameter("damping", "{f} s/{x}", "damping between drive and link", default=0.0)
 
 
@@ -39,7 +44,7 @@ class Compliance(Effect):
         return (self._effort(x, p) - x.transmitted) / x.inertia
 
     def beside(self, x: Variables, p: Values) -> sp.Expr:
-        """The lever turns the actuator's force into effort where the link is, the drive's gain where it is."""
+        """A lever turns the actuator's force into effort where the link is, the drive's gain where it is."""
         lever = x.transmission.leverage()
         if not lever.has(x.transmission.q):
             return sp.Integer(0)
@@ -62,8 +67,8 @@ class Compliance(Effect):
         return lever * (force + p["damping"] * touching * lever * x.state["rate"])
 
     def _stretch(self, x: Variables) -> tuple[sp.Expr, sp.Expr]:
-        """How far the drive is ahead, as the joint would move in the middle of the stroke, and the ratio of the
-        drive where the link is over that in the middle.
+        """How far the drive is ahead, as the joint moves in the middle of the stroke, and the drive's ratio
+        where the link is over that in the middle.
         """
         drive, lag = x.transmission, x.state["lag"]
         lever = drive.leverage()

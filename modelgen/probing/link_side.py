@@ -80,8 +80,8 @@ class LinkSide:
     """Lead of drives over measured links, and what it adds to the inputs.
 
     e, base: of the arm. links: inputs (N, n) of the links alone along a motion, for base parameters.
-    gain: joint effort per input of coordinate number j at its positions, (N,); lever: the same for the ratio of
-    its drive over that in the middle of the stroke.
+    gain: joint effort per input of coordinate number j at its positions, (N,); lever: the same for the ratio
+    of its drive over that in the middle of the stroke.
     """
 
     def __init__(
@@ -120,7 +120,9 @@ class LinkSide:
         t, play = self._torque(joint, motion, parameters), values.get("play", 0.0)
         lead = _relaxed(t["passed"] / t["lever"] ** 2, values, motion.step)
         if play > 0.0:
-            lead = lead + play / 2 / t["lever"] * np.clip(t["steady"] / _torque_of(play, t, motion), -1.0, 1.0)
+            lead = lead + play / 2 / t["lever"] * np.clip(
+                t["steady"] / _torque_of(play, t, motion), -1.0, 1.0
+            )
         rate = np.gradient(lead, motion.step)
         tables = [motion.q.copy(), motion.dq.copy(), motion.ddq.copy()]
         for table, more in zip(tables, (lead, rate, np.gradient(rate, motion.step)), strict=True):

@@ -275,7 +275,7 @@ class Prober:
         return tuple(float(value) for value in given if value is not None)
 
     def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
-        """States at every sample, (N, s), from zero; a transmission's from where its load holds it at first."""
+        """States at every sample, (N, s), from zero; a transmission's from where its load holds it."""
         if e not in self._series:
             self._series[e] = Series(e, self.base)
         series = self._series[e]

@@ -24,7 +24,7 @@ CYCLES = 6  # of them
 LONGEST = 0.05  # rad or m, by one of them: across a gap a long one would leave the lever's range
 BEGINNING = 0.1  # s, over which the load tells how fast a transmission is wound at first
 CALM = 3.0  # s, in which ringing from the start shows
-TOUCH = 1e-7  # rad or m, and their rates
+TOUCH = 1e-4  # rad or m, and their rates
 _TABLES = ("t", "q", "dq", "ddq")
 # A library of the process may have a function of that name: glibc has a step().
 _PRIVATE = "#define CASADI_SYMBOL_EXPORT static\n"
@@ -85,8 +85,8 @@ class Series:
         return np.broadcast_to(np.asarray(self.heads(**taken)), (count, self.rest.arguments[1].size))
 
     def __call__(self, head: Array, free: Sequence[float], motion: Motion) -> Array:
-        """States (N, s) from zero at the first sample; elastic transmissions as far behind there as their load
-        winds them, and as fast: let loose, a soft one would ring for as long as the record.
+        """States (N, s) from zero at the first sample; elastic transmissions as far behind there as their
+        load winds them, and as fast: let loose, a soft one would ring for as long as the record.
         """
         values, before = np.array([*free, 0.0]), len(head) - len(motion.t)
         state = np.zeros((len(motion.t) + 1, self.rest.arguments[0].size))
@@ -100,15 +100,15 @@ class Series:
         return state[:-1]
 
     def _calm(self, head: Array, values: Array, start: Array) -> Array:
-        """The start (s,) from which the lags ring least: their accelerations over the first samples, as lags
-        and rates at the start change them, are as small as they can be. head: (N, h).
+        """The start (s,) from which the lags ring least: over the first samples their accelerations change as
+        little as other lags and rates at the start can make them. head: (N, h).
         """
 
         def bends(first: Array) -> Array:
             state = np.zeros((len(head) + 1, len(first)))
             state[0] = first
             self._run(head, values, state)
-            return np.diff(state[:, self.lags], 2, axis=0).ravel()
+            return np.diff(state[:, self.lags], 3, axis=0).ravel()
 
         places, found = [*self.lags, *self.rates], start.copy()
         now, moved = bends(start), np.eye(len(start))[places] * TOUCH
