@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
@@ -43,7 +44,37 @@ void run(long count, long heads, long states, const double *head, const double *
         step(given, found, integers, numbers, 0);
     }
 }
+#ifdef _WIN32
+__declspec(dllexport)
+#endif
+void settle(long count, long heads, long states, const double *head, const double *values, double *state,
+            const double *longest);
+void settle(long count, long heads, long states, const double *head, const double *values, double *state,
+            const double *longest)
+{
+    static casadi_int integers[%d];
+    static double numbers[%d], after[%d];
+    for (long k = 0; k < count; k++) {
+        const double *given[%d] = {state, head + k * heads, values};
+        double *found[%d] = {after};
+        step(given, found, integers, numbers, 0);
+        for (long i = 0; i < states; i++) {
+            const double moved = after[i] - state[i];
+            state[i] += moved > longest[i] ? longest[i] : moved < -longest[i] ? -longest[i] : moved;
+        }
+    }
+}
 """
+
+
+class _Steps(Protocol):
+    """run: states (N + 1, s) from the first along heads (N, h). settle: one state (s,), that moves by no more
+    than `longest` (s,) at each of them.
+    """
+
+    def run(self, head: Array, values: Array, state: Array) -> None: ...
+
+    def settle(self, head: Array, values: Array, state: Array, longest: Array) -> None: ...
 
 
 class Series:
@@ -96,7 +127,7 @@ class Series:
             state[0, self.rates] = (second - first) / (self._ends(motion)[1] * motion.step)
             calm = before + round(CALM / motion.step)
             state[0] = self._calm(np.ascontiguousarray(head[before:calm]), values, state[0])
-        self._run(np.ascontiguousarray(head[before:]), values, state)
+        self._steps.run(np.ascontiguousarray(head[before:]), values, state)
         return state[:-1]
 
     def _calm(self, head: Array, values: Array, start: Array) -> Array:
@@ -107,7 +138,7 @@ class Series:
         def bends(first: Array) -> Array:
             state = np.zeros((len(head) + 1, len(first)))
             state[0] = first
-            self._run(head, values, state)
+            self._steps.run(head, values, state)
             return np.diff(state[:, self.lags], 3, axis=0).ravel()
 
         places, found = [*self.lags, *self.rates], start.copy()
@@ -125,33 +156,42 @@ class Series:
         step is one of Newton's where it is as long as 1/pi of the period in which the link rings; steps of
         other lengths lead towards rest as well. heads: (D, h), of one sample, the shortest step first.
         """
-        state = np.zeros((2, self.rest.arguments[0].size))
-        for _ in range(CYCLES):
-            for head in heads[::-1]:
-                self._run(np.ascontiguousarray(head[None]), values, state)
-                moved = state[1, self.lags] - state[0, self.lags]
-                state[0, self.lags] += np.clip(moved, -LONGEST, LONGEST)
-        return state[0, self.lags]
+        state = np.zeros(self.rest.arguments[0].size)
+        longest = np.zeros(len(state))
+        longest[self.lags] = LONGEST
+        self._steps.settle(np.tile(heads[::-1], (CYCLES, 1)), values, state, longest)
+        return state[self.lags]
 
     @cached_property
-    def _run(self) -> Callable[[Array, Array, Array], None]:
-        return _interpreted(self.rest) if compiler() is None else _compiled(self.rest)
+    def _steps(self) -> _Steps:
+        return _Interpreted(self.rest) if compiler() is None else _Compiled(self.rest)
 
 
-def _compiled(rest: Function) -> Callable[[Array, Array, Array], None]:
-    step = casadi_function(rest)
-    made = ca.CodeGenerator("step", {"with_header": False})
-    made.add(step)
-    # a length of zero is none in C
-    sizes = (step.sz_iw() + 1, step.sz_w() + 1, step.sz_arg() + 1, step.sz_res() + 1)
-    library = _library(_PRIVATE + made.dump() + _DRIVER % sizes)
-    library.run.restype = None
+class _Compiled:
+    """In C."""
 
-    def run(head: Array, free: Array, state: Array) -> None:
-        counts = (ctypes.c_long(x) for x in (len(head), head.shape[1], state.shape[1]))
-        library.run(*counts, *(ctypes.c_void_p(x.ctypes.data) for x in (head, free, state)))
+    def __init__(self, rest: Function) -> None:
+        step = casadi_function(rest)
+        made = ca.CodeGenerator("step", {"with_header": False})
+        made.add(step)
+        # a length of zero is none in C
+        work, calls = (step.sz_iw() + 1, step.sz_w() + 1), (step.sz_arg() + 1, step.sz_res() + 1)
+        sizes = (*work, *calls, *work, rest.arguments[0].size + 1, *calls)
+        self._library = _library(_PRIVATE + made.dump() + _DRIVER % sizes)
+        self._library.run.restype = self._library.settle.restype = None
 
-    return run
+    def run(self, head: Array, values: Array, state: Array) -> None:
+        """As `_Steps`."""
+        self._library.run(*_given(head, state, head, values, state))
+
+    def settle(self, head: Array, values: Array, state: Array, longest: Array) -> None:
+        """As `_Steps`."""
+        self._library.settle(*_given(head, state, head, values, state, longest))
+
+
+def _given(head: Array, state: Array, *tables: Array) -> list[object]:
+    counts = (ctypes.c_long(x) for x in (len(head), head.shape[1], state.shape[-1]))
+    return [*counts, *(ctypes.c_void_p(x.ctypes.data) for x in tables)]
 
 
 @lru_cache(maxsize=64)
@@ -159,12 +199,20 @@ def _library(source: str) -> ctypes.CDLL:
     return shared_library({"series.c": source}, "series.c")
 
 
-def _interpreted(rest: Function) -> Callable[[Array, Array, Array], None]:
-    step = casadi_function(rest)
+class _Interpreted:
+    """By CasADi's virtual machine."""
 
-    def run(head: Array, free: Array, state: Array) -> None:
-        series = step.mapaccum("series", len(head), {"base": 4})
-        values = np.tile(free[: rest.arguments[2].size, None], (1, len(head)))
-        state[1:] = np.array(series(state[0], head.T, values)).T
+    def __init__(self, rest: Function) -> None:
+        self._step, self._free = casadi_function(rest), rest.arguments[2].size
 
-    return run
+    def run(self, head: Array, values: Array, state: Array) -> None:
+        """As `_Steps`."""
+        series = self._step.mapaccum("series", len(head), {"base": 4})
+        free = np.tile(values[: self._free, None], (1, len(head)))
+        state[1:] = np.array(series(state[0], head.T, free)).T
+
+    def settle(self, head: Array, values: Array, state: Array, longest: Array) -> None:
+        """As `_Steps`."""
+        for row in head:
+            after = np.array(self._step(state, row, values[: self._free])).ravel()
+            state += np.clip(after - state, -longest, longest)
