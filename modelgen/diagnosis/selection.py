@@ -71,7 +71,8 @@ def select(
     turns: list[list[Ranked]] = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         noisy = not steps and correlated(system)
-        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known)
+        elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
+        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
         trials: list[Trial] = []
         ranking: list[Ranked] = []
@@ -92,16 +93,15 @@ def select(
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         eligible: list[tuple[Trial, Judgement]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
-            found_so = gates.judged(t)
-            if noisy and not found_so.refused and not instrumented(t, system):
-                # an elastic joint moves otherwise in every period, which looks like errors without it
-                trials_so = [*(c.trial for c in causes), t]
-                elastic = t.candidate.effect in COMPLIANT
-                if not elastic or correlated(System(rows, with_causes(rows, trials_so), periods)):
-                    found_so = replace(found_so, refused="positions")
-            ranking.append(_ranked(t, found_so, found_so.refused))
-            if not found_so.refused:
-                eligible.append((t, found_so))
+            judged = gates.judged(t)
+            if noisy and not judged.refused and not instrumented(t, system):
+                together = with_causes(rows, [*(c.trial for c in causes), t])
+                # behind an elastic joint a link swings otherwise in every period, as errors do
+                if t.candidate.effect not in COMPLIANT or correlated(System(rows, together, periods)):
+                    judged = replace(judged, refused="positions")
+            ranking.append(_ranked(t, judged, judged.refused))
+            if not judged.refused:
+                eligible.append((t, judged))
         turns.append(_best_of_each(ranking))
         if not eligible:
             break

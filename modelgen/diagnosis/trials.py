@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,6 +80,7 @@ class Court:
 
     known: columns for these rows, by candidate and values. They outlive a court: those that change with the
     arm's parameters serve the next one to pass over what explains nothing, whatever the parameters are.
+    elastic: joints with an elastic joint or play among the system's causes.
     """
 
     def __init__(
@@ -89,11 +90,13 @@ class Court:
         prober: Prober,
         base: Array,
         known: dict[object, list[Array] | None] | None = None,
+        elastic: Collection[int | None] = (),
     ) -> None:
         self.system = system
         self.known = {} if known is None else known
         self.rows = rows
         self.prober = prober
+        self.elastic = elastic
         self.base = base
         self.fresh = True  # whether columns that change are made anew
         self.aged = False  # whether some were not
@@ -112,7 +115,7 @@ class Court:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
         if candidate.effect in of.COMPLIANT:
-            if of.at_links(candidate.joint, self.rows) and self._elastic(candidate.joint):
+            if of.at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
                 return None  # what is left of one looks like the other
             found = self._compliant(candidate)
             gap = None if found is None else of.gap_instead(candidate, self.rows, self.prober)
@@ -200,16 +203,6 @@ class Court:
                 middle = math.log(best.values[name])
                 best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
         return best
-
-    def _elastic(self, joint: int | None) -> bool:
-        """Whether an elastic joint or play is among the system's causes there."""
-        causes = self.system.columns[0][:, :, self.rows[0].columns.shape[2] :]
-        tried = (
-            found[0][:, :, 0]
-            for key, found in self.known.items()
-            if found is not None and isinstance(key, tuple) and key[0] in of.COMPLIANT and key[1] == joint
-        )
-        return any((column[:, :, None] == causes).all(axis=(0, 1)).any() for column in tried)
 
     def _whole(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
         """Behind a link's own position, only what is found about as large as it was simulated."""
