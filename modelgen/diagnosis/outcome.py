@@ -13,6 +13,7 @@ from modelgen.diagnosis.baseline import Baseline, estimated, held
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.settling import misfit, settled
 from modelgen.diagnosis.system import weighted_fit
 from modelgen.effects import described
 from modelgen.extension import extended_arm
@@ -71,10 +72,15 @@ def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Pre
     model = build_model(bigger)
     known = held(model) if train[0].input is None else estimated(model)
     # links that weigh nothing swing on no spring: not from zero
-    values = dict(zip((b.name for b in before.model.grouping.base), before.parameters, strict=True))
+    beside = before.rows[0].baseline.base(selection.system.theta[: before.rows[0].columns.shape[2]])
+    values = dict(zip((b.name for b in before.model.grouping.base), beside, strict=True))
     first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
     start = None if train[0].input is None else first
-    own = rows_twice(Prober(bigger), model, [_seen_by(p, bigger) for p in train], known, start)
+    seen = [_seen_by(p, bigger) for p in train]
+    if any(effect in COMPLIANT for effect, _, _ in causes):
+        rigid = misfit(before.rows, before.theta)
+        return Fitted(bigger, model, *settled(bigger, model, seen, known, first, rigid))
+    own = rows_twice(Prober(bigger), model, seen, known, start)
     if (
         any(effect == LATER for effect, _, _ in causes)
         and own[0].columns.shape == before.rows[0].columns.shape
@@ -128,7 +134,7 @@ def residuals(
     old = (test.effort - test.columns @ before.theta) * test.gain
     if not selection.causes:
         return old, old
-    if any(c.trial.candidate.effect in (*COMPLIANT, LATER) for c in selection.causes):
+    if any(c.trial.candidate.effect == LATER for c in selection.causes):
         table = [test.columns]
         for cause in selection.causes:
             # a payload that came between the records stays

@@ -76,6 +76,7 @@ def rows_of(
     columns = prober.regressor(model, motion, parameters)
     given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
     effort = prober.ideal(model, motion, given) - prober.link_side.led(motion, parameters)
+    effort = effort - prober.unseen(motion, columns, parameters)
     if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift

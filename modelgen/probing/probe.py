@@ -94,6 +94,16 @@ class Prober:
         found = function(**given_for(function.function, motion, parameters, loads=loads, states=states))
         return np.asarray(found).reshape(len(motion.t), self.n, -1)
 
+    def unseen(self, motion: Motion, columns: Array, parameters: Array) -> Array:
+        """What of the inputs the regressor (N, n, p) does not contain: what elastic joints and play behind
+        motors do, (N, n).
+        """
+        parts = [part for effect in self._own.effects for part in effect.parts]
+        behind = [self.arm.coordinates.index(p.joint) + 1 for p in parts if p.place == "transmission"]
+        if not parameters.any() or not behind or any(at_link(motion, joint) for joint in behind):
+            return np.zeros(motion.q.shape)
+        return self.inputs(motion, parameters) - columns @ parameters
+
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
         """Inputs of ideal drives with the efforts of the measured ones (N, n)."""
         given = acting(self.arm, motion.t, given)
