@@ -1,4 +1,4 @@
-"""A soft actuator behind a lever, of a plant of its own: named, and the extended arm's own model explains it."""
+"""A soft actuator behind a lever, of another plant: named, and the extended arm's own model explains it."""
 
 from pathlib import Path
 
