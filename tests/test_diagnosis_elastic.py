@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from hidden.cases import Case, Hidden, make
 from hidden.recovery import reachable
 
@@ -15,7 +14,6 @@ from modelgen.probing import Prober
 SOFT = Case("levered2", 1740050650, (Hidden("joint_flexibility", 2, 1.3, 1.98645),))
 
 
-@pytest.mark.xdist_group("soft")
 def test_the_extended_arm_recovers_what_the_joint_costs(tmp_path: Path) -> None:
     make(SOFT, tmp_path)
     arm = load(tmp_path / "arms.yaml")["arm"]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -111,7 +112,7 @@ class Gates:
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
         if trial.candidate.effect in FRICTION:
-            least = np.maximum(least, self._formed()[places])
+            least = np.maximum(least, self._formed[places])
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
@@ -134,6 +135,7 @@ class Gates:
             worse = self._total(again) >= 1.0
         return Judgement(float(gains[anew | carried].max()), hoped, "other joints" if worse else "")
 
+    @cached_property
     def _formed(self) -> Array:
         """Percent of the RMSE (n,) that the form of friction taken before may leave for another one to take:
         no law is that of the arm to the last twentieth.

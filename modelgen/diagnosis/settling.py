@@ -70,12 +70,11 @@ class _Search:
         """Equations at the best, with what each unknown changes for its column."""
         found = []
         for r in self.rows:
-            columns = []
+            here, columns = self.prober.inputs(r.motion, self.known.base(self.theta)), []
             for k, value in enumerate(self.theta):
                 step = max(TOUCH * abs(value), LEAST)
                 moved = self.theta + step * (np.arange(len(self.theta)) == k)
-                there, here = (self.prober.inputs(r.motion, self.known.base(x)) for x in (moved, self.theta))
-                columns.append((there - here) / step)
+                columns.append((self.prober.inputs(r.motion, self.known.base(moved)) - here) / step)
             table = r.filtered(np.stack(columns, axis=2))
             found.append(replace(r, effort=r.effort + (table - r.columns) @ self.theta, columns=table))
         return found

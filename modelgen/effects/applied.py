@@ -72,6 +72,11 @@ class AppliedEffect:
         """The coordinate whose units its parameters have: "motor" or "joint"."""
         return self.effect.side
 
+    @property
+    def elastic(self) -> bool:
+        """Whether it lies between a drive and its link, which then lags."""
+        return any(part.place == "transmission" for part in self.parts)
+
     def depends_on(self, name: str) -> bool:
         """Whether forces or steps use the variable `name` of `Variables`."""
         for part in self.parts:

@@ -125,7 +125,7 @@ def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
     """
     e = a.base
     for effect in e.effects:
-        if any(part.place == "transmission" for part in effect.parts):
+        if effect.elastic:
             raise InputError(
                 f"{effect.effect.name} needs the mass matrix, which row-wise gains do not have",
                 e.arm.where,

@@ -138,7 +138,7 @@ class Equations:
         rates: dict[int, Expr] = {}
         names = self.state_names()
         for effect in self.effects:
-            if any(part.place == "transmission" for part in effect.parts) and effect.joint is not None:
+            if effect.elastic and effect.joint is not None:
                 n = self.arm.coordinates.index(effect.joint)
                 lag, rate = (self.graph.input("state", names.index(s.name)) for s in effect.states.values())
                 lags[n] = lags[n] + lag if n in lags else lag

@@ -62,7 +62,7 @@ def lagging(states: Array, e: Equations, before: Motion, after: Motion) -> Array
     """States with the lags and their rates, behind measured links, from motions of links and drives."""
     names, found = e.state_names(), states.copy()
     for effect in e.effects:
-        if effect.joint is None or not any(part.place == "transmission" for part in effect.parts):
+        if effect.joint is None or not effect.elastic:
             continue
         n = e.arm.coordinates.index(effect.joint)
         if at_link(before, n + 1):

@@ -98,8 +98,8 @@ class Prober:
         """What of the inputs the regressor (N, n, p) does not contain: what elastic joints and play behind
         motors do, (N, n).
         """
-        parts = [part for effect in self._own.effects for part in effect.parts]
-        behind = [self.arm.coordinates.index(p.joint) + 1 for p in parts if p.place == "transmission"]
+        joints = [e.joint for e in self._own.effects if e.elastic and e.joint is not None]
+        behind = [self.arm.coordinates.index(joint) + 1 for joint in joints]
         if not parameters.any() or not behind or any(at_link(motion, joint) for joint in behind):
             return np.zeros(motion.q.shape)
         return self.inputs(motion, parameters) - columns @ parameters

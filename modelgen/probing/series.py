@@ -92,7 +92,7 @@ class Series:
         pairs = [
             [names.index(symbol.name) for symbol in effect.states.values()]
             for effect in e.effects
-            if any(part.place == "transmission" for part in effect.parts)
+            if effect.elastic
         ]
         self.lags, self.rates = [lag for lag, _ in pairs], [rate for _, rate in pairs]
 

@@ -179,4 +179,4 @@ def _name(key: _Key, arm: Arm) -> str:
 
 def elastic(arm: Arm) -> bool:
     """Whether a joint has play or bends."""
-    return any(part.place == "transmission" for e in applied_effects(arm) for part in e.parts)
+    return any(e.elastic for e in applied_effects(arm))
