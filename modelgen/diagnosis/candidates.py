@@ -99,7 +99,7 @@ class Candidate:
     def positive(self) -> tuple[bool, ...]:
         """Of each column, whether its parameter may not be negative."""
         bounds = {p.name: p.bounds for p in CATALOGUE[self.effect].accepted()}
-        return tuple(name in bounds and bounds[name][0] == 0.0 for name in self.names)
+        return tuple(name in bounds and bounds[name][0] >= 0.0 for name in self.names)
 
     def joints(self, n: int) -> list[int]:
         """Coordinates (from 0) that it is judged by."""

@@ -14,7 +14,7 @@ from modelgen.diagnosis.candidates import PERIODIC, Candidate
 from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import Gain, System
-from modelgen.effects import described
+from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
 from modelgen.probing import Prober, with_effect
 
@@ -63,13 +63,16 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
 
 def sensible(trial: Trial, arm: Arm) -> bool:
     """Whether something is left where values may not be negative, and the arm admits them."""
-    c = trial.candidate
+    c, found = trial.candidate, trial.parameters
+    bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
+    if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
+        return False
     if c.effect in of.STEPS:
         try:
-            described(with_effect(arm, c.effect, c.joint, trial.parameters))
+            described(with_effect(arm, c.effect, c.joint, found))
         except InputError:
             return False
-    if trial.candidate.effect in of.COMPLIANT:
+    if c.effect in of.COMPLIANT:
         return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
     limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
     return not limited or max(limited) > 0 or c.effect == of.WEIGHING
