@@ -13,8 +13,9 @@ from scipy.linalg import subspace_angles
 
 from modelgen.base_parameters.oracle import random_states
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, STEPS, Candidate, of_part, sensitivities
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, of_part
 from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.sensitivities import STEPS, sensitivities
 from modelgen.diagnosis.system import orthonormal
 from modelgen.errors import InputError
 from modelgen.functions import Model
@@ -60,12 +61,11 @@ def _span(c: Candidate, prober: Prober, motion: Motion, base: Array, q: Array) -
         return None
     try:
         if c.effect in STEPS:
-            table = sensitivities(c, motion, prober, base)
+            table = sensitivities(c.effect, c.joint, motion, prober, base, c.names, {})
         else:
-            table = prober.columns(c.effect, c.joint, motion, c.fixed, base)
+            (table,) = of_part(c, [prober.columns(c.effect, c.joint, motion, c.fixed, base)])
     except (InputError, ValueError):
         return None
-    (table,) = of_part(c, [table])
     flat = table.reshape(-1, table.shape[2])
     sizes = np.linalg.norm(flat, axis=0)
     flat = flat[:, sizes > 1e-5 * sizes.max(initial=0.0)] if sizes.any() else flat[:, :0]

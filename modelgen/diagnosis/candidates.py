@@ -12,23 +12,14 @@ import numpy as np
 from modelgen.dataset import drives_of
 from modelgen.description import Arm
 from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.sensitivities import STEPS, payload, sensitivities
 from modelgen.effects import CATALOGUE, Parameter
 from modelgen.errors import InputError
-from modelgen.probing import Motion, Prober, places
+from modelgen.probing import Prober, places
 
 Values = Mapping[str, float]
 
-# Sensitivities: the step over which they are taken, by parameter.
-STEPS: Mapping[str, Mapping[str, float]] = {
-    "encoder_offset": {"offset": 1e-4},
-    "base_tilt": {"x": 1e-4, "y": 1e-4, "z": 1e-4},
-    "lever_geometry": {"l1": 1e-6, "l2": 1e-6, "length": 1e-6},
-    "drive_gain_error": {"error": 1e-4},
-    "torque_constant_saturation": {"coefficient": 1e-8},
-    "time_delay": {"delay": 1e-4},
-}
 TAIL = 1e-6  # of the largest of all records
-INVISIBLE = 1e-5  # of the largest column of a sensitivity
 # Elastic joints and play move in proportion to nothing that they have: all of it is searched for,
 # stiffness in its scale, relaxation (damping over stiffness) in s, play in the range of the motion.
 SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
@@ -49,7 +40,7 @@ LINK_SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
 }
 # Of several parameters some are often as they were: asked for by fewer, at the price of fewer.
 PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
-    "actuator_mass": (("inertia", "moment_x"),),
+    "actuator_mass": (("inertia", "moment_x"), ("moment_x",)),
     "lever_geometry": (("l1",), ("l2",), ("length",)),
 }
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
@@ -208,7 +199,9 @@ def unchanging(candidate: Candidate, prober: Prober) -> bool:
 def columns(
     candidate: Candidate, values: Values, rows: Sequence[Rows], prober: Prober, base: Array
 ) -> list[Array] | None:
-    """Its columns (M, n, k) in every record for values of what is searched; None where it cannot stand."""
+    """Its columns (M, n, k) in every record for values of what is searched, or about which a column that
+    follows no line is taken; None where it cannot stand.
+    """
     try:
         found = [r.filtered(_at_full_rate(candidate, values, r, k, prober, base)) for k, r in enumerate(rows)]
     except InputError:
@@ -216,7 +209,7 @@ def columns(
     if candidate.effect in COMPLIANT:  # the tail of a filter, of what lies outside the rows, is nothing
         largest = max((np.abs(table).max(initial=0.0) for table in found), default=0.0)
         found = [t if np.abs(t).max(initial=0.0) > TAIL * largest else np.zeros_like(t) for t in found]
-    return of_part(candidate, found)
+    return found if candidate.effect in STEPS else of_part(candidate, found)
 
 
 def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
@@ -230,44 +223,14 @@ def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
 def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Prober, base: Array) -> Array:
     motion = r.motion
     if c.effect in STEPS:
-        return sensitivities(c, motion, prober, base)
-    if c.effect == LATER:
-        return _payload(c, r, record, prober, base)
+        return sensitivities(c.effect, c.joint, motion, prober, base, c.names, values)
+    if c.effect == LATER:  # in all records but the first
+        return payload(c.joint, motion, prober, base) if record else np.zeros((*r.prepared.q.shape, 4))
     given = {**c.fixed, **values}
     if c.effect in COMPLIANT:
         given["damping"] = given.pop("relaxation") * given["stiffness"]
         return prober.contribution(c.effect, c.joint, motion, given, base)[:, :, None]
     return prober.columns(c.effect, c.joint, motion, given, base)
-
-
-def sensitivities(c: Candidate, motion: Motion, prober: Prober, base: Array) -> Array:
-    """Derivatives of the inputs (N, n, k) by the parameters of an effect without linear ones."""
-    parts = []
-    for name, step in STEPS[c.effect].items():
-        ahead = prober.contribution(c.effect, c.joint, motion, {name: step}, base)
-        if c.effect == "torque_constant_saturation":  # not negative
-            parts.append(ahead / step)
-        else:
-            behind = prober.contribution(c.effect, c.joint, motion, {name: -step}, base)
-            parts.append((ahead - behind) / (2 * step))
-    together = np.stack(parts, axis=2)
-    # what differences leave of an effect that does not show is no column
-    sizes = np.abs(together).max(axis=(0, 1))
-    return np.where(sizes > INVISIBLE * sizes.max(initial=0.0), together, 0.0)
-
-
-def _payload(c: Candidate, r: Rows, record: int, prober: Prober, base: Array) -> Array:
-    """Mass and first moments of what the last link carries in all records but the first."""
-    if record == 0:
-        return np.zeros((*r.prepared.q.shape, 4))
-    step = 1e-3
-    at_origin = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0}, base)
-    parts = [at_origin]
-    for axis in "xyz":
-        ahead = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0, axis: step}, base)
-        behind = prober.contribution(c.effect, c.joint, r.motion, {"mass": 1.0, axis: -step}, base)
-        parts.append((ahead - behind) / (2 * step))  # without the square of the place
-    return np.stack(parts, axis=2)
 
 
 def waves(residual: Array, position: Array, speed: Array, cutoff: float, count: int = 4) -> list[float]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.special import chdtri
 
 from modelgen.diagnosis.candidates import COMPLIANT, LATER
 from modelgen.diagnosis.instruments import Pairs
@@ -23,6 +24,8 @@ from modelgen.diagnosis.trials import Trial
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
+SOME = 0.5  # of the practical gain, measured of a cause whose value is the same in all parts
+DIFFER = 1e-3  # significance of a difference between the values in two parts
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -97,12 +100,13 @@ class Gates:
         That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
         where a measured gain has that of all parameters of a part. A share of it must be measured: what
-        stands for something else does not carry from record to record. What errors of the positions could
-        feign must be exceeded by the gain where the rest is fitted anew, unless the estimate by instruments
-        is not zero. By that gain must pass what such errors look like most; everything where no period
-        repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes at a joint
-        of another, to which its form may leave some. Friction beside friction must be more than the form of
-        the first may leave.
+        stands for something else does not carry from record to record. Where a part alone tells too little
+        for that, and hence a measured gain is small, its value must be the same in both. What errors of the
+        positions could feign must be exceeded by the gain where the rest is fitted anew, unless the estimate
+        by instruments is not zero. By that gain must pass what such errors look like most; everything where
+        no period repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes
+        at a joint of another, to which its form may leave some. Friction beside friction must be more than
+        the form of the first may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -126,7 +130,11 @@ class Gates:
         expected = self._expected(new, halves)[places]
         hoped = float(expected.max(initial=0.0))
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
-        carried = ~strict & (expected >= least) & (gains >= CARRIED * expected)
+        due = ~strict & (expected >= least)
+        carried = due & (gains >= CARRIED * expected)
+        some = due & (gains >= SOME * PRACTICAL)
+        if some.any() and not (anew | carried).any() and self._alike(trial, new, halves):
+            carried = some
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
         if carried.any():
@@ -134,6 +142,21 @@ class Gates:
         else:
             worse = self._total(again) >= 1.0
         return Judgement(float(gains[anew | carried].max()), hoped, "other joints" if worse else "")
+
+    def _alike(self, trial: Trial, new: Sequence[Array], halves: bool) -> bool:
+        """Whether a value of its own for the first of two parts explains nothing: by the likelihood ratio."""
+        if halves:
+            first = [np.arange(len(c)) < len(c) // 2 for c in trial.columns]
+        else:
+            first = [np.full(len(c), i % 2 == 0) for i, c in enumerate(trial.columns)]
+        own = [c * flags[:, None, None] for c, flags in zip(trial.columns, first, strict=True)]
+        plain = System(self.rows, new, self.system.periods).plain
+        found = plain.gain(own, 0.0)
+        if found is None:
+            return False
+        used = plain.counts > 0
+        ratio = np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300))
+        return bool(plain.counts[used] @ ratio < chdtri(found.rank, DIFFER))
 
     @cached_property
     def _formed(self) -> Array:

@@ -138,7 +138,8 @@ def residuals(
         table = [test.columns]
         for cause in selection.causes:
             # a payload that came between the records stays
-            found = columns(cause.trial.candidate, cause.trial.values, [test, test], prober, base)
+            taken = {**cause.trial.values, **cause.trial.around}
+            found = columns(cause.trial.candidate, taken, [test, test], prober, base)
             assert found is not None
             table.append(found[1])
         left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import PERIODIC, Candidate
 from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.system import Gain, System
 from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
@@ -27,21 +28,26 @@ REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and other
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
 CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
-WORTH = 4.0  # evidence below which a grid's best is not refined
+WORTH = 4.0  # evidence below which a candidate's best is not refined
+SECANTS = 2  # times a column that follows no line is taken at the value found
+
+Values = Mapping[str, float]
 
 
 @dataclass(frozen=True)
 class Trial:
     """A candidate with values for what is searched. columns: (M, n, k) of every training record.
 
-    gain: its evidence is what is left after `doubt`, see `plausible`.
+    gain: its evidence is what is left after `doubt`, see `plausible`. around: values at which columns that
+    follow no line were taken.
     """
 
     candidate: Candidate
-    values: Mapping[str, float]
+    values: Values
     columns: Sequence[Array]
     gain: Gain
     doubt: float = 0.0
+    around: Values = field(default_factory=dict)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -67,7 +73,7 @@ def sensible(trial: Trial, arm: Arm) -> bool:
     bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
     if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
         return False
-    if c.effect in of.STEPS:
+    if c.effect in STEPS:
         try:
             described(with_effect(arm, c.effect, c.joint, found))
         except InputError:
@@ -109,10 +115,14 @@ class Court:
         """The best that the candidate can do; None where it adds nothing of its own."""
         self.fresh, self.aged = False, False
         found = self._trial(candidate)
-        if found is None or not self.aged or found.gain.delta_bic < WORTH:
+        if found is not None and self.aged and found.gain.delta_bic >= WORTH:
+            self.fresh = True
+            found = self._trial(candidate)
+        if found is None or candidate.effect not in STEPS or found.gain.delta_bic < WORTH:
             return found
-        self.fresh = True
-        return self._trial(candidate)
+        for _ in range(SECANTS):
+            found = self._at(candidate, {}, 0.0, found.parameters) or found
+        return found
 
     def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:
@@ -140,8 +150,13 @@ class Court:
         low, high = grid[max(0, k - 1)], grid[min(len(grid) - 1, k + 1)]
         return self._refined(candidate, parameter.name, low, high, best, 1.0)
 
-    def _at(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
-        columns = self._columns(candidate, values)
+    def _at(
+        self, candidate: Candidate, values: Values, extra: float, around: Values | None = None
+    ) -> Trial | None:
+        if around is None:
+            columns = self._columns(candidate, values)
+        else:
+            columns = of.columns(candidate, around, self.rows, self.prober, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra, candidate.positive)
@@ -153,9 +168,9 @@ class Court:
         estimated = zip(candidate.names, (float(v) for v in gain.values), strict=False)
         charged = doubt(candidate, dict(estimated), self.prober.arm)
         gain = replace(gain, delta_bic=gain.delta_bic - charged)
-        return Trial(candidate, dict(values), columns, gain, charged)
+        return Trial(candidate, dict(values), columns, gain, charged, dict(around or {}))
 
-    def _columns(self, candidate: Candidate, values: Mapping[str, float]) -> list[Array] | None:
+    def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
         given = {**candidate.fixed, **values}
         key = candidate.effect, candidate.joint, tuple(sorted(given.items()))
         stays = of.unchanging(candidate, self.prober)
@@ -207,7 +222,7 @@ class Court:
                 best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
         return best
 
-    def _whole(self, candidate: Candidate, values: Mapping[str, float], extra: float) -> Trial | None:
+    def _whole(self, candidate: Candidate, values: Values, extra: float) -> Trial | None:
         """Behind a link's own position, only what is found about as large as it was simulated."""
         found = self._at(candidate, values, extra)
         if found is None or not of.at_links(candidate.joint, self.rows):
