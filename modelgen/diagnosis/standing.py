@@ -25,6 +25,7 @@ LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 PLAIN = 250.0  # delta BIC; play gave 500 to 2800
 ROUGH = "backlash"
+CLEARLY = 1.5  # times the threshold of the lack of fit in a part, where a cause falls by it
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -42,7 +43,7 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     much = repeating(system) > MUCH * mean_squares(system)
     parts = in_parts(system)
     worst, left = (_worst(tests, system.n) / sizes for tests in (in_parts(old), parts))
-    found = any(t.found for t in parts)
+    found = any(t.statistic > CLEARLY * t.threshold for t in parts)
     dropped = []
     for cause in selection.causes:
         if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:

@@ -30,6 +30,7 @@ ROUNDS = 2  # over all values in turn
 CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
 WORTH = 4.0  # evidence below which a candidate's best is not refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
+SETTLED = 1.0  # change of evidence that needs no more of it
 
 Values = Mapping[str, float]
 
@@ -118,10 +119,12 @@ class Court:
         if found is not None and self.aged and found.gain.delta_bic >= WORTH:
             self.fresh = True
             found = self._trial(candidate)
-        if found is None or candidate.effect not in STEPS or found.gain.delta_bic < WORTH:
+        if found is None or found.gain.delta_bic < CERTAIN or candidate.effect not in STEPS:
             return found
         for _ in range(SECANTS):
-            found = self._at(candidate, {}, 0.0, found.parameters) or found
+            before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
+            if abs(found.gain.delta_bic - before.gain.delta_bic) < SETTLED:
+                break
         return found
 
     def _trial(self, candidate: Candidate) -> Trial | None:
