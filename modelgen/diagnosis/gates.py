@@ -22,6 +22,7 @@ from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
+FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
 SOME = 0.5  # of the practical gain, measured of a cause whose value is the same in all parts
@@ -178,7 +179,9 @@ class Gates:
         c = trial.candidate
         delayed = [t.candidate.joint for t in self.before if t.candidate.effect == DELAY]
         beside = c.effect in REVERSING and (c.joint in delayed or None in delayed)
-        return DELAYED if c.effect == DELAY or beside else PRACTICAL
+        if c.effect == DELAY or beside:
+            return DELAYED
+        return MORE if trial.gain.delta_bic < FAINT else PRACTICAL
 
     def _without(self, halves: bool) -> Array:
         """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
