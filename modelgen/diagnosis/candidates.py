@@ -225,7 +225,9 @@ def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Pr
     if c.effect in STEPS:
         return sensitivities(c.effect, c.joint, motion, prober, base, c.names, values)
     if c.effect == LATER:  # in all records but the first
-        return payload(c.joint, motion, prober, base) if record else np.zeros((*r.prepared.q.shape, 4))
+        return (
+            payload(c.joint, motion, prober, base, values) if record else np.zeros((*r.prepared.q.shape, 4))
+        )
     given = {**c.fixed, **values}
     if c.effect in COMPLIANT:
         given["damping"] = given.pop("relaxation") * given["stiffness"]

@@ -58,12 +58,23 @@ def sensitivities(
     return np.where(sizes > INVISIBLE * sizes.max(initial=0.0), together, 0.0)
 
 
-def payload(joint: int | None, motion: Motion, prober: Prober, base: Array) -> Array:
-    """Changes of the inputs (N, n, 4) with mass and first moments of what the last link carries."""
-    effect, step = "payload_change", 1e-3
-    parts = [prober.contribution(effect, joint, motion, {"mass": 1.0}, base)]  # at its origin
-    for axis in "xyz":
-        ahead = prober.contribution(effect, joint, motion, {"mass": 1.0, axis: step}, base)
-        behind = prober.contribution(effect, joint, motion, {"mass": 1.0, axis: -step}, base)
-        parts.append((ahead - behind) / (2 * step))  # without the square of the place
-    return np.stack(parts, axis=2)
+def payload(
+    joint: int | None, motion: Motion, prober: Prober, base: Array, around: Mapping[str, float]
+) -> Array:
+    """Changes of the inputs (N, n, 4) with mass and first moments of what the last link carries.
+
+    around: mass and place of what was found; its second moments are as if it were all there. At the link's
+    origin where there is none.
+    """
+    step = 1e-3
+    place = {a: around.get(a, 0.0) if around.get("mass", 0.0) > 0 else 0.0 for a in "xyz"}
+
+    def of(**moved: float) -> Array:
+        return prober.contribution("payload_change", joint, motion, {"mass": 1.0, **place, **moved}, base)
+
+    moments = []
+    for a in "xyz":
+        ahead, behind = (of(**{a: place[a] + d}) for d in (step, -step))
+        moments.append((ahead - behind) / (2 * step))
+    mass = of() - sum(place[a] * moment for a, moment in zip("xyz", moments, strict=True))
+    return np.stack([mass, *moments], axis=2)

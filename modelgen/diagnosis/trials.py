@@ -119,7 +119,8 @@ class Court:
         if found is not None and self.aged and found.gain.delta_bic >= WORTH:
             self.fresh = True
             found = self._trial(candidate)
-        if found is None or found.gain.delta_bic < CERTAIN or candidate.effect not in STEPS:
+        curved = candidate.effect in (*STEPS, of.LATER)
+        if found is None or found.gain.delta_bic < CERTAIN or not curved:
             return found
         for _ in range(SECANTS):
             before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
