@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated
+from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
 from modelgen.diagnosis.positions import feigned, repeating_errors
@@ -114,8 +115,13 @@ def select(
             or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
         ]
         causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
+        converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
+    every = len(causes)
     causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
+    if len(causes) < every:
+        converge(causes, rows, prober)
+        system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
     for cause in causes:  # what is there beside it does not stand for it
         others = {

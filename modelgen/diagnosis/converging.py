@@ -1,0 +1,60 @@
+"""Columns of causes at the values and the arm's parameters that are found with them.
+
+Without a cause the arm's parameters take over what they can of it: a delay looks like damping that it takes
+off, and what the cause is said to be worth at those parameters is too little by as much. Found anew in turns,
+both come to where they belong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns, unchanging
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.sensitivities import STEPS
+from modelgen.diagnosis.system import rmse, weighted_fit
+from modelgen.diagnosis.trials import Trial
+from modelgen.probing import Prober
+
+TURNS = 10
+CLOSE = 0.005  # of a value, its change in a turn
+WORSE = 1e-4  # rise of the misfit by which a turn is not taken
+
+
+def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
+    """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
+    own = rows[0].columns.shape[2]
+    trials = [c.trial for c in causes]
+    best, least, last = trials, np.inf, np.zeros(0)
+    for _ in range(TURNS):
+        table = with_causes(rows, trials)
+        theta = weighted_fit(rows, table)
+        left = float(np.log(rmse(rows, table, theta)).sum())
+        if left > least + WORSE:
+            break
+        best, least = trials, min(left, least)
+        if len(last) and np.allclose(theta[own:], last, rtol=CLOSE, atol=1e-12):
+            break
+        base, last = rows[0].baseline.base(theta[:own]), theta[own:]
+        values = np.split(last, np.cumsum([t.columns[0].shape[2] for t in best])[:-1])
+        trials = [_anew(t, v, rows, prober, base) for t, v in zip(best, values, strict=True)]
+        if all(new is old for new, old in zip(trials, best, strict=True)):
+            break
+    for cause, trial in zip(causes, best, strict=True):
+        cause.trial = trial
+
+
+def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, base: Array) -> Trial:
+    """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
+    c = trial.candidate
+    if c.effect in COMPLIANT or unchanging(c, prober) or (values[np.array(c.positive)] < 0).any():
+        return trial
+    after = replace(trial, gain=replace(trial.gain, values=values))
+    around = after.parameters if c.effect in (*STEPS, LATER) else {}
+    found = columns(c, {**trial.values, **around}, rows, prober, base)
+    return trial if found is None else replace(after, columns=found, around=around)
