@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtrc
 
 from modelgen.diagnosis.candidates import COMPLIANT, LATER
 from modelgen.diagnosis.instruments import Pairs
@@ -26,7 +26,7 @@ FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hun
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
 SOME = 0.5  # of the practical gain, measured of a cause whose value is the same in all parts
-DIFFER = 1e-3  # significance of a difference between the values in two parts
+ALIKE, APART = 1e-3, 1e-4  # chance of values that differ so in two parts: the same above, another law below
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -102,12 +102,12 @@ class Gates:
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
         where a measured gain has that of all parameters of a part. A share of it must be measured: what
         stands for something else does not carry from record to record. Where a part alone tells too little
-        for that, and hence a measured gain is small, its value must be the same in both. What errors of the
-        positions could feign must be exceeded by the gain where the rest is fitted anew, unless the estimate
-        by instruments is not zero. By that gain must pass what such errors look like most; everything where
-        no period repeats, since slow noise, of a size that nobody knows, looks like a slow cause; and causes
-        at a joint of another, to which its form may leave some. Friction beside friction must be more than
-        the form of the first may leave.
+        for that, its value must be the same in both; and nowhere may it be clearly another. What errors of
+        the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
+        estimate by instruments is not zero. By that gain must pass what such errors look like most;
+        everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
+        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction
+        must be more than the form of the first may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -134,7 +134,8 @@ class Gates:
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
         some = due & (gains >= SOME * PRACTICAL)
-        if some.any() and not (anew | carried).any() and self._alike(trial, new, halves):
+        alike = self._alike(trial, new, halves) if (anew | carried | some).any() else 0.0
+        if not (anew | carried).any() and alike > ALIKE:
             carried = some
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
@@ -142,10 +143,11 @@ class Gates:
             worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         else:
             worse = self._total(again) >= 1.0
-        return Judgement(float(gains[anew | carried].max()), hoped, "other joints" if worse else "")
+        shut = "other joints" if worse else "parts" if alike < APART else ""
+        return Judgement(float(gains[anew | carried].max()), hoped, shut)
 
-    def _alike(self, trial: Trial, new: Sequence[Array], halves: bool) -> bool:
-        """Whether a value of its own for the first of two parts explains nothing: by the likelihood ratio."""
+    def _alike(self, trial: Trial, new: Sequence[Array], halves: bool) -> float:
+        """Chance that a value of its own for the first of two parts explains as much (Wilks 1938)."""
         if halves:
             first = [np.arange(len(c)) < len(c) // 2 for c in trial.columns]
         else:
@@ -154,10 +156,10 @@ class Gates:
         plain = System(self.rows, new, self.system.periods).plain
         found = plain.gain(own, 0.0)
         if found is None:
-            return False
+            return 1.0
         used = plain.counts > 0
-        ratio = np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300))
-        return bool(plain.counts[used] @ ratio < chdtri(found.rank, DIFFER))
+        ratio = plain.counts[used] @ np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300))
+        return float(chdtrc(found.rank, ratio))
 
     @cached_property
     def _formed(self) -> Array:

@@ -25,7 +25,9 @@ LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 PLAIN = 250.0  # delta BIC; play gave 500 to 2800
 ROUGH = "backlash"
-CLEARLY = 1.5  # times the threshold of the lack of fit in a part, where a cause falls by it
+CLEARLY = (
+    1.5  # times the threshold of the lack of fit in a part, where a cause falls by what is left elsewhere
+)
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -43,7 +45,8 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     much = repeating(system) > MUCH * mean_squares(system)
     parts = in_parts(system)
     worst, left = (_worst(tests, system.n) / sizes for tests in (in_parts(old), parts))
-    found = any(t.statistic > CLEARLY * t.threshold for t in parts)
+    found = any(t.found for t in parts)
+    clearly = any(t.statistic > CLEARLY * t.threshold for t in parts)
     dropped = []
     for cause in selection.causes:
         if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:
@@ -51,7 +54,8 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
         joints = cause.trial.candidate.joints(system.n)
         little = much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum()
         shown = worst[joints].max()
-        if little or (found and (left[joints].max() > MOST * shown or left.max() > shown)):
+        missed = (found and left[joints].max() > MOST * shown) or (clearly and left.max() > shown)
+        if little or missed:
             dropped.append(cause)
     if not dropped:
         return selection, []
