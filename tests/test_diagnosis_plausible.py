@@ -7,7 +7,7 @@ from scipy import stats
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.plausible import doubt
+from modelgen.diagnosis.plausible import doubt, obvious
 
 ROD = 0.42  # m, the actuator at its longest
 MASS = 0.3 * 20.0
@@ -46,3 +46,13 @@ def test_forms_of_an_effect_share_what_it_is_given() -> None:
 
 def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
     assert doubt(Candidate("lever_geometry", 2), {"l1": 1.0}, ARM) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("effect", "name", "value", "seen"),
+    [("base_tilt", "y", -1.4, True), ("base_tilt", "y", 0.2, False), ("lever_geometry", "l1", 0.2, True)]
+    + [("lever_geometry", "l1", 0.05, False), ("encoder_offset", "offset", 1.57, False)],
+)
+def test_what_nobody_overlooks(effect: str, name: str, value: float, seen: bool) -> None:
+    """A tilt of 80 degrees; not an encoder that was put on a quarter of a turn off."""
+    assert obvious(Candidate(effect, 1), {name: value}, ARM) is seen

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns, unchanging
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.system import rmse, weighted_fit
@@ -24,24 +26,33 @@ from modelgen.probing import Prober
 TURNS = 10
 CLOSE = 0.005  # of a value, its change in a turn
 WORSE = 1e-4  # rise of the misfit by which a turn is not taken
+FARTHEST = 3.0  # times the first sum of squares: what runs on is another law's, and stays as it was
 
 
 def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
     """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
     own = rows[0].columns.shape[2]
     trials = [c.trial for c in causes]
-    best, least, last = trials, np.inf, np.zeros(0)
-    for _ in range(TURNS):
+    best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
+    for turn in range(TURNS):
         table = with_causes(rows, trials)
         theta = weighted_fit(rows, table)
         left = float(np.log(rmse(rows, table, theta)).sum())
         if left > least + WORSE:
             break
+        ends = np.cumsum([own, *(t.columns[0].shape[2] for t in trials)])
+        values = [theta[begin:end] for begin, end in pairwise(ends)]
+        sizes = [
+            sum(float(((c @ v) ** 2).sum()) for c in t.columns) for t, v in zip(trials, values, strict=True)
+        ]
+        if (np.array(sizes) > most).any():
+            best = [c.trial for c in causes]
+            break
         best, least = trials, min(left, least)
         if len(last) and np.allclose(theta[own:], last, rtol=CLOSE, atol=1e-12):
             break
+        most = most if turn else FARTHEST * np.array(sizes)
         base, last = rows[0].baseline.base(theta[:own]), theta[own:]
-        values = np.split(last, np.cumsum([t.columns[0].shape[2] for t in best])[:-1])
         trials = [_anew(t, v, rows, prober, base) for t, v in zip(best, values, strict=True)]
         if all(new is old for new, old in zip(trials, best, strict=True)):
             break
@@ -54,7 +65,8 @@ def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, bas
     c = trial.candidate
     if c.effect in COMPLIANT or unchanging(c, prober) or (values[np.array(c.positive)] < 0).any():
         return trial
-    after = replace(trial, gain=replace(trial.gain, values=values))
+    named = dict(zip(c.names, (float(v) for v in values), strict=False))
+    after = replace(trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named, prober.arm))
     around = after.parameters if c.effect in (*STEPS, LATER) else {}
     found = columns(c, {**trial.values, **around}, rows, prober, base)
     return trial if found is None else replace(after, columns=found, around=around)

@@ -25,7 +25,7 @@ PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
-SOME = 0.5  # of the practical gain, measured of a cause whose value is the same in all parts
+SOME = 0.2  # of it, where a value of its own for a part explains nothing
 ALIKE, APART = 1e-3, 1e-4  # chance of values that differ so in two parts: the same above, another law below
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
@@ -133,7 +133,7 @@ class Gates:
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
-        some = due & (gains >= SOME * PRACTICAL)
+        some = due & (gains >= SOME * expected)
         alike = self._alike(trial, new, halves) if (anew | carried | some).any() else 0.0
         if not (anew | carried).any() and alike > ALIKE:
             carried = some

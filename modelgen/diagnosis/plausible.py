@@ -25,6 +25,8 @@ USUAL: Mapping[str, Mapping[str, float]] = {
 }
 MEASURED = 0.03  # of a length, as drawings and tapes leave it
 HEAVY = 0.3  # of the mass of all links, of one actuator
+OBVIOUS = 10.0  # times the scale: nobody overlooks such a one
+SEEN = ("base_tilt", "lever_geometry")  # at a glance, or with a tape
 
 
 def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
@@ -32,6 +34,12 @@ def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
     scales = usual(candidate, arm)
     charged = sum(math.log1p((values[name] / scale) ** 2) for name, scale in scales.items() if name in values)
     return 2.0 * (charged + math.log(candidate.forms))
+
+
+def obvious(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
+    """Whether someone would have seen it, so that the records must be about something else."""
+    scales = usual(candidate, arm) if candidate.effect in SEEN else {}
+    return any(abs(values.get(name, 0.0)) > OBVIOUS * scale for name, scale in scales.items())
 
 
 def usual(candidate: Candidate, arm: Arm) -> Mapping[str, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import PERIODIC, Candidate
-from modelgen.diagnosis.plausible import doubt
+from modelgen.diagnosis.plausible import doubt, obvious
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.system import Gain, System
@@ -73,6 +73,8 @@ def sensible(trial: Trial, arm: Arm) -> bool:
     c, found = trial.candidate, trial.parameters
     bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
     if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
+        return False
+    if obvious(c, found, arm):
         return False
     if c.effect in STEPS:
         try:
