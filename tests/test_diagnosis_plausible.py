@@ -50,8 +50,13 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
 
 @pytest.mark.parametrize(
     ("effect", "name", "value", "seen"),
-    [("base_tilt", "y", -1.4, True), ("base_tilt", "y", 0.2, False), ("lever_geometry", "l1", 0.2, True)]
-    + [("lever_geometry", "l1", 0.05, False), ("encoder_offset", "offset", 1.57, False)],
+    [
+        ("base_tilt", "y", -1.4, True),
+        ("base_tilt", "y", 0.2, False),
+        ("lever_geometry", "l1", 0.2, True),
+        ("lever_geometry", "l1", 0.05, False),
+        ("encoder_offset", "offset", 1.57, False),
+    ],
 )
 def test_what_nobody_overlooks(effect: str, name: str, value: float, seen: bool) -> None:
     """A tilt of 80 degrees; not an encoder that was put on a quarter of a turn off."""

@@ -26,7 +26,8 @@ FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hun
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
 SOME = 0.2  # of it, where a value of its own for a part explains nothing
-ALIKE, APART = 1e-3, 1e-4  # chance of values that differ so in two parts: the same above, another law below
+ALIKE, APART = 1e-3, 1e-4  # chance of values that differ so in two parts: the same above, others below
+OTHER = 0.15  # of the cause's evidence, what values of their own explain: less is what its form leaves
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -134,8 +135,8 @@ class Gates:
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
         some = due & (gains >= SOME * expected)
-        alike = self._alike(trial, new, halves) if (anew | carried | some).any() else 0.0
-        if not (anew | carried).any() and alike > ALIKE:
+        between, chance = self._between(trial, new, halves) if (anew | carried | some).any() else (0.0, 0.0)
+        if not (anew | carried).any() and chance > ALIKE:
             carried = some
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
@@ -143,11 +144,14 @@ class Gates:
             worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         else:
             worse = self._total(again) >= 1.0
-        shut = "other joints" if worse else "parts" if alike < APART else ""
+        apart = chance < APART and between > OTHER * trial.gain.delta_bic
+        shut = "other joints" if worse else "parts" if apart else ""
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
 
-    def _alike(self, trial: Trial, new: Sequence[Array], halves: bool) -> float:
-        """Chance that a value of its own for the first of two parts explains as much (Wilks 1938)."""
+    def _between(self, trial: Trial, new: Sequence[Array], halves: bool) -> tuple[float, float]:
+        """What a value of its own for the first of two parts explains, twice the logarithm of the ratio of
+        likelihoods, and the chance that it does (Wilks 1938).
+        """
         if halves:
             first = [np.arange(len(c)) < len(c) // 2 for c in trial.columns]
         else:
@@ -156,10 +160,10 @@ class Gates:
         plain = System(self.rows, new, self.system.periods).plain
         found = plain.gain(own, 0.0)
         if found is None:
-            return 1.0
+            return 0.0, 1.0
         used = plain.counts > 0
-        ratio = plain.counts[used] @ np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300))
-        return float(chdtrc(found.rank, ratio))
+        ratio = float(plain.counts[used] @ np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300)))
+        return ratio, float(chdtrc(found.rank, ratio))
 
     @cached_property
     def _formed(self) -> Array:
