@@ -121,5 +121,7 @@ class Backlash(Compliance):
     def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
         """stiffness times what the stretch exceeds the gap by."""
         half = p["play"] / 2
-        beyond = stretch - sp.Max(-half, sp.Min(half, stretch))
-        return p["stiffness"] * beyond, sp.sign(sp.Abs(beyond))
+        # not evaluated: what SymPy asks of a lever's stretch takes longer than everything else
+        within = sp.Max(-half, sp.Min(half, stretch, evaluate=False), evaluate=False)
+        beyond = stretch - within
+        return p["stiffness"] * beyond, sp.sign(sp.Abs(beyond, evaluate=False), evaluate=False)
