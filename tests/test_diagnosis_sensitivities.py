@@ -17,10 +17,8 @@ from modelgen.probing import Motion, Prober
 
 RATIO, CONSTANT, GRAVITY = 80.0, 0.05, 9.81
 EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "coulomb_friction", "drive_inertia"))
-DRIVES = tuple(
-    Joint(f"j{k}", "revolute", drive=DirectDrive(RATIO, CONSTANT), effects=EFFECTS) for k in (1, 2)
-)
-ONE = Arm("one", DRIVES[:1], (None,), (0.0, -GRAVITY, 0.0))
+JOINT = Joint("j1", "revolute", drive=DirectDrive(RATIO, CONSTANT), effects=EFFECTS)
+ONE = Arm("one", (JOINT,), (None,), (0.0, -GRAVITY, 0.0))
 TIMES = np.arange(0.0, 30.0, 0.004)
 
 

@@ -51,6 +51,7 @@ PERIODIC = "torque_ripple"
 DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", "friction_warm_up", *COMPLIANT)
 STRIBECK = (1.0, 2.0)  # exponents: Bo and Pavelescu 1982; Armstrong-Helouvry 1991
 LATER = "payload_change"
+CURVED = (*STEPS, LATER)  # columns are taken about values
 WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is lost in noise
 
 

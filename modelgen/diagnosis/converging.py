@@ -13,14 +13,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns, unchanging
+from modelgen.diagnosis.candidates import COMPLIANT, CURVED, columns, unchanging
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.sensitivities import STEPS
-from modelgen.diagnosis.system import rmse, weighted_fit
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.settling import misfit
+from modelgen.diagnosis.system import weighted_fit
+from modelgen.diagnosis.trials import Trial, named
 from modelgen.probing import Prober
 
 TURNS = 10
@@ -37,7 +37,7 @@ def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> N
     for turn in range(TURNS):
         table = with_causes(rows, trials)
         theta = weighted_fit(rows, table)
-        left = float(np.log(rmse(rows, table, theta)).sum())
+        left = misfit(rows, table, theta)
         if left > least + WORSE:
             break
         ends = np.cumsum([own, *(t.columns[0].shape[2] for t in trials)])
@@ -65,8 +65,9 @@ def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, bas
     c = trial.candidate
     if c.effect in COMPLIANT or unchanging(c, prober) or (values[np.array(c.positive)] < 0).any():
         return trial
-    named = dict(zip(c.names, (float(v) for v in values), strict=False))
-    after = replace(trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named, prober.arm))
-    around = after.parameters if c.effect in (*STEPS, LATER) else {}
+    after = replace(
+        trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named(c, values), prober.arm)
+    )
+    around = after.parameters if c.effect in CURVED else {}
     found = columns(c, {**trial.values, **around}, rows, prober, base)
     return trial if found is None else replace(after, columns=found, around=around)

@@ -78,7 +78,7 @@ def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Pre
     start = None if train[0].input is None else first
     seen = [_seen_by(p, bigger) for p in train]
     if any(effect in COMPLIANT for effect, _, _ in causes):
-        rigid = misfit(before.rows, before.theta)
+        rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return Fitted(bigger, model, *settled(bigger, model, seen, known, first, rigid))
     own = rows_twice(Prober(bigger), model, seen, known, start)
     if (

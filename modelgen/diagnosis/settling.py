@@ -45,9 +45,9 @@ def settled(
     return search.rows, search.theta
 
 
-def misfit(rows: Sequence[Rows], theta: Array) -> float:
-    """Sum over the joints of the logarithm of what the unknowns leave."""
-    return float(np.log(rmse(rows, [r.columns for r in rows], theta)).sum())
+def misfit(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> float:
+    """Sum over the joints of the logarithm of what the unknowns of these columns leave."""
+    return float(np.log(rmse(rows, columns, theta)).sum())
 
 
 class _Search:
@@ -61,7 +61,7 @@ class _Search:
     def at(self, theta: Array) -> tuple[list[Rows], float]:
         """Equations there, and their misfit."""
         rows = [rows_of(self.prober, self.model, p, theta, self.known) for p in self.train]
-        left = misfit(rows, theta)
+        left = misfit(rows, [r.columns for r in rows], theta)
         if not self.rows or left < self.least:
             self.rows, self.theta, self.least = rows, theta, left
         return rows, left

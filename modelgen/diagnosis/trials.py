@@ -10,7 +10,7 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
-from modelgen.diagnosis.candidates import PERIODIC, Candidate
+from modelgen.diagnosis.candidates import CURVED, PERIODIC, Candidate, Values
 from modelgen.diagnosis.plausible import doubt, obvious
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS
@@ -32,8 +32,6 @@ WORTH = 4.0  # evidence below which a candidate's best is not refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
 SETTLED = 1.0  # change of evidence that needs no more of it
 
-Values = Mapping[str, float]
-
 
 @dataclass(frozen=True)
 class Trial:
@@ -53,8 +51,13 @@ class Trial:
     @property
     def parameters(self) -> dict[str, float]:
         """All values: fixed, searched and estimated."""
-        estimated = dict(zip(self.candidate.names, (float(v) for v in self.gain.values), strict=False))
+        estimated = named(self.candidate, self.gain.values)
         return physical(self.candidate, {**self.candidate.fixed, **self.values, **estimated})
+
+
+def named(candidate: Candidate, values: Array) -> dict[str, float]:
+    """Estimated values (k,) by the parameters of their columns."""
+    return dict(zip(candidate.names, (float(v) for v in values), strict=False))
 
 
 def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
@@ -121,8 +124,7 @@ class Court:
         if found is not None and self.aged and found.gain.delta_bic >= WORTH:
             self.fresh = True
             found = self._trial(candidate)
-        curved = candidate.effect in (*STEPS, of.LATER)
-        if found is None or found.gain.delta_bic < CERTAIN or not curved:
+        if found is None or found.gain.delta_bic < CERTAIN or candidate.effect not in CURVED:
             return found
         for _ in range(SECANTS):
             before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
@@ -171,8 +173,7 @@ class Court:
         held = np.array(candidate.positive) & (gain.values == 0.0)
         if held.any():  # stays zero in every fit to come
             columns = [np.where(held, 0.0, c) for c in columns]
-        estimated = zip(candidate.names, (float(v) for v in gain.values), strict=False)
-        charged = doubt(candidate, dict(estimated), self.prober.arm)
+        charged = doubt(candidate, named(candidate, gain.values), self.prober.arm)
         gain = replace(gain, delta_bic=gain.delta_bic - charged)
         return Trial(candidate, dict(values), columns, gain, charged, dict(around or {}))
 
