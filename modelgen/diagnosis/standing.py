@@ -25,9 +25,7 @@ LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 PLAIN = 250.0  # delta BIC; play gave 500 to 2800
 ROUGH = "backlash"
-CLEARLY = (
-    1.5  # times the threshold of the lack of fit in a part, where a cause falls by what is left elsewhere
-)
+CLEARLY = 1.5  # times the threshold in a part, where a cause falls by what is left elsewhere
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 

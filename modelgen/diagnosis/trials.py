@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -28,7 +28,7 @@ REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and other
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
 CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
-WORTH = 4.0  # evidence below which a candidate's best is not refined
+WORTH = 4.0  # evidence below which a grid's best is not refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
 SETTLED = 1.0  # change of evidence that needs no more of it
 
