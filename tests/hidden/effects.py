@@ -26,6 +26,7 @@ class Scales:
     common: Array
     floor: float  # height below which the tip is for a part of every record [m]
     power: Array  # electrical power of the whole arm (N,) [W]
+    paths: list[Array]  # joint coordinates (N, n) of every record
 
 
 @dataclass(frozen=True)
@@ -212,6 +213,14 @@ def _floor(p: Plant, s: Site, m: float) -> None:
     p["floor_stiffness"] = 400.0 * m
 
 
+def _hose(p: Plant, s: Site, m: float) -> None:
+    j, other = s.joint, s.joint - 1 if s.joint else 1
+    side = s.random.choice((-1.0, 1.0))
+    p["hose"][j], p["hose_to"][j], p["hose_side"][j] = 20.0 * m, 1.0 + other, side
+    share = s.random.uniform(0.7, 0.9)
+    p["hose_slack"][j] = min(np.quantile(q[:, j] + side * q[:, other], share) for q in s.scales.paths)
+
+
 EFFECTS: dict[str, Effect] = {
     "friction_offset": Effect(_offset),
     "asymmetric_viscous_friction": Effect(_asymmetric),
@@ -239,6 +248,7 @@ EFFECTS: dict[str, Effect] = {
     "hard_spot": Effect(_spot, outside=True),
     "supply_sag": Effect(_sag, whole=True, outside=True),
     "external_contact": Effect(_floor, whole=True, outside=True, most=20.0),
+    "taut_hose": Effect(_hose, "chain", whole=True, outside=True),
 }
 CATALOGUE = tuple(name for name, effect in EFFECTS.items() if not effect.outside)
 OUTSIDE = tuple(name for name, effect in EFFECTS.items() if effect.outside)
@@ -288,7 +298,7 @@ def scales(plant: Plant, q: Array, current: Array, rate: float, paths: list[Arra
     low, high = (np.array([end(path) for path in paths]) for end in (_lowest, _highest))
     common = np.column_stack([low.max(axis=0), high.min(axis=0)])
     floor = max(float(np.quantile(heights(plant, path), 0.06)) for path in paths)
-    return Scales(slope, speed, np.sqrt((current**2).mean(axis=0)), friction, common, floor, power)
+    return Scales(slope, speed, np.sqrt((current**2).mean(axis=0)), friction, common, floor, power, paths)
 
 
 def heights(plant: Plant, q: Array) -> Array:

@@ -44,6 +44,7 @@ typedef struct {
     double saturation[JOINTS];               /* current at which tanh bends [A] */
     double delay[JOINTS];                    /* from command to torque [s] */
     double spot[JOINTS], spot_place[JOINTS], spot_width[JOINTS]; /* Gaussian torque [N m] */
+    double hose[JOINTS], hose_side[JOINTS], hose_slack[JOINTS], hose_to[JOINTS]; /* N m/rad, +-1, rad, 1 + index */
     double reading_offset[JOINTS];           /* added to what is logged, not to what is controlled */
     double sag, sag_power;                   /* of the supply, per watt above sag_power */
     double floor_stiffness, floor_height;

@@ -78,6 +78,19 @@ static void add_floor(const Plant *p, const Frames *f, const double *v, double *
     for (int j = 0; j < p->n; ++j) force[j] += p->floor_stiffness * deep * (1.0 + 0.5 * sink) * J[j][2];
 }
 
+/* A hose over two joints pulls at both once it is taut, the harder the further. */
+static void add_hoses(const Plant *p, const double *q, double *force)
+{
+    for (int j = 0; j < p->n; ++j) {
+        if (!(p->hose[j] > 0.0)) continue;
+        const int other = (int)p->hose_to[j] - 1;
+        const double taut = q[j] + p->hose_side[j] * q[other] - p->hose_slack[j];
+        if (taut <= 0.0) continue;
+        force[j] -= p->hose[j] * taut;
+        force[other] -= p->hose[j] * p->hose_side[j] * taut;
+    }
+}
+
 static double gravity_load(const Plant *p, const Frames *f, int j)
 {
     double load = 0.0;
@@ -110,6 +123,7 @@ static int advance(const Plant *p, State *s, double t, double h, const double *c
     }
     add_drag(p, &f, v, force);
     add_floor(p, &f, v, force);
+    add_hoses(p, q, force);
     for (int j = 0; j < n; ++j) {
         double x, slope, bend, plus, minus;
         const double lift = q[j] - p->spring_rest[j];
