@@ -93,12 +93,11 @@ def judged(seed: int, sizes: tuple[float, float]) -> Judgement:
     return Gates(rows, [], system).judged(Trial(Candidate("friction_offset", 1), {}, columns, gain))
 
 
-def test_a_cause_that_is_another_in_every_record_is_refused() -> None:
-    """Of 1.0 in both it passes; of 1.5 and 0.5, which together look like it and gain as much, it does not."""
-    same, other = ([judged(k, sizes) for k in range(20)] for sizes in ((1.0, 1.0), (1.5, 0.5)))
+def test_a_cause_that_one_record_contradicts_is_refused() -> None:
+    """Of 1.0 in both it passes; of 1.5 and -0.5, which together look like it, it does not."""
+    same, other = ([judged(k, sizes) for k in range(20)] for sizes in ((1.0, 1.0), (1.5, -0.5)))
     assert [j.refused for j in same].count("") >= 19
-    assert [j.refused for j in other].count("") <= 1
-    assert np.median([j.gain for j in other]) > 15.0
+    assert {j.refused for j in other} == {"gain"}
 
 
 def test_what_the_form_of_a_law_leaves_between_records_does_not_refuse_it() -> None:

@@ -13,7 +13,7 @@ from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
-from modelgen.diagnosis.standing import standing
+from modelgen.diagnosis.standing import doubtful
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 
@@ -96,6 +96,5 @@ def test_a_cause_that_leaves_the_contact_stands_in_for_it(right: bool, kept: boo
         s.rows,
         [np.concatenate([r.columns, c], axis=2) for r, c in zip(s.rows, one.trial.columns, strict=True)],
     )
-    selection, dropped = standing(Selection([one], System(rows, tables, s.periods), []), rows)
-    assert len(selection.causes) == kept
-    assert len(dropped) == 1 - kept
+    doubted = doubtful(Selection([one], System(rows, tables, s.periods), []), rows)
+    assert len(doubted) == 1 - kept

@@ -2,12 +2,15 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 
 from modelgen.diagnosis.lack_of_fit import PART, WHOLE, inflation
 from modelgen.diagnosis.null_distribution import NULLS
+from modelgen.diagnosis.outdone import LIKE
+from modelgen.diagnosis.shapes import SHAPE
 
 
 def label(*hidden: tuple[str, int]) -> Label:
@@ -61,8 +64,10 @@ def test_two_effects() -> None:
 
 
 def test_the_null_distribution_lies_beside_the_nominal_threshold() -> None:
-    assert set(NULLS) == {WHOLE, PART}
-    for kind, values in NULLS.items():
+    """And shapes have evidence against them in most complete models."""
+    assert set(NULLS) == {WHOLE, PART, SHAPE}
+    for values in NULLS.values():
         assert len(values) >= 200
         assert list(values) == sorted(values)
-        assert 0.5 < inflation(kind) < 1.5
+    assert all(0.5 < inflation(kind) < 1.5 for kind in (WHOLE, PART))
+    assert np.median(NULLS[SHAPE]) < 10.0 < LIKE < 50.0

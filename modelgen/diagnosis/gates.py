@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import chdtrc
 
 from modelgen.diagnosis.candidates import COMPLIANT, LATER
 from modelgen.diagnosis.instruments import Pairs
@@ -24,10 +23,7 @@ from modelgen.diagnosis.trials import Trial
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
-CARRIED = 0.35  # of the gain to be expected, measured at least: less carries from record to record by chance
-SOME = 0.2  # of it, where a value of its own for a part explains nothing
-ALIKE, APART = 1e-3, 1e-4  # chance of values that differ so in two parts: the same above, others below
-OTHER = 0.15  # of the cause's evidence, what values of their own explain: less is what its form leaves
+CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -101,11 +97,10 @@ class Gates:
         unseen rows with and without the cause, which takes up much of what is slow; the larger one counts.
         That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
-        where a measured gain has that of all parameters of a part. A share of it must be measured: what
-        stands for something else does not carry from record to record. Where a part alone tells too little
-        for that, its value must be the same in both; and nowhere may it be clearly another. What errors of
-        the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
-        estimate by instruments is not zero. By that gain must pass what such errors look like most;
+        where a measured gain has that of all parameters of a part. A share of it must be measured: what one
+        part contradicts is no cause. What errors of the positions could feign must be exceeded by the gain
+        where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain must pass
+        what such errors look like most;
         everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
         cause; and causes at a joint of another, to which its form may leave some. Friction beside friction
         must be more than the form of the first may leave.
@@ -134,36 +129,14 @@ class Gates:
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
-        some = due & (gains >= SOME * expected)
-        between, chance = self._between(trial, new, halves) if (anew | carried | some).any() else (0.0, 0.0)
-        if not (anew | carried).any() and chance > ALIKE:
-            carried = some
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
         if carried.any():
             worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         else:
             worse = self._total(again) >= 1.0
-        apart = chance < APART and between > OTHER * trial.gain.delta_bic
-        shut = "other joints" if worse else "parts" if apart else ""
+        shut = "other joints" if worse else ""
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
-
-    def _between(self, trial: Trial, new: Sequence[Array], halves: bool) -> tuple[float, float]:
-        """What a value of its own for the first of two parts explains, twice the logarithm of the ratio of
-        likelihoods, and the chance that it does (Wilks 1938).
-        """
-        if halves:
-            first = [np.arange(len(c)) < len(c) // 2 for c in trial.columns]
-        else:
-            first = [np.full(len(c), i % 2 == 0) for i, c in enumerate(trial.columns)]
-        own = [c * flags[:, None, None] for c, flags in zip(trial.columns, first, strict=True)]
-        plain = System(self.rows, new, self.system.periods).plain
-        found = plain.gain(own, 0.0)
-        if found is None:
-            return 0.0, 1.0
-        used = plain.counts > 0
-        ratio = float(plain.counts[used] @ np.log(found.rss0[used] / np.maximum(found.rss1[used], 1e-300)))
-        return ratio, float(chdtrc(found.rank, ratio))
 
     @cached_property
     def _formed(self) -> Array:

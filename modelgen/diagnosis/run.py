@@ -25,10 +25,11 @@ from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit, place
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
+from modelgen.diagnosis.outdone import Likeness, outdone
 from modelgen.diagnosis.positions import feigned
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, Selection, select
-from modelgen.diagnosis.standing import standing
+from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.system import mean_squares
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
@@ -109,14 +110,15 @@ def diagnose(
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
     pool = asked(arm, pool, effects, rows, prober, start)
-    selection, beside = standing(
-        select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed), rows
-    )
+    selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
     baseline = rows[0].baseline
+    base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
+    found_shapes = [] if free else list(shapes(rows, prober, model, base))
+    selection, beside, likeness = outdone(selection, rows, found_shapes)
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
     share = feigned(blurs, mean_squares(selection.system))
-    verdict, reason = _verdict(selection, beside, fit, share, noisy)
+    verdict, reason = _verdict(selection, beside, fit, share, noisy, likeness)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":
@@ -169,13 +171,17 @@ def _verdict(
     fit: LackOfFit | None,
     noisy: Array,
     correlated: Endogeneity | None,
+    likeness: Likeness | None,
 ) -> tuple[str, str]:
-    """beside: what gained something and left most of what repeats; noisy: percent of the RMSE by joint that
-    errors of the positions could feign.
+    """beside: what gained something and left most of what repeats, or explained less than a shape; noisy:
+    percent of the RMSE by joint that errors of the positions could feign.
     """
+    like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
-        left = "" if fit is None or not fit.found else "; something deterministic remains beside it"
-        return "named", f"a cause passed every gate{left}"
+        left = like or (fit is not None and fit.found)
+        return "named", "a cause passed every gate" + (
+            f"; something deterministic remains beside it{like}" if left else ""
+        )
     if noisy.max() > PRACTICAL:
         joint = int(np.argmax(noisy)) + 1
         return "cannot_tell", (
@@ -194,19 +200,25 @@ def _verdict(
             f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
             f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
-    if fit.found:
+    if fit.found or likeness is not None:
         near = ", ".join(_title(c.trial.candidate) for c in beside)
-        where = place(fit, selection.system.rows)
-        part = ""
-        if where is not None:
-            part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
         more = f"; {near} comes nearest and leaves most of it" if near else ""
         return (
             "outside_catalogue",
-            f"something deterministic remains at joint {fit.worst.joint + 1}{part} that no effect of the "
-            f"catalogue explains{more}",
+            f"something deterministic remains{_where(fit, selection)} that no effect of the catalogue "
+            f"explains{like}{more}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _where(fit: LackOfFit, selection: Selection) -> str:
+    if not fit.found:
+        return ""
+    where = place(fit, selection.system.rows)
+    part = ""
+    if where is not None:
+        part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
+    return f" at joint {fit.worst.joint + 1}{part}"
 
 
 def _title(c: Candidate) -> str:

@@ -1,21 +1,19 @@
-"""Causes that stand for something else: they pass the gates, and most of what repeats is left.
+"""Causes that may stand for something else: they pass the gates, and most of what repeats is left.
 
 An effect outside the catalogue has a share in common with those inside, and the most similar of them gains
-something. The right cause leaves noise; where the lack of fit is found still, a cause must at least have
+something. The right cause leaves noise; where the lack of fit is found still, a cause should at least have
 explained two thirds of what repeats from period to period at the joints that it acts on, and most of it in
-the part of the period that shows most; and what is left elsewhere must be less than what it explains.
+the part of the period that shows most; and what is left elsewhere should be less than what it explains.
 Play, whose impacts are simulated roughly, is exempt where its evidence is beyond that of a resemblance.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.gates import with_causes
 from modelgen.diagnosis.lack_of_fit import Test, in_parts, lack_of_fit, repeating
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
@@ -29,15 +27,15 @@ CLEARLY = 1.5  # times the threshold in a part, where a cause falls by what is l
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
-def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, list[Cause]]:
-    """The selection without the causes that leave most of what repeats, and those causes."""
+def doubtful(selection: Selection, rows: Sequence[Rows]) -> list[Cause]:
+    """The causes that leave most of what repeats."""
     system = selection.system
     if not selection.causes:
-        return selection, []
+        return []
     old = System(rows, [r.columns for r in rows], system.periods)
     fit = lack_of_fit(old)
     if fit is None or not fit.found:
-        return selection, []
+        return []
     sizes = mean_squares(old)
     first, last = repeating(old) / sizes, repeating(system) / sizes
     much = repeating(system) > MUCH * mean_squares(system)
@@ -45,7 +43,7 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
     worst, left = (_worst(tests, system.n) / sizes for tests in (in_parts(old), parts))
     found = any(t.found for t in parts)
     clearly = any(t.statistic > CLEARLY * t.threshold for t in parts)
-    dropped = []
+    doubted = []
     for cause in selection.causes:
         if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:
             continue
@@ -54,12 +52,8 @@ def standing(selection: Selection, rows: Sequence[Rows]) -> tuple[Selection, lis
         shown = worst[joints].max()
         missed = (found and left[joints].max() > MOST * shown) or (clearly and left.max() > shown)
         if little or missed:
-            dropped.append(cause)
-    if not dropped:
-        return selection, []
-    kept = [cause for cause in selection.causes if cause not in dropped]
-    system = System(rows, with_causes(rows, [c.trial for c in kept]), system.periods)
-    return replace(selection, causes=kept, system=system), dropped
+            doubted.append(cause)
+    return doubted
 
 
 def _worst(tests: Sequence[Test], n: int) -> Array:

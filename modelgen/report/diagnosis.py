@@ -112,7 +112,6 @@ _REFUSED = {
     "gain": "gains too little on records that its fit has not seen",
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
-    "parts": "its value is clearly another in each part of the records",
 }
 _SHOWN = 12  # candidates of a turn
 

@@ -1,8 +1,8 @@
 """python -m hidden.nulls [--count N] [--seed N] [--jobs N]
 
-The lack of fit of complete models: statistic over the quantile of F of every joint and test, the largest of
-each null by kind of test, sorted. Writes modelgen/diagnosis/null_distribution.py. Run from the repository
-with tests/ on the path.
+What complete models leave. Of the lack of fit: statistic over the quantile of F of every joint and test, the
+largest of each null by kind of test; of shapes: the largest evidence. Sorted. Writes
+modelgen/diagnosis/null_distribution.py. Run from the repository with tests/ on the path.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import argparse
 import sys
 import tempfile
 from pathlib import Path
+from textwrap import wrap
 
 from joblib import Parallel, delayed
 from numpy.random import default_rng
@@ -24,15 +25,16 @@ from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.lack_of_fit import ratios
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.run import records, settings_for
+from modelgen.diagnosis.shapes import SHAPE, shapes, worth
 from modelgen.diagnosis.system import System
 from modelgen.functions import build_model
 from modelgen.probing import Prober
 
 OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
 HEAD = '''\
-"""Lack of fit of complete models, over its nominal threshold: the largest of all joints and tests of a null.
+"""What complete models leave: lack of fit over its nominal threshold, and the evidence of shapes (delta BIC).
 
-By kind of test (lack_of_fit.py).
+The largest of all joints of a null, by kind of test (lack_of_fit.py), and of all shapes (shapes.py).
 Simulated records of {count} arms with nothing hidden (tests/hidden/nulls.py, seed {seed}), sorted. Above one
 where coloured residuals have fewer degrees of freedom than were counted, and where errors that repeat with
 the motion, as those of encoders, stand out of little noise.
@@ -44,7 +46,7 @@ NULLS: dict[str, tuple[float, ...]] = {{
 
 
 def of_null(arm: str, seed: int) -> dict[str, float]:
-    """Of one null: the largest statistic over its quantile of F, by kind of test."""
+    """Of one null: the largest statistic over its quantile of F, by kind of test, and evidence of a shape."""
     with tempfile.TemporaryDirectory(prefix="null-") as name:
         folder = Path(name)
         make(Case(arm, seed), folder)
@@ -56,7 +58,9 @@ def of_null(arm: str, seed: int) -> dict[str, float]:
     model, prober = build_model(described), Prober(described)
     rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
     periods = [None if p is None else p // chosen.factor for p in lengths]
-    return ratios(System(rows, [r.columns for r in rows], periods))
+    system = System(rows, [r.columns for r in rows], periods)
+    evidence = [worth(s, system).evidence for s in shapes(rows, prober, model, system.theta)]
+    return {**ratios(system), SHAPE: max(evidence)}
 
 
 def main() -> int:
@@ -75,8 +79,8 @@ def main() -> int:
     text = HEAD.format(count=given.count, seed=given.seed)
     for kind in found[0]:
         values = [f"{value:.3f}" for value in sorted(ratio[kind] for ratio in found)]
-        lines = [", ".join(values[k : k + 14]) for k in range(0, len(values), 14)]
-        text += f'    "{kind}": (\n' + "".join(f"        {line},\n" for line in lines) + "    ),\n"
+        lines = wrap(", ".join(values) + ",", 100)
+        text += f'    "{kind}": (\n' + "".join(f"        {line}\n" for line in lines) + "    ),\n"
     text += "}\n# fmt: on\n"
     OUT.write_text(text, encoding="utf-8")
     return 0

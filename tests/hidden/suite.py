@@ -29,6 +29,7 @@ SINGLES = (
 OUTSIDE = (
     Case("direct2", 201, (Hidden("hard_spot", 1, 1.3, 0.145807),)),
     Case("direct3", 202, (Hidden("external_contact", 3, 1.3, 0.0429235),)),
+    Case("mixed3", 1223503423, (Hidden("supply_sag", 1, 1.3, 0.044738),)),
 )
 PAIRS = (
     Case(

@@ -1,0 +1,121 @@
+"""Smooth functions that stand for no law, on equations of which all is known: no arm, no filter."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.random import default_rng
+from scipy.stats import multivariate_normal
+
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.outdone import outdone
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.shapes import Shape, functions, worth
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.trials import Trial
+
+PERIOD, PERIODS = 200, 3
+UNUSED: Any = None
+
+
+def positions(seed: int) -> Array:
+    """Of one joint, (PERIOD * PERIODS, 1): every period the same, other records other motions."""
+    phase = 2 * np.pi * np.arange(PERIOD) / PERIOD
+    sizes = default_rng([1, seed]).normal(size=(2, 4))
+    waves = [a * np.cos(k * phase) + b * np.sin(k * phase) for k, (a, b) in enumerate(sizes.T, start=1)]
+    return np.tile(np.sum(waves, axis=0), PERIODS)[:, None]
+
+
+def made(force: Any, seed: int = 0) -> tuple[list[Rows], list[Array], list[int | None]]:
+    """Two records of one joint: a mass, a spring of unit stiffness, noise of unit size, a hidden force."""
+    rows, q = [], [positions(2 * seed), positions(2 * seed + 1)]
+    for k, x in enumerate(q):
+        columns = np.column_stack([x, np.gradient(np.gradient(x[:, 0]))])
+        noise = default_rng([2, seed, k]).normal(size=len(x))
+        effort = columns.sum(axis=1) + force(x[:, 0]) + noise
+        flags = np.ones((len(x), 1), dtype=bool)
+        rows.append(Rows(UNUSED, effort[:, None], columns[:, None, :], flags, UNUSED))
+    return rows, q, [PERIOD, PERIOD]
+
+
+def spot(x: Array) -> Array:
+    """A force in one place."""
+    return 5.0 * np.exp(-0.5 * (x / 0.15) ** 2)
+
+
+def offset(x: Array) -> Array:
+    """A law with one parameter."""
+    return np.full(len(x), 0.6)
+
+
+def judged(rows: list[Rows], q: list[Array], periods: list[int | None], column: Any) -> tuple[Any, ...]:
+    """`outdone`, of a cause with this column that was taken."""
+    start = System(rows, [r.columns for r in rows], periods)
+    columns = [column(x[:, 0])[:, None, None] for x in q]
+    gain = start.gain(columns)
+    assert gain is not None
+    trial = Trial(Candidate("friction_offset", 1), {}, columns, gain)
+    tables = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
+    cause = Cause(trial, gain.delta_bic, 5.0, 5.0)
+    selection = Selection([cause], System(rows, tables, periods), [])
+    return outdone(selection, rows, [Shape("by place", {0: functions(q, 0.2)})])
+
+
+def test_a_law_that_is_there_stays() -> None:
+    for seed in range(10):
+        rows, q, periods = made(offset, seed)
+        selection, dropped, likeness = judged(rows, q, periods, offset)
+        assert len(selection.causes) == 1
+        assert not dropped
+        assert likeness is None
+
+
+def test_a_law_that_stands_for_a_place_goes() -> None:
+    """And what is left is like a function of the place."""
+    for seed in range(10):
+        rows, q, periods = made(spot, seed)
+        selection, dropped, likeness = judged(rows, q, periods, offset)
+        assert not selection.causes
+        assert len(dropped) == 1
+        assert likeness is not None
+        assert likeness.shape.text == "by place"
+
+
+def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> None:
+    """Ten times the spot's share of the power is the law's."""
+    rows, q, periods = made(lambda x: 6.0 * offset(x) + spot(x))
+    selection, dropped, likeness = judged(rows, q, periods, offset)
+    assert len(selection.causes) == 1
+    assert not dropped
+    assert likeness is not None
+
+
+def test_evidence_is_that_of_a_gaussian_process() -> None:
+    """Its density with the kernel written out, noise and baseline integrated out, over that without it."""
+    rows, q, periods = made(spot, 3)
+    system = System(rows, [r.columns for r in rows], periods)
+    system.plain.counts = np.array([float(len(system.plain.joint))])  # white noise: every row counts
+    found = worth(Shape("", {0: functions(q, 0.5)}), system).evidence
+
+    x, y = np.concatenate(q) / (0.5 * np.ptp(np.concatenate(q))), np.concatenate([r.effort for r in rows])
+    baseline = np.concatenate([r.columns[:, 0] for r in rows])
+    left = np.linalg.qr(baseline, mode="complete")[0][:, baseline.shape[1] :]
+    kernel = left.T @ np.exp(-0.5 * (x - x.T) ** 2) @ left
+    right = (left.T @ y)[:, 0]
+
+    def twice_log(size: float) -> float:
+        """With the noise at its best."""
+        shape = size * kernel + np.eye(len(right))
+        power = float(right @ np.linalg.solve(shape, right)) / len(right)
+        return 2.0 * float(multivariate_normal.logpdf(right, cov=power * shape))
+
+    best = max(twice_log(size) for size in np.logspace(-2, 2, 13)) - twice_log(0.0)
+    assert found == pytest.approx(best - np.log(len(x)), abs=1.0)
+
+
+def test_functions_have_the_kernel_of_the_process() -> None:
+    x = np.linspace(-1.0, 2.0, 400)[:, None]
+    (table,) = functions([x], 0.2)
+    assert np.abs(table @ table.T - np.exp(-0.5 * ((x - x.T) / 0.6) ** 2)).max() < 1e-6
