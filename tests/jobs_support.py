@@ -18,8 +18,11 @@ def square(x: int) -> int:
 
 
 def deadly(x: int) -> int:
-    """The square, except where it ends the process as the kernel does when memory is out."""
+    """The square, except where it ends the process as the kernel does when memory is out, by when another job
+    waits behind it.
+    """
     if x == DEADLY:
+        time.sleep(0.2)
         os.kill(os.getpid(), signal.SIGKILL)
     return x * x
 
@@ -38,11 +41,18 @@ def process(x: int) -> tuple[int, str | None]:
 
 
 @contextmanager
-def cluster(folder: Path, workers: int = 2) -> Iterator[str]:
-    """Address of a scheduler with that many workers of one thread each, which end with the context."""
+def cluster(folder: Path, workers: int = 2, failures: int = 3) -> Iterator[str]:
+    """Address of a scheduler with that many workers of one thread each, which end with the context.
+
+    failures: ends of workers that a job may have part in.
+    """
     file = folder / "scheduler.json"
     tests = Path(__file__).resolve().parent
-    environment = {**os.environ, "PYTHONPATH": f"{tests.parent}{os.pathsep}{tests}"}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": f"{tests.parent}{os.pathsep}{tests}",
+        "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(failures),
+    }
     dask = [sys.executable, "-m", "dask"]
     commands = [
         [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--no-show"],

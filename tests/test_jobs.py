@@ -88,6 +88,13 @@ def test_a_job_that_ends_every_worker_it_gets_ends_no_other(address: str) -> Non
     assert found == {**SQUARES, jobs_support.DEADLY: -jobs_support.DEADLY}
 
 
+def test_a_job_that_waits_behind_it_is_not_blamed(tmp_path: Path) -> None:
+    """The end of a worker counts against all jobs that it had been given; here once is too often."""
+    with cluster(tmp_path, workers=1, failures=0) as address:
+        found = dict(run(deadly, range(8), Where(dask=address), lost))
+    assert found == {**SQUARES, jobs_support.DEADLY: -jobs_support.DEADLY}
+
+
 def test_a_trajectory_is_the_same_in_one_process_two_and_on_a_cluster(address: str, tmp_path: Path) -> None:
     files = {}
     for name, where in {"one": ["-j", "1"], "two": ["-j", "2"], "dask": ["--dask", address]}.items():

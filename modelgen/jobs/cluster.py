@@ -34,11 +34,27 @@ def run(
     client = _connected(distributed, address)
     try:
         _check_workers(client, address)
-        futures = {client.submit(_in_turn, function, x, pure=False): k for k, x in enumerate(items)}
-        while futures:
-            for future in _done(distributed, client, futures, address):
-                k = futures.pop(future)
-                yield k, _result(distributed, future, items[k], address, lost)
+        suspects = []
+        for k, future in _submitted(distributed, client, function, items, range(len(items)), address):
+            try:
+                result = _result(distributed, future, address)
+            except distributed.scheduler.KilledWorker:
+                if lost is None:
+                    raise InputError(
+                        f"--dask {address}: a job has ended every worker that had it (memory?)"
+                    ) from None
+                suspects.append(k)
+                continue
+            yield k, result
+        # The end of a worker counts against every job that it had been given: alone, each answers for itself.
+        for k in suspects:
+            ((_, future),) = _submitted(distributed, client, function, items, [k], address)
+            try:
+                result = _result(distributed, future, address)
+            except distributed.scheduler.KilledWorker:
+                assert lost is not None
+                result = lost(items[k])
+            yield k, result
     finally:
         # Closing cancels what has not been done.
         client.close(timeout=CONNECT)
@@ -77,6 +93,21 @@ def _check_workers(client: Any, address: str) -> None:
         raise InputError(f"--dask {address}: the workers lack a package: {error}; install modelgen") from None
 
 
+def _submitted(
+    distributed: Any,
+    client: Any,
+    function: Callable[[T], R],
+    items: Sequence[T],
+    places: Sequence[int],
+    address: str,
+) -> Iterator[tuple[int, Any]]:
+    """Places and their futures, as they end."""
+    futures = {client.submit(_in_turn, function, items[k], pure=False): k for k in places}
+    while futures:
+        for future in _done(distributed, client, futures, address):
+            yield futures.pop(future), future
+
+
 def _done(distributed: Any, client: Any, futures: dict[Any, int], address: str) -> list[Any]:
     """Futures that have ended, in the order of their items. Raises InputError where the cluster is gone."""
     missing = 0.0
@@ -93,16 +124,9 @@ def _done(distributed: Any, client: Any, futures: dict[Any, int], address: str) 
             raise _gone(address)
 
 
-def _result(distributed: Any, future: Any, item: T, address: str, lost: Callable[[T], R] | None) -> R:
+def _result(distributed: Any, future: Any, address: str) -> Any:
     try:
-        result: R = future.result()
-        return result
-    except distributed.scheduler.KilledWorker:
-        if lost is None:
-            raise InputError(
-                f"--dask {address}: a job has ended every worker that had it (memory?)"
-            ) from None
-        return lost(item)
+        return future.result()
     except (distributed.CancelledError, distributed.comm.CommClosedError):
         raise _gone(address) from None
 
