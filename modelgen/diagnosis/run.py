@@ -202,7 +202,7 @@ def _verdict(
         )
     if fit.found or likeness is not None:
         near = ", ".join(_title(c.trial.candidate) for c in beside)
-        more = f"; {near} comes nearest and leaves most of it" if near else ""
+        more = f"; {near} comes nearest" if near else ""
         return (
             "outside_catalogue",
             f"something deterministic remains{_where(fit, selection)} that no effect of the catalogue "
