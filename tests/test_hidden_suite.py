@@ -44,7 +44,9 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
         else:
             try:
                 found, strength, seconds = run(case, shared / name)
-                content = {**asdict(found), "strength": strength, "seconds": seconds}
+                written = (shared / name / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8")
+                like = json.loads(written)["most_like"]
+                content = {**asdict(found), "strength": strength, "seconds": seconds, "like": like}
             except Exception as error:
                 content = {"error": str(error)}
             draft = result.with_suffix(".draft")
@@ -57,7 +59,9 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return find
 
 
-def title(case: Case) -> str:
+def title(case: Case | str) -> str:
+    if isinstance(case, str):
+        return case
     return "+".join(f"{item.effect}.{item.joint}" for item in case.hidden) + f"@{case.arm}"
 
 
@@ -95,6 +99,13 @@ def test_what_no_entry_of_the_catalogue_explains_is_said_so(case: Case, outcome:
     found = outcome(case)
     assert found["named"] == []
     assert found["verdict"] == "outside_catalogue"
+
+
+@pytest.mark.parametrize(
+    ("case", "word"), [*zip(OUTSIDE, ("position", "where the arm is", "power"), strict=True)], ids=title
+)
+def test_what_it_depends_on_is_said(case: Case, word: str, outcome: Any) -> None:
+    assert word in outcome(case)["like"]["text"]
 
 
 @pytest.mark.parametrize("case", PAIRS, ids=title)

@@ -41,6 +41,15 @@ FRICTION = (
     "friction_warm_up",
     "time_delay",  # looks like what sticking does at reversals
 )
+# What these do follows from the arm's own equations or is a constant: their form leaves nothing to others.
+EXACT = (
+    "friction_offset",
+    "lever_geometry",
+    "payload_change",
+    "base_tilt",
+    "drive_gain_error",
+    "encoder_offset",
+)
 PASSING = "friction_warm_up"  # passes while the excitation and errors that correlate with it repeat
 
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
@@ -86,7 +95,7 @@ class Gates:
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
         self.counts = _moving(rows)
-        own = [] if last else [t.candidate.joint for t in before]
+        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in EXACT]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
 

@@ -14,6 +14,7 @@ from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.experiments import to_json as experiment_json
 from modelgen.diagnosis.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.outcome import Fitted
+from modelgen.diagnosis.outdone import Likeness
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Ranked, Selection
 from modelgen.simulation.windows import Windows
@@ -71,9 +72,9 @@ class Positions:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything that was found. before, after: the arm as described and the arm with the causes, fitted to
-    the training records; simulation: of the test record with either; test: rows of the test record;
-    residuals: (M, n) before and after, as the log has its efforts.
+    """Everything that was found. likeness: what the causes leave is most like; before, after: the arm as
+    described and the arm with the causes, fitted to the training records; simulation: of the test record with
+    either; test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts.
     """
 
     arm: Arm
@@ -82,6 +83,7 @@ class Diagnosis:
     causes: tuple[Named, ...]
     not_identifiable: tuple[tuple[str, str], ...]
     lack_of_fit: LackOfFit | None
+    likeness: Likeness | None
     errors: Errors
     simulation: tuple[Windows | None, Windows | None]
     before: Fitted
@@ -119,6 +121,9 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             if where is None
             else {"record": where[0], "from_s": rounded(where[1]), "to_s": rounded(where[2])},
         },
+        "most_like": None
+        if d.likeness is None
+        else {"text": d.likeness.shape.text, "delta_bic": rounded(d.likeness.evidence)},
         "error": {
             "unit": d.errors.unit,
             "before": numbers(d.errors.before),

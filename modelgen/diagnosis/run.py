@@ -137,6 +137,7 @@ def diagnose(
         named,
         _absorbed(arm, rows, selection, made.narrowed > 1.0),
         fit,
+        likeness,
         motion_errors(found[-1], *played) if free else errors(last, *pair, unit_of_efforts(test)),
         played,
         before,
