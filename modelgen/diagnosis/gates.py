@@ -109,10 +109,9 @@ class Gates:
         where a measured gain has that of all parameters of a part. A share of it must be measured: what one
         part contradicts is no cause. What errors of the positions could feign must be exceeded by the gain
         where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain must pass
-        what such errors look like most;
-        everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
-        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction
-        must be more than the form of the first may leave.
+        what such errors look like most; everything where no period repeats, since slow noise, of a size that
+        nobody knows, looks like a slow cause; and causes at a joint of another, to which its form may leave
+        some. Friction beside friction must be more than the form of the first may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead

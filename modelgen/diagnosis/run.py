@@ -113,7 +113,7 @@ def diagnose(
     selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
     baseline = rows[0].baseline
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
-    found_shapes = [] if free else list(shapes(rows, prober, model, base))
+    found_shapes = [] if free else list(shapes(rows, prober, base))
     selection, beside, likeness = outdone(selection, rows, found_shapes)
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from modelgen.backends.numpy import NumpyFunction
+from modelgen.dataset import drives_of
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
-from modelgen.functions import Model
 from modelgen.probing import Prober
 
 SHAPE = "shape"  # among the nulls
@@ -45,15 +44,15 @@ class Worth:
     percent: float
 
 
-def shapes(rows: Sequence[Rows], prober: Prober, model: Model, base: Array) -> Iterator[Shape]:
+def shapes(rows: Sequence[Rows], prober: Prober, base: Array) -> Iterator[Shape]:
     """Of driven arms. base: base parameters (p,), from which the inputs follow."""
     n = rows[0].effort.shape[1]
     inputs = [prober.inputs(r.motion, base) for r in rows]
-    gain = NumpyFunction(next(f for f in model.functions if f.name == "drive_gain"))
-    power = [
-        np.abs(gain(q=r.prepared.q) * u * r.prepared.dq).sum(axis=1, keepdims=True)
-        for r, u in zip(rows, inputs, strict=True)
-    ]
+    drives = drives_of(prober.arm)
+    power = []
+    for r, u in zip(rows, inputs, strict=True):
+        gains = np.column_stack([drive.gain(r.prepared.q[:, j]) for j, drive in enumerate(drives)])
+        power.append(np.abs(gains * u * r.prepared.dq).sum(axis=1, keepdims=True))
     for j in range(n):
         alone = functions([r.prepared.q[:, [j]] for r in rows], SHORT)
         spots = [r.prepared.parallel(x) for r, x in zip(rows, alone, strict=True)]

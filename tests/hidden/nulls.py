@@ -59,7 +59,7 @@ def of_null(arm: str, seed: int) -> dict[str, float]:
     rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
     periods = [None if p is None else p // chosen.factor for p in lengths]
     system = System(rows, [r.columns for r in rows], periods)
-    evidence = [worth(s, system).evidence for s in shapes(rows, prober, model, system.theta)]
+    evidence = [worth(s, system).evidence for s in shapes(rows, prober, system.theta)]
     return {**ratios(system), SHAPE: max(evidence)}
 
 
