@@ -182,14 +182,29 @@ def test_without_a_hidden_effect_only_the_noise_is_left(name: str) -> None:
     assert (model < 0.4 * noisy).all()
     squares = []
     for k in range(3):
-        current = loud.record(k, {}).current
+        current = quiet.record(k, {}).current
         assert current is not None
-        drawn = fitting.low_pass(logs.noise(current, 500.0, default_rng(k)), fitting.BAND, 500.0)
+        size = np.sqrt((current**2).mean(axis=0))
+        drawn = fitting.low_pass(logs.noise(len(current), size, 500.0, default_rng(k)), fitting.BAND, 500.0)
         squares.append((drawn**2).mean(axis=0))
     expected = np.sqrt(np.mean(squares, axis=0))
     # The estimates' own errors come on top.
     assert (noisy > 0.85 * expected).all()
     assert (noisy < 1.3 * expected).all()
+
+
+def test_an_effect_makes_no_noise() -> None:
+    """Friction that doubles the current leaves the sensor's noise as it was: it is not what the effect costs."""
+    hidden = (Hidden("friction_offset", 1, 1.3),)
+    quiet, loud = (Bench(Case("levered2", 4, hidden, noise=level)) for level in (0.0, 1.0))
+    for magnitudes in ({}, {0: 30.0}):
+        silent, noisy = (bench.record(1, magnitudes).current for bench in (quiet, loud))
+        assert silent is not None
+        assert noisy is not None
+        if not magnitudes:
+            alone, was = noisy - silent, np.abs(silent).mean(axis=0)
+    assert np.abs(silent).mean(axis=0)[0] > 1.5 * was[0]
+    np.testing.assert_allclose(noisy - silent, alone, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["mixed3", "direct3"])
@@ -231,7 +246,7 @@ def test_trajectories_reach_their_limits_and_repeat() -> None:
     ],
 )
 def test_an_effect_reaches_the_strength_asked_for(effect: str, name: str, joint: int) -> None:
-    bench = Bench(Case(name, 11, (Hidden(effect, joint, 1.3),)))
+    bench = Bench(Case(name, 103, (Hidden(effect, joint, 1.3),)))
     floor = bench.errors({})
     magnitude, reached = bench.tune(0, floor)
     assert reached == pytest.approx(1.3, abs=0.02)

@@ -27,10 +27,10 @@ could not be drawn (the effect reaches the strength on no plausible arm of the d
 The plant shares no code with modelgen (`tests/hidden`): other functional forms of the effects, another
 integrator (Moreau's midpoint stepping with set-valued friction), arms of 2 to 6 joints with direct and
 levered drives. Two training records and a test record of 30 s at 500 Hz, each three periods of a Fourier
-trajectory of 0.1 to 0.5 Hz; encoders of 4096 counts at the motor; current noise of 5 % RMS white and 2 %
-coloured. The strength s is the held-out RMSE of the standard model with the effect over without, on the
-affected joint, by the plant's own least squares below 15 Hz, each record held out in its turn. In brackets:
-95 % Wilson intervals, in %.
+trajectory of 0.1 to 0.5 Hz; encoders of 4096 counts at the motor; current noise, 5 % white and 2 %
+coloured, of the RMS without the effect. The strength s is the held-out RMSE of the standard model with the
+effect over without, on the affected joint, by the plant's own least squares below 15 Hz, each record held out
+in its turn. In brackets: 95 % Wilson intervals, in %.
 """
 
 

@@ -84,6 +84,7 @@ class Bench:
         times = np.linspace(0.0, 1.0 / float(self.arm.plant["frequency"]), 500)
         walked = [q] if free else [trajectories.motion(path, times)[0] for path in self.paths]
         self.scales: Scales = scales(self.arm.plant, q, current, case.rate, walked)
+        self._sizes: dict[int, Array] = {}
 
     def _encoders(self, plant: Plant) -> None:
         bits = {"motor": None, "joint": 20, "coarse": 14}[self.case.encoder]
@@ -102,7 +103,7 @@ class Bench:
                 most = self.arm.position[j][1] * 0.9**attempt
                 plant["q0"][j] = random.uniform(0.6, 1.0) * most * random.choice((-1.0, 1.0))
             steps, noise = self._substeps([]), _random(self.case, 4, k)
-            taken = logs.take(plant, self.case.rate, duration, noise, steps, self.case.noise)
+            taken = logs.take(plant, self.case.rate, duration, noise, steps, np.zeros(self.arm.n))
             q = logs.joints_of(taken, plant)
             if all(
                 low <= q[:, j].min() and q[:, j].max() <= high
@@ -127,7 +128,15 @@ class Bench:
             EFFECTS[hidden.effect].put(plant, site, magnitude)
         plant = trajectories.carry_over(self.paths[k], plant)
         steps = self._substeps(names)
-        return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, case.noise)
+        return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, self._size(k))
+
+    def _size(self, k: int) -> Array:
+        """RMS (n,) [A] of the current that record k takes without effects: an effect makes no noise."""
+        if k not in self._sizes:
+            steps = self._substeps([])
+            current = native.simulate(self.paths[k], self.case.rate, self.duration, steps)[2]
+            self._sizes[k] = self.case.noise * np.sqrt((current**2).mean(axis=0))
+        return self._sizes[k]
 
     def errors(self, magnitudes: dict[int, float]) -> Array:
         """RMSE (n,) on records that the fit has not seen: train_a, train_b and test, each in its turn.

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from hidden import native
 from hidden.native import Array, Plant
 
-WHITE, COLOURED = 0.05, 0.02  # of the current's RMS
+WHITE, COLOURED = 0.05, 0.02  # of the RMS of the current without effects
 COLOUR = 2.0  # Hz, corner of the coloured part
 
 
@@ -33,19 +33,19 @@ class Log:
         return np.arange(len(self.reading)) / self.rate
 
 
-def noise(current: Array, rate: float, random: Generator, level: float = 1.0) -> Array:
-    """White and coloured noise (N, n) [A] in proportion to each joint's RMS."""
-    size = level * np.sqrt((current**2).mean(axis=0))
-    white = random.normal(size=current.shape)
+def noise(count: int, size: Array, rate: float, random: Generator) -> Array:
+    """White and coloured noise (count, n) [A] in proportion to `size` (n,) [A]."""
+    white = random.normal(size=(count, len(size)))
     pole = np.exp(-2 * np.pi * COLOUR / rate)
-    coloured = lfilter([np.sqrt(1 - pole**2)], [1, -pole], random.normal(size=current.shape), axis=0)
+    coloured = lfilter([np.sqrt(1 - pole**2)], [1, -pole], random.normal(size=white.shape), axis=0)
     return np.asarray(size * (WHITE * white + COLOURED * coloured))
 
 
-def take(
-    plant: Plant, rate: float, duration: float, random: Generator, substeps: int, level: float = 1.0
-) -> Log:
-    """Runs the arm and logs it. Raises PlantError where the motion leaves its bounds."""
+def take(plant: Plant, rate: float, duration: float, random: Generator, substeps: int, size: Array) -> Log:
+    """Runs the arm and logs it, with noise in proportion to `size` (n,) [A]; none on a free motion.
+
+    Raises PlantError where the motion leaves its bounds.
+    """
     n = int(plant["n"])
     truth, reading, current, _ = native.simulate(
         plant, rate, duration, substeps, warm_up=0.0 if plant["free"] else 2.0
@@ -54,7 +54,7 @@ def take(
     steps = plant["count"][:n]
     offset = plant["reading_offset"][:n]
     whole = np.where(steps > 0, np.round(offset / np.where(steps > 0, steps, 1.0)) * steps, offset)
-    logged = None if plant["free"] else current + noise(current, rate, random, level)
+    logged = None if plant["free"] else current + noise(len(current), size, rate, random)
     return Log(rate, reading + whole, side, logged, truth)
 
 
