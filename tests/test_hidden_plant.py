@@ -194,7 +194,7 @@ def test_without_a_hidden_effect_only_the_noise_is_left(name: str) -> None:
 
 
 def test_an_effect_makes_no_noise() -> None:
-    """Friction that doubles the current leaves the sensor's noise as it was: it is not what the effect costs."""
+    """Friction that doubles the current leaves the noise as it was: it is no part of what an effect costs."""
     hidden = (Hidden("friction_offset", 1, 1.3),)
     quiet, loud = (Bench(Case("levered2", 4, hidden, noise=level)) for level in (0.0, 1.0))
     for magnitudes in ({}, {0: 30.0}):
