@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from modelgen.diagnosis.agreement import agreement
 from modelgen.diagnosis.candidates import COMPLIANT, LATER
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
@@ -21,9 +22,10 @@ from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
-FAINT, MORE = 25.0, 2.5  # evidence below which it must be more: the best of hundreds of forms by chance
+FAINT, MORE = 25.0, 3.0  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
+AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -106,12 +108,13 @@ class Gates:
         unseen rows with and without the cause, which takes up much of what is slow; the larger one counts.
         That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
-        where a measured gain has that of all parameters of a part. A share of it must be measured: what one
-        part contradicts is no cause. What errors of the positions could feign must be exceeded by the gain
-        where the rest is fitted anew, unless the estimate by instruments is not zero. By that gain must pass
-        what such errors look like most; everything where no period repeats, since slow noise, of a size that
-        nobody knows, looks like a slow cause; and causes at a joint of another, to which its form may leave
-        some. Friction beside friction must be more than the form of the first may leave.
+        where a measured gain has that of all parameters of a part. A share of it must be measured, or the
+        parts must agree on the cause as far as each can tell: what they contradict is no cause. What errors
+        of the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
+        estimate by instruments is not zero. By that gain must pass what such errors look like most;
+        everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
+        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction
+        must be more than the form of the first may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -137,14 +140,25 @@ class Gates:
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
+        agreed = bool(due.any()) and not carried.any() and self._agreed(new, halves)
+        if agreed:
+            carried = due
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
-        if carried.any():
+        if agreed:
+            worse = False
+        elif carried.any():
             worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         else:
             worse = self._total(again) >= 1.0
         shut = "other joints" if worse else ""
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
+
+    def _agreed(self, new: Sequence[Array], halves: bool) -> bool:
+        """Whether the parts agree on the cause."""
+        parts = [part for _, part in _folds(self.rows, halves=halves)]
+        own = self.old[0].shape[2]
+        return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
     @cached_property
     def _formed(self) -> Array:

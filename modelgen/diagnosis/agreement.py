@@ -1,0 +1,84 @@
+"""Whether parts of the records agree on a cause's parameters, each fitted alone.
+
+One record may hold little of what tells the cause from the rest of the model, and records that complement
+each other all of it: what a part predicts then says more about that part than about the cause. How far the
+parts' estimates may lie apart follows from noise like that of the records, drawn anew: what differs between
+the periods of a record, period by period in any order, turned and with any sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import lstsq
+from scipy.stats import chi2
+
+from modelgen.dataset.periods import noise_of
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import rmse, stacked, weighted_fit
+
+DRAWS = 64
+SEED = 20010601
+
+
+def agreement(
+    parts: Sequence[tuple[Sequence[Rows], Sequence[int]]],
+    rows: Sequence[Rows],
+    columns: Sequence[Array],
+    own: int,
+    periods: Sequence[int | None],
+) -> float:
+    """Probability that estimates of the columns from `own` on lie as far apart by noise alone (Wald's test).
+
+    parts: rows, and which records they are of; rows, columns (M, n, p), periods: of all records. 1 where less
+    than two parts can tell anything.
+    """
+    # a column that a part lacks says nothing of the parts' agreement
+    kept = [
+        k
+        for k in range(own, columns[0].shape[2])
+        if all(
+            any(columns[i][r.moving, k].any() for r, i in zip(some, which, strict=True))
+            for some, which in parts
+        )
+    ]
+    if not kept:
+        return 1.0
+    columns = [c[:, :, [*range(own), *kept]] for c in columns]
+    theta = weighted_fit(rows, columns)
+    weights = 1.0 / np.maximum(rmse(rows, columns, theta), 1e-150)
+    random = np.random.default_rng(SEED)
+    left = [r.effort - c @ theta for r, c in zip(rows, columns, strict=True)]
+    drawn = [_noise(e, r, p, random) for e, r, p in zip(left, rows, periods, strict=True)]
+    right = [np.concatenate([e[:, :, None], z], axis=2) for e, z in zip(left, drawn, strict=True)]
+    found = []
+    for some, which in parts:
+        table, _ = stacked(some, [columns[i] for i in which], weights)
+        sizes = np.linalg.norm(table, axis=0)
+        sides, _ = stacked(some, [right[i] for i in which], weights)
+        scaled = table / np.where(sizes > 0, sizes, 1.0)
+        off = lstsq(scaled, sides, cond=1e-10, lapack_driver="gelsy")[0][own:] / sizes[own:, None]
+        found.append((off[:, 0], np.linalg.pinv(np.atleast_2d(np.cov(off[:, 1:])), hermitian=True)))
+    mean = np.linalg.pinv(sum(w for _, w in found), hermitian=True) @ sum(w @ off for off, w in found)
+    apart = sum(float((off - mean) @ w @ (off - mean)) for off, w in found)
+    return float(chi2.sf(apart, (len(found) - 1) * (len(theta) - own)))
+
+
+def _noise(left: Array, rows: Rows, period: int | None, random: np.random.Generator) -> Array:
+    """Noise (M, n, DRAWS) like that of residuals (M, n) of one record."""
+    values = left * rows.moving
+    if period is not None:
+        for j in range(left.shape[1]):
+            values[:, j], flags = noise_of(left[:, j], rows.moving[:, j], period)
+            values[:, j] *= flags
+    length = len(values) if period is None else period
+    count = max(1, len(values) // length)
+    result = np.empty((*values.shape, DRAWS))
+    for k in range(DRAWS):
+        for begin in range(0, len(values), length):
+            source = length * int(random.integers(count))
+            turned = np.roll(values[source : source + length], int(random.integers(length)), axis=0)
+            size = min(length, len(values) - begin)
+            result[begin : begin + size, :, k] = turned[:size] * random.choice((-1.0, 1.0))
+    return result
