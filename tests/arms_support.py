@@ -41,7 +41,7 @@ EFFECTS: tuple[tuple[str, int | None, dict[str, float]], ...] = (
     ("torque_ripple", 2, {"harmonic": 2.0, "revolution": 20000.0}),
     ("transmission_coupling", 2, {"other": 1.0}),
     ("encoder_offset", 2, {"offset": 1e-4}),
-    ("friction_warm_up", 3, {"time": 5.0}),
+    ("friction_warm_up", 3, {"time": 5.0, "speed": 1e4}),
     ("position_dependent_friction", 3, {}),
     ("nonlinear_viscous_friction", 3, {"exponent": 0.6}),
     ("backlash", 3, {"play": 0.0001, "stiffness": 50.0}),

@@ -81,15 +81,30 @@ def test_the_load_is_the_weight_of_the_links_at_the_motor() -> None:
     agree(emitted("forward_dynamics", q, dq, given, base), ddq)
 
 
-def test_warm_up_fades_with_the_time_since_the_start() -> None:
-    emitted = build(with_joint(PLANAR, 0, EffectUse("friction_warm_up", {"time": 12.0})), Options())
+def test_a_drive_warms_by_its_own_motion() -> None:
+    """Heat of a drive that speeds up and turns back, by an integrator; at heat 1 no excess is left."""
+    time, speed = 12.0, 100.0
+    use = EffectUse("friction_warm_up", {"time": time, "speed": speed})
+    emitted = build(with_joint(PLANAR, 0, use), Options())
+    assert emitted.model.states == ("friction_warm_up_heat_1",)
     q, dq, ddq = states(emitted.arm, 4)
-    theta = links_vector(emitted)
-    base = emitted.base(theta)
-    cold, warm, settled = (emitted("inverse_dynamics", q, dq, ddq, base, time=[t]) for t in (0.0, 12.0, 1e4))
-    agree(warm - settled, (cold - settled) * math.exp(-1))
+    base = emitted.base(links_vector(emitted))
+    at = [emitted("inverse_dynamics", q, dq, ddq, base, state=[heat]) for heat in (0.0, 0.75, 1.0)]
+    agree(at[1] - at[2], (at[0] - at[2]) / 4)
     w = 80.0 * dq[:, 0]
-    agree((cold - settled)[:, 0], (np.sign(w) + w) / 0.05)
+    agree((at[0] - at[2])[:, 0], (np.sign(w) + w) / 0.05)
+
+    def moving(t: float) -> float:
+        return 2.0 * math.sin(0.3 * t)
+
+    heat, dt = np.zeros((1, 1)), 0.02
+    for k in range(1500):
+        now = np.array([[moving((k + 0.5) * dt), 0.0]])
+        heat = emitted("effects_step", 0 * now, now, [[dt]], base, heat)
+    truth = solve_ivp(
+        lambda t, h: [(abs(80.0 * moving(t)) / speed - h[0]) / time], (0.0, 30.0), [0.0], max_step=0.05
+    )
+    np.testing.assert_allclose(heat[0, 0], truth.y[0, -1], rtol=1e-3)
 
 
 # -- several coordinates --------------------------------------------------------------------

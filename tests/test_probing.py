@@ -17,7 +17,7 @@ from modelgen.probing import Motion, Prober, places, series, with_effect
 VALUES = {
     "stribeck_friction": {"velocity": 4e3},
     "nonlinear_viscous_friction": {"exponent": 0.6, "scale": 30.0},
-    "friction_warm_up": {"time": 7.0},
+    "friction_warm_up": {"time": 7.0, "speed": 30.0},
     "torque_ripple": {"harmonic": 3.0, "revolution": 500.0},
     "presliding": {"distance": 20.0},
     "transmission_coupling": {"other": 1.0, "ratio": -1.0},

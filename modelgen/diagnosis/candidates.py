@@ -154,6 +154,8 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
         return [{"exponent": exponent} for exponent in STRIBECK]
     if name == "nonlinear_viscous_friction":
         return [{"scale": scale("speed", name, joint, rows, prober)}]
+    if name == "friction_warm_up":
+        return [{"speed": scale("speed", name, joint, rows, prober)}]
     if name == "backlash" and at_links(joint, rows):
         (hardest,), (relaxation,) = (SEARCHES[name][p] for p in ("stiffness", "relaxation"))
         return [

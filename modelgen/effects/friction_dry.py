@@ -82,15 +82,17 @@ class PositionDependentFriction(Effect):
 
 
 class FrictionWarmUp(Effect):
-    """Friction in excess of the warm drive's, from a cold start at time 0."""
+    """Friction in excess of the warm drive's. Friction itself warms the drive: power in proportion to speed,
+    as that of dry friction, against losses in proportion to the heat. It begins cold.
+    """
 
     name = "friction_warm_up"
     seen_over = "time"
-    text = "friction that falls as the drive warms up, from the start of the record"
+    text = "friction that falls as the drive's own motion warms it up, from a cold start"
     reference = "Bittencourt and Gunnarsson 2012; Simoni, Beschi, Legnani and Visioli 2015"
     linear = (
-        Parameter("dry", "{f}", "excess of dry friction at the start", "FCW", bounds=ANY),
-        Parameter("viscous", "{f} s/{x}", "excess of viscous friction at the start", "FVW", bounds=ANY),
+        Parameter("dry", "{f}", "excess of dry friction, cold", "FCW", bounds=ANY),
+        Parameter("viscous", "{f} s/{x}", "excess of viscous friction, cold", "FVW", bounds=ANY),
     )
     nonlinear = (
         Parameter(
@@ -101,16 +103,23 @@ class FrictionWarmUp(Effect):
             scale="time",
             grid=(0.05, 0.1, 0.2, 0.4, 0.8, 1.6),
         ),
+        Parameter("speed", "{x}/s", "mean speed that warms the drive up", default=1.0, bounds=POSITIVE),
         SMOOTHING,
     )
+    states = ("heat",)
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
-    shown = at(dry=0.1, viscous=0.0003, time=5.0)
+    shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=25.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
-        """exp(-t / time) (FCW sign(v) + FVW v)."""
+        """(1 - heat) (FCW sign(v) + FVW v), the heat 1 after long at `speed`."""
         excess = p["dry"] * direction(x.velocity, p["smoothing"]) + p["viscous"] * x.velocity
-        return sp.exp(-x.time / p["time"]) * excess
+        return (1 - x.state["heat"]) * excess
+
+    def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """Exact solution of time dh/dt = |v| / speed - h at constant v."""
+        settled = sp.Abs(x.velocity) / p["speed"]
+        return {"heat": settled + (x.state["heat"] - settled) * sp.exp(-dt / p["time"])}
 
 
 class Presliding(Effect):
