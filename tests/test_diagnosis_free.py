@@ -29,18 +29,18 @@ def arm(checkout: Path) -> Arm:
     return load(checkout / "arms.yaml", known_effects())["gravity_link2"]
 
 
-def swings(link: Link, folder: Path) -> tuple[list[str], str]:
+def swings(link: Link, folder: Path, count: float) -> tuple[list[str], str]:
     files: list[str] = []
     for angle in (*ANGLES, *ANGLES, 30):
         file = folder / f"{len(files)}.csv"
-        table = link.swing(radians(angle), len(files))
-        np.savetxt(file, table, delimiter=",", header="t,q1", comments="", fmt="%.6g")
+        table = link.swing(radians(angle + 0.1 * len(files)), len(files), count=count)
+        np.savetxt(file, table, delimiter=",", header="t,q1", comments="", fmt="%.9g")
         files.append(str(file))
     return files[:-1], files[-1]
 
 
-def diagnosed(arm: Arm, link: Link, folder: Path) -> Diagnosis:
-    train, test = swings(link, folder)
+def diagnosed(arm: Arm, link: Link, folder: Path, count: float = 0.0) -> Diagnosis:
+    train, test = swings(link, folder, count)
     return diagnose(arm, records(arm, train, [test], None))
 
 
@@ -52,6 +52,14 @@ def test_nothing_is_named_where_the_arm_is_as_described(arm: Arm, tmp_path: Path
     assert found.errors.before[0] < radians(0.2)
     assert found.parameters["FC1"].value == pytest.approx(BARE.coulomb, rel=0.05)
     assert found.parameters["FV1"].value == pytest.approx(BARE.viscous, rel=0.05)
+
+
+@pytest.mark.parametrize(("moment", "missing"), [(1.0, False), (1.1, True)])
+def test_counts_tell_whether_anything_is_left(arm: Arm, tmp_path: Path, moment: float, missing: bool) -> None:
+    """Steps of 4096 to a turn are all the noise there is; a link a tenth heavier leaves more than they do."""
+    link = replace(BARE, moment=moment * MOMENT)
+    found = diagnosed(arm, link, tmp_path, count=2 * np.pi / 4096)
+    assert (found.verdict != "nothing_missing") == missing
 
 
 def test_spring_with_shifted_rest_and_stiction(arm: Arm, tmp_path: Path) -> None:

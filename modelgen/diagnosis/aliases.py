@@ -6,14 +6,15 @@ once what the base parameters explain is taken off.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from scipy.linalg import subspace_angles
 
 from modelgen.base_parameters.oracle import random_states
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, of_part
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, PERIODIC, Candidate, Values, of_part
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS, sensitivities
 from modelgen.diagnosis.system import orthonormal
@@ -37,33 +38,49 @@ def synthetic(arm: Arm, model: Model, samples: int = 400) -> Motion:
 def aliases(
     causes: Sequence[Candidate], pool: Sequence[Candidate], prober: Prober, model: Model, base: Array
 ) -> list[list[Candidate]]:
-    """For every cause the candidates whose columns span the same."""
+    """For every cause the candidates whose columns span the same, whatever their values or with some of those
+    that a search begins with: drag of a single joint is friction with the square of its speed.
+    """
     motion = synthetic(prober.arm, model)
     q = orthonormal(prober.regressor(model, motion, base).reshape(-1, len(base)))
-    spans = {id(c): _span(c, prober, motion, base, q) for c in [*causes, *pool]}
+    spans = {id(c): [_span(c, {}, prober, motion, base, q)] for c in causes if not c.searched}
+    every = {id(c): [_span(c, values, prober, motion, base, q) for values in _values(c)] for c in pool}
     result = []
     for cause in causes:
-        own = spans[id(cause)]
         equal = []
         for other in pool:
-            there = spans[id(other)]
-            if (other.effect, other.joint) == (cause.effect, cause.joint) or own is None or there is None:
+            if (other.effect, other.joint) == (cause.effect, cause.joint):
                 continue
-            if there.shape == own.shape and float(subspace_angles(own, there).max()) < EQUAL:
+            if any(_equal(a, b) for a in spans.get(id(cause), []) for b in every[id(other)]):
                 equal.append(other)
         result.append(equal)
     return result
 
 
-def _span(c: Candidate, prober: Prober, motion: Motion, base: Array, q: Array) -> Array | None:
+def _equal(a: Array | None, b: Array | None) -> bool:
+    if a is None or b is None or a.shape != b.shape:
+        return False
+    return float(subspace_angles(a, b).max()) < EQUAL
+
+
+def _values(c: Candidate) -> Iterator[Values]:
+    """Of what is searched, where that has no unit; nothing else is the same for every arm."""
+    if all(p.scale == "1" for p in c.searched):
+        for values in product(*(p.grid for p in c.searched)):
+            yield {p.name: value for p, value in zip(c.searched, values, strict=True)}
+
+
+def _span(
+    c: Candidate, values: Values, prober: Prober, motion: Motion, base: Array, q: Array
+) -> Array | None:
     """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
-    if c.effect in COMPLIANT or c.effect in (LATER, "time_delay", "presliding") or c.searched:
+    if c.effect in COMPLIANT or c.effect in (LATER, "time_delay", "presliding", PERIODIC):
         return None
     try:
         if c.effect in STEPS:
             table = sensitivities(c.effect, c.joint, motion, prober, base, c.names, {})
         else:
-            (table,) = of_part(c, [prober.columns(c.effect, c.joint, motion, c.fixed, base)])
+            (table,) = of_part(c, [prober.columns(c.effect, c.joint, motion, {**c.fixed, **values}, base)])
     except (InputError, ValueError):
         return None
     flat = table.reshape(-1, table.shape[2])

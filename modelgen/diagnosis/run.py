@@ -39,6 +39,7 @@ Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
 FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
+COUNTED = 1.25  # times what counts leave: the RMSE of free motions up to which nothing else is in it
 
 
 def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:
@@ -117,8 +118,10 @@ def diagnose(
     selection, beside, likeness = outdone(selection, rows, found_shapes)
     base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
-    share = feigned(blurs, mean_squares(selection.system))
-    verdict, reason = _verdict(selection, beside, fit, share, noisy, likeness)
+    left = mean_squares(selection.system)
+    share = feigned(blurs, left)
+    counted = free and bool((left <= COUNTED**2 * blurs).all())
+    verdict, reason = _verdict(selection, beside, fit, share, noisy, likeness, counted=counted)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":
@@ -173,9 +176,12 @@ def _verdict(
     noisy: Array,
     correlated: Endogeneity | None,
     likeness: Likeness | None,
+    *,
+    counted: bool,
 ) -> tuple[str, str]:
     """beside: what gained something and left most of what repeats, or explained less than a shape; noisy:
-    percent of the RMSE by joint that errors of the positions could feign.
+    percent of the RMSE by joint that errors of the positions could feign; counted: whether such errors are
+    all the noise there is, and what remains is no more than that.
     """
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
@@ -183,6 +189,8 @@ def _verdict(
         return "named", "a cause passed every gate" + (
             f"; something deterministic remains beside it{like}" if left else ""
         )
+    if counted:
+        return "nothing_missing", "what remains is no more than the encoders' counts leave: it is noise"
     if noisy.max() > PRACTICAL:
         joint = int(np.argmax(noisy)) + 1
         return "cannot_tell", (

@@ -30,9 +30,9 @@ class Link:
     velocity: float = 1.0
 
     def swing(
-        self, start: float, seed: int, *, length: float = 6.0, noise: float = 2e-4
+        self, start: float, seed: int, *, length: float = 6.0, noise: float = 2e-4, count: float = 0.0
     ) -> NDArray[np.float64]:
-        """Times and noisy angles (N, 2) after a release from `start` [rad]."""
+        """Times and angles (N, 2) after a release from `start` [rad], noisy, or in steps of `count` [rad]."""
         q, v, stuck, found = start, 0.0, False, []
         every = round(1 / RATE / STEP)
         for i in range(round(length / STEP)):
@@ -51,4 +51,6 @@ class Link:
                 stuck, after = holds, 0.0 if holds else copysign(1e-9, load)
             q, v = q + STEP * (v + after) / 2, after
         angles = np.array(found) + noise * np.random.default_rng(seed).standard_normal(len(found))
+        if count:
+            angles = count * np.round(np.array(found) / count)
         return np.column_stack([np.arange(len(angles)) / RATE, angles])
