@@ -99,7 +99,7 @@ class FrictionWarmUp(Effect):
             "time",
             "s",
             "time constant of the warm-up",
-            bounds=POSITIVE,
+            bounds=(1.0, float("inf")),  # of windings of the smallest motors
             scale="time",
             grid=(0.05, 0.1, 0.2, 0.4, 0.8, 1.6),
         ),
