@@ -21,7 +21,7 @@ from typing import Any
 from modelgen.fleet.overview import cause_bars
 from modelgen.jobs import Where, run
 
-# Arm, effect, joint, magnitude: for an error 1.3 times as large, at the arms that they were tuned on.
+# Arm, effect, joint, magnitude: for an error up to 1.3 times as large, at the arms that they were tuned on.
 HIDDEN = (
     ("direct2", "stribeck_friction", 2, 0.52),
     ("direct2", "position_dependent_friction", 2, 0.14),

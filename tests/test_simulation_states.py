@@ -39,6 +39,29 @@ def test_presliding_moves_as_dahls_equation(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_a_drive_warms_as_its_friction_falls(method: str) -> None:
+    """A mass on a spring in dry friction that its own motion halves, integrated anew up to its first stop."""
+    time, speed, excess, stiffness = 2.0, 0.5, 2.0, 30.0
+    arm = slider(
+        EffectUse("friction_warm_up", {"time": time, "speed": speed, "dry": excess, "viscous": 0.5}),
+        EffectUse("spring", {"stiffness": stiffness, "rest": 0.0}),
+        mass=MASS,
+    )
+
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        x, v, heat = y
+        friction = (1 - heat) * (excess * np.sign(v) + 0.5 * v)
+        return [v, (-stiffness * x - friction) / MASS, (abs(v) / speed - heat) / time]
+
+    times = np.arange(150) / 200
+    expected = solve_ivp(rate, (0, 0.75), [0.4, -1e-9, 0], "DOP853", times, rtol=1e-11, atol=1e-12).y
+    assert (expected[1][1:] < 0).all()
+    found = simulate(plant(arm), 0.4, 0.0, 0.745, 200.0, method=method, step=2e-4, rtol=1e-10, atol=1e-11)
+    np.testing.assert_allclose(found.q[:, 0], expected[0], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(found.states[:, 0], expected[2], rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_an_elastic_joint_is_two_masses(method: str) -> None:
     """Rotor and pendulum with a spring between them; the coordinate is the rotor's."""
     inertia, stiffness, damping, length = 0.4, 300.0, 0.5, 0.3

@@ -3,7 +3,7 @@
 One record may hold little of what tells the cause from the rest of the model, and records that complement
 each other all of it: what a part predicts then says more about that part than about the cause. How far the
 parts' estimates may lie apart follows from noise like that of the records, drawn anew: what differs between
-the periods of a record, period by period in any order, turned and with any sign.
+periods of a record, any of them in the place of each, turned and with any sign.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import lstsq
 from scipy.stats import chi2
 
 from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import rmse, stacked, weighted_fit
+from modelgen.diagnosis.system import EXACT, rmse, stacked, weighted_fit
 
 DRAWS = 64
 SEED = 20010601
@@ -31,38 +32,41 @@ def agreement(
 ) -> float:
     """Probability that estimates of the columns from `own` on lie as far apart by noise alone (Wald's test).
 
-    parts: rows, and which records they are of; rows, columns (M, n, p), periods: of all records. 1 where less
-    than two parts can tell anything.
+    parts: rows, and which records they are of; rows, columns (M, n, p), periods: of all records. A column
+    that some part lacks is left out; 0 where none is left: what cannot be compared is not agreed on.
     """
-    # a column that a part lacks says nothing of the parts' agreement
-    kept = [
-        k
-        for k in range(own, columns[0].shape[2])
-        if all(
-            any(columns[i][r.moving, k].any() for r, i in zip(some, which, strict=True))
-            for some, which in parts
-        )
-    ]
+    shown = [_shown(some, [columns[i] for i in which]) for some, which in parts]
+    kept = [k for k in range(own, columns[0].shape[2]) if all(there[k] for there in shown)]
     if not kept:
-        return 1.0
+        return 0.0
     columns = [c[:, :, [*range(own), *kept]] for c in columns]
     theta = weighted_fit(rows, columns)
-    weights = 1.0 / np.maximum(rmse(rows, columns, theta), 1e-150)
+    size = rmse(rows, columns, theta)
+    weights = 1.0 / np.maximum(size, max(EXACT * float(size.max()), 1e-150))
+    whole, _ = stacked(rows, columns, weights)
+    scales = np.linalg.norm(whole, axis=0)
+    scales[scales == 0] = 1.0
     random = np.random.default_rng(SEED)
     left = [r.effort - c @ theta for r, c in zip(rows, columns, strict=True)]
     drawn = [_noise(e, r, p, random) for e, r, p in zip(left, rows, periods, strict=True)]
     right = [np.concatenate([e[:, :, None], z], axis=2) for e, z in zip(left, drawn, strict=True)]
-    found = []
+    found, ranks = [], []
     for some, which in parts:
         table, _ = stacked(some, [columns[i] for i in which], weights)
-        sizes = np.linalg.norm(table, axis=0)
         sides, _ = stacked(some, [right[i] for i in which], weights)
-        scaled = table / np.where(sizes > 0, sizes, 1.0)
-        off = lstsq(scaled, sides, cond=1e-10, lapack_driver="gelsy")[0][own:] / sizes[own:, None]
-        found.append((off[:, 0], np.linalg.pinv(np.atleast_2d(np.cov(off[:, 1:])), hermitian=True)))
+        off = lstsq(table / scales, sides, cond=1e-10, lapack_driver="gelsy")[0][own:]
+        scatter = np.atleast_2d(np.cov(off[:, 1:]))
+        found.append((off[:, 0], np.linalg.pinv(scatter, hermitian=True)))
+        ranks.append(int(np.linalg.matrix_rank(scatter, hermitian=True)))
     mean = np.linalg.pinv(sum(w for _, w in found), hermitian=True) @ sum(w @ off for off, w in found)
     apart = sum(float((off - mean) @ w @ (off - mean)) for off, w in found)
-    return float(chi2.sf(apart, (len(found) - 1) * (len(theta) - own)))
+    return float(chi2.sf(apart, max(1, sum(ranks) - max(ranks))))
+
+
+def _shown(rows: Sequence[Rows], columns: Sequence[Array]) -> NDArray[np.bool_]:
+    """Whether each column (p,) is anything but zero where its joint moves."""
+    found = [np.any(c[r.moving], axis=0) for r, c in zip(rows, columns, strict=True)]
+    return np.asarray(np.any(found, axis=0))
 
 
 def _noise(left: Array, rows: Rows, period: int | None, random: np.random.Generator) -> Array:
@@ -72,6 +76,8 @@ def _noise(left: Array, rows: Rows, period: int | None, random: np.random.Genera
         for j in range(left.shape[1]):
             values[:, j], flags = noise_of(left[:, j], rows.moving[:, j], period)
             values[:, j] *= flags
+    # rows at rest have none, and come to lie where the joint moves
+    values /= np.sqrt(np.maximum(np.mean(values != 0.0, axis=0), 1e-12))
     length = len(values) if period is None else period
     count = max(1, len(values) // length)
     result = np.empty((*values.shape, DRAWS))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.dataset import drives_of
+from modelgen.dataset import drives_of, parse
 from modelgen.description import Arm
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS, payload, sensitivities
@@ -52,6 +52,8 @@ DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", "frict
 STRIBECK = (1.0, 2.0)  # exponents: Bo and Pavelescu 1982; Armstrong-Helouvry 1991
 LATER = "payload_change"
 CURVED = (*STEPS, LATER)  # columns are taken about values
+WARMING = "friction_warm_up"
+BEGUN = 1.0  # s, begin of a part of a log that counts as its beginning
 WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is lost in noise
 
 
@@ -110,6 +112,8 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
             continue
         if free and name in DRIVEN:
             continue
+        if name == WARMING and not cold(rows):
+            continue
         for joint in places(arm, name):
             if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
                 continue
@@ -117,6 +121,11 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
             forms = list(product(_fixed(name, joint, rows, prober), ((), *PARTS.get(name, ()))))
             found += [Candidate(name, joint, fixed, searched, part, len(forms)) for fixed, part in forms]
     return found
+
+
+def cold(rows: Sequence[Rows]) -> bool:
+    """Whether all records begin where their logs do, and not with a part of one that was warmed before."""
+    return all(parse(r.prepared.record.name).begin < BEGUN for r in rows)
 
 
 def at_motor(joint: int | None, rows: Sequence[Rows]) -> bool:
@@ -154,7 +163,7 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
         return [{"exponent": exponent} for exponent in STRIBECK]
     if name == "nonlinear_viscous_friction":
         return [{"scale": scale("speed", name, joint, rows, prober)}]
-    if name == "friction_warm_up":
+    if name == WARMING:
         return [{"speed": scale("speed", name, joint, rows, prober)}]
     if name == "backlash" and at_links(joint, rows):
         (hardest,), (relaxation,) = (SEARCHES[name][p] for p in ("stiffness", "relaxation"))

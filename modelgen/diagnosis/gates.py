@@ -118,7 +118,8 @@ class Gates:
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
-        halves = trial.candidate.effect == LATER or any(not c.any() for c in trial.columns)
+        absent = (not c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True))
+        halves = trial.candidate.effect == LATER or any(absent)
         whole, again = np.stack([self._without(halves), self._with(new, halves)], axis=1)
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]

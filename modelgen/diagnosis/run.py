@@ -12,7 +12,16 @@ from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.band import equations
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, Candidate, at_links, at_motor, candidates
+from modelgen.diagnosis.candidates import (
+    COMPLIANT,
+    LATER,
+    WARMING,
+    Candidate,
+    at_links,
+    at_motor,
+    candidates,
+    cold,
+)
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.checks import Place, asked, check_one_arm
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
@@ -39,7 +48,9 @@ Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
 FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
-COUNTED = 1.25  # times what counts leave: the RMSE of free motions up to which nothing else is in it
+COUNTED = (
+    1.25  # times what the encoders' counts leave: a larger RMSE of a free motion has something else in it
+)
 
 
 def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:
@@ -120,7 +131,8 @@ def diagnose(
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
     left = mean_squares(selection.system)
     share = feigned(blurs, left)
-    counted = free and bool((left <= COUNTED**2 * blurs).all())
+    moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
+    counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     verdict, reason = _verdict(selection, beside, fit, share, noisy, likeness, counted=counted)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
@@ -190,7 +202,10 @@ def _verdict(
             f"; something deterministic remains beside it{like}" if left else ""
         )
     if counted:
-        return "nothing_missing", "what remains is no more than the encoders' counts leave: it is noise"
+        return "nothing_missing", (
+            "what remains is no more than what the counts of the encoders leave; whatever is less than that "
+            "takes finer ones to see"
+        )
     if noisy.max() > PRACTICAL:
         joint = int(np.argmax(noisy)) + 1
         return "cannot_tell", (
@@ -269,6 +284,10 @@ def _absorbed(
     if LATER not in named:
         found.append(
             (LATER, "a payload that is there in all training records is a part of the last link's parameters")
+        )
+    if WARMING not in named and not cold(rows):
+        found.append(
+            (WARMING, "a record begins in the middle of a log: how warm the drives were is not known")
         )
     if "drive_gain_error" not in named and len(arm.coordinates) == 1:
         found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))

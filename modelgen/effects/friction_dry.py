@@ -82,8 +82,10 @@ class PositionDependentFriction(Effect):
 
 
 class FrictionWarmUp(Effect):
-    """Friction in excess of the warm drive's. Friction itself warms the drive: power in proportion to speed,
-    as that of dry friction, against losses in proportion to the heat. It begins cold.
+    """Friction in excess of the warm drive's.
+
+    Friction itself warms the drive: power in proportion to speed, as that of dry friction, against losses in
+    proportion to the heat. Every record begins cold, also one that is cut from the middle of a log.
     """
 
     name = "friction_warm_up"
@@ -99,11 +101,11 @@ class FrictionWarmUp(Effect):
             "time",
             "s",
             "time constant of the warm-up",
-            bounds=(1.0, float("inf")),  # of windings of the smallest motors
+            bounds=(1.0, float("inf")),  # windings of the smallest motors take a second
             scale="time",
             grid=(0.05, 0.1, 0.2, 0.4, 0.8, 1.6),
         ),
-        Parameter("speed", "{x}/s", "mean speed that warms the drive up", default=1.0, bounds=POSITIVE),
+        Parameter("speed", "{x}/s", "mean speed at which the heat settles at 1", bounds=POSITIVE),
         SMOOTHING,
     )
     states = ("heat",)
@@ -112,12 +114,12 @@ class FrictionWarmUp(Effect):
     shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=25.0)
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
-        """(1 - heat) (FCW sign(v) + FVW v), the heat 1 after long at `speed`."""
+        """(1 - heat) (FCW sign(v) + FVW v); time dheat/dt = |v| / speed - heat, 0 at a record's begin."""
         excess = p["dry"] * direction(x.velocity, p["smoothing"]) + p["viscous"] * x.velocity
         return (1 - x.state["heat"]) * excess
 
     def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
-        """Exact solution of time dh/dt = |v| / speed - h at constant v."""
+        """Exact solution at constant v."""
         settled = sp.Abs(x.velocity) / p["speed"]
         return {"heat": settled + (x.state["heat"] - settled) * sp.exp(-dt / p["time"])}
 
