@@ -17,7 +17,7 @@ from scipy.stats import chi2
 
 from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import EXACT, rmse, stacked, weighted_fit
+from modelgen.diagnosis.system import stacked, weighted_fit, weights_of
 
 DRAWS = 64
 SEED = 20010601
@@ -41,8 +41,7 @@ def agreement(
         return 0.0
     columns = [c[:, :, [*range(own), *kept]] for c in columns]
     theta = weighted_fit(rows, columns)
-    size = rmse(rows, columns, theta)
-    weights = 1.0 / np.maximum(size, max(EXACT * float(size.max()), 1e-150))
+    weights = weights_of(rows, columns, theta)
     whole, _ = stacked(rows, columns, weights)
     scales = np.linalg.norm(whole, axis=0)
     scales[scales == 0] = 1.0

@@ -43,15 +43,15 @@ def aliases(
     """
     motion = synthetic(prober.arm, model)
     q = orthonormal(prober.regressor(model, motion, base).reshape(-1, len(base)))
-    spans = {id(c): [_span(c, {}, prober, motion, base, q)] for c in causes if not c.searched}
-    every = {id(c): [_span(c, values, prober, motion, base, q) for values in _values(c)] for c in pool}
+    spans = {id(c): [_span(c, values, prober, motion, base, q) for values in _values(c)] for c in pool}
     result = []
     for cause in causes:
+        own = None if cause.searched else _span(cause, {}, prober, motion, base, q)
         equal = []
         for other in pool:
             if (other.effect, other.joint) == (cause.effect, cause.joint):
                 continue
-            if any(_equal(a, b) for a in spans.get(id(cause), []) for b in every[id(other)]):
+            if any(_equal(own, there) for there in spans[id(other)]):
                 equal.append(other)
         result.append(equal)
     return result

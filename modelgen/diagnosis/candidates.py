@@ -48,11 +48,11 @@ SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
 COMPLIANT = ("joint_flexibility", "backlash")
 PERIODIC = "torque_ripple"
 # About what the drives are given, or what working warms: of no meaning in a free motion.
-DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", "friction_warm_up", *COMPLIANT)
+WARMING = "friction_warm_up"
+DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", WARMING, *COMPLIANT)
 STRIBECK = (1.0, 2.0)  # exponents: Bo and Pavelescu 1982; Armstrong-Helouvry 1991
 LATER = "payload_change"
 CURVED = (*STEPS, LATER)  # columns are taken about values
-WARMING = "friction_warm_up"
 BEGUN = 1.0  # s, begin of a part of a log that counts as its beginning
 WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is lost in noise
 

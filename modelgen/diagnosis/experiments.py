@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from modelgen.diagnosis.bench import Test, least, readings, tests
-from modelgen.diagnosis.candidates import LATER
+from modelgen.diagnosis.candidates import LATER, WARMING
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.proposal import PERIODS, Progress, Proposal, propose
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from modelgen.diagnosis.objects import Named
 
 MEMBERS = 4  # of a set that a trajectory is looked for
-UNSUITED = (LATER, "friction_warm_up")  # show between records, not within a motion
+UNSUITED = (LATER, WARMING)  # show between records, not within a motion
 STEM = "next_experiment"
 
 

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from modelgen.diagnosis.agreement import agreement
-from modelgen.diagnosis.candidates import COMPLIANT, LATER
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
@@ -40,7 +40,7 @@ FRICTION = (
     "nonlinear_viscous_friction",
     "load_dependent_friction",
     "position_dependent_friction",
-    "friction_warm_up",
+    WARMING,
     "time_delay",  # looks like what sticking does at reversals
 )
 # What these do follows from the arm's own equations or is a constant: their form leaves nothing to others.
@@ -52,7 +52,6 @@ EXACT = (
     "drive_gain_error",
     "encoder_offset",
 )
-PASSING = "friction_warm_up"  # passes while the excitation and errors that correlate with it repeat
 
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
 
@@ -146,10 +145,8 @@ class Gates:
             carried = due
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
-        if agreed:
-            worse = False
-        elif carried.any():
-            worse = min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
+        if carried.any():
+            worse = not agreed and min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
         else:
             worse = self._total(again) >= 1.0
         shut = "other joints" if worse else ""
@@ -271,7 +268,7 @@ def instrumented(trial: Trial, system: System) -> bool:
     """Whether the cause shows where errors of the positions are kept out: its estimate by instruments is not
     zero, or it does not repeat as they do.
     """
-    if trial.candidate.effect == PASSING:
+    if trial.candidate.effect == WARMING:  # passes while errors of the positions repeat with the excitation
         return True
     if trial.candidate.effect == LATER:  # does not repeat
         return False

@@ -48,9 +48,8 @@ Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
 FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
-COUNTED = (
-    1.25  # times what the encoders' counts leave: a larger RMSE of a free motion has something else in it
-)
+# Times what the encoders' counts leave: a larger RMSE of a free motion has something else in it.
+COUNTED = 1.25
 
 
 def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:

@@ -256,9 +256,14 @@ def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
         norms[norms == 0] = 1.0
         theta = lstsq(left / norms, right, cond=1e-10, lapack_driver="gelsy", check_finite=False)[0] / norms
         if turn < 2:
-            left = rmse(rows, columns, theta)
-            weights = 1.0 / np.maximum(left, max(EXACT * float(left.max()), 1e-150))
+            weights = weights_of(rows, columns, theta)
     return theta
+
+
+def weights_of(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
+    """By joint (n,), of what the parameters leave."""
+    left = rmse(rows, columns, theta)
+    return np.asarray(1.0 / np.maximum(left, max(EXACT * float(left.max()), 1e-150)))
 
 
 def stacked(
