@@ -39,7 +39,8 @@ class Part:
     """Where an effect acts, and the force there.
 
     place: that of the `Effect`, "point" or "input". joint: index into `arm.joints`. forces: one, for a
-    point x, y, z in the axes of its link; for an input the required and the effective one.
+    point x, y, z in the axes of its link, and its moment likewise where there is one; for an input the
+    required and the effective one.
     """
 
     place: str
@@ -195,7 +196,9 @@ def _on_link(effect: LinkEffect, link: int, values: Values) -> list[Part]:
     parts = []
     for k, point in enumerate(effect.points(values), 1):
         x = point_variables(f"_{link + 1}_{k}")
-        parts.append(Part("point", link, x, tuple(effect.force(x, values)), point))
+        moment = effect.moment(x, values)
+        forces = (*effect.force(x, values), *([] if moment.is_zero_matrix else moment))
+        parts.append(Part("point", link, x, forces, point))
     return parts
 
 

@@ -141,6 +141,10 @@ class LinkEffect(Definition):
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """Force [N] that it takes to move the point against the effect, 3 x 1, in the axes of the frame."""
 
+    def moment(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """Moment [N m] that it takes besides, 3 x 1, in the axes of the frame; zero for most."""
+        return sp.zeros(3, 1)
+
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """Indices of the links it acts on: the joint's own, all of them for the whole arm."""
         return [joint] if joint is not None else list(range(len(arm.joints)))

@@ -62,20 +62,32 @@ class FluidDrag(Strips):
 
 
 class AddedMass(Strips):
-    """Fluid that is accelerated with a slender link, across it."""
+    """Fluid that moves with a slender link across it, and lets it slip along itself."""
 
     name = "added_mass"
     seen_over = "acceleration"
     text = "fluid that slender links accelerate with them, across their line"
-    reference = "Morison, Johnson and Schaaf 1950; Fossen 2011"
+    reference = "Kirchhoff 1870; Fossen 2011"
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
     confused_with = ("payload_change", "fluid_drag")
     experiment = "the same motion in air and in the fluid, fast and slow"
     shown = at(per_length=4.0)
 
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
-        """CM a by length, a the acceleration across the link (no gravity: the fluid floats)."""
-        return p["per_length"] * x.length * x.across(x.acceleration + x.gravity)
+        """That of the energy CM v.v / 2 by length, v the velocity across the link (no gravity: the fluid floats).
+
+        It is the momentum's derivative: CM (a - (u.v) du/dt - u (v.du/dt)) by length, a the acceleration
+        across the link, u its direction; each product of two rates as the mean of those with either of the
+        two motions, so that dM/dt - 2 C stays skew-symmetric.
+        """
+        turn = (x.turn * x.along(x.reference) + x.reference_turn * x.along(x.velocity)) / 2
+        slip = x.line * (x.turn.dot(x.reference) + x.reference_turn.dot(x.velocity)) / 2
+        return p["per_length"] * x.length * (x.across(x.acceleration + x.gravity) - turn - slip)
+
+    def moment(self, x: PointVariables, p: Values) -> sp.Matrix:
+        """Munk's, CM (u.v) u x v by length: it turns a slender link across its way."""
+        slip = (x.reference * x.along(x.velocity) + x.velocity * x.along(x.reference)) / 2
+        return p["per_length"] * x.length * x.line.cross(slip)
 
 
 class PayloadChange(LinkEffect):

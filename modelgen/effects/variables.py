@@ -43,18 +43,27 @@ class PointVariables:
     """Of a force at a point of a link, everything in the axes of the link's frame.
 
     velocity [m/s]; acceleration less gravity, gravity [m/s^2]; line: direction of the link, from its origin
-    to the next link's; length: of the line that the point stands for [m].
+    to the next link's; turn: its derivative [1/s]; reference, reference_turn: velocity and turn of the
+    reference motion, where one runs along (Slotine and Li 1987), else of the motion itself; length: of the
+    line that the point stands for [m].
     """
 
     velocity: sp.Matrix
+    turn: sp.Matrix
+    reference: sp.Matrix
+    reference_turn: sp.Matrix
     acceleration: sp.Matrix
     gravity: sp.Matrix
     line: sp.Matrix
     length: sp.Symbol
 
+    def along(self, v: sp.Matrix) -> sp.Expr:
+        """The part of a vector along the line of the link."""
+        return v.dot(self.line)
+
     def across(self, v: sp.Matrix) -> sp.Matrix:
         """The part of a vector across the line of the link."""
-        return v - self.line * v.dot(self.line)
+        return v - self.line * self.along(v)
 
 
 @dataclass(frozen=True)
@@ -93,9 +102,15 @@ def point_variables(number: str) -> PointVariables:
     def triple(name: str) -> sp.Matrix:
         return sp.Matrix([sp.Symbol(f"{name}_{axis}{number}", real=True) for axis in "xyz"])
 
-    length = sp.Symbol(f"length{number}", positive=True)
     return PointVariables(
-        triple("velocity"), triple("acceleration"), triple("gravity"), triple("line"), length
+        velocity=triple("velocity"),
+        turn=triple("turn"),
+        reference=triple("reference"),
+        reference_turn=triple("reference_turn"),
+        acceleration=triple("acceleration"),
+        gravity=triple("gravity"),
+        line=triple("line"),
+        length=sp.Symbol(f"length{number}", positive=True),
     )
 
 

@@ -13,7 +13,7 @@ from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.graph.vectors import Vector, add, cross, dot, times
 from modelgen.model.equations import Equations
-from modelgen.model.motion import LinkMotion, Rates, link_motions
+from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
 from modelgen.model.ports import Port, Surroundings, origin_velocities, point_rows
 
 Lazy = Callable[[], Expr]
@@ -133,7 +133,7 @@ class EffectForces:
         """{coordinate: effort} of forces at the part's port; of the motor's own for place "motor"."""
         found: dict[int, Expr] = {}
         port = self._port(effect, part)
-        for row, force in zip(port.rows, forces, strict=True):
+        for row, force in zip(port.rows, forces, strict=False):  # few have a moment
             if force == 0:
                 continue
             value = self.in_graph(effect, part, force)
@@ -156,8 +156,8 @@ class EffectForces:
             return []
         port = self._port(effect, part)
         found = []
-        for row, force in zip(port.rows, part.forces, strict=True):
-            for other, acceleration in zip(port.rows, port.accelerations, strict=True):
+        for row, force in zip(port.rows, part.forces, strict=False):
+            for other, acceleration in zip(port.rows, port.accelerations, strict=False):
                 slope = sp.diff(force, acceleration)
                 if slope == 0:
                     continue
@@ -211,7 +211,16 @@ class EffectForces:
 
     @cached_property
     def _velocities(self) -> list[Vector]:
-        return origin_velocities(self.e.frames, self.rates, self._motions)
+        rates = of_links(self.e.frames, self.rates)
+        return origin_velocities(self.e.frames, rates.dq, [m.velocity for m in self._motions])
+
+    @cached_property
+    def _references(self) -> list[Vector]:
+        """Velocities of the origins in the reference motion."""
+        rates = of_links(self.e.frames, self.rates)
+        if rates.reference is None:
+            return self._velocities
+        return origin_velocities(self.e.frames, rates.reference, [m.reference for m in self._motions])
 
     def _port(self, effect: AppliedEffect, part: Part) -> Port:
         x = part.variables
@@ -256,14 +265,16 @@ class EffectForces:
         end = self.e.link_end(i)
         whole = self.graph.sqrt(dot(end, end))
         place = self._place(part.point, end)
-        velocity = add(self._velocities[i], cross(motion.velocity, place))
-        acceleration = add(motion.acceleration, times(motion.field, place))
+        line = end if whole.is_zero else (end[0] / whole, end[1] / whole, end[2] / whole)
         bound: dict[sp.Symbol, Expr] = {x.length: whole * part.point.part}
         for symbols, vector in (
-            (x.velocity, velocity),
-            (x.acceleration, acceleration),
+            (x.velocity, add(self._velocities[i], cross(motion.velocity, place))),
+            (x.turn, cross(motion.velocity, line)),
+            (x.reference, add(self._references[i], cross(motion.reference, place))),
+            (x.reference_turn, cross(motion.reference, line)),
+            (x.acceleration, add(motion.acceleration, times(motion.field, place))),
             (x.gravity, motion.gravity),
-            (x.line, end if whole.is_zero else (end[0] / whole, end[1] / whole, end[2] / whole)),
+            (x.line, line),
         ):
             bound |= dict(zip(symbols, vector, strict=True))
         return Port(point_rows(self.e.frames, i, place), bound, tuple(x.acceleration))

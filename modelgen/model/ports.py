@@ -12,7 +12,7 @@ from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 from modelgen.model.composite import mass_matrix
 from modelgen.model.dynamics import joint_efforts
-from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
+from modelgen.model.motion import Rates, link_motions
 from modelgen.model.screws import PartialVelocities
 
 
@@ -21,7 +21,7 @@ class Port:
     """One or more scalar rates: rows[a][n] is what a unit speed of coordinate n adds to rate a.
 
     bound: the variables of the law in the graph. accelerations: which of them are the derivatives of the
-    rates; the joints' accelerations enter these by the same rows.
+    first rates; the joints' accelerations enter these by the same rows.
     """
 
     rows: tuple[Mapping[int, Expr], ...]
@@ -83,24 +83,27 @@ class Surroundings:
         return self._cache[name][n]
 
 
-def origin_velocities(frames: Frames, rates: Rates, motions: Sequence[LinkMotion]) -> list[Vector]:
-    """Velocity of the origin of every link's frame, in its own axes [m/s]."""
-    zero, rates = frames.graph.zero, of_links(frames, rates)
+def origin_velocities(frames: Frames, dq: Sequence[Expr], spins: Sequence[Vector]) -> list[Vector]:
+    """Velocity of the origin of every link's frame, in its own axes [m/s].
+
+    dq: rates of the joints, of their links where these lag; spins: of the links, in their axes [rad/s].
+    """
+    zero = frames.graph.zero
     found: dict[int | None, Vector] = {None: (zero, zero, zero)}
     for i in frames.order:
         frame = frames[i]
         before = frame.antecedent
-        spin: Vector = (zero, zero, zero) if before is None else motions[before].velocity
+        spin: Vector = (zero, zero, zero) if before is None else spins[before]
         v = frame.to_link(add(found[before], cross(spin, frame.origin)))
         if frame.coordinate is not None and frame.prismatic:
-            v = (v[0], v[1], v[2] + rates.dq[frame.coordinate])
+            v = (v[0], v[1], v[2] + dq[frame.coordinate])
         found[i] = v
-    return [found[i] for i in range(len(motions))]
+    return [found[i] for i in range(len(spins))]
 
 
 def point_rows(frames: Frames, link: int, place: Vector) -> tuple[Mapping[int, Expr], ...]:
-    """Rows of the velocity x, y, z of a point of the link, in its axes."""
+    """Rows of the velocity x, y, z of a point of the link, then of the link's spin, in its axes."""
     screws = PartialVelocities(frames).of_link[link]
-    velocities = {n: add(v, cross(e, place)) for n, (e, v) in screws.items()}
-    rows = [{n: v[axis] for n, v in velocities.items()} for axis in range(3)]
+    velocities = {n: (*add(v, cross(e, place)), *e) for n, (e, v) in screws.items()}
+    rows = [{n: v[axis] for n, v in velocities.items()} for axis in range(6)]
     return tuple({n: e for n, e in row.items() if not e.is_zero} for row in rows)
