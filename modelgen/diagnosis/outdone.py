@@ -20,6 +20,8 @@ from modelgen.diagnosis.system import System
 BESIDE = 20.0  # delta BIC beside a cause, from which a shape may take its place
 LIKE = float(np.quantile(NULLS[SHAPE], CLEAN))  # delta BIC from which what is left is called like a shape
 TWICE = 2.0  # a cause's evidence: what has that beside it makes it a detail
+CLEARLY = 14.0  # delta BIC by which a shape is more than a cause that stands alone, with half of BESIDE
+SEARCHED = 8.0  # delta BIC that each further cause costs, as one of some sixty at every joint: 2 ln 60
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,9 @@ def outdone(
     """The selection without the causes that a shape outdoes, those causes, and what is left is most like.
 
     A shape outdoes a cause where it explains more of what the other causes leave, and something beside the
-    cause, or the cause leaves most of what repeats; and where it explains more beside it than twice what the
-    cause does. Of what an effect that is there does, a shape explains less, for the price of its freedom.
+    cause, or the cause leaves most of what repeats; where it explains more beside it than twice what the
+    cause does; and the least of all causes where it alone explains more than they do together. Of what an
+    effect that is there does, a shape explains less, for the price of its freedom.
     found: empty for free motions, which show little but forces that depend on where the arm is; there all
     causes go that leave most of what repeats.
     """
@@ -48,10 +51,12 @@ def outdone(
         best = max((w.evidence for _, w in beside), default=0.0)
         able = [shape for shape, w in beside if w.evidence > BESIDE]
         doubted = doubtful(selection, rows)
+        together = bool(causes and found) and _outdone_together(causes, rows, system, found, best)
         lost = [
             c
             for c in causes
-            if TWICE * c.delta_bic < best
+            if together
+            or TWICE * c.delta_bic < best
             or (c in doubted and not found)
             or _replaced(c, causes, rows, system, found if c in doubted else able)
         ]
@@ -74,3 +79,19 @@ def _replaced(
     others = [c.trial for c in causes if c is not cause]
     without = System(rows, with_causes(rows, others), system.periods)
     return any(worth(shape, without).evidence > cause.delta_bic for shape in able)
+
+
+def _outdone_together(
+    causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[Shape], beside: float
+) -> bool:
+    """Whether one shape explains more than all causes together. beside: most that one does beside them."""
+    trials = [c.trial for c in causes]
+    bare = System(rows, with_causes(rows, []), system.periods)
+    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rows))]
+    explained = bare.gain(columns, float(sum(len(t.values) for t in trials)))
+    if explained is None:
+        return False
+    more = max(worth(shape, bare).evidence for shape in found) - explained.delta_bic
+    if len(causes) > 1:
+        return more > -SEARCHED * (len(causes) - 1)
+    return more > CLEARLY and beside > BESIDE / 2
