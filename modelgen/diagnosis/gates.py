@@ -53,6 +53,8 @@ EXACT = (
     "encoder_offset",
 )
 
+FLUID = ("added_mass", "fluid_drag")  # one value for all links, whose widths differ
+
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
 
 
@@ -96,7 +98,8 @@ class Gates:
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
         self.counts = _moving(rows)
-        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in EXACT]
+        formed = (*EXACT, *FLUID)
+        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in formed]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
 
@@ -112,8 +115,8 @@ class Gates:
         of the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
         estimate by instruments is not zero. By that gain must pass what such errors look like most;
         everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
-        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction
-        must be more than the form of the first may leave.
+        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction,
+        and anything beside what a fluid does, must be more than the form of that may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -123,8 +126,9 @@ class Gates:
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
+        least = np.maximum(least, self._formed(FLUID)[places])
         if trial.candidate.effect in FRICTION:
-            least = np.maximum(least, self._formed[places])
+            least = np.maximum(least, self._formed(FRICTION)[places])
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
@@ -158,20 +162,23 @@ class Gates:
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
-    @cached_property
-    def _formed(self) -> Array:
-        """Percent of the RMSE (n,) that the form of friction taken before may leave for another one to take:
-        no law is that of the arm to the last twentieth.
+    def _formed(self, effects: Sequence[str]) -> Array:
+        """Percent of the RMSE (n,) that the form of some of the causes taken before may leave for another one
+        to take: no law of theirs is that of the arm to the last twentieth.
         """
-        share = np.zeros(self.system.n)
-        rubbing = [t.candidate.joint for t in self.before if t.candidate.effect in FRICTION]
-        if rubbing:
-            baseline = [r.columns for r in self.rows]
-            left = mean_squares(self.system)
-            explained = rmse(self.rows, baseline, weighted_fit(self.rows, baseline)) ** 2 - left
-            at = np.array([None in rubbing or j + 1 in rubbing for j in range(self.system.n)])
-            share = np.where(at, np.clip(FORM * explained / np.maximum(left, 1e-300), 0.0, 1.0), 0.0)
-        return np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
+        at = [t.candidate.joint for t in self.before if t.candidate.effect in effects]
+        if not at:
+            return np.zeros(self.system.n)
+        there = np.array([None in at or j + 1 in at for j in range(self.system.n)])
+        left = mean_squares(self.system)
+        share = np.clip(FORM * (self._bare**2 - left) / np.maximum(left, 1e-300), 0.0, 1.0)
+        return np.asarray(100.0 * (1.0 - np.sqrt(1.0 - np.where(there, share, 0.0))))
+
+    @cached_property
+    def _bare(self) -> Array:
+        """RMSE (n,) without any cause."""
+        baseline = [r.columns for r in self.rows]
+        return rmse(self.rows, baseline, weighted_fit(self.rows, baseline))
 
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""

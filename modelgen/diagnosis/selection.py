@@ -18,8 +18,7 @@ from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Court, Trial, sensible
 from modelgen.probing import Prober
 
-EVIDENCE = 15.0  # delta BIC
-AMBIGUOUS = 10.0  # delta BIC behind the winner
+EVIDENCE = 15.0  # delta BIC that it takes to name a cause, and to name it rather than another one
 MOST = 4  # causes, or one for each joint where there are more
 
 Report = Callable[[str, int, int], None]
@@ -111,7 +110,7 @@ def select(
         rivals = [
             (t, best.gain.delta_bic - t.gain.delta_bic)
             for t, other in eligible[1:]
-            if best.gain.delta_bic - t.gain.delta_bic <= AMBIGUOUS
+            if best.gain.delta_bic - t.gain.delta_bic <= EVIDENCE
             or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
         ]
         causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
