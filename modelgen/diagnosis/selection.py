@@ -19,6 +19,7 @@ from modelgen.diagnosis.trials import Court, Trial, sensible
 from modelgen.probing import Prober
 
 EVIDENCE = 15.0  # delta BIC that it takes to name a cause, and to name it rather than another one
+STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 MOST = 4  # causes, or one for each joint where there are more
 
 Report = Callable[[str, int, int], None]
@@ -122,12 +123,19 @@ def select(
         converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
-    for cause in causes:  # what is there beside it does not stand for it
+    for cause in causes:  # what is there beside it, or could be, does not stand for it
         others = {
             (t.candidate.effect, t.candidate.joint): (t, behind) for t, behind in reversed(cause.rivals)
         }
-        cause.rivals = [r for place, r in reversed(others.items()) if place not in named]
+        rivals = [r for place, r in reversed(others.items()) if place not in named]
+        cause.rivals = [(t, behind) for t, behind in rivals if _left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
+
+
+def _left_to(trial: Trial, system: System) -> float:
+    """Evidence of a candidate, with the values it was found at, beside the system's causes."""
+    gain = system.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
+    return -np.inf if gain is None else gain.delta_bic
 
 
 def correlated(system: System) -> bool:
