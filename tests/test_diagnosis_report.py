@@ -13,6 +13,7 @@ from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.run import diagnose
 from modelgen.figures import figure, svg
 from modelgen.report.diagnosis import report
+from modelgen.report.drawing import binned
 from modelgen.report.sketches import Pen, Sketch
 
 WORDS = ("stribeck_friction", "joint 2", "Error on the test record", "What these records cannot show")
@@ -60,7 +61,7 @@ def test_an_error_leaves_no_process_behind() -> None:
 
 
 def test_a_browser_shows_the_verdict(found: Diagnosis, tmp_path: Path) -> None:
-    browser = shutil.which("chromium")
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
     if browser is None:
         pytest.skip("needs chromium")
     page = tmp_path / "report.html"
@@ -81,3 +82,14 @@ def test_a_browser_shows_the_verdict(found: Diagnosis, tmp_path: Path) -> None:
     )
     assert picture.exists(), taken.stderr[-300:]
     assert picture.stat().st_size > 30_000  # a page with pictures, not an empty one
+
+
+def test_means_over_a_short_record_are_not_few() -> None:
+    """60 samples over 24 bins: hardly a bin has five of them, and there are means of five all the same."""
+    x = np.random.default_rng(0).uniform(-1.0, 1.0, 60)
+    places, means = binned(x, 2.0 * x)
+    assert len(places) == 12
+    assert (np.diff(places) > 0).all()
+    np.testing.assert_allclose(means, 2.0 * places)
+    long = np.linspace(0.0, 1.0, 10_000)
+    assert len(binned(long, long)[0]) == 24

@@ -13,6 +13,7 @@ from modelgen.report.sketches import Sketch
 
 _WINDOWS = 12  # that the picture of the simulation shows
 _SECONDS = 10.0  # of the test record that the pictures over time show
+HELD = 5  # samples, at least, that a mean is taken of
 
 
 def effort(d: Diagnosis) -> Sketch:
@@ -73,7 +74,7 @@ def residuals(d: Diagnosis) -> dict[str, Sketch]:
         for j in range(n):
             m = held.moving[:, j]
             for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
-                centre, mean = _binned(x[m, j], r[m, j], 120 if name == "motor position" else 24)
+                centre, mean = binned(x[m, j], r[m, j], 120 if name == "motor position" else 24)
                 axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
             axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
             axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
@@ -93,7 +94,7 @@ def left_over(d: Diagnosis) -> Sketch:
         m = held.moving[:, j]
         for axis, x, bins in zip(axes[j], against, (24, 120, 24), strict=True):
             for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
-                axis.plot(*_binned(x[m, j], r[m, j], bins), color=COLOURS[k], linewidth=0.9)
+                axis.plot(*binned(x[m, j], r[m, j], bins), color=COLOURS[k], linewidth=0.9)
             axis.axhline(0.0, color="#999999", linewidth=0.6)
         axes[j, 0].set_ylabel(f"joint {j + 1} [{units_of(d)[j]}]", fontsize=7)
     for axis, name in zip(axes[-1], ("speed", "motor position", "size of the effort"), strict=True):
@@ -101,15 +102,18 @@ def left_over(d: Diagnosis) -> Sketch:
     return made
 
 
-def _binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
-    """Means over bins of equal width that hold five samples at least."""
-    if len(x) < 5:
+def binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
+    """Means over bins of equal width that hold five samples at least; of a short record over five each."""
+    if len(x) < HELD:
         return np.zeros(0), np.zeros(0)
+    if len(x) < HELD * bins:
+        groups = np.array_split(np.argsort(x, kind="stable"), len(x) // HELD)
+        return np.array([x[g].mean() for g in groups]), np.array([y[g].mean() for g in groups])
     edges = np.linspace(x.min(), x.max() + 1e-12, bins + 1)
     place = np.clip(np.digitize(x, edges) - 1, 0, bins - 1)
     count = np.bincount(place, minlength=bins)
     total = np.bincount(place, weights=y, minlength=bins)
-    full = count >= 5
+    full = count >= HELD
     return ((edges[1:] + edges[:-1]) / 2)[full], total[full] / count[full]
 
 
