@@ -15,6 +15,7 @@ from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
 from modelgen.probing.delays import acting, added
+from modelgen.probing.hidden_weight import HiddenWeight
 from modelgen.probing.levers import gain, leverage, reread
 from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
 from modelgen.probing.motion import Array, Motion, given_for
@@ -179,7 +180,8 @@ class Prober:
             if effect == "lever_geometry" and joint is not None and read:
                 seen = reread(motion, described(self.arm), described(other), joint)
                 return self._inputs_of(key, other, seen, parameters) - self.inputs(motion, parameters)
-            return self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
+            found = self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
+            return found + self._weight.turned(motion, described(other).gravity)
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
             columns = self.columns(effect, joint, motion, values, parameters)
@@ -213,6 +215,10 @@ class Prober:
     def _proportional(self) -> bool:
         """Whether all inputs are efforts over torque constants: no drive bends them."""
         return not any(part.place == "input" for effect in self._own.effects for part in effect.parts)
+
+    @cached_property
+    def _weight(self) -> HiddenWeight:
+        return HiddenWeight(self.arm, self.base)
 
     @cached_property
     def _varied(self) -> Variations:

@@ -1,0 +1,79 @@
+"""What an upright arm hides of its links, and shows once gravity is turned.
+
+No record of an arm whose first axis is vertical tells the first moments of its first link, nor any mass that
+the grouping gives to others; a base that leans makes them weigh on the first joint. The base parameters
+do not contain them; the description's nominal inertials do, where all links have some.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.backends.numpy import NumpyFunction
+from modelgen.base_parameters import Grouping
+from modelgen.base_parameters.analytic import slid
+from modelgen.description.objects import Arm
+from modelgen.effects import described
+from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.nominal import about_origin, factor_value
+from modelgen.model.equations import Equations
+from modelgen.probing.motion import Array, Motion, given_for
+from modelgen.probing.programs import bare
+
+NOTHING = 1e-12  # of the largest parameter
+
+
+class HiddenWeight:
+    """Of one arm. base: the grouping whose parameters are known from records."""
+
+    def __init__(self, arm: Arm, base: Grouping) -> None:
+        self.arm = described(arm)
+        self._calls: list[NumpyFunction] | None = None
+        self._values = _hidden(self.arm, base)
+
+    def turned(self, motion: Motion, gravity: Sequence[float]) -> Array:
+        """What it adds to the inputs (N, n) with another gravity [m/s^2] than the description's."""
+        change = np.array(gravity) - np.array(self.arm.gravity)
+        total = np.zeros(motion.q.shape)
+        if self._values is None:
+            return total
+        if self._calls is None:
+            self._calls = [self._along(axis) for axis in np.eye(3)]
+        for size, call in zip(change, self._calls, strict=True):
+            if size:
+                total += size * np.asarray(call(**given_for(call.function, motion, np.zeros(0))))
+        return total
+
+    def _along(self, axis: Array) -> NumpyFunction:
+        """Inputs that hold the links in a gravity of 1 m/s^2 along an axis of the base."""
+        assert self._values is not None
+        joints = tuple(replace(j, effects=()) for j in self.arm.joints)
+        x, y, z = (float(a) for a in axis)
+        e = Equations(slid(replace(self.arm, joints=joints, effects=(), gravity=(x, y, z))), lazy=True)
+        values = [e.graph.const(v) for v in self._values[: len(e.standard)]]
+        return NumpyFunction(bare("weight", e, 0, Dynamics(e, values).inverse_dynamics(e.zeros(), e.zeros())))
+
+
+def _hidden(arm: Arm, base: Grouping) -> Array | None:
+    """Nominal standard parameters of the links, in the frames of `slid`, less what the base parameters hold
+    of them in the places of their representatives; None where a link has no nominal inertials.
+    """
+    per_link = 14 if arm.fluid_density else 10
+    count = per_link * len(arm.joints)
+    drawn, moved = np.zeros(count), np.zeros(count)
+    for i, (link, joint, foot) in enumerate(zip(arm.links, arm.joints, slid(arm).joints, strict=True)):
+        if link is None:
+            return None
+        up = factor_value(joint.r, arm.symbols) - factor_value(foot.r, arm.symbols)
+        x, y, z = link.com
+        for values, place in ((drawn, link), (moved, replace(link, com=(x, y, z + up)))):
+            values[per_link * i : per_link * i + 10] = list(about_origin(place).values())
+    for parameter in base.base:
+        terms = [(k, f) for k, f in parameter.terms if k < count]
+        if parameter.representative < count:
+            held = sum(drawn[k] * factor_value(f, arm.symbols) for k, f in terms)
+            moved[parameter.representative] -= held
+    return np.where(np.abs(moved) > NOTHING * np.abs(moved).max(initial=0.0), moved, 0.0)
