@@ -11,7 +11,7 @@ from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.outdone import outdone
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.selection import STAYS, Selection, left_to
 from modelgen.diagnosis.shapes import Shape, functions, worth
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
@@ -112,6 +112,26 @@ def test_two_laws_that_are_there_stay() -> None:
             selection, dropped, _ = judged(rows, q, periods, offset, cubic)
             assert len(selection.causes) == 2
             assert not dropped
+
+
+def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it() -> None:
+    rows, q, periods = made(lambda x: offset(x) + 0.2 * cubic(x))
+    bare = System(rows, [r.columns for r in rows], periods)
+
+    def trial(law: Any) -> Trial:
+        columns = [law(x[:, 0])[:, None, None] for x in q]
+        gain = bare.gain(columns)
+        assert gain is not None
+        return Trial(Candidate("friction_offset", 1), {}, columns, gain)
+
+    tables = [
+        np.concatenate([r.columns, offset(x)[:, None, None]], axis=2) for r, x in zip(rows, q, strict=True)
+    ]
+    with_cause = System(rows, tables, periods)
+    for law, keeps in ((cubic, True), (lambda x: 1.0 + 0.1 * np.sin(x), False)):
+        rival = trial(law)
+        assert rival.gain.delta_bic > 15.0
+        assert (left_to(rival, with_cause) > STAYS * rival.gain.delta_bic) is keeps
 
 
 def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> None:

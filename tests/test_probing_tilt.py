@@ -27,7 +27,6 @@ def bodies(arm: Arm) -> list[Body]:
     return found
 
 
-
 @pytest.mark.parametrize("name", ["ur10e", "ariane4", "scara", "two_fingers", "gravity_arm"])
 def test_a_tilt_weighs_all_of_the_links(name: str) -> None:
     arm, model = ARMS[name], shipped(name).model

@@ -128,11 +128,11 @@ def select(
             (t.candidate.effect, t.candidate.joint): (t, behind) for t, behind in reversed(cause.rivals)
         }
         rivals = [r for place, r in reversed(others.items()) if place not in named]
-        cause.rivals = [(t, behind) for t, behind in rivals if _left_to(t, system) < STAYS * t.gain.delta_bic]
+        cause.rivals = [(t, behind) for t, behind in rivals if left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
 
 
-def _left_to(trial: Trial, system: System) -> float:
+def left_to(trial: Trial, system: System) -> float:
     """Evidence of a candidate, with the values it was found at, beside the system's causes."""
     gain = system.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
     return -np.inf if gain is None else gain.delta_bic
