@@ -115,23 +115,25 @@ def test_two_laws_that_are_there_stay() -> None:
 
 
 def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it() -> None:
-    rows, q, periods = made(lambda x: offset(x) + 0.2 * cubic(x))
-    bare = System(rows, [r.columns for r in rows], periods)
-
-    def trial(law: Any) -> Trial:
+    def kept(force: Any, law: Any) -> float:
+        """Evidence of a law beside an offset, over that without one."""
+        rows, q, periods = made(force)
+        tables = [r.columns for r in rows]
         columns = [law(x[:, 0])[:, None, None] for x in q]
-        gain = bare.gain(columns)
-        assert gain is not None
-        return Trial(Candidate("friction_offset", 1), {}, columns, gain)
+        alone = System(rows, tables, periods).gain(columns)
+        assert alone is not None
+        assert alone.delta_bic > 15.0
+        beside = [
+            np.concatenate([t, offset(x)[:, None, None]], axis=2) for t, x in zip(tables, q, strict=True)
+        ]
+        trial = Trial(Candidate("friction_offset", 1), {}, columns, alone)
+        return left_to(trial, System(rows, beside, periods)) / alone.delta_bic
 
-    tables = [
-        np.concatenate([r.columns, offset(x)[:, None, None]], axis=2) for r, x in zip(rows, q, strict=True)
-    ]
-    with_cause = System(rows, tables, periods)
-    for law, keeps in ((cubic, True), (lambda x: 1.0 + 0.1 * np.sin(x), False)):
-        rival = trial(law)
-        assert rival.gain.delta_bic > 15.0
-        assert (left_to(rival, with_cause) > STAYS * rival.gain.delta_bic) is keeps
+    assert (
+        kept(offset, lambda x: 1.0 + 0.1 * np.sin(x))
+        < STAYS
+        < kept(lambda x: offset(x) + 0.2 * cubic(x), cubic)
+    )
 
 
 def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> None:
