@@ -30,6 +30,13 @@ class Cause:
     rivals: list[tuple[Trial, float]] = field(default_factory=list)
 
 
+def together(trials: Sequence[Trial], bare: System) -> float:
+    """Delta BIC of all of them. bare: the system without any cause."""
+    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(bare.rows))]
+    gain = bare.gain(columns, float(sum(len(t.values) for t in trials)))
+    return -np.inf if gain is None else gain.delta_bic
+
+
 def eliminated(
     causes: list[Cause],
     rows: Sequence[Rows],

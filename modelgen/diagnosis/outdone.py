@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.causes import Cause, together
 from modelgen.diagnosis.gates import PRACTICAL, with_causes
 from modelgen.diagnosis.lack_of_fit import CLEAN
 from modelgen.diagnosis.null_distribution import NULLS
@@ -85,13 +85,9 @@ def _outdone_together(
     causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[Shape], beside: float
 ) -> bool:
     """Whether one shape explains more than all causes together. beside: most that one does beside them."""
-    trials = [c.trial for c in causes]
     bare = System(rows, with_causes(rows, []), system.periods)
-    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rows))]
-    explained = bare.gain(columns, float(sum(len(t.values) for t in trials)))
-    if explained is None:
-        return False
-    more = max(worth(shape, bare).evidence for shape in found) - explained.delta_bic
+    explained = together([c.trial for c in causes], bare)
+    more = max(worth(shape, bare).evidence for shape in found) - explained
     if len(causes) > 1:
         return more > -SEARCHED * (len(causes) - 1)
     return more > CLEARLY and beside > BESIDE / 2

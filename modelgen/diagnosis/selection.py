@@ -11,6 +11,7 @@ from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
+from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
@@ -117,6 +118,9 @@ def select(
         causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
+    better = exchanged(causes, rows, prober, periods)
+    if better is not causes:
+        causes, system = better, System(rows, with_causes(rows, [c.trial for c in better]), periods)
     every = len(causes)
     causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
     if len(causes) < every:

@@ -1,0 +1,50 @@
+"""Rivals in the place of causes: which of them explain the most once all values are found anew.
+
+A turn compares candidates with what was found until then. Columns that follow no line have since moved, and
+the arm's parameters with them; beside the causes of later turns another one of those that were alike may be
+ahead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from modelgen.diagnosis.causes import Cause, together
+from modelgen.diagnosis.converging import converge
+from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.rows import Rows
+from modelgen.diagnosis.system import System
+from modelgen.probing import Prober
+
+
+def exchanged(
+    causes: list[Cause], rows: Sequence[Rows], prober: Prober, periods: Sequence[int | None]
+) -> list[Cause]:
+    """The causes, each replaced by the rival with which all of them together have the most evidence.
+
+    Who is replaced becomes the rival. The same list where nothing is replaced.
+    """
+    if not any(cause.rivals for cause in causes):
+        return causes
+    bare = System(rows, with_causes(rows, []), periods)
+    best, most = causes, _worth(causes, bare)
+    for place, cause in enumerate(causes):
+        held = best[place].trial
+        for trial, _ in cause.rivals:
+            others = [c.trial.candidate for c in best if c is not best[place]]
+            if any((c.effect, c.joint) == (trial.candidate.effect, trial.candidate.joint) for c in others):
+                continue
+            tried = [replace(c) for c in best]
+            tried[place].trial = trial
+            converge(tried, rows, prober)
+            found = _worth(tried, bare)
+            if found > most:
+                rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
+                tried[place].rivals = [(held, found - most), *rivals]
+                best, most = tried, found
+    return best
+
+
+def _worth(causes: Sequence[Cause], bare: System) -> float:
+    return together([c.trial for c in causes], bare) - sum(c.trial.doubt for c in causes)

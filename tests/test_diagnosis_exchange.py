@@ -1,0 +1,53 @@
+"""A rival takes the place of a cause where all causes together explain more with it."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from test_diagnosis_selection import ARM
+from test_diagnosis_shapes import cubic, made, offset
+
+from modelgen.diagnosis.baseline import Baseline
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.exchange import exchanged
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.trials import Trial
+from modelgen.probing import Prober
+
+
+def scene() -> tuple[list[Rows], list[int | None], Any]:
+    """Records with an offset and a cubic force, and what makes a trial of a law that was taken first."""
+    rows, q, periods = made(lambda x: offset(x) + 0.2 * cubic(x))
+    rows = [replace(r, baseline=Baseline(np.zeros(2), np.eye(2))) for r in rows]
+    bare = System(rows, [r.columns for r in rows], periods)
+
+    def trial(effect: str, law: Any) -> Trial:
+        columns: list[Array] = [law(x[:, 0])[:, None, None] for x in q]
+        gain = bare.gain(columns)
+        assert gain is not None
+        return Trial(Candidate(effect, 1), {}, columns, gain)
+
+    return rows, periods, trial
+
+
+def test_the_law_that_is_there_takes_the_place_of_one_like_it() -> None:
+    """Beside the other cause it is ahead, whatever the evidence at its turn was."""
+    rows, periods, trial = scene()
+    first = trial("asymmetric_viscous_friction", lambda x: np.tanh(x) ** 2)
+    right, second = trial("friction_offset", offset), trial("nonlinear_viscous_friction", cubic)
+    causes = [Cause(first, 30.0, 5.0, 5.0, [(right, 4.0)]), Cause(second, 30.0, 5.0, 5.0)]
+    found = exchanged(causes, rows, Prober(ARM), periods)
+    assert [c.trial.candidate.effect for c in found] == ["friction_offset", "nonlinear_viscous_friction"]
+    ((rival, behind),) = found[0].rivals
+    assert rival is first
+    assert behind > 0.0
+
+
+def test_a_rival_that_explains_less_stays_one() -> None:
+    rows, periods, trial = scene()
+    right, other = trial("friction_offset", offset), trial("spring", lambda x: np.tanh(x) ** 2)
+    causes = [Cause(right, 30.0, 5.0, 5.0, [(other, 4.0)]), Cause(trial("presliding", cubic), 30.0, 5.0, 5.0)]
+    assert exchanged(causes, rows, Prober(ARM), periods) is causes
+    assert exchanged(causes[1:], rows, Prober(ARM), periods) == causes[1:]  # no rivals, nothing to do
