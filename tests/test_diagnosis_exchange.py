@@ -47,7 +47,13 @@ def test_the_law_that_is_there_takes_the_place_of_one_like_it() -> None:
 
 def test_a_rival_that_explains_less_stays_one() -> None:
     rows, periods, trial = scene()
-    right, other = trial("friction_offset", offset), trial("spring", lambda x: np.tanh(x) ** 2)
-    causes = [Cause(right, 30.0, 5.0, 5.0, [(other, 4.0)]), Cause(trial("presliding", cubic), 30.0, 5.0, 5.0)]
+    right, other = (
+        trial("friction_offset", offset),
+        trial("asymmetric_viscous_friction", lambda x: np.tanh(x) ** 2),
+    )
+    causes = [
+        Cause(right, 30.0, 5.0, 5.0, [(other, 4.0)]),
+        Cause(trial("nonlinear_viscous_friction", cubic), 30.0, 5.0, 5.0),
+    ]
     assert exchanged(causes, rows, Prober(ARM), periods) is causes
     assert exchanged(causes[1:], rows, Prober(ARM), periods) == causes[1:]  # no rivals, nothing to do

@@ -195,7 +195,9 @@ def test_drag_of_slender_links() -> None:
 
 
 class Fluid:
-    """What moves with the slender links of an arm of revolute joints, 1 kg/m across them, by its energy."""
+    """What moves with the slender links of a chain, 1 kg/m across them, by its energy. Slides stand at zero
+    where a link's end is asked for.
+    """
 
     def __init__(self, arm: Arm, tip: tuple[float, float, float]) -> None:
         self.links = RigidBodies(arm, random_bodies(arm, np.random.default_rng(0)), every_joint=True)
@@ -236,10 +238,11 @@ def derivative(
 
 SIXTH = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 TIP = (0.3, -0.05, 0.12)
+IN_WATER = [PLANAR, ARMS["ur10e"], ARMS["scara"]]
 IN_FLUID = EffectUse("added_mass", dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True)))
 
 
-@pytest.mark.parametrize("arm", [PLANAR, ARMS["ur10e"]], ids=["planar", "ur10e"])
+@pytest.mark.parametrize("arm", IN_WATER, ids=lambda arm: arm.name)
 def test_added_mass_is_the_fluid_s_kinetic_energy(arm: Arm) -> None:
     emitted, bare = build(with_arm(arm, IN_FLUID), Options()), build(arm, Options())
     assert emitted.model.standard[-1].name == "CM"
@@ -254,7 +257,7 @@ def test_added_mass_is_the_fluid_s_kinetic_energy(arm: Arm) -> None:
     agree(emitted("forward_dynamics_standard", q, dq, given, theta), ddq)
 
 
-@pytest.mark.parametrize("arm", [PLANAR, ARMS["ur10e"]], ids=["planar", "ur10e"])
+@pytest.mark.parametrize("arm", IN_WATER, ids=lambda arm: arm.name)
 def test_added_mass_keeps_the_coriolis_matrix_passive(arm: Arm) -> None:
     """dM/dt - 2 C is skew-symmetric, C through unit reference velocities."""
     emitted = build(with_arm(arm, IN_FLUID), Options())
@@ -270,6 +273,19 @@ def test_added_mass_keeps_the_coriolis_matrix_passive(arm: Arm) -> None:
     rate = derivative(lambda x: np.asarray(emitted("mass_matrix", x, theta)), q, dq)
     skew = rate - 2 * coriolis
     assert np.abs(skew + np.swapaxes(skew, 1, 2)).max() <= 1e-8 * np.abs(rate).max()
+
+
+@pytest.mark.parametrize("name", ["added_mass", "fluid_drag", "payload_change"])
+def test_places_on_a_link_are_in_its_frame_as_drawn(name: str) -> None:
+    """Base parameters stand about the foot of the last link's common normal, 0.12 m from ur10e's frame."""
+    values = {"mass": 1.2, "x": 0.1, "z": 0.2} if name == "payload_change" else dict(IN_FLUID.values)
+    emitted = build(with_arm(ARMS["ur10e"], EffectUse(name, values)), Options())
+    q, dq, ddq = states(emitted.arm, 4)
+    theta = links_vector(emitted)
+    agree(
+        emitted("inverse_dynamics", q, dq, ddq, emitted.base(theta)),
+        emitted("inverse_dynamics_standard", q, dq, ddq, theta),
+    )
 
 
 # -- changes of the description -------------------------------------------------------------

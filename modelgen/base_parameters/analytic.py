@@ -117,11 +117,14 @@ def slid(arm: Arm) -> Arm:
     """The arm with the frames of its last links moved along z to the foot of the common normal.
 
     How far a last link's frame sits along its own axis is a choice of drawing, not of dynamics. Its
-    base parameters are taken about the foot, which spares every function the offset r.
+    base parameters are taken about the foot, which spares every function the offset r. What is given in the
+    frame as it is drawn, the joint's `lift` takes there.
     """
     carrying = {joint.antecedent for joint in arm.joints}
     joints = tuple(
-        replace(joint, r=0.0) if i not in carrying and joint.type == "revolute" and joint.moving else joint
+        replace(joint, r=0.0, lift=joint.lift + joint.r)
+        if i not in carrying and joint.type == "revolute" and joint.moving
+        else joint
         for i, joint in enumerate(arm.joints)
     )
     return replace(arm, joints=joints)

@@ -105,7 +105,9 @@ class Joint:
     T(antecedent -> j) = Rot(z, gamma) Trans(z, b) Rot(x, alpha) Trans(x, d) Rot(z, theta) Trans(z, r),
     with the joint coordinate added to theta (revolute) or r (prismatic).
     `antecedent` is the index of another joint of the arm, None for the base.
-    `locked` holds the coordinate of a joint that has left the model's coordinates.
+    `locked` holds the coordinate of a joint that has left the model's coordinates. `lift` is how far along z
+    the frame is drawn from where it stands (`base_parameters.analytic.slid`): places on the link are given
+    there.
     """
 
     name: str
@@ -121,6 +123,7 @@ class Joint:
     drive: Drive = NoDrive()
     effects: tuple[EffectUse, ...] = ()
     locked: float | None = None
+    lift: Scalar = field(default=0.0, metadata={"derived": True})
     where: Location | None = field(default=None, compare=False)
 
     @property

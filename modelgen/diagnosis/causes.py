@@ -33,7 +33,8 @@ class Cause:
 def together(trials: Sequence[Trial], bare: System) -> float:
     """Delta BIC of all of them. bare: the system without any cause."""
     columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(bare.rows))]
-    gain = bare.gain(columns, float(sum(len(t.values) for t in trials)))
+    positive = [above for t in trials for above in t.candidate.positive]
+    gain = bare.gain(columns, float(sum(len(t.values) for t in trials)), positive)
     return -np.inf if gain is None else gain.delta_bic
 
 

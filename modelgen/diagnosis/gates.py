@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -98,10 +97,11 @@ class Gates:
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
         self.counts = _moving(rows)
-        formed = (*EXACT, *FLUID)
-        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in formed]
+        known = (*EXACT, *FLUID)
+        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
+        self._forms: dict[tuple[str, ...], Array] = {}
 
     def judged(self, trial: Trial) -> Judgement:
         """Whether the cause helps and matters at a joint that it is judged by.
@@ -126,9 +126,9 @@ class Gates:
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
-        least = np.maximum(least, self._formed(FLUID)[places])
+        least = np.maximum(least, self._left_by_form(FLUID)[places])
         if trial.candidate.effect in FRICTION:
-            least = np.maximum(least, self._formed(FRICTION)[places])
+            least = np.maximum(least, self._left_by_form(FRICTION)[places])
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
@@ -162,23 +162,23 @@ class Gates:
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
-    def _formed(self, effects: Sequence[str]) -> Array:
+    def _left_by_form(self, effects: tuple[str, ...]) -> Array:
         """Percent of the RMSE (n,) that the form of some of the causes taken before may leave for another one
         to take: no law of theirs is that of the arm to the last twentieth.
         """
-        at = [t.candidate.joint for t in self.before if t.candidate.effect in effects]
-        if not at:
-            return np.zeros(self.system.n)
-        there = np.array([None in at or j + 1 in at for j in range(self.system.n)])
-        left = mean_squares(self.system)
-        share = np.clip(FORM * (self._bare**2 - left) / np.maximum(left, 1e-300), 0.0, 1.0)
-        return np.asarray(100.0 * (1.0 - np.sqrt(1.0 - np.where(there, share, 0.0))))
-
-    @cached_property
-    def _bare(self) -> Array:
-        """RMSE (n,) without any cause."""
-        baseline = [r.columns for r in self.rows]
-        return rmse(self.rows, baseline, weighted_fit(self.rows, baseline))
+        if effects not in self._forms:
+            there = [t for t in self.before if t.candidate.effect in effects]
+            share = np.zeros(self.system.n)
+            if there:
+                rest = [t for t in self.before if t.candidate.effect not in effects]
+                others = with_causes(self.rows, rest)
+                left = mean_squares(self.system)
+                explained = rmse(self.rows, others, weighted_fit(self.rows, others)) ** 2 - left
+                places = [t.candidate.joint for t in there]
+                at = np.array([None in places or j + 1 in places for j in range(self.system.n)])
+                share = np.where(at, np.clip(FORM * explained / np.maximum(left, 1e-300), 0.0, 1.0), 0.0)
+            self._forms[effects] = np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
+        return self._forms[effects]
 
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""

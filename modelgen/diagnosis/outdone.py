@@ -87,6 +87,8 @@ def _outdone_together(
     """Whether one shape explains more than all causes together. beside: most that one does beside them."""
     bare = System(rows, with_causes(rows, []), system.periods)
     explained = together([c.trial for c in causes], bare)
+    if not np.isfinite(explained):
+        return False
     more = max(worth(shape, bare).evidence for shape in found) - explained
     if len(causes) > 1:
         return more > -SEARCHED * (len(causes) - 1)

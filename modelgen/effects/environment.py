@@ -74,7 +74,7 @@ class AddedMass(Strips):
     shown = at(per_length=4.0)
 
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
-        """That of the energy CM v.v / 2 by length, v the velocity across the link (the fluid floats).
+        """What changes the energy CM v.v / 2 by length, v the velocity across the link; a moment besides.
 
         It is the momentum's derivative: CM (a - (u.v) du/dt - u (v.du/dt)) by length, a the acceleration
         across the link, u its direction; each product of two rates as the mean of those with either of the

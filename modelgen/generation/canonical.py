@@ -37,7 +37,11 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if is_dataclass(value):
         # The class tells a direct drive from a levered one.
-        content = {f.name: _plain(getattr(value, f.name)) for f in fields(value) if f.compare}
+        content = {
+            f.name: _plain(getattr(value, f.name))
+            for f in fields(value)
+            if f.compare and not f.metadata.get("derived")
+        }
         if isinstance(value, Arm) and not value.effects:
             # No effects of the whole arm: nothing is said of them, and hashes of before they existed stay.
             del content["effects"]

@@ -7,11 +7,11 @@ from functools import cached_property
 
 import sympy as sp
 
-from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, Part, Point, PointVariables, Variables
+from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, Part, PointVariables, Variables
 from modelgen.geometry.frames import turn_z
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
-from modelgen.graph.vectors import Vector, add, cross, dot, times
+from modelgen.graph.vectors import Vector, add, cross, dot, minus, times
 from modelgen.model.equations import Equations
 from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
 from modelgen.model.ports import Port, Surroundings, origin_velocities, point_rows
@@ -111,7 +111,8 @@ class EffectForces:
         return [p for p in effect.parts if not (p.point and p.point.place is None and self._short(p.joint))]
 
     def _short(self, link: int) -> bool:
-        return all(e.is_zero for e in self.e.link_end(link))
+        begin, end = self.e.link_line(link)
+        return all(e.is_zero for e in minus(end, begin))
 
     def _number(self, part: Part) -> int | None:
         """Coordinate of the part's joint."""
@@ -133,7 +134,7 @@ class EffectForces:
         """{coordinate: effort} of forces at the part's port; of the motor's own for place "motor"."""
         found: dict[int, Expr] = {}
         port = self._port(effect, part)
-        for row, force in zip(port.rows, forces, strict=False):  # few have a moment
+        for row, force in zip(port.rows[: len(forces)], forces, strict=True):  # few have a moment
             if force == 0:
                 continue
             value = self.in_graph(effect, part, force)
@@ -156,8 +157,9 @@ class EffectForces:
             return []
         port = self._port(effect, part)
         found = []
-        for row, force in zip(port.rows, part.forces, strict=False):
-            for other, acceleration in zip(port.rows, port.accelerations, strict=False):
+        moved = port.rows[: len(port.accelerations)]
+        for row, force in zip(port.rows[: len(part.forces)], part.forces, strict=True):
+            for other, acceleration in zip(moved, port.accelerations, strict=True):
                 slope = sp.diff(force, acceleration)
                 if slope == 0:
                     continue
@@ -262,10 +264,11 @@ class EffectForces:
     def _point_port(self, x: PointVariables, part: Part) -> Port:
         assert part.point is not None
         i, motion = part.joint, self._motions[part.joint]
-        end = self.e.link_end(i)
-        whole = self.graph.sqrt(dot(end, end))
-        place = self._place(part.point, end)
-        line = end if whole.is_zero else (end[0] / whole, end[1] / whole, end[2] / whole)
+        begin, end = self.e.link_line(i)
+        span = minus(end, begin)
+        whole = self.graph.sqrt(dot(span, span))
+        place = self._place(part, begin, span)
+        line = span if whole.is_zero else (span[0] / whole, span[1] / whole, span[2] / whole)
         bound: dict[sp.Symbol, Expr] = {x.length: whole * part.point.part}
         for symbols, vector in (
             (x.velocity, add(self._velocities[i], cross(motion.velocity, place))),
@@ -279,12 +282,14 @@ class EffectForces:
             bound |= dict(zip(symbols, vector, strict=True))
         return Port(point_rows(self.e.frames, i, place), bound, tuple(x.acceleration))
 
-    def _place(self, point: Point, end: Vector) -> Vector:
+    def _place(self, part: Part, begin: Vector, span: Vector) -> Vector:
         """In the frame of the link [m]."""
+        point = part.point
+        assert point is not None
         if point.place is None:
-            return end[0] * point.fraction, end[1] * point.fraction, end[2] * point.fraction
+            return add(begin, (span[0] * point.fraction, span[1] * point.fraction, span[2] * point.fraction))
         x, y, z = (from_sympy(self.graph, e, self.e.free) for e in point.place)
-        return x, y, z
+        return self.e.drawn(part.joint, (x, y, z))
 
     def _lazy(self, part: Part) -> dict[sp.Symbol, Lazy]:
         """Variables that few laws use, made where they are needed."""

@@ -18,7 +18,7 @@ from modelgen.errors import InputError
 from modelgen.geometry import Frames, Scalars, Trigonometry
 from modelgen.graph import Expr, Graph
 from modelgen.graph.from_sympy import from_sympy
-from modelgen.graph.vectors import Vector
+from modelgen.graph.vectors import Vector, add
 from modelgen.model.motion import Rates
 from modelgen.model.parameters import StandardParameter, effect_parameters, link_parameters
 from modelgen.transmission import Transmission, of_joint
@@ -145,10 +145,23 @@ class Equations:
                 rates[n] = rates[n] + rate if n in rates else rate
         return lags, rates
 
-    def link_end(self, index: int) -> Vector:
-        """Where a link ends, in its frame [m]: at the next link's origin, at the tip given for the last."""
-        ends = [frame.origin for frame in self.frames.frames if frame.antecedent == index]
-        return ends[0] if ends else self._tip(index)
+    def link_line(self, index: int) -> tuple[Vector, Vector]:
+        """Where a link begins and ends, in its frame [m]: at its origin as drawn, and at the next link's, or
+        at the tip given for the last. A slide that it carries is taken where it stands at zero: the link is
+        rigid.
+        """
+        begin = self.drawn(index, (self.graph.zero, self.graph.zero, self.graph.zero))
+        for frame in self.frames.frames:
+            if frame.antecedent == index:
+                joint = self.arm.joints[frame.index]
+                r = self.scalars(joint.r) if frame.prismatic and joint.moving else frame.r
+                along = (self.graph.zero, self.graph.zero, r + self.scalars(joint.lift))
+                return begin, add(frame.foot, frame.to_antecedent_fixed(along))
+        return begin, self.drawn(index, self._tip(index))
+
+    def drawn(self, index: int, place: Vector) -> Vector:
+        """A place [m] in the frame of a link as it is drawn, in the frame that the equations have."""
+        return place[0], place[1], place[2] + self.scalars(self.arm.joints[index].lift)
 
     def _tip(self, index: int) -> Vector:
         """Of a link that carries no other: given with the effect, or twice as far as its centre of mass."""

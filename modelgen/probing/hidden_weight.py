@@ -53,24 +53,26 @@ class HiddenWeight:
         joints = tuple(replace(j, effects=()) for j in self.arm.joints)
         x, y, z = (float(a) for a in axis)
         e = Equations(slid(replace(self.arm, joints=joints, effects=(), gravity=(x, y, z))), lazy=True)
-        values = [e.graph.const(v) for v in self._values[: len(e.standard)]]
+        values = [e.graph.const(v) for v in self._values]
         return NumpyFunction(bare("weight", e, 0, Dynamics(e, values).inverse_dynamics(e.zeros(), e.zeros())))
 
 
 def _hidden(arm: Arm, base: Grouping) -> Array | None:
     """Nominal standard parameters of the links, in the frames of `slid`, less what the base parameters hold
-    of them in the places of their representatives; None where a link has no nominal inertials.
+    of them in the places of their representatives; None where a link has no nominal inertials, and in a
+    fluid: a description has no volumes, and what floats weighs nothing.
     """
-    per_link = 14 if arm.fluid_density else 10
-    count = per_link * len(arm.joints)
+    if arm.fluid_density:
+        return None
+    count = 10 * len(arm.joints)
     drawn, moved = np.zeros(count), np.zeros(count)
-    for i, (link, joint, foot) in enumerate(zip(arm.links, arm.joints, slid(arm).joints, strict=True)):
+    for i, (link, joint) in enumerate(zip(arm.links, slid(arm).joints, strict=True)):
         if link is None:
             return None
-        up = factor_value(joint.r, arm.symbols) - factor_value(foot.r, arm.symbols)
         x, y, z = link.com
-        for values, place in ((drawn, link), (moved, replace(link, com=(x, y, z + up)))):
-            values[per_link * i : per_link * i + 10] = list(about_origin(place).values())
+        lift = factor_value(joint.lift, arm.symbols)
+        for values, place in ((drawn, link), (moved, replace(link, com=(x, y, z + lift)))):
+            values[10 * i : 10 * i + 10] = list(about_origin(place).values())
     for parameter in base.base:
         terms = [(k, f) for k, f in parameter.terms if k < count]
         if parameter.representative < count:
