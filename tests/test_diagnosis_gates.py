@@ -103,3 +103,35 @@ def test_a_cause_that_one_record_contradicts_is_refused() -> None:
 def test_what_the_form_of_a_law_leaves_between_records_does_not_refuse_it() -> None:
     """A tenth of the value, however significant it is in many rows."""
     assert [judged(k, (4.2, 3.8)).refused for k in range(20)].count("") >= 19
+
+
+def beside(before: dict[str, float]) -> Judgement:
+    """Of a cause of half the noise's size, with others of these sizes taken before it."""
+    random = default_rng(17)
+    sizes = [*before.values(), 0.5]
+    rows: list[Rows] = []
+    tables: list[list[Array]] = [[] for _ in sizes]
+    for _ in range(2):
+        slow, own = random.normal(size=(LONG, UNKNOWNS)), random.normal(size=(LONG, len(sizes)))
+        effort = (
+            slow @ np.ones((UNKNOWNS, 1)) + own @ np.array(sizes)[:, None] + random.normal(size=(LONG, 1))
+        )
+        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED))
+        for k, table in enumerate(tables):
+            table.append(own[:, [k]][:, None, :])
+    trials, columns = [], [r.columns for r in rows]
+    for effect, table in zip([*before, "friction_offset"], tables, strict=True):
+        system = System(rows, columns, [LONG // 3] * 2)
+        gain = system.gain(table)
+        assert gain is not None
+        trials.append(Trial(Candidate(effect, None), {}, table, gain))
+        columns = [np.concatenate([c, t], axis=2) for c, t in zip(columns, table, strict=True)]
+    return Gates(rows, trials[:-1], system).judged(trials[-1])
+
+
+def test_beside_a_fluid_a_cause_is_more_than_its_law_may_leave() -> None:
+    """A twentieth of what the fluid explains, not of what others do: one value stands for all links."""
+    assert beside({"lever_geometry": 10.0}).refused == ""
+    assert beside({"added_mass": 10.0}).refused == "gain"
+    assert beside({"added_mass": 0.5}).refused == ""
+    assert beside({"added_mass": 0.5, "lever_geometry": 10.0}).refused == ""
