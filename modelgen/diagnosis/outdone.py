@@ -45,17 +45,21 @@ def outdone(
     causes go that leave most of what repeats.
     """
     dropped: list[Cause] = []
+    bare, alone = None, -np.inf
+    if selection.causes and found:
+        bare = System(rows, with_causes(rows, []), selection.system.periods)
+        alone = max(worth(shape, bare).evidence for shape in found)
     while True:
         system, causes = selection.system, selection.causes
         beside = [(shape, worth(shape, system)) for shape in found]
         best = max((w.evidence for _, w in beside), default=0.0)
         able = [shape for shape, w in beside if w.evidence > BESIDE]
         doubted = doubtful(selection, rows)
-        together = bool(causes and found) and _outdone_together(causes, rows, system, found, best)
+        all_go = bare is not None and bool(causes) and _outdone_together(causes, bare, alone, best)
         lost = [
             c
             for c in causes
-            if together
+            if all_go
             or TWICE * c.delta_bic < best
             or (c in doubted and not found)
             or _replaced(c, causes, rows, system, found if c in doubted else able)
@@ -81,15 +85,14 @@ def _replaced(
     return any(worth(shape, without).evidence > cause.delta_bic for shape in able)
 
 
-def _outdone_together(
-    causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[Shape], beside: float
-) -> bool:
-    """Whether one shape explains more than all causes together. beside: most that one does beside them."""
-    bare = System(rows, with_causes(rows, []), system.periods)
+def _outdone_together(causes: Sequence[Cause], bare: System, alone: float, beside: float) -> bool:
+    """Whether one shape explains more than all causes together. alone, beside: most that one explains without
+    them, and beside them.
+    """
     explained = together([c.trial for c in causes], bare)
     if not np.isfinite(explained):
         return False
-    more = max(worth(shape, bare).evidence for shape in found) - explained
+    more = alone - explained
     if len(causes) > 1:
         return more > -SEARCHED * (len(causes) - 1)
     return more > CLEARLY and beside > BESIDE / 2

@@ -7,8 +7,8 @@ do not contain them; the description's nominal inertials do, where all links hav
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -31,24 +31,19 @@ class HiddenWeight:
 
     def __init__(self, arm: Arm, base: Grouping) -> None:
         self.arm = described(arm)
-        self._calls: list[NumpyFunction] | None = None
         self._values = _hidden(self.arm, base)
 
-    def turned(self, motion: Motion, gravity: Sequence[float]) -> Array:
-        """What it adds to the inputs (N, n) with another gravity [m/s^2] than the description's."""
-        change = np.array(gravity) - np.array(self.arm.gravity)
-        total = np.zeros(motion.q.shape)
+    def columns(self, motion: Motion) -> Array:
+        """Inputs (3, N, n) that hold it in a gravity of 1 m/s^2 along each axis of the base."""
         if self._values is None:
-            return total
-        if self._calls is None:
-            self._calls = [self._along(axis) for axis in np.eye(3)]
-        for size, call in zip(change, self._calls, strict=True):
-            if size:
-                total += size * np.asarray(call(**given_for(call.function, motion, np.zeros(0))))
-        return total
+            return np.zeros((3, *motion.q.shape))
+        return np.array([call(**given_for(call.function, motion, np.zeros(0))) for call in self._calls])
+
+    @cached_property
+    def _calls(self) -> list[NumpyFunction]:
+        return [self._along(axis) for axis in np.eye(3)]
 
     def _along(self, axis: Array) -> NumpyFunction:
-        """Inputs that hold the links in a gravity of 1 m/s^2 along an axis of the base."""
         assert self._values is not None
         joints = tuple(replace(j, effects=()) for j in self.arm.joints)
         x, y, z = (float(a) for a in axis)

@@ -181,7 +181,8 @@ class Prober:
                 seen = reread(motion, described(self.arm), described(other), joint)
                 return self._inputs_of(key, other, seen, parameters) - self.inputs(motion, parameters)
             found = self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
-            return found + self._weight.turned(motion, described(other).gravity)
+            turned = np.subtract(described(other).gravity, self._own.arm.gravity)
+            return found + self._hidden_weight(motion, turned) if turned.any() else found
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
             columns = self.columns(effect, joint, motion, values, parameters)
@@ -219,6 +220,13 @@ class Prober:
     @cached_property
     def _weight(self) -> HiddenWeight:
         return HiddenWeight(self.arm, self.base)
+
+    def _hidden_weight(self, motion: Motion, gravity: Array) -> Array:
+        """Inputs (N, n) that hold in a further gravity (3,) what the base parameters do not contain."""
+        none = np.zeros(0)
+        return np.tensordot(
+            gravity, self._kept("weight", motion, none, lambda: self._weight.columns(motion)), 1
+        )
 
     @cached_property
     def _varied(self) -> Variations:
