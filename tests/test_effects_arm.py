@@ -26,6 +26,7 @@ from modelgen.effects import (
     PointVariables,
     Values,
     catalogue,
+    described,
 )
 from modelgen.effects.variables import Variables
 from modelgen.errors import InputError
@@ -521,7 +522,7 @@ def test_throw_away_effects_of_other_kinds(monkeypatch: pytest.MonkeyPatch) -> N
         ),
         (
             with_joint(ARMS["ariane4"], 0, EffectUse("lever_geometry", {"l1": 1.0})),
-            "leave no triangle somewhere on the stroke",
+            "leave no triangle anywhere on the stroke",
         ),
         (
             with_arm(replace(PLANAR, links=(None, None)), EffectUse("fluid_drag")),
@@ -532,6 +533,25 @@ def test_throw_away_effects_of_other_kinds(monkeypatch: pytest.MonkeyPatch) -> N
 def test_an_effect_in_the_wrong_place_is_named(arm: Arm, message: str) -> None:
     with pytest.raises(InputError, match=message):
         build(arm, Options())
+
+
+def test_a_stroke_ends_where_its_lever_closes() -> None:
+    """With true lengths that reach less far than the described stroke, the angle at each motor position stays
+    that of the law of cosines.
+    """
+    arm = ARMS["ariane4"]
+    old = arm.joints[0].drive
+    assert isinstance(old, LeveredDrive)
+    l1, l2, ends = float(old.l1), float(old.l2), [float(x) for x in old.length]
+    shorter = max(ends) - l1 - 1e-3 - l2  # the longest length is a millimetre out of reach
+    new = described(with_joint(arm, 0, EffectUse("lever_geometry", {"l2": shorter}))).joints[0].drive
+    assert isinstance(new, LeveredDrive)
+    low, high = (float(x) for x in new.length)
+    assert [low, high] == sorted(np.clip([low, high], abs(l1 - l2 - shorter), l1 + l2 + shorter))
+    assert abs(l1 - l2 - shorter) < min(low, high) < max(low, high) < l1 + l2 + shorter < max(ends)
+    for length, motor in zip((low, high), new.motor, strict=True):
+        share = (length - ends[0]) / (ends[1] - ends[0])
+        assert motor == pytest.approx(old.motor[0] + share * (old.motor[1] - old.motor[0]), rel=1e-12)
 
 
 def test_every_effect_of_the_catalogue_says_what_it_is_confused_with() -> None:

@@ -11,6 +11,8 @@ from modelgen.description.objects import Arm, LeveredDrive, NoDrive
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
 from modelgen.effects.variables import InputVariables
 
+DEAD = 1e-4  # of both lengths together, that a stroke keeps from where they lie in line
+
 
 class EncoderOffset(DescriptionEffect):
     """The joint is not where its encoder says: the true coordinate is the reading plus the offset."""
@@ -53,20 +55,32 @@ class LeverGeometry(DescriptionEffect):
     shown = at(l2=0.001)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
-        """The lever with its true lengths."""
+        """The lever with its true lengths; its stroke ends where they no longer close."""
         assert joint is not None
         drive = arm.joints[joint].drive
         if not isinstance(drive, LeveredDrive):
             raise ValueError("found on a joint without a lever, expected a levered drive")
         low, high = (end + values["length"] for end in drive.length)
-        lengths = (drive.l1 + values["l1"], drive.l2 + values["l2"])
-        lever = replace(drive, l1=lengths[0], l2=lengths[1], length=(low, high))
-        numbers = (*lengths, low, high)
-        if all(isinstance(x, float) for x in numbers):
-            l1, l2 = (float(x) for x in lengths)
-            if min(l1, l2) <= 0 or not abs(l1 - l2) < min(low, high) <= max(low, high) < l1 + l2:
-                raise ValueError("these lengths leave no triangle somewhere on the stroke")
+        l1, l2 = drive.l1 + values["l1"], drive.l2 + values["l2"]
+        lever = replace(drive, l1=l1, l2=l2, length=(low, high))
+        if all(isinstance(x, float) for x in (l1, l2, low, high)):
+            lever = _closed(lever)
         return _with(arm, joint, drive=lever)
+
+
+def _closed(lever: LeveredDrive) -> LeveredDrive:
+    """A lever of numbers with the part of its stroke on which it closes, and what the motor is there."""
+    l1, l2, *ends = (float(x) for x in (lever.l1, lever.l2, *lever.length))
+    spare = DEAD * (l1 + l2)
+    shortest, longest = abs(l1 - l2) + spare, l1 + l2 - spare
+    inside = [min(max(end, shortest), longest) for end in ends]
+    if min(l1, l2) <= 0 or inside[0] == inside[1]:
+        raise ValueError("these lengths leave no triangle anywhere on the stroke")
+    if inside == ends:
+        return lever
+    per_length = (lever.motor[1] - lever.motor[0]) / (ends[1] - ends[0])
+    first, last = (lever.motor[0] + per_length * (end - ends[0]) for end in inside)
+    return replace(lever, length=(inside[0], inside[1]), motor=(first, last))
 
 
 class DriveGainError(DescriptionEffect):
