@@ -67,6 +67,6 @@ def test_the_covariance_is_the_scatter_of_estimates() -> None:
     for seed in range(40):
         rows = [record(default_rng([5, seed, k]), np.zeros(0))[0] for k in range(2)]
         system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
-        estimates.append(np.linalg.lstsq(system.matrix, system.right, rcond=None)[0])
+        estimates.append(np.linalg.lstsq(system.white.matrix, system.white.right, rcond=None)[0])
         stated.append(np.sqrt(np.diag(covariance(system))))
     np.testing.assert_allclose(np.std(estimates, axis=0), np.mean(stated, axis=0), rtol=0.35)

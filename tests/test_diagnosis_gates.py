@@ -1,5 +1,6 @@
 """Gates on equations of which everything is known: no arm, no filter, white noise."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from scipy.optimize import lsq_linear
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Gates, Judgement
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, not_negative, rmse, weighted_fit
+from modelgen.diagnosis.stack import not_negative
+from modelgen.diagnosis.system import System, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 LONG, UNKNOWNS = 300, 6
@@ -105,10 +107,18 @@ def test_what_the_form_of_a_law_leaves_between_records_does_not_refuse_it() -> N
     assert [judged(k, (4.2, 3.8)).refused for k in range(20)].count("") >= 19
 
 
-def beside(before: dict[str, float]) -> Judgement:
-    """Of a cause of half the noise's size, with others of these sizes taken before it."""
+def beside(
+    before: dict[str, float],
+    effect: str = "friction_offset",
+    size: float = 0.5,
+    evidence: float | None = None,
+) -> Judgement:
+    """Of a cause of this size against the noise, with others of these sizes taken before it.
+
+    evidence: instead of what it has.
+    """
     random = default_rng(17)
-    sizes = [*before.values(), 0.5]
+    sizes = [*before.values(), size]
     rows: list[Rows] = []
     tables: list[list[Array]] = [[] for _ in sizes]
     for _ in range(2):
@@ -120,12 +130,14 @@ def beside(before: dict[str, float]) -> Judgement:
         for k, table in enumerate(tables):
             table.append(own[:, [k]][:, None, :])
     trials, columns = [], [r.columns for r in rows]
-    for effect, table in zip([*before, "friction_offset"], tables, strict=True):
+    for name, table in zip([*before, effect], tables, strict=True):
         system = System(rows, columns, [LONG // 3] * 2)
         gain = system.gain(table)
         assert gain is not None
-        trials.append(Trial(Candidate(effect, None), {}, table, gain))
+        trials.append(Trial(Candidate(name, None), {}, table, gain))
         columns = [np.concatenate([c, t], axis=2) for c, t in zip(columns, table, strict=True)]
+    if evidence is not None:
+        trials[-1] = replace(trials[-1], gain=replace(trials[-1].gain, delta_bic=evidence))
     return Gates(rows, trials[:-1], system).judged(trials[-1])
 
 
@@ -135,3 +147,15 @@ def test_beside_a_fluid_a_cause_is_more_than_its_law_may_leave() -> None:
     assert beside({"added_mass": 10.0}).refused == "gain"
     assert beside({"added_mass": 0.5}).refused == ""
     assert beside({"added_mass": 0.5, "lever_geometry": 10.0}).refused == ""
+
+
+def test_a_delay_is_more_than_sticking_leaves_and_still_more_beside_it() -> None:
+    """A share of a sample, at reversals; with evidence that sticking never has, any gain that counts."""
+    assert 1.5 < beside({}, "time_delay", 0.16).gain < 3.0
+    assert beside({}, "time_delay", 0.16).refused == "gain"
+    assert beside({}, "time_delay", 0.16, 500.0).refused == ""
+    assert 3.0 < beside({}, "time_delay", 0.2).gain < 5.0
+    assert beside({}, "time_delay", 0.2).refused == ""
+    assert 3.0 < beside({"stribeck_friction": 0.3}, "time_delay", 0.27).gain < 5.0
+    assert beside({"stribeck_friction": 0.3}, "time_delay", 0.27).refused == "gain"
+    assert beside({"stribeck_friction": 0.3}, "time_delay", 0.4).refused == ""

@@ -8,7 +8,7 @@ from test_diagnosis_selection import ARM, three
 
 from modelgen.dataset import Record
 from modelgen.diagnosis.instruments import other_period
-from modelgen.diagnosis.positions import blurred, counts, feigned
+from modelgen.diagnosis.positions import blurred, counts, feigned, rounded
 from modelgen.diagnosis.run import diagnose
 
 COUNT = 2 * np.pi / 2**13
@@ -27,6 +27,15 @@ def test_the_count_is_found_where_there_is_one() -> None:
     error = blurred(coarse(record)).q - coarse(record).q
     assert 0.45 * COUNT < np.abs(error).max() <= 0.5 * COUNT
     np.testing.assert_allclose(error.std(axis=0), COUNT / np.sqrt(12), rtol=0.03)
+
+
+def test_rounding_is_told_from_noise_that_is_rounded() -> None:
+    record = three(None, 1, 0.0)[0]
+    assert rounded(coarse(record))
+    assert not rounded(record)  # no steps: what errors there are is not known
+    for size, alone in ((0.1, True), (1.0, False)):
+        error = size * COUNT * np.random.default_rng(1).normal(size=record.q.shape)
+        assert rounded(coarse(replace(record, q=record.q + error))) is alone
 
 
 def test_what_errors_of_positions_can_feign() -> None:

@@ -1,10 +1,13 @@
 """Smooth functions that stand for no law, on equations of which all is known: no arm, no filter."""
 
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.random import default_rng
+from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
 from modelgen.diagnosis.candidates import Candidate
@@ -15,6 +18,7 @@ from modelgen.diagnosis.selection import STAYS, Selection, left_to
 from modelgen.diagnosis.shapes import Shape, functions, worth
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.whitening import ORDER, Whitener
 
 PERIOD, PERIODS = 200, 3
 UNUSED: Any = None
@@ -154,15 +158,22 @@ def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> Non
     assert likeness is not None
 
 
+def known_noise(*sizes: float) -> Any:
+    """As of a system whose joints have white noise of these sizes."""
+    taps = np.eye(1, ORDER + 1)[0]
+    return SimpleNamespace(whiteners=[Whitener(taps, size) for size in sizes])
+
+
 def test_evidence_is_that_of_a_gaussian_process() -> None:
     """Its density with the kernel written out, noise and baseline integrated out, over that without it."""
     rows, q, periods = made(spot, 3)
-    system = System(rows, [r.columns for r in rows], periods)
-    system.plain.counts = np.array([float(len(system.plain.joint))])  # white noise: every row counts
-    found = worth(Shape("", {0: functions(q, 0.5)}), system).evidence
+    system = System(rows, [r.columns for r in rows], periods, known_noise(1.0))
+    found = worth(Shape("", {0: functions(q, 0.5)}), system)
 
-    x, y = np.concatenate(q) / (0.5 * np.ptp(np.concatenate(q))), np.concatenate([r.effort for r in rows])
-    baseline = np.concatenate([r.columns[:, 0] for r in rows])
+    used = slice(ORDER, None)  # rows with as many before them
+    x = np.concatenate([p[used] for p in q]) / (0.5 * np.ptp(np.concatenate(q)))
+    y = np.concatenate([r.effort[used] for r in rows])
+    baseline = np.concatenate([r.columns[used, 0] for r in rows])
     left = np.linalg.qr(baseline, mode="complete")[0][:, baseline.shape[1] :]
     kernel = left.T @ np.exp(-0.5 * (x - x.T) ** 2) @ left
     right = (left.T @ y)[:, 0]
@@ -174,7 +185,60 @@ def test_evidence_is_that_of_a_gaussian_process() -> None:
         return 2.0 * float(multivariate_normal.logpdf(right, cov=power * shape))
 
     best = max(twice_log(size) for size in np.logspace(-2, 2, 13)) - twice_log(0.0)
-    assert found == pytest.approx(best - np.log(len(x)), abs=1.0)
+    assert found.evidence == pytest.approx(best - np.log(len(x)), abs=1.0)
+
+
+def test_a_function_at_one_joint_that_sets_a_parameter_free_is_worth_what_the_other_joint_gains() -> None:
+    """Joint 1 would have another parameter than joint 2, which knows it ten times better; a function in its
+    place at joint 2 leaves it to joint 1. Of its own, joint 2 has nothing to explain.
+    """
+    rows, q, periods = made(lambda x: 0.0 * x, 4)
+    both = []
+    for k, (r, x) in enumerate(zip(rows, q, strict=True)):
+        columns = np.stack([np.cos(3.0 * x), x], axis=1)
+        noise = default_rng([3, k]).normal(size=(len(x), 2)) * (1.0, 0.1)
+        effort = columns[:, :, 0] * (3.0, 1.0) + noise
+        both.append(replace(r, effort=effort, columns=columns, moving=np.ones(effort.shape, dtype=bool)))
+    system = System(both, [r.columns for r in both], periods, known_noise(1.0, 0.1))
+    found = worth(Shape("", {1: functions(q, 0.3)}), system)
+    most = float(system.white.counts @ np.log(system.white.rss / system.white.counts))
+    assert 0.8 * most < found.evidence < most
+
+
+def test_slow_noise_is_no_function_of_the_place() -> None:
+    """By the plain equations it would be in 3 of 40."""
+    slow, fair = [], []
+    for seed in range(40):
+        random = default_rng([7, seed])
+        noise = lfilter([0.25], [1.0, -0.97], random.normal(size=(2, PERIOD * PERIODS + 500)))[:, 500:]
+        rows, q, periods = made(lambda x: 0.0 * x, seed)
+        red = [replace(r, effort=r.effort + e[:, None]) for r, e in zip(rows, noise, strict=True)]
+        found = worth(Shape("", {0: functions(q, 0.2)}), System(red, [r.columns for r in red], periods))
+        slow.append(found.slow)
+        fair.append(found.evidence)
+    assert max(fair) < 3.0
+    assert sum(x > 10.0 for x in slow) >= 3
+
+
+def test_the_whitened_equations_leave_white_noise_where_errors_repeat_whose_size_is_known() -> None:
+    def left(*, known: bool) -> tuple[float, float]:
+        """Spread, and correlation from row to row."""
+        rows, _, periods = made(lambda x: 0.0 * x)
+        random = default_rng(8)
+        for k, r in enumerate(rows):
+            errors = [np.tile(np.diff(random.normal(size=PERIOD + 1)), PERIODS)[:, None] for _ in range(2)]
+            rows[k] = replace(
+                r, effort=r.effort + 2.0 * errors[0], repeated=2.0 * errors[1] if known else None
+            )
+        white = System(rows, [r.columns for r in rows], periods).white.left
+        return float(white.std()), float(np.corrcoef(white[1:], white[:-1])[0, 1])
+
+    spread, correlation = left(known=True)
+    assert spread == pytest.approx(1.0, abs=0.1)
+    assert correlation == pytest.approx(0.0, abs=0.1)
+    spread, correlation = left(known=False)
+    assert spread > 2.0
+    assert correlation < -0.3
 
 
 def test_functions_have_the_kernel_of_the_process() -> None:

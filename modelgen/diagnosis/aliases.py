@@ -17,7 +17,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, PERIODIC, Candidate, Values, of_part
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS, sensitivities
-from modelgen.diagnosis.system import orthonormal
+from modelgen.diagnosis.stack import orthonormal
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.model.equations import Equations

@@ -19,7 +19,7 @@ from modelgen.diagnosis.checks import check_excitation, check_motion
 from modelgen.diagnosis.free import away_from_rest
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.positions import blur, feigned
+from modelgen.diagnosis.positions import feigned, with_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import rmse, weighted_fit
 from modelgen.functions import Model
@@ -93,4 +93,5 @@ def _equations(
     check_motion(model.arm, rows)
     check_excitation(model.arm, model, rows)
     theta = weighted_fit(rows, [r.columns for r in rows])
-    return Equations(chosen, periods, prepared, rows, theta, blur(train, rows, prober, model, theta))
+    rows, blur = with_errors(rows, periods, prober, model, theta)
+    return Equations(chosen, periods, prepared, rows, theta, blur)

@@ -88,7 +88,7 @@ def readings(
             found.append(Test(f"{place}read {text} (the cause claims {size:.2g})", (size / spread) ** 2))
         elif effect == "friction_offset" and joint is not None:
             size = abs(values.get("offset", 0.0)) / drives_of(stage.arm)[joint - 1].torque_constant
-            noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.plain.sizes[joint - 1])
+            noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.sizes[joint - 1])
             rows = max(1.0, READING * stage.prepared[0].rate * float(judge.shares[joint - 1]))
             text = f"{place}read the current at rest with the motor switched off, for {READING:g} s"
             said = f"{text} (an offset of the sensor of {size:.2g}; none with asymmetric friction)"

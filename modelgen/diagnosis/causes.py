@@ -30,11 +30,12 @@ class Cause:
     rivals: list[tuple[Trial, float]] = field(default_factory=list)
 
 
-def together(trials: Sequence[Trial], bare: System) -> float:
-    """Delta BIC of all of them. bare: the system without any cause."""
-    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(bare.rows))]
+def together(trials: Sequence[Trial], rest: System, *, fair: bool = False) -> float:
+    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations."""
+    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
     positive = [above for t in trials for above in t.candidate.positive]
-    gain = bare.gain(columns, float(sum(len(t.values) for t in trials)), positive)
+    stack = rest.fair if fair else rest
+    gain = stack.gain(columns, float(sum(len(t.values) for t in trials)), positive)
     return -np.inf if gain is None else gain.delta_bic
 
 
@@ -102,13 +103,13 @@ def _least_values(causes: Sequence[Cause], system: System) -> list[float]:
 
 def whitened_fit(system: System) -> tuple[Array, Array]:
     """Least squares solution of the whitened equations and its standard deviations, (p,) each."""
-    values = np.linalg.lstsq(system.matrix, system.right, rcond=1e-12)[0]
+    values = np.linalg.lstsq(system.white.matrix, system.white.right, rcond=1e-12)[0]
     return np.asarray(values), np.asarray(np.sqrt(np.maximum(0.0, np.diag(covariance(system)))))
 
 
 def covariance(system: System) -> Array:
     """Of the least squares solution of the whitened equations, (p, p)."""
-    norms = np.linalg.norm(system.matrix, axis=0)
+    norms = np.linalg.norm(system.white.matrix, axis=0)
     norms[norms == 0] = 1.0
-    inverse = np.linalg.pinv((system.matrix / norms).T @ (system.matrix / norms), rcond=1e-14)
+    inverse = np.linalg.pinv((system.white.matrix / norms).T @ (system.white.matrix / norms), rcond=1e-14)
     return np.asarray(inverse / np.outer(norms, norms))

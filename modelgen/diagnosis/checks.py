@@ -10,7 +10,8 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, columns, scale
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import moving_share, orthonormal, rmse, stacked, weighted_fit
+from modelgen.diagnosis.stack import orthonormal
+from modelgen.diagnosis.system import moving_share, rmse, stacked, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError

@@ -41,7 +41,7 @@ class Endogeneity:
 
 def endogeneity(system: System) -> Endogeneity | None:
     """Of the equations with all that they contain; None where nothing repeats."""
-    pairs = Pairs(system.rows, system.columns, system.periods, system.plain.sizes)
+    pairs = Pairs(system.rows, system.columns, system.periods, system.sizes)
     if not pairs.enough:
         return None
     stage = pairs.first_stage()
@@ -51,13 +51,13 @@ def endogeneity(system: System) -> Endogeneity | None:
         else (table - (table[partner] / pairs.scale) @ stage) * there[:, :, None]
         for table, partner, there in zip(system.columns, pairs.partners, pairs.flags, strict=True)
     ]
-    gain = system.gain_of(system.whitened(left))
+    gain = system.white.gain(left)
     if gain is None:
         return Endogeneity(0.0, 0, np.inf, np.zeros(system.n), np.zeros(system.n))
-    used = system.counts > 0
+    used = system.white.counts > 0
     ratio = gain.rss0[used] / np.maximum(gain.rss1[used], 1e-300)
-    statistic = float((system.counts[used] * np.log(ratio)).sum())
-    plain, share, cost = system.plain.gain(left, 0.0), np.zeros(system.n), np.zeros(system.n)
+    statistic = float((system.white.counts[used] * np.log(ratio)).sum())
+    plain, share, cost = system.plain.gain(left), np.zeros(system.n), np.zeros(system.n)
     share[used] = 100.0 * (1.0 - 1.0 / np.sqrt(ratio))
     if plain is not None:
         used = plain.rss0 > 0

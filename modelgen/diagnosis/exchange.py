@@ -17,6 +17,8 @@ from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.probing import Prober
 
+TIE = 0.5  # delta BIC that is none: of such causes the one that carries most to other records goes ahead
+
 
 def exchanged(
     causes: list[Cause], rows: Sequence[Rows], prober: Prober, periods: Sequence[int | None]
@@ -39,7 +41,7 @@ def exchanged(
             tried[place].trial = trial
             converge(tried, rows, prober)
             found = _worth(tried, bare)
-            if found > most:
+            if found > most + TIE:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
                 tried[place].rivals = [(held, found - most), *rivals]
                 best, most = tried, found

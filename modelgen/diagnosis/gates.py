@@ -23,6 +23,8 @@ from modelgen.diagnosis.trials import Trial
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 FAINT, MORE = 25.0, 3.0  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
+STICKING = 5.0  # the same for a delay beside what acts at reversals: the form of that leaves more
+BEYOND = 400.0  # evidence of a delay that sticking does not give: 230 in complete models
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
@@ -183,11 +185,18 @@ class Gates:
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
         c = trial.candidate
-        delayed = [t.candidate.joint for t in self.before if t.candidate.effect == DELAY]
-        beside = c.effect in REVERSING and (c.joint in delayed or None in delayed)
-        if c.effect == DELAY or beside:
+        if c.effect == DELAY:
+            if self._beside(REVERSING, c.joint):
+                return STICKING
+            return DELAYED if trial.gain.delta_bic < BEYOND else PRACTICAL
+        if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
         return MORE if trial.gain.delta_bic < FAINT else PRACTICAL
+
+    def _beside(self, effects: tuple[str, ...], joint: int | None) -> bool:
+        """Whether one of them was taken at the joint, or one of the two is everywhere."""
+        there = {t.candidate.joint for t in self.before if t.candidate.effect in effects}
+        return bool(there) and (joint is None or None in there or joint in there)
 
     def _without(self, halves: bool) -> Array:
         """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
@@ -282,7 +291,7 @@ def instrumented(trial: Trial, system: System) -> bool:
     if trial.candidate.effect in COMPLIANT:  # searched for over what makes a filter of any errors
         return False
     table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
-    pairs = Pairs(system.rows, table, system.periods, system.plain.sizes)
+    pairs = Pairs(system.rows, table, system.periods, system.sizes)
     if not pairs.enough or repeating_errors(system.rows, system.periods).any():
         return False
     values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -13,14 +14,18 @@ from modelgen.diagnosis.lack_of_fit import CLEAN
 from modelgen.diagnosis.null_distribution import NULLS
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
-from modelgen.diagnosis.shapes import SHAPE, Shape, worth
+from modelgen.diagnosis.shapes import SHAPE, Shape, Worth, worth
 from modelgen.diagnosis.standing import doubtful
 from modelgen.diagnosis.system import System
 
-BESIDE = 20.0  # delta BIC beside a cause, from which a shape may take its place
+BESIDE = 7.0  # delta BIC beside a cause, from which a shape may take its place
 LIKE = float(np.quantile(NULLS[SHAPE], CLEAN))  # delta BIC from which what is left is called like a shape
 TWICE = 2.0  # a cause's evidence: what has that beside it makes it a detail
-CLEARLY = 14.0  # delta BIC by which a shape is more than a cause that stands alone, with half of BESIDE
+CLEARLY = 7.0  # delta BIC by which a shape is more than a cause that stands alone, with half of BESIDE
+APART = 15.0  # delta BIC by which a cause and a shape are more than the shape: the cause is there
+SLOW = 25.0  # delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else
+AS_GOOD = 5.0  # delta BIC less than the cause's, in the fair equations
+BEHIND = 20.0  # delta BIC less than the cause's, in the plain ones, from which no shape takes its place
 SEARCHED = 8.0  # delta BIC that each further cause costs, as one of some sixty at every joint: 2 ln 60
 
 
@@ -39,30 +44,24 @@ def outdone(
 
     A shape outdoes a cause where it explains more of what the other causes leave, and something beside the
     cause, or the cause leaves most of what repeats; where it explains more beside it than twice what the
-    cause does; and the least of all causes where it alone explains more than they do together. Of what an
-    effect that is there does, a shape explains less, for the price of its freedom.
+    cause does; and the least of several causes where it alone explains more than they do together. Of what
+    an effect that is there does, a shape explains less, for the price of its freedom. All evidence is that
+    of the noise which all causes leave: what they explain is none.
     found: empty for free motions, which show little but forces that depend on where the arm is; there all
     causes go that leave most of what repeats.
     """
     dropped: list[Cause] = []
-    bare, alone = None, -np.inf
-    if selection.causes and found:
-        bare = System(rows, with_causes(rows, []), selection.system.periods)
-        alone = max(worth(shape, bare).evidence for shape in found)
     while True:
         system, causes = selection.system, selection.causes
         beside = [(shape, worth(shape, system)) for shape in found]
-        best = max((w.evidence for _, w in beside), default=0.0)
-        able = [shape for shape, w in beside if w.evidence > BESIDE]
         doubted = doubtful(selection, rows)
-        all_go = bare is not None and bool(causes) and _outdone_together(causes, bare, alone, best)
+        every = len(causes) > 1 and bool(found) and _outdone_together(causes, rows, system, found)
         lost = [
             c
             for c in causes
-            if all_go
-            or TWICE * c.delta_bic < best
-            or (c in doubted and not found)
-            or _replaced(c, causes, rows, system, found if c in doubted else able)
+            if every
+            or (not found and c in doubted)
+            or _outdone(c, causes, rows, system, beside, c in doubted)
         ]
         if not lost:
             left = [Likeness(s, w.evidence) for s, w in beside if w.evidence > LIKE and w.percent > PRACTICAL]
@@ -74,25 +73,48 @@ def outdone(
         selection = replace(selection, causes=kept, system=system)
 
 
-def _replaced(
-    cause: Cause, causes: Sequence[Cause], rows: Sequence[Rows], system: System, able: Sequence[Shape]
+def _outdone(
+    cause: Cause,
+    causes: Sequence[Cause],
+    rows: Sequence[Rows],
+    system: System,
+    beside: Sequence[tuple[Shape, Worth]],
+    doubted: bool,
 ) -> bool:
-    """Whether a shape explains more than the cause of what the others leave."""
+    """Whether one of the shapes, with what they are worth beside all causes, takes the cause's place."""
+    least = BESIDE / 2 if len(causes) == 1 else BESIDE
+    able = [(s, w) for s, w in beside if doubted or w.evidence > least or w.slow > SLOW]
     if not able:
         return False
     others = [c.trial for c in causes if c is not cause]
-    without = System(rows, with_causes(rows, others), system.periods)
-    return any(worth(shape, without).evidence > cause.delta_bic for shape in able)
+    without = System(rows, with_causes(rows, others), system.periods, system)
+    own = together([cause.trial], without, fair=True)
+    most = max(w.evidence for _, w in able)
+    if most > BESIDE and TWICE * own < most:
+        return True
+    for shape, added in able:
+        instead = worth(shape, without)
+        more, slow = instead.evidence - own, instead.slow - cause.delta_bic
+        if own > added.evidence and added.evidence - more > APART:
+            continue
+        seen = doubted or added.evidence > BESIDE or (added.evidence > least and more > CLEARLY)
+        if more > 0.0 and seen and slow > -BEHIND:
+            return True
+        if more > -AS_GOOD and min(slow, added.slow) > SLOW:
+            return True
+    return False
 
 
-def _outdone_together(causes: Sequence[Cause], bare: System, alone: float, beside: float) -> bool:
-    """Whether one shape explains more than all causes together. alone, beside: most that one explains without
-    them, and beside them.
-    """
-    explained = together([c.trial for c in causes], bare)
-    if not np.isfinite(explained):
-        return False
-    more = alone - explained
-    if len(causes) > 1:
-        return more > -SEARCHED * (len(causes) - 1)
-    return more > CLEARLY and beside > BESIDE / 2
+def _outdone_together(
+    causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[Shape]
+) -> bool:
+    """Whether one shape explains more than several causes together, or than some of them."""
+    bare = System(rows, with_causes(rows, []), system.periods, system)
+    trials = [c.trial for c in causes]
+    explained = max(
+        together(some, bare, fair=True) - SEARCHED * (len(some) - 1)
+        for count in range(1, len(trials) + 1)
+        for some in combinations(trials, count)
+    )
+    alone = max(worth(shape, bare).evidence for shape in found)
+    return bool(np.isfinite(explained)) and alone > explained

@@ -22,6 +22,8 @@ from modelgen.probing import Prober
 
 STEPPED = 0.05  # of a count: how far differences may lie from whole counts
 SEED = 19940801
+ROUNDED = 1.5  # times what rounding leaves in third differences: no other error is there
+THIRD = 20.0 / 12.0  # mean square of the third differences of rounding errors, counts squared
 ALIKE = 0.5  # counts between readings of two periods
 
 
@@ -48,13 +50,27 @@ def _count(values: Array) -> float:
     return count if float(np.quantile(off, 0.95)) < STEPPED else 0.0
 
 
-def blurred(record: Record) -> Record:
-    """The record with one more error of a uniform distribution over a count on every position."""
+def rounded(record: Record) -> bool:
+    """Whether rounding to counts is all the error that the logged positions have.
+
+    By their third differences, in which a motion that is sampled well all but vanishes.
+    """
+    return all(
+        count > 0 and float(np.mean(np.diff(_logged(record, j), 3) ** 2)) <= ROUNDED**2 * THIRD * count**2
+        for j, count in enumerate(counts(record))
+    )
+
+
+def blurred(record: Record, which: NDArray[np.bool_] | None = None) -> Record:
+    """The record with one more error of a uniform distribution over a count on every position.
+
+    which: of these coordinates (n,) alone.
+    """
     random = np.random.default_rng(SEED)
     q, motor = record.q.copy(), record.motor.copy()
     drives = drives_of(record.arm) if record.arm is not None else ()
     for j, count in enumerate(counts(record)):
-        if not count:
+        if not count or (which is not None and not which[j]):
             continue
         error = random.uniform(-0.5, 0.5, len(q)) * count
         if record.motor_side and record.motor_side[j]:
@@ -66,18 +82,35 @@ def blurred(record: Record) -> Record:
     return replace(record, q=q, motor=motor)
 
 
-def blur(
-    train: Sequence[Prepared], rows: Sequence[Rows], prober: Prober, model: Model, theta: Array
+def left_by_errors(
+    p: Prepared, r: Rows, prober: Prober, model: Model, theta: Array, which: NDArray[np.bool_] | None = None
 ) -> Array:
-    """Mean square of what errors of the positions leave in the residuals, by joint (n,), inputs squared."""
-    total, count = np.zeros(train[0].n), np.zeros(train[0].n)
-    for p, r in zip(train, rows, strict=True):
+    """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
+    if not counts(p.record).any():
+        return np.zeros(r.effort.shape)
+    errors = blurred(p.record, which)
+    again = rows_of(prober, model, prepare(errors, p.settings), theta, r.baseline)
+    return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
+
+
+def with_errors(
+    rows: Sequence[Rows], periods: Sequence[int | None], prober: Prober, model: Model, theta: Array
+) -> tuple[list[Rows], Array]:
+    """The rows with what errors of the positions leave where that repeats, and its mean squares where it
+    repeats or not, by joint (n,), inputs squared.
+    """
+    which = repeating_errors(rows, periods)
+    total, count, found = np.zeros(len(which)), np.zeros(len(which)), []
+    for r in rows:
+        every = left_by_errors(r.prepared, r, prober, model, theta)
+        total += (every**2 * r.moving).sum(axis=0)
         count += r.moving.sum(axis=0)
-        if counts(p.record).any():
-            again = rows_of(prober, model, prepare(blurred(p.record), p.settings), theta, r.baseline)
-            change = (again.effort - r.effort) - (again.columns - r.columns) @ theta
-            total += (change**2 * r.moving).sum(axis=0)
-    return np.asarray(total / np.maximum(count, 1.0))
+        some = None
+        if which.any():
+            p = r.prepared
+            some = every if which.all() else left_by_errors(p, r, prober, model, theta, which)
+        found.append(replace(r, repeated=some))
+    return found, np.asarray(total / np.maximum(count, 1.0))
 
 
 def repeating_errors(rows: Sequence[Rows], periods: Sequence[int | None]) -> NDArray[np.bool_]:
@@ -97,6 +130,14 @@ def repeating_errors(rows: Sequence[Rows], periods: Sequence[int | None]) -> NDA
         total += np.where(size > 0, (change**2).sum(axis=0), np.inf)
         count += len(change)
     return np.asarray(total < ALIKE**2 * count)
+
+
+def harmless(rows: Sequence[Rows], blur: Array, squares: Array, least: float) -> bool:
+    """Whether the errors of the positions are known, and could feign no gain of `least` percent.
+
+    blur, squares: as of `feigned`.
+    """
+    return bool(feigned(blur, squares).max() <= least) and all(rounded(r.prepared.record) for r in rows)
 
 
 def feigned(blur: Array, squares: Array) -> Array:

@@ -19,7 +19,8 @@ __all__ = ["Array", "Rows", "rows_of"]
 @dataclass(frozen=True)
 class Rows:
     """M rows of n joints. effort: (M, n) as the model has its inputs, less what is known of them; columns:
-    (M, n, p), one for each unknown of the baseline; moving: (M, n), rows that count.
+    (M, n, p), one for each unknown of the baseline; moving: (M, n), rows that count. repeated: (M, n), a draw
+    of what rounded positions leave in the residuals, if that repeats with the motion; None if nothing does.
     """
 
     prepared: Prepared
@@ -27,6 +28,7 @@ class Rows:
     columns: Array
     moving: NDArray[np.bool_]
     baseline: Baseline
+    repeated: Array | None = None
 
     @cached_property
     def motion(self) -> Motion:

@@ -35,7 +35,7 @@ from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
 from modelgen.diagnosis.outdone import Likeness, outdone
-from modelgen.diagnosis.positions import feigned
+from modelgen.diagnosis.positions import feigned, harmless
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, Selection, select
 from modelgen.diagnosis.shapes import shapes
@@ -132,7 +132,8 @@ def diagnose(
     share = feigned(blurs, left)
     moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
-    verdict, reason = _verdict(selection, beside, fit, share, noisy, likeness, counted=counted)
+    tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
+    verdict, reason = _verdict(selection, beside, fit, share, tested, likeness, counted=counted)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":

@@ -11,9 +11,9 @@ from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
-from modelgen.diagnosis.exchange import exchanged
+from modelgen.diagnosis.exchange import TIE, exchanged
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented, with_causes
-from modelgen.diagnosis.positions import feigned, repeating_errors
+from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Court, Trial, sensible
@@ -72,7 +72,7 @@ def select(
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
-        noisy = not steps and correlated(system)
+        noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)
         taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
@@ -107,13 +107,19 @@ def select(
         turns.append(_best_of_each(ranking))
         if not eligible:
             break
-        best, by = eligible[0]
+        first = eligible[0][0].gain.delta_bic
+        best, by = max(
+            (pair for pair in eligible if first - pair[0].gain.delta_bic < TIE), key=lambda pair: pair[1].gain
+        )
         margin = _margin(best, by.gain, system, blur)
         rivals = [
-            (t, best.gain.delta_bic - t.gain.delta_bic)
-            for t, other in eligible[1:]
-            if best.gain.delta_bic - t.gain.delta_bic <= EVIDENCE
-            or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
+            (t, max(0.0, best.gain.delta_bic - t.gain.delta_bic))
+            for t, other in eligible
+            if t is not best
+            and (
+                best.gain.delta_bic - t.gain.delta_bic <= EVIDENCE
+                or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
+            )
         ]
         causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
@@ -146,6 +152,11 @@ def correlated(system: System) -> bool:
     """Whether errors of the positions matter: the regressor's correlation with those of the equations."""
     found = endogeneity(system)
     return found is not None and found.found and float(found.share.max()) > PRACTICAL
+
+
+def _harmless(rows: Sequence[Rows], blur: Array | None, system: System) -> bool:
+    """Whether errors of the positions need no other price than `blur`."""
+    return blur is not None and harmless(rows, blur, mean_squares(system), PRACTICAL)
 
 
 def _ranked(t: Trial, by: Judgement | None, refused: str) -> Ranked:

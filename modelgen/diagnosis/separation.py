@@ -15,7 +15,8 @@ import numpy as np
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import NOTHING, System, orthonormal
+from modelgen.diagnosis.stack import NOTHING, orthonormal
+from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.diagnosis.whitening import usable_rows
 from modelgen.probing import Prober
@@ -96,10 +97,9 @@ class Judge:
     ) -> None:
         self.system, self.prober, self.base, self.before = system, prober, base, before
         n = system.n
-        counts = np.maximum(system.counts, 1)
-        self.white = system.rss / counts
+        self.white = system.white.rss / np.maximum(system.white.counts, 1)
         rows = np.maximum(np.bincount(system.plain.joint, minlength=n), 1)
-        self.plain = system.plain.by_joint(system.plain.left) / rows
+        self.plain = system.plain.rss / rows
         self.shares = system.plain.counts / rows
 
     def columns(
@@ -169,7 +169,7 @@ class Judge:
     def left_over(self, true: Hypothesis, other: Hypothesis, rows: Rows) -> tuple[Array, Array]:
         """What `other` leaves (M, n) where `true` is, nan at rest, and the spread of the noise (n,)."""
         own, wrong = (self.columns(h, h.values, [rows], [self.base]) for h in (true, other))
-        sizes = self.system.plain.sizes * np.sqrt(self.plain)
+        sizes = self.system.sizes * np.sqrt(self.plain)
         if own is None or wrong is None:
             return np.zeros(rows.effort.shape), sizes
         signal = own[0] @ true.theta
@@ -197,13 +197,13 @@ class Judge:
         return _Scale(stacked, joint, self.white, np.ones(self.system.n))
 
     def _weighted(self, rows: Sequence[Rows]) -> _Scale:
-        plain, n = self.system.plain, self.system.n
+        n = self.system.n
         joint = np.concatenate([np.full(int(r.moving[:, j].sum()), j) for r in rows for j in range(n)])
 
         def stacked(columns: Sequence[Array]) -> Array:
             return np.concatenate(
                 [
-                    c[r.moving[:, j], j] / plain.sizes[j]
+                    c[r.moving[:, j], j] / self.system.sizes[j]
                     for r, c in zip(rows, columns, strict=True)
                     for j in range(n)
                 ]

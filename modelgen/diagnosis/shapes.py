@@ -12,10 +12,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from modelgen.dataset import drives_of
 from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.stack import Stack
 from modelgen.diagnosis.system import System
 from modelgen.probing import Prober
 
@@ -38,9 +40,12 @@ class Shape:
 
 @dataclass(frozen=True)
 class Worth:
-    """evidence: delta BIC; percent: of the RMSE of the joints that it acts on."""
+    """evidence, slow: delta BIC in the system's fair equations and in the plain ones, in which slow functions
+    are worth too much and fast errors nothing; percent: of the RMSE of the joints that it acts on.
+    """
 
     evidence: float
+    slow: float
     percent: float
 
 
@@ -100,30 +105,52 @@ def _far_apart(values: Array) -> Array:
 def worth(shape: Shape, system: System) -> Worth:
     """What the shape explains beside the system's columns: its marginal likelihood, of the best of SIZES.
 
-    The rows are those as they are, with as many of them as are independent: shapes are slow.
+    In the fair equations the variance of each joint's noise is at its best and its colour known: a function
+    that bends follows noise of the same colour.
     """
-    plain = system.plain
     k = next(iter(shape.columns.values()))[0].shape[1]
-    gram, seen, right = np.zeros((k, k)), np.zeros((plain.basis.shape[1], k)), np.zeros(k)
-    power, count, rows = 0.0, 0.0, 0
+    columns = [np.zeros((*r.effort.shape, k)) for r in system.rows]
     for j, tables in shape.columns.items():
-        own = plain.joint == j
-        table = np.concatenate([t[r.moving[:, j]] for t, r in zip(tables, plain.rows, strict=True)])
-        table = table / plain.sizes[j]
-        gram, seen = gram + table.T @ table, seen + plain.basis[own].T @ table
-        right, power = right + table.T @ plain.left[own], power + float(plain.left[own] @ plain.left[own])
-        count, rows = count + float(plain.counts[j]), rows + int(own.sum())
-    if not power > 0:
-        return Worth(-np.inf, 0.0)
-    share = count / rows
-    sizes, vectors = np.linalg.eigh(gram - seen.T @ seen)
-    sizes, seen_by = share * np.maximum(sizes, 0.0), share * (vectors.T @ right) ** 2
-    best = Worth(-np.inf, 0.0)
-    for scale in SIZES / max(float(sizes.max()), 1e-300):
-        explained = float((scale * seen_by / (1.0 + scale * sizes)).sum()) / power
+        for whole, table in zip(columns, tables, strict=True):
+            whole[:, j] = table
+    acted = np.array([j in shape.columns for j in range(system.n)])
+    evidence, function = _likelihood(system.fair, columns, acted)
+    plain = system.plain
+    slow = evidence if plain is system.fair else _likelihood(plain, columns, acted)[0]
+    taken = plain.stacked([table @ function[:, None] for table in columns])[:, 0]
+    left = plain.by_joint(plain.left - taken + plain.basis @ (plain.basis.T @ taken))
+    share = float(left[acted].sum() / max(plain.rss[acted].sum(), 1e-300))
+    return Worth(evidence, slow, 100.0 * (1.0 - float(np.sqrt(share))))
+
+
+def _likelihood(stack: Stack, columns: Sequence[Array], acted: NDArray[np.bool_]) -> tuple[float, Array]:
+    """Of the weights (k,) of the columns, each of variance 1 times the best size, and the weights there.
+
+    Over that without them; the price of the size is that of one parameter. acted: joints (n,) with columns.
+    """
+    own = stack.stacked(columns)
+    own = own - stack.basis @ (stack.basis.T @ own)
+    sizes, vectors = np.linalg.eigh(own.T @ own)
+    sizes, own = stack.share * np.maximum(sizes, 0.0), own @ vectors
+    best, function = -np.inf, np.zeros(len(vectors))
+    if not (sizes.max() > 0 and stack.rss.any()):
+        return best, function
+    places = [stack.joint == j for j in range(len(acted))]
+    grams = [own[there].T @ own[there] for there in places]
+    rights = [own[there].T @ stack.left[there] for there in places]
+    used = stack.rss > 0
+    for scale in SIZES / sizes.max():
+        weights = scale * stack.share / (1.0 + scale * sizes) * sum(rights)
+        left = stack.rss + [
+            weights @ gram @ weights - 2.0 * weights @ right
+            for gram, right in zip(grams, rights, strict=True)
+        ]
+        left = left + acted / acted.sum() * float(weights @ weights) / (scale * stack.share)
         evidence = (
-            -count * np.log(max(1.0 - explained, 1e-300)) - np.log1p(scale * sizes).sum() - np.log(count)
+            float(stack.counts[used] @ np.log(stack.rss[used] / np.maximum(left[used], 1e-300)))
+            - float(np.log1p(scale * sizes).sum())
+            - float(np.log(stack.counts[acted].sum()))
         )
-        if evidence > best.evidence:
-            best = Worth(float(evidence), 100.0 * (1.0 - float(np.sqrt(max(0.0, 1.0 - explained)))))
-    return best
+        if evidence > best:
+            best, function = evidence, vectors @ weights
+    return best, function

@@ -14,7 +14,8 @@ from modelgen.diagnosis.candidates import CURVED, PERIODIC, Candidate, Values
 from modelgen.diagnosis.plausible import doubt, obvious
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS
-from modelgen.diagnosis.system import Gain, System
+from modelgen.diagnosis.stack import Gain
+from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
 from modelgen.probing import Prober, with_effect

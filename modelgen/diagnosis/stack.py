@@ -1,0 +1,121 @@
+"""Equations of all records and joints in one scale, one after the other, and what columns explain of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.diagnosis.rows import Array
+
+NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What further columns explain. rss0, rss1: by joint, without and with; values: of the columns."""
+
+    delta_bic: float
+    values: Array
+    rss0: Array
+    rss1: Array
+    rank: int
+
+
+class Stack:
+    """What a baseline leaves of R equations. basis: (R, b), orthonormal, of the baseline; left: (R,); joint:
+    (R,), from 0; counts: (n,), how many of each joint's are independent.
+
+    stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
+    p) and (M, n).
+    """
+
+    def __init__(
+        self,
+        stacked: Callable[[Sequence[Array]], Array],
+        joint: NDArray[np.intp],
+        counts: Array,
+        columns: Sequence[Array],
+        efforts: Sequence[Array],
+    ) -> None:
+        self.stacked = stacked
+        self.joint = joint
+        self.counts = counts
+        self.matrix = stacked(columns)
+        self.right = stacked([effort[:, :, None] for effort in efforts])[:, 0]
+        self.basis = orthonormal(self.matrix)
+        self.left = self.right - self.basis @ (self.basis.T @ self.right)
+        self.share = float(counts.sum() / max(1, len(joint)))
+        self.rss = self.by_joint(self.left)
+
+    def by_joint(self, left: Array) -> Array:
+        """Sums of squares, (n,)."""
+        found = np.bincount(self.joint, weights=left**2, minlength=len(self.counts))
+        return np.asarray(found, dtype=float)
+
+    def gain(
+        self, columns: Sequence[Array], extra: float = 0.0, positive: Sequence[bool] = ()
+    ) -> Gain | None:
+        """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
+
+        extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
+        negative; empty for none.
+        """
+        return explained(self.stacked(columns), self, extra, positive)
+
+
+def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequence[bool] = ()) -> Gain | None:
+    """What columns (R, k) explain of what the stack's baseline leaves.
+
+    positive: columns whose value may not be negative: it is zero where it would be.
+    """
+    basis, left, counts = stack.basis, stack.left, stack.counts
+    norms = np.linalg.norm(stacked, axis=0)
+    if not norms.any() or not np.isfinite(norms).all():
+        return None
+    there = norms > 0
+    unit = stacked[:, there] / norms[there]
+    own = unit - basis @ (basis.T @ unit)
+    u, s, vt = np.linalg.svd(own, full_matrices=False)
+    kept = s > NOTHING
+    if not kept.any():
+        return None
+    scores = u[:, kept].T @ left
+    found, values = vt[kept].T @ (scores / s[kept]), np.zeros(len(norms))
+    limited = np.flatnonzero(np.asarray(positive or [False] * len(norms))[there])
+    if (found[limited] < 0).any():
+        found = not_negative(s[kept, None] * vt[kept], scores, limited)
+        scores = s[kept] * (vt[kept] @ found)
+    values[there] = found / norms[there]
+    rss0, rss1 = stack.rss, stack.by_joint(left - u[:, kept] @ scores)
+    rank = int(kept.sum())
+    used = counts > 0
+    drop = (counts[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
+    penalty = (rank + extra) * math.log(max(2.0, float(counts.sum())))
+    return Gain(float(drop - penalty), values, rss0, rss1, rank)
+
+
+def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:
+    """Least squares (k,) with the values at places `limited` not negative: the best of all active sets."""
+    best, least = np.zeros(matrix.shape[1]), math.inf
+    for count in range(len(limited) + 1):
+        for zero in combinations(limited, count):
+            free = np.setdiff1d(np.arange(matrix.shape[1]), zero)
+            found = np.zeros(matrix.shape[1])
+            found[free] = np.linalg.lstsq(matrix[:, free], right, rcond=NOTHING)[0]
+            size = float(((right - matrix @ found) ** 2).sum())
+            if (found[limited] >= 0).all() and size < least:
+                best, least = found, size
+    return best
+
+
+def orthonormal(matrix: Array) -> Array:
+    """An orthonormal basis of the columns, dependent ones left out."""
+    norms = np.linalg.norm(matrix, axis=0)
+    used = norms > 0
+    u, s, _ = np.linalg.svd(matrix[:, used] / norms[used], full_matrices=False)
+    return np.asarray(u[:, s > 1e-10 * s[0]]) if len(s) else np.zeros((len(matrix), 0))
