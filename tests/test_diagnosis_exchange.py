@@ -9,7 +9,7 @@ from test_diagnosis_shapes import cubic, made, offset
 
 from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.causes import Cause, measured
 from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
@@ -57,3 +57,24 @@ def test_a_rival_that_explains_less_stays_one() -> None:
     ]
     assert exchanged(causes, rows, Prober(ARM), periods) is causes
     assert exchanged(causes[1:], rows, Prober(ARM), periods) == causes[1:]  # no rivals, nothing to do
+
+
+def test_a_cause_that_took_another_ones_place_has_its_own_evidence_and_gain() -> None:
+    rows, periods, trial = scene()
+    right, second = trial("friction_offset", offset), trial("nonlinear_viscous_friction", cubic)
+    causes = [Cause(right, 30.0, -5.0, -5.0), Cause(second, 30.0, 5.0, 5.0)]
+    system = System(
+        rows,
+        [
+            np.concatenate([r.columns, *pair], axis=2)
+            for r, *pair in zip(rows, right.columns, second.columns, strict=True)
+        ],
+        periods,
+    )
+    found = measured(causes[0], causes, rows, system, None, 1.0)
+    beside = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, second.columns, strict=True)]
+    own = System(rows, beside, periods).gain(right.columns)
+    assert own is not None
+    assert found.delta_bic == own.delta_bic
+    # an offset of 0.6 against noise of unit size: 1 - 1 / sqrt(1.36), less what the spring takes of it
+    assert 5.0 < found.expected_gain < 14.3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -72,6 +72,23 @@ def eliminated(
         del causes[worst]
         system = System(rows, with_causes(rows, [c.trial for c in causes]), system.periods)
     return causes, system
+
+
+def measured(
+    cause: Cause,
+    causes: Sequence[Cause],
+    rows: Sequence[Rows],
+    system: System,
+    blur: Array | None,
+    narrowed: float,
+) -> Cause:
+    """The cause with its evidence and gains beside all others. system: with all of them."""
+    others = [c.trial for c in causes if c is not cause]
+    without = System(rows, with_causes(rows, others), system.periods)
+    by = Gates(rows, others, without, blur, narrowed, last=True).judged(cause.trial)
+    return replace(
+        cause, delta_bic=_worth(cause.trial, without), cross_gain=by.gain, expected_gain=by.expected
+    )
 
 
 def _gain(trial: Trial, gates: Gates) -> float:

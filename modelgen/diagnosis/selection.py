@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate
-from modelgen.diagnosis.causes import Cause, eliminated
+from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.exchange import TIE, exchanged
@@ -126,7 +126,13 @@ def select(
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     better = exchanged(causes, rows, prober, periods)
     if better is not causes:
-        causes, system = better, System(rows, with_causes(rows, [c.trial for c in better]), periods)
+        system = System(rows, with_causes(rows, [c.trial for c in better]), periods)
+        causes = [
+            new
+            if new.trial.candidate == old.trial.candidate
+            else measured(new, better, rows, system, blur, narrowed)
+            for new, old in zip(better, causes, strict=True)
+        ]
     every = len(causes)
     causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
     if len(causes) < every:
