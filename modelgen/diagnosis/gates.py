@@ -1,8 +1,7 @@
 """The gates that a cause with evidence must pass: it helps and matters on rows that its fit has not seen.
 
-The cause is fitted on one part of the records and carried to the other, then the other way round; the
-squares of all parts count together. A part is a record, or every other one of many: a short record alone
-cannot hold the rest of the model.
+The cause is fitted on one part of the records and carried to the other, then the other way round (`folds`);
+the squares of all parts count together.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import numpy as np
 
 from modelgen.diagnosis.agreement import agreement
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING
+from modelgen.diagnosis.folds import folds, left_unseen, moving_rows
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
@@ -30,7 +30,6 @@ AGREED = 1e-4  # probability that parts differ as much on a cause: less contradi
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
-FEW = 4  # records that are tried one by one
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 # What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
 FEIGNABLE = (*COMPLIANT, DELAY, LATER)
@@ -55,8 +54,6 @@ EXACT = (
 )
 
 FLUID = ("added_mass", "fluid_drag")  # one value for all links, whose widths differ
-
-Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
 
 
 @dataclass(frozen=True)
@@ -98,7 +95,7 @@ class Gates:
         self.blur = np.zeros(system.n) if blur is None else blur
         self.narrowed = narrowed
         self.old = with_causes(rows, before)
-        self.counts = _moving(rows)
+        self.counts = moving_rows(rows)
         known = (*EXACT, *FLUID)
         own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
@@ -160,7 +157,7 @@ class Gates:
 
     def _agreed(self, new: Sequence[Array], halves: bool) -> bool:
         """Whether the parts agree on the cause."""
-        parts = [part for _, part in _folds(self.rows, halves=halves)]
+        parts = [part for _, part in folds(self.rows, halves=halves)]
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
@@ -202,25 +199,25 @@ class Gates:
         """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
         if halves not in self._known:
             again = np.zeros(self.system.n)
-            for _, (tried, to) in _folds(self.rows, halves=halves):
+            for _, (tried, to) in folds(self.rows, halves=halves):
                 table = [self.old[i] for i in to]
-                again += _moving(tried) * rmse(tried, table, weighted_fit(tried, table)) ** 2
-            self._known[halves] = np.array([_left(self.rows, self.old, halves=halves), again])
+                again += moving_rows(tried) * rmse(tried, table, weighted_fit(tried, table)) ** 2
+            self._known[halves] = np.array([left_unseen(self.rows, self.old, halves=halves), again])
         return self._known[halves]
 
     def _with(self, new: Sequence[Array], halves: bool) -> Array:
         """The same with the cause, as it was fitted to the other part."""
         own = self.old[0].shape[2]
         found = np.zeros((2, self.system.n))
-        for (fitted, at), (tried, to) in _folds(self.rows, halves=halves):
+        for (fitted, at), (tried, to) in folds(self.rows, halves=halves):
             theta = weighted_fit(fitted, [new[i] for i in at])
             carried = [
                 replace(r, effort=r.effort - new[i][:, :, own:] @ theta[own:])
                 for r, i in zip(tried, to, strict=True)
             ]
             table = [self.old[i] for i in to]
-            found[0] += _moving(tried) * rmse(tried, [new[i] for i in to], theta) ** 2
-            found[1] += _moving(tried) * rmse(carried, table, weighted_fit(carried, table)) ** 2
+            found[0] += moving_rows(tried) * rmse(tried, [new[i] for i in to], theta) ** 2
+            found[1] += moving_rows(tried) * rmse(carried, table, weighted_fit(carried, table)) ** 2
         return found
 
     def _expected(self, new: Sequence[Array], halves: bool) -> Array:
@@ -228,7 +225,7 @@ class Gates:
         own = self.old[0].shape[2]
         theta = weighted_fit(self.rows, new)
         shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(self.rows, new, strict=True)]
-        bias = _left(shows, self.old, halves=halves) / np.maximum(self.counts, 1.0)
+        bias = left_unseen(shows, self.old, halves=halves) / np.maximum(self.counts, 1.0)
         noise = rmse(self.rows, new, theta) ** 2
         return np.asarray(100.0 * (1.0 - np.sqrt(noise / (noise + bias))))
 
@@ -247,37 +244,9 @@ def practical(percent: float, narrowed: float) -> float:
     return 100.0 * (1.0 - float((1.0 + odds) ** -0.5))
 
 
-def _moving(rows: Sequence[Rows]) -> Array:
-    """Rows that count, by joint (n,)."""
-    return np.asarray(np.sum([r.moving.sum(axis=0) for r in rows], axis=0))
-
-
-def _left(rows: Sequence[Rows], columns: Sequence[Array], *, halves: bool) -> Array:
-    """Sums of squares (n,) that predictions leave of the parts that were not fitted."""
-    found = np.zeros(rows[0].effort.shape[1])
-    for (fitted, at), (tried, to) in _folds(rows, halves=halves):
-        theta = weighted_fit(fitted, [columns[i] for i in at])
-        found += _moving(tried) * rmse(tried, [columns[i] for i in to], theta) ** 2
-    return found
-
-
 def _gains(sums: Array) -> Array:
     """Percent of the RMSE by joint, from sums of squares without and with (2, n)."""
     return np.asarray(100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))))
-
-
-def _folds(rows: Sequence[Rows], *, halves: bool) -> list[tuple[Part, Part]]:
-    """Rows to fit, and rows to try that fit on."""
-    every = list(range(len(rows)))
-    if halves:
-        first, second = ((part, every) for part in _masked(rows))
-        return [(first, second), (second, first)]
-    parts = [[i] for i in every] if len(rows) <= FEW else [every[k::2] for k in range(2)]
-    folds = []
-    for part in parts:
-        others = [i for i in every if i not in part]
-        folds.append((([rows[i] for i in others], others), ([rows[i] for i in part], part)))
-    return folds
 
 
 def instrumented(trial: Trial, system: System) -> bool:
@@ -296,14 +265,3 @@ def instrumented(trial: Trial, system: System) -> bool:
         return False
     values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]
     return bool(np.abs(values).max(initial=0.0) > SIGNIFICANT)
-
-
-def _masked(rows: Sequence[Rows]) -> tuple[list[Rows], list[Rows]]:
-    """All records with the first half of each alone, and with the second."""
-    first, second = [], []
-    for r in rows:
-        flags = np.zeros(len(r.effort), dtype=bool)
-        flags[: len(flags) // 2] = True
-        first.append(replace(r, moving=r.moving & flags[:, None]))
-        second.append(replace(r, moving=r.moving & ~flags[:, None]))
-    return first, second
