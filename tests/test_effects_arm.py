@@ -330,7 +330,7 @@ def test_a_gain_error_scales_its_row_and_a_lever_error_moves_its_gain() -> None:
     q, dq, ddq = states(bare.arm, 6)
     q = 0.8 * q + 0.2 * q.mean(axis=0)
     theta = links_vector(bare)
-    plain = replace(arm, joints=tuple(replace(j, effects=()) for j in arm.joints))
+    plain = arm.without_effects()
     wrong = build(with_joint(plain, 1, EffectUse("drive_gain_error", {"error": 0.25})), Options())
     expected = bare("inverse_dynamics_standard", q, dq, ddq, theta) / np.array([1.0, 1.25, 1.0])
     agree(wrong("inverse_dynamics_standard", q, dq, ddq, theta), expected)

@@ -8,7 +8,7 @@ Every object has been validated when it exists; later stages need not check agai
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -180,3 +180,7 @@ class Arm:
                 if i not in done and (joint.antecedent is None or joint.antecedent in done)
             ]
         return tuple(done)
+
+    def without_effects(self) -> Arm:
+        """The arm with no effect of its own or of its joints."""
+        return replace(self, joints=tuple(replace(j, effects=()) for j in self.joints), effects=())

@@ -33,11 +33,9 @@ class Options:
 
 def prepared(arm: Arm, options: Options) -> Arm:
     """The arm with drives or effects left out, and symbols in place of run-time geometry."""
-    joints = arm.joints
     if "drives" in options.without:
-        joints = tuple(replace(joint, drive=NoDrive()) for joint in joints)
+        arm = replace(arm, joints=tuple(replace(joint, drive=NoDrive()) for joint in arm.joints))
     if "effects" in options.without:
-        joints = tuple(replace(joint, effects=()) for joint in joints)
-        arm = replace(arm, effects=())
-    arm = described(replace(arm, joints=joints))
+        arm = arm.without_effects()
+    arm = described(arm)
     return with_lever_symbols(arm) if options.runtime_geometry else arm

@@ -45,9 +45,8 @@ class HiddenWeight:
 
     def _along(self, axis: Array) -> NumpyFunction:
         assert self._values is not None
-        joints = tuple(replace(j, effects=()) for j in self.arm.joints)
         x, y, z = (float(a) for a in axis)
-        e = Equations(slid(replace(self.arm, joints=joints, effects=(), gravity=(x, y, z))), lazy=True)
+        e = Equations(slid(replace(self.arm.without_effects(), gravity=(x, y, z))), lazy=True)
         values = [e.graph.const(v) for v in self._values]
         return NumpyFunction(bare("weight", e, 0, Dynamics(e, values).inverse_dynamics(e.zeros(), e.zeros())))
 

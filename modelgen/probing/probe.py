@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -198,8 +197,7 @@ class Prober:
     def _links(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the links alone."""
         if "links" not in self._made:
-            joints = tuple(replace(j, effects=()) for j in described(self.arm).joints)
-            alone = replace(described(self.arm), joints=joints, effects=())
+            alone = described(self.arm).without_effects()
             self._made["links"] = NumpyFunction(
                 links_and_effect(Equations(slid(alone), lazy=True), self.base)
             )
@@ -258,8 +256,7 @@ class Prober:
         fixed = {name: value for name, value in values.items() if name in _FIXED}
         key = (effect, joint, tuple(sorted(fixed.items())))
         if key not in self._equations:
-            joints = tuple(replace(j, effects=()) for j in self.arm.joints)
-            alone = with_effect(replace(self.arm, joints=joints, effects=()), effect, joint, fixed)
+            alone = with_effect(self.arm.without_effects(), effect, joint, fixed)
             self._equations[key] = Equations(slid(alone), free=free, lazy=True)
         return self._equations[key]
 
