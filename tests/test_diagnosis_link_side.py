@@ -84,8 +84,9 @@ def test_it_is_named_from_the_motion_of_the_link_alone(case: Case, tmp_path: Pat
 def test_its_stiffness_is_found_with_the_arms_parameters(
     arm: str, seed: int, magnitude: float, tmp_path: Path
 ) -> None:
-    """That of the plant, 400 N m/rad over the magnitude, within a tenth: at parameters that had taken over some
-    of it, it would be found a fifth to two fifths too stiff.
+    """That of the plant, 400 N m/rad over the magnitude, within a tenth.
+
+    At parameters that had taken over some of what it does it would be a fifth to two fifths too stiff.
     """
     hidden = Hidden("joint_flexibility", 3, 1.3, magnitude)
     label = make(Case(arm, seed, (hidden,), encoder="joint"), tmp_path)
