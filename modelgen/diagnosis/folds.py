@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import rmse, weighted_fit
+from modelgen.diagnosis.system import moving_rows, rmse, weighted_fit
 
 FEW = 4  # records that are tried one by one
 
@@ -50,8 +50,3 @@ def left_unseen(rows: Sequence[Rows], columns: Sequence[Array], *, halves: bool)
         theta = weighted_fit(fitted, [columns[i] for i in at])
         found += moving_rows(tried) * rmse(tried, [columns[i] for i in to], theta) ** 2
     return found
-
-
-def moving_rows(rows: Sequence[Rows]) -> Array:
-    """Rows that count, by joint (n,)."""
-    return np.asarray(np.sum([r.moving.sum(axis=0) for r in rows], axis=0))

@@ -13,11 +13,11 @@ import numpy as np
 
 from modelgen.diagnosis.agreement import agreement
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING
-from modelgen.diagnosis.folds import folds, left_unseen, moving_rows
+from modelgen.diagnosis.folds import folds, left_unseen
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
+from modelgen.diagnosis.system import System, mean_squares, moving_rows, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen

@@ -15,8 +15,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset import Record, drives_of, prepare
 from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.system import moving_rows
 from modelgen.functions import Model
 from modelgen.probing import Prober
 
@@ -82,17 +83,6 @@ def blurred(record: Record, which: NDArray[np.bool_] | None = None) -> Record:
     return replace(record, q=q, motor=motor)
 
 
-def left_by_errors(
-    p: Prepared, r: Rows, prober: Prober, model: Model, theta: Array, which: NDArray[np.bool_] | None = None
-) -> Array:
-    """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
-    if not counts(p.record).any():
-        return np.zeros(r.effort.shape)
-    errors = blurred(p.record, which)
-    again = rows_of(prober, model, prepare(errors, p.settings), theta, r.baseline)
-    return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
-
-
 def with_errors(
     rows: Sequence[Rows], periods: Sequence[int | None], prober: Prober, model: Model, theta: Array
 ) -> tuple[list[Rows], Array]:
@@ -100,17 +90,26 @@ def with_errors(
     repeats or not, by joint (n,), inputs squared.
     """
     which = repeating_errors(rows, periods)
-    total, count, found = np.zeros(len(which)), np.zeros(len(which)), []
+    total, found = np.zeros(len(which)), []
     for r in rows:
-        every = left_by_errors(r.prepared, r, prober, model, theta)
+        every = _left_by_errors(r, prober, model, theta)
         total += (every**2 * r.moving).sum(axis=0)
-        count += r.moving.sum(axis=0)
         some = None
         if which.any():
-            p = r.prepared
-            some = every if which.all() else left_by_errors(p, r, prober, model, theta, which)
+            some = every if which.all() else _left_by_errors(r, prober, model, theta, which)
         found.append(replace(r, repeated=some))
-    return found, np.asarray(total / np.maximum(count, 1.0))
+    return found, np.asarray(total / np.maximum(moving_rows(rows), 1.0))
+
+
+def _left_by_errors(
+    r: Rows, prober: Prober, model: Model, theta: Array, which: NDArray[np.bool_] | None = None
+) -> Array:
+    """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
+    p = r.prepared
+    if not counts(p.record).any():
+        return np.zeros(r.effort.shape)
+    again = rows_of(prober, model, prepare(blurred(p.record, which), p.settings), theta, r.baseline)
+    return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 
 
 def repeating_errors(rows: Sequence[Rows], periods: Sequence[int | None]) -> NDArray[np.bool_]:

@@ -21,7 +21,7 @@ from modelgen.probing import Prober
 
 EVIDENCE = 15.0  # delta BIC that it takes to name a cause, and to name it rather than another one
 UNSUPPORTED = -3.0  # delta BIC in the fair equations, below which faint evidence in the plain ones is noise
-PASSING = (LATER, WARMING)
+PASSING = (LATER, WARMING)  # do not repeat
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 MOST = 4  # causes, or one for each joint where there are more
 

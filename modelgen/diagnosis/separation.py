@@ -11,14 +11,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.stack import NOTHING, orthonormal
+from modelgen.diagnosis.stack import NOTHING, joints_of, orthonormal, weighted
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
-from modelgen.diagnosis.whitening import usable_rows
+from modelgen.diagnosis.whitening import all_usable, whitened
 from modelgen.probing import Prober
 
 AROUND = (0.5, 0.7, 1.4, 2.0)  # of the nonlinear parameter that was found
@@ -60,7 +61,7 @@ class _Scale:
     """
 
     stacked: Callable[[Sequence[Array]], Array]
-    joint: Array
+    joint: NDArray[np.intp]
     variance: Array
     shares: Array
 
@@ -182,34 +183,19 @@ class Judge:
         return np.where(rows.moving, (right - stacked @ fit).reshape(signal.shape) * sizes, np.nan), sizes
 
     def _whitened(self, rows: Sequence[Rows]) -> _Scale:
-        usable = [np.column_stack([usable_rows(r.moving[:, j]) for j in range(self.system.n)]) for r in rows]
-
-        def stacked(columns: Sequence[Array]) -> Array:
-            return np.concatenate(
-                [
-                    self.system.whiteners[j](np.ascontiguousarray(c[:, j, :]), u[:, j])
-                    for c, u in zip(columns, usable, strict=True)
-                    for j in range(self.system.n)
-                ]
-            )
-
-        joint = np.concatenate([np.full(int(u[:, j].sum()), j) for u in usable for j in range(self.system.n)])
-        return _Scale(stacked, joint, self.white, np.ones(self.system.n))
+        usable = [all_usable(r.moving) for r in rows]
+        return _Scale(
+            lambda c: whitened(c, usable, self.system.whiteners),
+            joints_of(usable),
+            self.white,
+            np.ones(self.system.n),
+        )
 
     def _weighted(self, rows: Sequence[Rows]) -> _Scale:
-        n = self.system.n
-        joint = np.concatenate([np.full(int(r.moving[:, j].sum()), j) for r in rows for j in range(n)])
-
-        def stacked(columns: Sequence[Array]) -> Array:
-            return np.concatenate(
-                [
-                    c[r.moving[:, j], j] / self.system.sizes[j]
-                    for r, c in zip(rows, columns, strict=True)
-                    for j in range(n)
-                ]
-            )
-
-        return _Scale(stacked, joint, self.plain, self.shares)
+        moving = [r.moving for r in rows]
+        return _Scale(
+            lambda c: weighted(c, moving, self.system.sizes), joints_of(moving), self.plain, self.shares
+        )
 
 
 def inside(columns: Array, others: Array) -> bool:

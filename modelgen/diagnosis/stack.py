@@ -68,6 +68,22 @@ class Stack:
         return explained(self.stacked(columns), self, extra, positive)
 
 
+def weighted(columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sizes: Array) -> Array:
+    """Columns (M, n, k) of each record over the sizes (n,) of its joints, stacked. moving: (M, n) of each."""
+    return np.concatenate(
+        [
+            table[flags[:, j], j] / sizes[j]
+            for table, flags in zip(columns, moving, strict=True)
+            for j in range(len(sizes))
+        ]
+    )
+
+
+def joints_of(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
+    """Joint, from 0, of each stacked row. flags: (M, n) of every record."""
+    return np.concatenate([np.full(int(f[:, j].sum()), j) for f in flags for j in range(f.shape[1])])
+
+
 def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequence[bool] = ()) -> Gain | None:
     """What columns (R, k) explain of what the stack's baseline leaves.
 

@@ -11,8 +11,8 @@ from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.stack import Gain, Stack
-from modelgen.diagnosis.whitening import Whitener, usable_rows, whitener
+from modelgen.diagnosis.stack import Gain, Stack, joints_of, weighted
+from modelgen.diagnosis.whitening import Whitener, all_usable, whitened, whitener
 
 LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats
@@ -42,12 +42,24 @@ class System:
         self.whiteners: list[Whitener] = (
             noise.whiteners if noise else [self._whitener(j) for j in range(self.n)]
         )
-        self.usable = [np.column_stack([usable_rows(r.moving[:, j]) for j in range(self.n)]) for r in rows]
-        efforts = [r.effort for r in rows]
-        self.white = Stack(self._whitened, _joints(self.usable), self._whole(), columns, efforts)
+        moving, usable = [r.moving for r in rows], [all_usable(r.moving) for r in rows]
         self.sizes = np.array([max(_size(self, j), 1e-300) for j in range(self.n)])
-        moving = [r.moving for r in rows]
-        self.plain = Stack(self._weighted, _joints(moving), self._independent(), columns, efforts)
+        efforts, joint = [r.effort for r in rows], joints_of(usable)
+        self.white = Stack(
+            lambda c: whitened(c, usable, self.whiteners),
+            joint,
+            np.bincount(joint, minlength=self.n).astype(float),
+            columns,
+            efforts,
+        )
+        shares = np.array([_independent(self, j) for j in range(self.n)])
+        self.plain = Stack(
+            lambda c: weighted(c, moving, self.sizes),
+            joints_of(moving),
+            moving_rows(rows) * shares,
+            columns,
+            efforts,
+        )
 
     def _whitener(self, j: int) -> Whitener:
         """From what differs between periods, which is noise alone, and what errors of the positions leave in
@@ -93,42 +105,6 @@ class System:
         if white is None or plain is None:
             return white or plain
         return plain if plain.delta_bic > white.delta_bic else white
-
-    def _whole(self) -> Array:
-        """Rows of each joint (n,) that count."""
-        return np.asarray(np.sum([u.sum(axis=0) for u in self.usable], axis=0), dtype=float)
-
-    def _independent(self) -> Array:
-        """How many of each joint's moving rows (n,) are independent."""
-        rows = np.sum([r.moving.sum(axis=0) for r in self.rows], axis=0)
-        return np.asarray(rows * np.array([_independent(self, j) for j in range(self.n)]), dtype=float)
-
-    def _whitened(self, columns: Sequence[Array]) -> Array:
-        """Columns (M, n, k) of each record, whitened and stacked."""
-        parts = []
-        for table, usable in zip(columns, self.usable, strict=True):
-            for j in range(self.n):
-                block, flags = np.ascontiguousarray(table[:, j, :]), usable[:, j]
-                there = block.any()
-                parts.append(
-                    self.whiteners[j](block, flags) if there else np.zeros((flags.sum(), block.shape[1]))
-                )
-        return np.concatenate(parts)
-
-    def _weighted(self, columns: Sequence[Array]) -> Array:
-        """The same of the moving rows as they are, over the sizes of what is left."""
-        return np.concatenate(
-            [
-                table[r.moving[:, j], j] / self.sizes[j]
-                for table, r in zip(columns, self.rows, strict=True)
-                for j in range(self.n)
-            ]
-        )
-
-
-def _joints(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
-    """Joint, from 0, of each stacked row. flags: (M, n) of every record."""
-    return np.concatenate([np.full(int(f[:, j].sum()), j) for f in flags for j in range(f.shape[1])])
 
 
 def _size(system: System, j: int) -> float:
@@ -211,6 +187,11 @@ def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
 def mean_squares(system: System) -> Array:
     """Of what the fit leaves on the moving rows, by joint (n,)."""
     return rmse(system.rows, system.columns, system.theta) ** 2
+
+
+def moving_rows(rows: Sequence[Rows]) -> Array:
+    """How many rows count, by joint (n,)."""
+    return np.asarray(np.sum([r.moving.sum(axis=0) for r in rows], axis=0))
 
 
 def moving_share(rows: Sequence[Rows]) -> NDArray[np.float64]:

@@ -30,6 +30,23 @@ class Whitener:
         return np.asarray(lfilter(self.taps, 1.0, values, axis=0)[usable] / self.size)
 
 
+def whitened(
+    columns: Sequence[Array], usable: Sequence[NDArray[np.bool_]], whiteners: Sequence[Whitener]
+) -> Array:
+    """Columns (M, n, k) of each record, whitened by joint and stacked. usable: (M, n) of each record."""
+    parts = []
+    for table, flags in zip(columns, usable, strict=True):
+        for j, white in enumerate(whiteners):
+            block, rows = np.ascontiguousarray(table[:, j, :]), flags[:, j]
+            parts.append(white(block, rows) if block.any() else np.zeros((rows.sum(), block.shape[1])))
+    return np.concatenate(parts)
+
+
+def all_usable(moving: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """`usable_rows` of every joint, (M, n)."""
+    return np.column_stack([usable_rows(flags) for flags in moving.T])
+
+
 def usable_rows(moving: NDArray[np.bool_], order: int = ORDER) -> NDArray[np.bool_]:
     """Rows (M,) that have `order` moving rows before them."""
     run = np.zeros(len(moving), dtype=int)
