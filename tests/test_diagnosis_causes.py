@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.random import Generator, default_rng
 
+from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause, covariance, eliminated
 from modelgen.diagnosis.gates import with_causes
@@ -15,6 +16,7 @@ from modelgen.diagnosis.trials import Trial
 
 LONG = 1500
 UNUSED: Any = None
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, sizes: Array) -> tuple[Rows, Array]:
@@ -22,7 +24,7 @@ def record(random: Generator, sizes: Array) -> tuple[Rows, Array]:
     own = random.normal(size=(LONG, len(sizes)))
     base = random.normal(size=(LONG, 3))
     effort = base.sum(axis=1) + own @ sizes + random.normal(size=LONG)
-    return Rows(UNUSED, effort[:, None], base[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED), own
+    return Rows(UNUSED, effort[:, None], base[:, None, :], np.ones((LONG, 1), dtype=bool), BARE), own
 
 
 def kept(effects: tuple[str, ...], sizes: tuple[float, ...], seed: int) -> list[str]:

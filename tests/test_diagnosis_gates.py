@@ -8,6 +8,7 @@ import pytest
 from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
+from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Gates, Judgement
 from modelgen.diagnosis.rows import Array, Rows
@@ -16,7 +17,8 @@ from modelgen.diagnosis.system import System, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 LONG, UNKNOWNS = 300, 6
-UNUSED: Any = None  # records and baseline, of which the gates know nothing
+UNUSED: Any = None  # records, of which the gates know nothing
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, size: float) -> tuple[Rows, Array]:
@@ -24,7 +26,7 @@ def record(random: Generator, size: float) -> tuple[Rows, Array]:
     slow = random.normal(size=(LONG, UNKNOWNS))
     own = slow @ random.normal(size=(UNKNOWNS, 1)) / np.sqrt(UNKNOWNS) + 0.6 * random.normal(size=(LONG, 1))
     effort = slow @ np.ones((UNKNOWNS, 1)) + size * own + random.normal(size=(LONG, 1))
-    return Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED), own[:, None, :]
+    return Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE), own[:, None, :]
 
 
 def gains(random: Generator, size: float) -> tuple[float, float, float]:
@@ -87,7 +89,7 @@ def judged(seed: int, sizes: tuple[float, float]) -> Judgement:
         slow = random.normal(size=(LONG, 40))
         own = slow @ mix + 0.35 * random.normal(size=(LONG, 1))
         effort = slow @ np.ones((40, 1)) + size * own + random.normal(size=(LONG, 1))
-        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED))
+        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE))
         columns.append(own[:, None, :])
     system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
@@ -126,7 +128,7 @@ def beside(
         effort = (
             slow @ np.ones((UNKNOWNS, 1)) + own @ np.array(sizes)[:, None] + random.normal(size=(LONG, 1))
         )
-        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), UNUSED))
+        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE))
         for k, table in enumerate(tables):
             table.append(own[:, [k]][:, None, :])
     trials, columns = [], [r.columns for r in rows]

@@ -7,6 +7,7 @@ import pytest
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
+from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import Judgement
@@ -20,6 +21,7 @@ from modelgen.diagnosis.trials import Trial
 PERIOD, PERIODS = 480, 3
 BUMP = slice(210, 240)  # a sixteenth of the period
 UNUSED: Any = None
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, repeats: Array, colour: float = 0.0) -> Rows:
@@ -32,7 +34,7 @@ def record(random: Generator, repeats: Array, colour: float = 0.0) -> Rows:
     columns = np.column_stack([np.tile(s, PERIODS) for s in shapes])
     effort = columns.sum(axis=1) + np.tile(repeats, PERIODS) + noise
     flags = np.ones((len(effort), 1), dtype=bool)
-    return Rows(UNUSED, effort[:, None], columns[:, None, :], flags, UNUSED)
+    return Rows(UNUSED, effort[:, None], columns[:, None, :], flags, BARE)
 
 
 def system(seed: int, repeats: Array, colour: float = 0.0) -> System:

@@ -10,6 +10,7 @@ from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
+from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.outdone import outdone
@@ -22,6 +23,7 @@ from modelgen.diagnosis.whitening import ORDER, Whitener
 
 PERIOD, PERIODS = 200, 3
 UNUSED: Any = None
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def positions(seed: int) -> Array:
@@ -40,7 +42,7 @@ def made(force: Any, seed: int = 0) -> tuple[list[Rows], list[Array], list[int |
         noise = default_rng([2, seed, k]).normal(size=len(x))
         effort = columns.sum(axis=1) + force(x[:, 0]) + noise
         flags = np.ones((len(x), 1), dtype=bool)
-        rows.append(Rows(UNUSED, effort[:, None], columns[:, None, :], flags, UNUSED))
+        rows.append(Rows(UNUSED, effort[:, None], columns[:, None, :], flags, BARE))
     return rows, q, [PERIOD, PERIOD]
 
 

@@ -1,7 +1,8 @@
 """Which of the base parameters the records are fitted with, and which are known before.
 
-With measured efforts all are unknown. A free motion has no effort to give its equations a scale: the links'
-parameters are then the nominal ones of the description, and those of the effects are unknown.
+With measured efforts all are unknown, and what the description says of the links is evidence besides. A free
+motion has no effort to give its equations a scale: the links' parameters are then the nominal ones of the
+description, and those of the effects are unknown.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from modelgen.diagnosis.told import Told, told
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.functions.nominal import factor_value, nominal_links
@@ -20,10 +22,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Baseline:
-    """Base parameters = fixed + lift theta. fixed: (p,); lift: (p, k), for k unknowns."""
+    """Base parameters = fixed + lift theta. fixed: (p,); lift: (p, k), for k unknowns. said: what the
+    description tells of unknown ones.
+    """
 
     fixed: Array
     lift: Array
+    said: Told | None = None
 
     def base(self, theta: Array) -> Array:
         """Base parameters (p,) of the unknowns (k,)."""
@@ -33,7 +38,7 @@ class Baseline:
 def estimated(model: Model) -> Baseline:
     """Every base parameter is unknown."""
     p = len(model.grouping.base)
-    return Baseline(np.zeros(p), np.eye(p))
+    return Baseline(np.zeros(p), np.eye(p), told(model))
 
 
 def held(model: Model) -> Baseline:

@@ -118,7 +118,7 @@ def worth(shape: Shape, system: System) -> Worth:
     plain = system.plain
     slow = evidence if plain is system.fair else _likelihood(plain, columns, acted)[0]
     taken = plain.stacked([table @ function[:, None] for table in columns])[:, 0]
-    left = plain.by_joint(plain.left - taken + plain.basis @ (plain.basis.T @ taken))
+    left = plain.by_group(plain.left - taken + plain.basis @ (plain.basis.T @ taken))[: len(acted)]
     share = float(left[acted].sum() / max(plain.rss[acted].sum(), 1e-300))
     return Worth(evidence, slow, 100.0 * (1.0 - float(np.sqrt(share))))
 
@@ -135,19 +135,21 @@ def _likelihood(stack: Stack, columns: Sequence[Array], acted: NDArray[np.bool_]
     best, function = -np.inf, np.zeros(len(vectors))
     if not (sizes.max() > 0 and stack.rss.any()):
         return best, function
-    places = [stack.joint == j for j in range(len(acted))]
+    places = [stack.groups == j for j in range(len(stack.weights))]
     grams = [own[there].T @ own[there] for there in places]
     rights = [own[there].T @ stack.left[there] for there in places]
-    used = stack.rss > 0
+    used = stack.squares > 0
+    acting = np.zeros(len(places))
+    acting[: len(acted)] = acted / acted.sum()
     for scale in SIZES / sizes.max():
         weights = scale * stack.share / (1.0 + scale * sizes) * sum(rights)
-        left = stack.rss + [
+        left = stack.squares + [
             weights @ gram @ weights - 2.0 * weights @ right
             for gram, right in zip(grams, rights, strict=True)
         ]
-        left = left + acted / acted.sum() * float(weights @ weights) / (scale * stack.share)
+        left = left + acting * float(weights @ weights) / (scale * stack.share)
         evidence = (
-            float(stack.counts[used] @ np.log(stack.rss[used] / np.maximum(left[used], 1e-300)))
+            float(stack.weights[used] @ np.log(stack.squares[used] / np.maximum(left[used], 1e-300)))
             - float(np.log1p(scale * sizes).sum())
             - float(np.log(stack.counts[acted].sum()))
         )

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.told import FAITH, Told
 
+TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
 NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
@@ -27,11 +29,15 @@ class Gain:
 
 
 class Stack:
-    """What a baseline leaves of R equations. basis: (R, b), orthonormal, of the baseline; left: (R,); joint:
-    (R,), from 0; counts: (n,), how many of each joint's are independent.
+    """What a baseline leaves of R equations, and below them of the D that the description tells of it.
+
+    matrix, right: (R, b), (R,), of the records alone; joint: (R,), from 0; counts, rss: (n,), how many of a
+    joint's equations are independent, and sums of squares of what is left of them; share: of all rows, those
+    that are independent. basis: (R + D, b), orthonormal, of the baseline; left, groups: (R + D,); weights,
+    squares: (n or n + 1,), as joint, counts and rss, but with what is told as if it were one more joint.
 
     stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
-    p) and (M, n).
+    p) and (M, n); said: of the first of the columns.
     """
 
     def __init__(
@@ -41,20 +47,37 @@ class Stack:
         counts: Array,
         columns: Sequence[Array],
         efforts: Sequence[Array],
+        said: Told | None = None,
     ) -> None:
-        self.stacked = stacked
+        self.records = stacked
         self.joint = joint
         self.counts = counts
         self.matrix = stacked(columns)
         self.right = stacked([effort[:, :, None] for effort in efforts])[:, 0]
-        self.basis = orthonormal(self.matrix)
-        self.left = self.right - self.basis @ (self.basis.T @ self.right)
         self.share = float(counts.sum() / max(1, len(joint)))
-        self.rss = self.by_joint(self.left)
+        matrix, right, self.groups, self.weights = self.matrix, self.right, joint, counts
+        if said is not None and self.share > 0:
+            # one equation more, which nothing changes: the scatter that is expected
+            rows = np.zeros((len(said.rows) + 1, matrix.shape[1]))
+            rows[:-1, : said.rows.shape[1]] = said.rows
+            further = np.append(said.right, math.sqrt(FAITH))
+            weight = believed(matrix, right, rows, further, self.share)
+            matrix, right = np.vstack([matrix, weight * rows]), np.append(right, weight * further)
+            self.groups = np.append(joint, np.full(len(rows), len(counts)))
+            self.weights = np.append(counts, len(said.rows) + FAITH)
+        self.basis = orthonormal(matrix)
+        self.left = right - self.basis @ (self.basis.T @ right)
+        self.squares = self.by_group(self.left)
+        self.rss = self.squares[: len(counts)]
 
-    def by_joint(self, left: Array) -> Array:
-        """Sums of squares, (n,)."""
-        found = np.bincount(self.joint, weights=left**2, minlength=len(self.counts))
+    def stacked(self, columns: Sequence[Array]) -> Array:
+        """Columns (M, n, k) of each record, of which nothing is told: (R + D, k)."""
+        found = self.records(columns)
+        return np.vstack([found, np.zeros((len(self.groups) - len(found), found.shape[1]))])
+
+    def by_group(self, left: Array) -> Array:
+        """Sums of squares of (R + D,), as `squares`."""
+        found = np.bincount(self.groups, weights=left**2, minlength=len(self.weights))
         return np.asarray(found, dtype=float)
 
     def gain(
@@ -66,6 +89,27 @@ class Stack:
         negative; empty for none.
         """
         return explained(self.stacked(columns), self, extra, positive)
+
+
+def believed(matrix: Array, right: Array, rows: Array, further: Array, share: float) -> float:
+    """Weight of what is told (D, b), (D,) beside equations (R, b), (R,), one over its scatter among them.
+
+    The likeliest scatter, begun with the records alone: what contradicts them has no say. share: of the
+    equations, those that are independent.
+    """
+    norms = np.linalg.norm(np.vstack([matrix, rows]), axis=0)
+    norms[norms == 0] = 1.0
+    q, r = np.linalg.qr(matrix / norms)
+    told, right = rows / norms, q.T @ right
+    weight = 0.0
+    for _ in range(TURNS):
+        table = np.vstack([r, weight * told])
+        found = np.linalg.lstsq(table, np.append(right, weight * further), rcond=NOTHING)[0]
+        scatter = float(((further - told @ found) ** 2).sum()) / (len(rows) - 1 + FAITH)
+        weight, before = 1.0 / math.sqrt(scatter * share), weight
+        if abs(weight - before) < SETTLED * weight:
+            break
+    return weight
 
 
 def weighted(columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sizes: Array) -> Array:
@@ -85,11 +129,11 @@ def joints_of(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
 
 
 def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequence[bool] = ()) -> Gain | None:
-    """What columns (R, k) explain of what the stack's baseline leaves.
+    """What columns (R + D, k) explain of what the stack's baseline leaves.
 
     positive: columns whose value may not be negative: it is zero where it would be.
     """
-    basis, left, counts = stack.basis, stack.left, stack.counts
+    basis, left, n = stack.basis, stack.left, len(stack.counts)
     norms = np.linalg.norm(stacked, axis=0)
     if not norms.any() or not np.isfinite(norms).all():
         return None
@@ -107,12 +151,12 @@ def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequen
         found = not_negative(s[kept, None] * vt[kept], scores, limited)
         scores = s[kept] * (vt[kept] @ found)
     values[there] = found / norms[there]
-    rss0, rss1 = stack.rss, stack.by_joint(left - u[:, kept] @ scores)
+    rss0, rss1 = stack.squares, stack.by_group(left - u[:, kept] @ scores)
     rank = int(kept.sum())
-    used = counts > 0
-    drop = (counts[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
-    penalty = (rank + extra) * math.log(max(2.0, float(counts.sum())))
-    return Gain(float(drop - penalty), values, rss0, rss1, rank)
+    used = stack.weights > 0
+    drop = (stack.weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
+    penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
+    return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
 
 
 def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:

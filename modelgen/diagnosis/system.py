@@ -51,6 +51,7 @@ class System:
             np.bincount(joint, minlength=self.n).astype(float),
             columns,
             efforts,
+            rows[0].baseline.said,
         )
         shares = np.array([_independent(self, j) for j in range(self.n)])
         self.plain = Stack(
@@ -59,6 +60,7 @@ class System:
             moving_rows(rows) * shares,
             columns,
             efforts,
+            rows[0].baseline.said,
         )
 
     def _whitener(self, j: int) -> Whitener:

@@ -1,0 +1,81 @@
+"""What the description tells of the base parameters before any record, and how far it is believed.
+
+Two causes that look alike often differ in what they make of the links: the wrong one needs a link that weighs
+what nobody would have drawn. Nominal inertials are off, by some per cent or by tens of them, and nobody says
+by how much: they count as measurements of the base parameters whose common scatter is unknown, FAITH of them
+at OFF, so that a description that the records contradict loses its word (a multivariate t distribution;
+Gelman, Carlin, Stern, Dunson, Vehtari and Rubin 2013, section 3.6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import null_space
+
+from modelgen.description.objects import Arm
+from modelgen.errors import InputError
+from modelgen.functions import Model
+from modelgen.functions.nominal import factor_value, nominal_links
+
+Array = NDArray[np.float64]
+
+OFF = 0.3  # of a link's mass, first moments and inertia
+FAITH = 4.0  # measurements that OFF is worth
+NOTHING = 1e-9  # of the largest scatter
+
+
+@dataclass(frozen=True)
+class Told:
+    """Equations rows @ base parameters = right, each with scatter 1. rows: (k, p), right: (k,)."""
+
+    rows: Array
+    right: Array
+
+
+def told(model: Model) -> Told | None:
+    """Of the links; what drives and effects have is not told. None where a link has no inertials."""
+    try:
+        known = nominal_links(model)
+    except InputError:
+        return None
+    size = _sizes(model.arm)
+    factors = np.zeros((len(model.grouping.base), len(model.standard)))
+    for k, parameter in enumerate(model.grouping.base):
+        for i, factor in parameter.terms:
+            factors[k, i] = factor_value(factor, model.arm.symbols)
+    of_links = np.array([p.name in known for p in model.standard], dtype=bool)
+    names = [p.name for p in model.standard if p.name in known]
+    links, others = factors[:, of_links], factors[:, ~of_links]
+    places = np.flatnonzero(links.any(axis=1))
+    if not len(places):
+        return None
+    links, others = links[places], others[places]
+    # combinations that no drive and no effect has a part in
+    kept = null_space(others.T) if others.any() else np.eye(len(places))
+    scatter = kept.T @ links * np.array([OFF * size[name] for name in names])
+    u, s, _ = np.linalg.svd(scatter, full_matrices=False)
+    there = s > NOTHING * s.max(initial=0.0)
+    if not there.any():
+        return None
+    turned = (u[:, there] / s[there]).T @ kept.T
+    rows = np.zeros((len(turned), len(factors)))
+    rows[:, places] = turned
+    return Told(rows, turned @ (links @ np.array([known[name] for name in names])))
+
+
+def _sizes(arm: Arm) -> dict[str, float]:
+    """Of each of the links' standard parameters by name: mass, mass times radius, and that times radius."""
+    found: dict[str, float] = {}
+    for i, link in enumerate(arm.links, start=1):
+        if link is None:
+            continue
+        spread = 0.5 * (link.inertia[0] + link.inertia[3] + link.inertia[5])
+        square = sum(c * c for c in link.com) + (spread / link.mass if link.mass > 0 else 0.0)
+        first, second = link.mass * square**0.5, link.mass * square
+        found[f"M{i}"] = link.mass
+        found |= {f"M{a}{i}": first for a in "XYZ"}
+        found |= {f"{a}{i}": second for a in ("XX", "XY", "XZ", "YY", "YZ", "ZZ")}
+    return found

@@ -1,0 +1,134 @@
+"""What a description tells of the links is evidence, as far as the records do not contradict it."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.random import default_rng
+
+from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
+from modelgen.diagnosis.baseline import Baseline, estimated
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.told import Told, told
+from modelgen.functions import Model, build_model, grouped
+
+LINKS = (
+    Inertial(12.0, (0.21, 0.01, 0.0), (0.05, 0.0, 0.01, 0.3, 0.0, 0.31)),
+    Inertial(8.0, (0.17, 0.0, 0.02), (0.02, 0.0, 0.0, 0.1, 0.01, 0.1)),
+)
+OWN = tuple(EffectUse(name) for name in ("drive_inertia", "viscous_friction", "coulomb_friction"))
+ARM = Arm(
+    "two",
+    (
+        Joint(
+            "a",
+            "revolute",
+            drive=LeveredDrive(0.35, 0.09, (0.29, 0.42), (0.0, 160.0), 1, -1.4, 0.06),
+            effects=OWN,
+        ),
+        Joint("b", "revolute", d=0.5, antecedent=0, drive=DirectDrive(50.0, 0.1), effects=OWN),
+    ),
+    LINKS,
+)
+UNUSED: Any = None
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return build_model(ARM)
+
+
+def base(model: Model, standard: dict[str, float]) -> Array:
+    return np.array(list(grouped(model, [standard.get(p.name, 0.0) for p in model.standard]).values()))
+
+
+def drawn(link: Inertial, number: int, off: Array) -> dict[str, float]:
+    """The link's ten parameters about its frame's origin, each off by so much of what is natural for it."""
+    m, c = link.mass, np.array(link.com)
+    xx, xy, xz, yy, yz, zz = link.inertia
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) + m * (c @ c * np.eye(3) - np.outer(c, c))
+    radius = np.sqrt(c @ c + (xx + yy + zz) / (2 * m))
+    found = {f"M{number}": m * (1 + off[0])}
+    for k, a in enumerate("XYZ"):
+        found[f"M{a}{number}"] = m * (c[k] + radius * off[1 + k])
+    for k, (i, j) in enumerate([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]):
+        found["XYZ"[i] + "XYZ"[j] + str(number)] = tensor[i, j] + m * radius**2 * off[4 + k]
+    return found
+
+
+def test_links_that_are_off_by_three_tenths_scatter_by_one(model: Model) -> None:
+    said, random = told(model), default_rng(3)
+    assert said is not None
+    left = np.array(
+        [
+            said.rows
+            @ base(
+                model,
+                {
+                    k: v
+                    for i, link in enumerate(LINKS, 1)
+                    for k, v in drawn(link, i, random.normal(0, 0.3, 10)).items()
+                },
+            )
+            - said.right
+            for _ in range(4000)
+        ]
+    )
+    np.testing.assert_allclose(left.mean(axis=0), 0.0, atol=0.08)
+    np.testing.assert_allclose(np.cov(left.T), np.eye(len(said.right)), atol=0.12)
+
+
+def test_nothing_is_told_of_drives_and_friction(model: Model) -> None:
+    said = told(model)
+    assert said is not None
+    of_links = {k for i in (1, 2) for k in drawn(LINKS[0], i, np.zeros(10))}
+    others = {p.name: 100.0 for p in model.standard if p.name not in of_links}
+    assert others
+    assert np.abs(base(model, others)).max() > 1.0
+    np.testing.assert_allclose(said.rows @ base(model, others), 0.0, atol=1e-6)
+
+
+def test_links_without_inertials_tell_nothing() -> None:
+    arm = replace(ARM, links=(LINKS[0], None))
+    assert estimated(build_model(arm)).said is None
+
+
+def equations(said: Told | None, seed: int = 1) -> tuple[System, list[Array], list[Array]]:
+    """One joint with two parameters of its links, 1 and 2, and a force; what is like that force, and what is
+    like it but for a good deal of the links.
+    """
+    random = default_rng(seed)
+    x = random.normal(size=(1000, 3))
+    force = x[:, 2] + 0.5 * x[:, 0]
+    other = x[:, 2] - 0.5 * x[:, 0] + 0.02 * x[:, 1] ** 2
+    effort = x[:, :2] @ [1.0, 2.0] + 0.5 * force + random.normal(size=1000)
+    known = Baseline(np.zeros(2), np.eye(2), said)
+    rows = Rows(UNUSED, effort[:, None], x[:, None, :2], np.ones((1000, 1), dtype=bool), known)
+    system = System([rows], [rows.columns])
+    return system, [force[:, None, None]], [other[:, None, None]]
+
+
+def ahead(said: Told | None, seed: int) -> float:
+    """Evidence of the force over what is like it."""
+    system, force, other = equations(said, seed)
+    one, two = system.white.gain(force), system.white.gain(other)
+    assert one is not None
+    assert two is not None
+    assert one.delta_bic > 100.0
+    return one.delta_bic - two.delta_bic
+
+
+RIGHT = Told(np.eye(2) / 0.1, np.array([1.0, 2.0]) / 0.1)
+WRONG = Told(np.eye(2) / 0.1, np.array([40.0, -90.0]) / 0.1)
+
+
+def test_of_causes_that_look_alike_the_one_that_leaves_the_links_as_described_is_ahead() -> None:
+    without = [ahead(None, seed) for seed in range(20)]
+    assert abs(np.mean(without)) < 1.0
+    assert min(ahead(RIGHT, seed) - without[seed] for seed in range(20)) > 3.0
+
+
+def test_a_description_that_the_records_contradict_decides_nothing() -> None:
+    assert max(abs(ahead(WRONG, seed) - ahead(None, seed)) for seed in range(20)) < 0.5
