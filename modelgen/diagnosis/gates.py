@@ -27,6 +27,7 @@ STICKING = 5.0  # the same for a delay beside what acts at reversals: the form o
 BEYOND = 400.0  # evidence of a delay that sticking does not give: 230 in complete models
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
+HARDLY = 0.1  # of the power of an elastic joint or play in the record that shows it most
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -119,8 +120,7 @@ class Gates:
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
-        absent = (not c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True))
-        halves = trial.candidate.effect == LATER or any(absent)
+        halves = trial.candidate.effect == LATER or self._somewhere(trial)
         whole, again = np.stack([self._without(halves), self._with(new, halves)], axis=1)
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
@@ -154,6 +154,20 @@ class Gates:
             worse = self._total(again) >= 1.0
         shut = "other joints" if worse else ""
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
+
+    def _somewhere(self, trial: Trial) -> bool:
+        """Whether a record does not show the cause. Play shows where its gap is crossed: beside that a record
+        has of it what the rest of the model takes up, and no more.
+        """
+        if not all(c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True)):
+            return True
+        if trial.candidate.effect not in COMPLIANT:
+            return False
+        shows = [replace(r, effort=c[:, :, 0]) for r, c in zip(self.rows, trial.columns, strict=True)]
+        theta, noise = weighted_fit(shows, self.old), mean_squares(self.system)
+        left = [((r.effort - c @ theta)[r.moving], r.moving) for r, c in zip(shows, self.old, strict=True)]
+        power = [float(e**2 @ np.broadcast_to(1.0 / noise, m.shape)[m]) for e, m in left]
+        return min(power) < HARDLY * max(power)
 
     def _agreed(self, new: Sequence[Array], halves: bool) -> bool:
         """Whether the parts agree on the cause."""
