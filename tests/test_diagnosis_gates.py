@@ -109,6 +109,31 @@ def test_what_the_form_of_a_law_leaves_between_records_does_not_refuse_it() -> N
     assert [judged(k, (4.2, 3.8)).refused for k in range(20)].count("") >= 19
 
 
+def play_judged(seed: int, shown: float, there: tuple[float, float]) -> Judgement:
+    """Of play whose columns are this much in the first record, of what they are in the second, and that is
+    there to this extent in each. What a column of it has in the first beside impacts is not quite right.
+    """
+    random = default_rng([19, seed])
+    rows, columns = [], []
+    for size, share in zip(there, (shown, 1.0), strict=True):
+        slow = random.normal(size=(LONG, 1))
+        own = share * random.normal(size=(LONG, 1))
+        effort = slow + size * own + random.normal(size=(LONG, 1))
+        rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE))
+        columns.append(own[:, None, :])
+    system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+    gain = system.gain(columns)
+    assert gain is not None
+    return Gates(rows, [], system).judged(Trial(Candidate("backlash", 1), {}, columns, gain))
+
+
+def test_a_record_without_impacts_does_not_speak_against_play() -> None:
+    """One with impacts as strong as elsewhere, where none are found, does."""
+    hardly, contradicting = ([play_judged(k, *x) for k in range(20)] for x in ((0.1, (0, 1)), (1, (0, 0.5))))
+    assert {j.refused for j in hardly} == {""}
+    assert {j.refused for j in contradicting} == {"gain"}
+
+
 def beside(
     before: dict[str, float],
     effect: str = "friction_offset",
