@@ -186,3 +186,11 @@ def test_a_delay_is_more_than_sticking_leaves_and_still_more_beside_it() -> None
     assert 3.0 < beside({"stribeck_friction": 0.3}, "time_delay", 0.27).gain < 5.0
     assert beside({"stribeck_friction": 0.3}, "time_delay", 0.27).refused == "gain"
     assert beside({"stribeck_friction": 0.3}, "time_delay", 0.4).refused == ""
+
+
+def test_presliding_beside_stribeck_is_more_than_the_form_of_that_leaves() -> None:
+    """Both act at reversals."""
+    assert 3.0 < beside({"stribeck_friction": 0.3}, "presliding", 0.27).gain < 5.0
+    assert beside({"stribeck_friction": 0.3}, "presliding", 0.27).refused == "gain"
+    assert beside({"stribeck_friction": 0.3}, "presliding", 0.4).refused == ""
+    assert beside({"friction_offset": 0.3}, "presliding", 0.27).refused == ""

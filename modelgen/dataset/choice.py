@@ -23,7 +23,6 @@ POSITION_OVER_EFFORT = 4.5  # cut-off of the positions over the parallel one
 HIGHEST = 0.45  # of the rate: a filter above it does nothing
 DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
 SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
-RESTING = 0.08  # of a period of the cut-off: what rests for longer sticks, a reversal passes faster
 GATE = 0.01  # of the joint's speed (99 % quantile)
 
 
@@ -129,7 +128,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         raise InputError(f"{first.name}: found {len(gates)} rest gates, expected one or {first.n}")
     time = settings.rest_time
     if time is None:
-        time = RESTING / cutoff if cutoff else 3 * first.step
+        time = 0.25 / cutoff if cutoff else 3 * first.step
     return Chosen(
         cutoff=cutoff,
         order=settings.order,

@@ -23,7 +23,7 @@ from modelgen.diagnosis.trials import Trial
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 FAINT, MORE = 25.0, 3.0  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
-STICKING = 5.0  # the same for a delay beside what acts at reversals: the form of that leaves more
+STICKING = 5.0  # the same for what acts at reversals beside another such: the form of that leaves more
 BEYOND = 400.0  # evidence of a delay that sticking does not give: 230 in complete models
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
@@ -200,6 +200,8 @@ class Gates:
             if self._beside(REVERSING, c.joint):
                 return STICKING
             return DELAYED if trial.gain.delta_bic < BEYOND else PRACTICAL
+        if c.effect in REVERSING and self._beside(REVERSING, c.joint):
+            return STICKING
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
         return MORE if trial.gain.delta_bic < FAINT else PRACTICAL
