@@ -8,7 +8,7 @@ from modelgen.dataset.choice import Chosen
 from modelgen.dataset.decimation import kept
 from modelgen.dataset.objects import Array
 
-SHARE = 0.02  # of the filter's weight, of either sign, that may lie on samples at rest
+SHARE = 0.02  # of the filter's weight that may lie on samples at rest
 
 
 def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
@@ -16,7 +16,7 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
 
     A joint is at rest where its speed stays below its gate for longer than `settings.rest_time`; a reversal
     passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
-    taken no more than a fiftieth of its weight, of either sign, from samples at rest.
+    taken no more than a fiftieth of its weight from samples at rest.
     """
     longest = max(2, round(settings.rest_time * rate))
     slow = np.abs(dq) < np.array(settings.gates)
@@ -26,7 +26,7 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     if len(resting):
         share = rest[:, resting].astype(np.float64)
         share = kept(share, rows, settings.cutoff, rate, settings.order)
-        result[:, resting] &= np.abs(share) < SHARE
+        result[:, resting] &= share < SHARE
     return result
 
 

@@ -37,7 +37,7 @@ from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit
 from modelgen.diagnosis.outdone import Likeness, outdone
 from modelgen.diagnosis.positions import feigned, harmless
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, Selection, by_gain, select
+from modelgen.diagnosis.selection import EVIDENCE, Selection, select
 from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.diagnosis.system import mean_squares
@@ -135,7 +135,7 @@ def diagnose(
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
     verdict, reason = _verdict(selection, beside, fit, share, tested, likeness, counted=counted)
-    selection = by_gain(stiffened(selection, rows, prober), rows)
+    selection = stiffened(selection, rows, prober)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":

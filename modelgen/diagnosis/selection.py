@@ -150,15 +150,6 @@ def select(
     return Selection(causes, system, turns)
 
 
-def by_gain(selection: Selection, rows: Sequence[Rows]) -> Selection:
-    """The same with the cause first that gains most on unseen rows."""
-    causes = sorted(selection.causes, key=lambda cause: -cause.cross_gain)
-    if all(new is old for new, old in zip(causes, selection.causes, strict=True)):
-        return selection
-    system = System(rows, with_causes(rows, [c.trial for c in causes]), selection.system.periods)
-    return replace(selection, causes=causes, system=system)
-
-
 def left_to(trial: Trial, system: System) -> float:
     """Evidence of a candidate, with the values it was found at, beside the system's causes."""
     gain = system.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
