@@ -17,7 +17,7 @@ from modelgen.diagnosis.folds import folds, left_unseen
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, mean_squares, moving_rows, rmse, weighted_fit
+from modelgen.diagnosis.system import System, mean_squares, moving_rows, rmse, stacked, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
@@ -27,7 +27,7 @@ STICKING = 5.0  # the same for what acts at reversals beside another such: the f
 BEYOND = 400.0  # evidence of a delay that sticking does not give: 230 in complete models
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
-HARDLY = 0.1  # of the power of an elastic joint or play in the record that shows it most
+HARDLY = 0.1  # of the power of play in the record that shows it most
 FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
@@ -161,12 +161,13 @@ class Gates:
         """
         if not all(c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True)):
             return True
-        if trial.candidate.effect not in COMPLIANT:
+        if trial.candidate.effect != "backlash":
             return False
         shows = [replace(r, effort=c[:, :, 0]) for r, c in zip(self.rows, trial.columns, strict=True)]
-        theta, noise = weighted_fit(shows, self.old), mean_squares(self.system)
-        left = [((r.effort - c @ theta)[r.moving], r.moving) for r, c in zip(shows, self.old, strict=True)]
-        power = [float(e**2 @ np.broadcast_to(1.0 / noise, m.shape)[m]) for e, m in left]
+        sizes = np.maximum(self.system.sizes, 1e-150)
+        theta = np.linalg.lstsq(*stacked(shows, self.old, 1.0 / sizes), rcond=None)[0]
+        left = [((r.effort - c @ theta) / sizes)[r.moving] for r, c in zip(shows, self.old, strict=True)]
+        power = [float(np.mean(e**2)) for e in left]
         return min(power) < HARDLY * max(power)
 
     def _agreed(self, new: Sequence[Array], halves: bool) -> bool:

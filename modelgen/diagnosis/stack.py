@@ -14,6 +14,7 @@ from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.told import FAITH, Told
 
 TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
+OPEN = 1e-9  # of the largest singular value: below, records say nothing
 NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
@@ -37,7 +38,8 @@ class Stack:
     squares: (n or n + 1,), as joint, counts and rss, but with what is told as if it were one more joint.
 
     stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
-    p) and (M, n); said: of the first of the columns.
+    p) and (M, n); said: of the first of the columns. alone: (R, b), as basis, of the records alone, None
+    where nothing is told.
     """
 
     def __init__(
@@ -56,15 +58,18 @@ class Stack:
         self.right = stacked([effort[:, :, None] for effort in efforts])[:, 0]
         self.share = float(counts.sum() / max(1, len(joint)))
         matrix, right, self.groups, self.weights = self.matrix, self.right, joint, counts
+        self.alone: Array | None = None
         if said is not None and self.share > 0:
+            self.alone = orthonormal(matrix)
+            rows = np.zeros((len(said.rows), matrix.shape[1]))
+            rows[:, : said.rows.shape[1]] = said.rows
+            belief = believed(matrix, right, rows, said.right, self.share)
             # one equation more, which nothing changes: the scatter that is expected
-            rows = np.zeros((len(said.rows) + 1, matrix.shape[1]))
-            rows[:-1, : said.rows.shape[1]] = said.rows
-            further = np.append(said.right, math.sqrt(FAITH))
-            weight = believed(matrix, right, rows, further, self.share)
-            matrix, right = np.vstack([matrix, weight * rows]), np.append(right, weight * further)
+            rows = np.vstack([rows, np.zeros(matrix.shape[1])]) * belief.weight
+            further = np.append(said.right, math.sqrt(belief.faith)) * belief.weight
+            matrix, right = np.vstack([matrix, rows]), np.append(right, further)
             self.groups = np.append(joint, np.full(len(rows), len(counts)))
-            self.weights = np.append(counts, len(said.rows) + FAITH)
+            self.weights = np.append(counts, belief.count + belief.faith)
         self.basis = orthonormal(matrix)
         self.left = right - self.basis @ (self.basis.T @ right)
         self.squares = self.by_group(self.left)
@@ -91,25 +96,44 @@ class Stack:
         return explained(self.stacked(columns), self, extra, positive)
 
 
-def believed(matrix: Array, right: Array, rows: Array, further: Array, share: float) -> float:
-    """Weight of what is told (D, b), (D,) beside equations (R, b), (R,), one over its scatter among them.
+@dataclass(frozen=True)
+class Belief:
+    """In what is told beside some equations. weight: one over its scatter among them; count: of it, what the
+    records could contradict; faith: measurements that the scatter expected is worth.
+    """
 
-    The likeliest scatter, begun with the records alone: what contradicts them has no say. share: of the
-    equations, those that are independent.
+    weight: float
+    count: float
+    faith: float
+
+
+def believed(matrix: Array, right: Array, rows: Array, further: Array, share: float) -> Belief:
+    """In what is told (D, b), (D,) beside equations (R, b), (R,), of which `share` are independent.
+
+    The likeliest scatter, begun with the records alone: what contradicts them has no say. What the records
+    leave open agrees with all that is told, and says nothing about its scatter.
     """
     norms = np.linalg.norm(np.vstack([matrix, rows]), axis=0)
     norms[norms == 0] = 1.0
     q, r = np.linalg.qr(matrix / norms)
     told, right = rows / norms, q.T @ right
-    weight = 0.0
+    _, s, vt = np.linalg.svd(r)
+    sizes = np.full(len(vt), OPEN * s.max(initial=1e-300))
+    sizes[: len(s)] = np.maximum(s, sizes[0])
+    # of what is told, in independent combinations, as the records alone have it
+    variances = np.linalg.svd((told @ vt.T) / sizes, compute_uv=False) ** 2 / share
+    scatter = math.inf
     for _ in range(TURNS):
+        weight = 0.0 if math.isinf(scatter) else 1.0 / math.sqrt(scatter * share)
         table = np.vstack([r, weight * told])
         found = np.linalg.lstsq(table, np.append(right, weight * further), rcond=NOTHING)[0]
-        scatter = float(((further - told @ found) ** 2).sum()) / (len(rows) - 1 + FAITH)
-        weight, before = 1.0 / math.sqrt(scatter * share), weight
-        if abs(weight - before) < SETTLED * weight:
+        size = 1.0 if math.isinf(scatter) else scatter
+        count = float((size / (size + variances)).sum())
+        faith = max(FAITH, count)
+        before, scatter = scatter, (float(((further - told @ found) ** 2).sum()) + faith) / (count + faith)
+        if abs(scatter - before) < SETTLED * scatter:
             break
-    return weight
+    return Belief(1.0 / math.sqrt(scatter * share), count, faith)
 
 
 def weighted(columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sizes: Array) -> Array:
@@ -139,9 +163,15 @@ def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequen
         return None
     there = norms > 0
     unit = stacked[:, there] / norms[there]
+    apart = np.eye(unit.shape[1])
+    if stack.alone is not None:  # what the records cannot show is none, whatever is told
+        records = unit[: len(stack.alone)]
+        _, s, vt = np.linalg.svd(records - stack.alone @ (stack.alone.T @ records), full_matrices=False)
+        apart = vt[s > NOTHING]
+        unit = unit @ apart.T
     own = unit - basis @ (basis.T @ unit)
     u, s, vt = np.linalg.svd(own, full_matrices=False)
-    kept = s > NOTHING
+    kept, vt = s > NOTHING, vt @ apart
     if not kept.any():
         return None
     scores = u[:, kept].T @ left

@@ -2,9 +2,10 @@
 
 Two causes that look alike often differ in what they make of the links: the wrong one needs a link that weighs
 what nobody would have drawn. Nominal inertials are off, by some per cent or by tens of them, and nobody says
-by how much: they count as measurements of the base parameters whose common scatter is unknown, FAITH of them
-at OFF, so that a description that the records contradict loses its word (a multivariate t distribution;
-Gelman, Carlin, Stern, Dunson, Vehtari and Rubin 2013, section 3.6).
+by how much: they count as measurements of the base parameters whose common scatter is unknown, and about OFF
+at first (a multivariate t distribution; Lange, Little and Taylor 1989). That guess is worth as much as they
+are, FAITH at least: a description that the records contradict loses its word, and one link that is not as
+described cannot outvote the records.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from modelgen.functions.nominal import factor_value, nominal_links
 Array = NDArray[np.float64]
 
 OFF = 0.3  # of a link's mass, first moments and inertia
-FAITH = 4.0  # measurements that OFF is worth
+FAITH = 4.0  # measurements that OFF is worth, at least
 NOTHING = 1e-9  # of the largest scatter
 
 
@@ -36,12 +37,15 @@ class Told:
 
 
 def told(model: Model) -> Told | None:
-    """Of the links; what drives and effects have is not told. None where a link has no inertials."""
+    """Of the links; what drives and effects have is not told, nor what a link has nothing of. None where a
+    link has no inertials.
+    """
     try:
         known = nominal_links(model)
     except InputError:
         return None
     size = _sizes(model.arm)
+    known = {name: value for name, value in known.items() if size[name] > 0.0}
     factors = np.zeros((len(model.grouping.base), len(model.standard)))
     for k, parameter in enumerate(model.grouping.base):
         for i, factor in parameter.terms:
@@ -73,7 +77,7 @@ def _sizes(arm: Arm) -> dict[str, float]:
         if link is None:
             continue
         spread = 0.5 * (link.inertia[0] + link.inertia[3] + link.inertia[5])
-        square = sum(c * c for c in link.com) + (spread / link.mass if link.mass > 0 else 0.0)
+        square = sum(c * c for c in link.com) + (max(0.0, spread) / link.mass if link.mass > 0 else 0.0)
         first, second = link.mass * square**0.5, link.mass * square
         found[f"M{i}"] = link.mass
         found |= {f"M{a}{i}": first for a in "XYZ"}
