@@ -194,3 +194,31 @@ def test_presliding_beside_stribeck_is_more_than_the_form_of_that_leaves() -> No
     assert beside({"stribeck_friction": 0.3}, "presliding", 0.27).refused == "gain"
     assert beside({"stribeck_friction": 0.3}, "presliding", 0.4).refused == ""
     assert beside({"friction_offset": 0.3}, "presliding", 0.27).refused == ""
+
+
+def late(stuck: float, delay: float) -> Judgement:
+    """Of a delay whose column is large where a joint sticks for a moment, and moderate elsewhere: what is
+    left there looks like it to the extent `stuck`, and it is there to the extent `delay`.
+    """
+    random = default_rng(23)
+    rows, columns = [], []
+    for _ in range(2):
+        slow = random.normal(size=(LONG, UNKNOWNS))
+        near = (np.arange(LONG) % 20 == 0)[:, None]
+        own = np.where(near, 4.0, 1.0) * random.normal(size=(LONG, 1))
+        effort = slow @ np.ones((UNKNOWNS, 1)) + np.where(near, stuck + delay, delay) * own
+        effort += random.normal(size=(LONG, 1))
+        flags = np.ones((LONG, 1), dtype=bool)
+        rows.append(Rows(UNUSED, effort, slow[:, None, :], flags, BARE, far=~near))
+        columns.append(own[:, None, :])
+    system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+    gain = system.gain(columns)
+    assert gain is not None
+    return Gates(rows, [], system).judged(Trial(Candidate("time_delay", None), {}, columns, gain))
+
+
+def test_a_delay_that_shows_beside_rests_alone_is_none() -> None:
+    assert late(0.6, 0.0).gain > 3.0
+    assert late(0.6, 0.0).refused == "rest"
+    assert late(0.0, 0.3).refused == ""
+    assert late(0.3, 0.3).refused == ""

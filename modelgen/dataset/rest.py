@@ -9,6 +9,7 @@ from modelgen.dataset.decimation import kept
 from modelgen.dataset.objects import Array
 
 SHARE = 0.02  # of the filter's weight that may lie on samples at rest
+SHORT = 0.05  # of a period of the cut-off: a rest that leaves something, and a joint that sticks for a moment
 
 
 def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
@@ -19,15 +20,32 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     taken no more than a fiftieth of its weight from samples at rest.
     """
     longest = max(2, round(settings.rest_time * rate))
+    return _away(dq, rows, settings, rate, longest)[0]
+
+
+def samples_far_from_rest(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
+    """The same where the filter carries next to nothing from any rest: what sticks for a moment only counts
+    as resting, and so does negative weight, by which the filter swings before and after.
+    """
+    if not settings.cutoff:
+        return moving_samples(dq, rows, settings, rate)
+    longest = max(2, min(round(settings.rest_time * rate), round(SHORT / settings.cutoff * rate)))
+    moving, share = _away(dq, rows, settings, rate, longest)
+    return np.asarray(moving & (share > -SHARE))
+
+
+def _away(
+    dq: Array, rows: np.ndarray, settings: Chosen, rate: float, longest: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Whether the rows are away from rests of so many samples, and their share of the filter (M, n)."""
     slow = np.abs(dq) < np.array(settings.gates)
-    result = np.asarray(~slow[rows])
     rest = np.stack([long_runs(column, longest) for column in slow.T], axis=1)
+    share = np.zeros((len(rows), dq.shape[1]))
     resting = np.flatnonzero(rest.any(axis=0))
     if len(resting):
-        share = rest[:, resting].astype(np.float64)
-        share = kept(share, rows, settings.cutoff, rate, settings.order)
-        result[:, resting] &= share < SHARE
-    return result
+        flags = rest[:, resting].astype(np.float64)
+        share[:, resting] = kept(flags, rows, settings.cutoff, rate, settings.order)
+    return np.asarray(~slow[rows] & (share < SHARE)), share
 
 
 def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:

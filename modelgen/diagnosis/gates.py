@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -24,7 +25,8 @@ PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 FAINT, MORE = 25.0, 3.0  # evidence below which it must be more: the best of hundreds of forms by chance
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 STICKING = 5.0  # the same for what acts at reversals beside another such: the form of that leaves more
-BEYOND = 400.0  # evidence of a delay that sticking does not give: 230 in complete models
+LATE = 1.0  # percent of the RMSE where no joint rests nearby, of a delay
+BEYOND = 400.0  # evidence of a delay from which any gain that counts is enough
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 HARDLY = 0.1  # of the power of play in the record that shows it most
@@ -95,6 +97,7 @@ class Gates:
         self.system = system
         self.blur = np.zeros(system.n) if blur is None else blur
         self.narrowed = narrowed
+        self.last = last
         self.old = with_causes(rows, before)
         self.counts = moving_rows(rows)
         known = (*EXACT, *FLUID)
@@ -104,6 +107,24 @@ class Gates:
         self._forms: dict[tuple[str, ...], Array] = {}
 
     def judged(self, trial: Trial) -> Judgement:
+        """Whether the cause helps and matters; a delay also where no joint rests nearby: dry friction has any
+        value at rest, and what the filter carries to both sides of that looks like one.
+        """
+        found = self._judged(trial)
+        if found.refused or trial.candidate.effect != DELAY or self._far is None:
+            return found
+        return replace(found, refused="rest") if self._far._judged(trial).gain < LATE else found
+
+    @cached_property
+    def _far(self) -> Gates | None:
+        """The same on the rows that are far from any rest; None where all are."""
+        if all(r.far is None or (r.far | ~r.moving).all() for r in self.rows):
+            return None
+        rows = [r if r.far is None else replace(r, moving=r.moving & r.far) for r in self.rows]
+        system = System(rows, with_causes(rows, self.before), self.system.periods)
+        return Gates(rows, self.before, system, self.blur, self.narrowed, last=self.last)
+
+    def _judged(self, trial: Trial) -> Judgement:
         """Whether the cause helps and matters at a joint that it is judged by.
 
         Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the

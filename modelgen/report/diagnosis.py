@@ -112,6 +112,7 @@ _REFUSED = {
     "gain": "gains too little on records that its fit has not seen",
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
+    "rest": "shows beside rests alone",
 }
 _SHOWN = 12  # candidates of a turn
 
