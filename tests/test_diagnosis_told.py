@@ -151,8 +151,8 @@ def test_what_the_records_leave_open_agrees_with_everything_and_says_nothing() -
 
 @pytest.mark.parametrize("count", [4, 20, 36])
 def test_one_link_that_is_not_as_described_is_not_taken_for_a_cause(count: int) -> None:
-    """Of many that are right to a fiftieth of what is expected, one is off by ten times that: what does the
-    same as the link stays behind the force that is there, by more than makes a rival.
+    """Of many that are right to a fiftieth, one is off by the whole of it: what takes that up besides the
+    force gets less ahead of the force alone than it takes to be named without it as a rival.
     """
     random = default_rng(count)
     x = random.normal(size=(3000, count + 1))

@@ -15,9 +15,10 @@ from modelgen.dataset import Record, prepare
 from modelgen.description import Arm, Inertial
 from modelgen.errors import InputError
 from modelgen.functions import Options
+from modelgen.functions.nominal import base_matrix
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification import identify
-from modelgen.identification.consistent import base_matrix, plain, violations
+from modelgen.identification.consistent import plain, violations
 
 RATE = 200.0
 

@@ -12,8 +12,8 @@ from modelgen.dataset import Record, Settings, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import build_model
+from modelgen.functions.nominal import base_matrix
 from modelgen.identification import Instruments, identify, verdict
-from modelgen.identification.consistent import base_matrix
 from modelgen.simulation import Reference
 from modelgen.simulation.instruments import Tracking
 

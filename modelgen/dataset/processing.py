@@ -8,6 +8,7 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,8 +33,7 @@ class Prepared:
     unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
     times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
-    joint moves there, away from rest; far: (M, n), so far that the filter carries nothing from any rest.
-    settings: as used, every choice made.
+    joint moves there, away from rest. settings: as used, every choice made.
     """
 
     record: Record
@@ -51,7 +51,6 @@ class Prepared:
     temperature: Array | None
     rows: np.ndarray
     moving: np.ndarray
-    far: np.ndarray
 
     @property
     def t(self) -> Array:
@@ -67,6 +66,11 @@ class Prepared:
     def rate(self) -> float:
         """Rows per second [Hz]."""
         return 1.0 / (self.record.step * self.settings.factor)
+
+    @cached_property
+    def far(self) -> np.ndarray:
+        """Rows (M, n) so far from any rest that the filter carries next to nothing from there."""
+        return samples_far_from_rest(self.dq, self.rows, self.settings, 1.0 / self.record.step)
 
     @property
     def decimation(self) -> Decimation | None:
@@ -159,7 +163,6 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         temperature=record.temperature,
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate),
-        far=samples_far_from_rest(dq, rows, chosen, rate),
     )
 
 

@@ -19,7 +19,7 @@ from scipy.linalg import null_space
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model
-from modelgen.functions.nominal import factor_value, nominal_links
+from modelgen.functions.nominal import base_matrix, nominal_links
 
 Array = NDArray[np.float64]
 
@@ -46,10 +46,7 @@ def told(model: Model) -> Told | None:
         return None
     size = _sizes(model.arm)
     known = {name: value for name, value in known.items() if size[name] > 0.0}
-    factors = np.zeros((len(model.grouping.base), len(model.standard)))
-    for k, parameter in enumerate(model.grouping.base):
-        for i, factor in parameter.terms:
-            factors[k, i] = factor_value(factor, model.arm.symbols)
+    factors = base_matrix(model)
     of_links = np.array([p.name in known for p in model.standard], dtype=bool)
     names = [p.name for p in model.standard if p.name in known]
     links, others = factors[:, of_links], factors[:, ~of_links]

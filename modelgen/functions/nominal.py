@@ -61,6 +61,15 @@ def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
     }
 
 
+def base_matrix(model: Model) -> NDArray[np.float64]:
+    """K (p, s): base parameters = K standard parameters."""
+    result = np.zeros((len(model.grouping.base), len(model.standard)))
+    for k, base in enumerate(model.grouping.base):
+        for i, factor in base.terms:
+            result[k, i] += factor_value(factor, model.arm.symbols)
+    return result
+
+
 def about_origin(link: Inertial) -> Mapping[str, float]:
     """The ten standard parameters of a link by name, about the origin of its frame."""
     m, (x, y, z) = link.mass, link.com

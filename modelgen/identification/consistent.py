@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.functions import Model
-from modelgen.functions.nominal import about_origin, factor_value
+from modelgen.functions.nominal import about_origin, base_matrix
 
 Array = NDArray[np.float64]
 TEN = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
@@ -107,15 +107,6 @@ def violations(model: Model, standard: Array) -> tuple[str, ...]:
         elif np.linalg.eigvalsh(_pseudo(ten))[0] <= 0:
             found.append(f"{joint.name}: impossible inertia")
     return tuple(found)
-
-
-def base_matrix(model: Model) -> Array:
-    """K (p, s): base parameters = K standard parameters."""
-    result = np.zeros((len(model.grouping.base), len(model.standard)))
-    for k, base in enumerate(model.grouping.base):
-        for i, factor in base.terms:
-            result[k, i] += factor_value(factor, model.arm.symbols)
-    return result
 
 
 def _effects(model: Model, theta: Array) -> tuple[Array, Array, Array]:
