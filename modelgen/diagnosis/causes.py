@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from modelgen.diagnosis.gates import Gates, with_causes
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.gates import Gates
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial

@@ -15,7 +15,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, CURVED, columns, unchanging
 from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.settling import misfit

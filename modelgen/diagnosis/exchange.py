@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from modelgen.diagnosis.causes import Cause, together
 from modelgen.diagnosis.converging import converge
-from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.probing import Prober

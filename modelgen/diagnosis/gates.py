@@ -15,10 +15,11 @@ import numpy as np
 from modelgen.diagnosis.agreement import agreement
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING
 from modelgen.diagnosis.folds import folds, left_unseen
+from modelgen.diagnosis.forms import EXACT, FLUID, Forms, with_causes
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, mean_squares, moving_rows, rmse, stacked, weighted_fit
+from modelgen.diagnosis.system import System, moving_rows, rmse, stacked, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
@@ -30,33 +31,12 @@ BEYOND = 400.0  # evidence of a delay from which any gain that counts is enough
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 HARDLY = 0.1  # of the power of play in the record that shows it most
-FORM = 0.05  # of the power that causes before explain at a joint: less is what a law's form leaves
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 # What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
 FEIGNABLE = (*COMPLIANT, DELAY, LATER)
 REVERSING = ("presliding", "stribeck_friction")  # show where a delay shows most
-FRICTION = (
-    "presliding",
-    "stribeck_friction",
-    "nonlinear_viscous_friction",
-    "load_dependent_friction",
-    "position_dependent_friction",
-    WARMING,
-    "time_delay",  # looks like what sticking does at reversals
-)
-# What these do follows from the arm's own equations or is a constant: their form leaves nothing to others.
-EXACT = (
-    "friction_offset",
-    "lever_geometry",
-    "payload_change",
-    "base_tilt",
-    "drive_gain_error",
-    "encoder_offset",
-)
-
-FLUID = ("added_mass", "fluid_drag")  # one value for all links, whose widths differ
 
 
 @dataclass(frozen=True)
@@ -69,11 +49,6 @@ class Judgement:
     gain: float
     expected: float
     refused: str
-
-
-def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
-    """Baseline and the causes' columns side by side, by record."""
-    return [np.concatenate([r.columns, *(t.columns[i] for t in trials)], axis=2) for i, r in enumerate(rows)]
 
 
 class Gates:
@@ -104,7 +79,7 @@ class Gates:
         own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[bool, Array] = {}
-        self._forms: dict[tuple[str, ...], Array] = {}
+        self.forms = Forms(rows, before, system)
 
     def judged(self, trial: Trial) -> Judgement:
         """Whether the cause helps and matters; a delay also where no joint rests nearby: dry friction has any
@@ -146,9 +121,7 @@ class Gates:
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
-        least = np.maximum(least, self._left_by_form(FLUID)[places])
-        if trial.candidate.effect in FRICTION:
-            least = np.maximum(least, self._left_by_form(FRICTION)[places])
+        least = np.maximum(least, self.forms.least(trial.candidate.effect)[places])
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
@@ -196,24 +169,6 @@ class Gates:
         parts = [part for _, part in folds(self.rows, halves=halves)]
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
-
-    def _left_by_form(self, effects: tuple[str, ...]) -> Array:
-        """Percent of the RMSE (n,) that the form of some of the causes taken before may leave for another one
-        to take: no law of theirs is that of the arm to the last twentieth.
-        """
-        if effects not in self._forms:
-            there = [t for t in self.before if t.candidate.effect in effects]
-            share = np.zeros(self.system.n)
-            if there:
-                rest = [t for t in self.before if t.candidate.effect not in effects]
-                others = with_causes(self.rows, rest)
-                left = mean_squares(self.system)
-                explained = rmse(self.rows, others, weighted_fit(self.rows, others)) ** 2 - left
-                places = [t.candidate.joint for t in there]
-                at = np.array([None in places or j + 1 in places for j in range(self.system.n)])
-                share = np.where(at, np.clip(FORM * explained / np.maximum(left, 1e-300), 0.0, 1.0), 0.0)
-            self._forms[effects] = np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
-        return self._forms[effects]
 
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""

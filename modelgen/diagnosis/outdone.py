@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from modelgen.diagnosis.causes import Cause, together
-from modelgen.diagnosis.gates import PRACTICAL, with_causes
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.lack_of_fit import CLEAN
 from modelgen.diagnosis.null_distribution import NULLS
 from modelgen.diagnosis.rows import Rows
@@ -22,9 +23,11 @@ BESIDE = 7.0  # delta BIC beside a cause, from which a shape may take its place
 LIKE = float(np.quantile(NULLS[SHAPE], CLEAN))  # delta BIC from which what is left is called like a shape
 TWICE = 2.0  # a cause's evidence: what has that beside it makes it a detail
 CLEARLY = 7.0  # delta BIC by which a shape is more than a cause that stands alone, with half of BESIDE
-APART = 15.0  # delta BIC by which a cause and a shape are more than the shape: the cause is there
-SLOW = 25.0  # delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else
-AS_GOOD = 5.0  # delta BIC less than the cause's, in the fair equations
+SLOW = 20.0  # delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else
+AS_GOOD, OF_IT = (
+    5.0,
+    0.01,
+)  # delta BIC less than the cause's, and more by so much of it, in the fair equations
 BEHIND = 20.0  # delta BIC less than the cause's, in the plain ones, from which no shape takes its place
 SEARCHED = 8.0  # delta BIC that each further cause costs, as one of some sixty at every joint: 2 ln 60
 
@@ -95,12 +98,10 @@ def _outdone(
     for shape, added in able:
         instead = worth(shape, without)
         more, slow = instead.evidence - own, instead.slow - cause.delta_bic
-        if own > added.evidence and added.evidence - more > APART:
-            continue
         seen = doubted or added.evidence > BESIDE or (added.evidence > least and more > CLEARLY)
         if more > 0.0 and seen and slow > -BEHIND:
             return True
-        if more > -AS_GOOD and min(slow, added.slow) > SLOW:
+        if more > -AS_GOOD - OF_IT * max(own, 0.0) and min(slow, added.slow) > SLOW:
             return True
     return False
 

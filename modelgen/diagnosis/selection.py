@@ -12,7 +12,8 @@ from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.exchange import TIE, exchanged
-from modelgen.diagnosis.gates import FAINT, PRACTICAL, Gates, Judgement, instrumented, with_causes
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.gates import FAINT, PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares
@@ -23,6 +24,7 @@ EVIDENCE = 15.0  # delta BIC that it takes to name a cause, and to name it rathe
 UNSUPPORTED = -3.0  # delta BIC in the fair equations, below which faint evidence in the plain ones is noise
 PASSING = (LATER, WARMING)  # do not repeat
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
+ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
 MOST = 4  # causes, or one for each joint where there are more
 
 Report = Callable[[str, int, int], None]
@@ -107,6 +109,7 @@ def select(
             if not judged.refused:
                 eligible.append((t, judged))
         turns.append(_best_of_each(ranking))
+        eligible = [pair for pair in eligible if not _at_one_joint(pair, eligible)]
         if not eligible:
             break
         first = eligible[0][0].gain.delta_bic
@@ -154,6 +157,16 @@ def left_to(trial: Trial, system: System) -> float:
     """Evidence of a candidate, with the values it was found at, beside the system's causes."""
     gain = system.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
     return -np.inf if gain is None else gain.delta_bic
+
+
+def _at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
+    """Whether what was tried for all joints together promises at none what it does alone at one of them."""
+    trial, by = pair
+    return trial.candidate.joint is None and any(
+        t.candidate.effect == trial.candidate.effect and by.expected < ALIKE * other.expected
+        for t, other in others
+        if t.candidate.joint is not None
+    )
 
 
 def correlated(system: System) -> bool:

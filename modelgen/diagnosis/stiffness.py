@@ -16,7 +16,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import columns
 from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.gates import with_causes
+from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, weighted_fit

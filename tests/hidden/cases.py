@@ -141,11 +141,16 @@ class Bench:
     def errors(self, magnitudes: dict[int, float]) -> Array:
         """RMSE (n,) on records that the fit has not seen: train_a, train_b and test, each in its turn.
 
-        With an effect that comes after train_a, on test alone.
+        With an effect that comes after train_a, on test alone. With one from outside the catalogue, what no
+        spring and no constant current at any joint takes up: a hose that is taut throughout is a spring.
         """
-        later = any(EFFECTS[hidden.effect].later for hidden in self.case.hidden)
+        kinds = [EFFECTS[hidden.effect] for hidden in self.case.hidden]
+        held_out = (2,) if any(kind.later for kind in kinds) else (0, 1, 2)
         return fitting.rotated(
-            [self.record(k, magnitudes) for k in range(3)], self.arm.plant, (2,) if later else (0, 1, 2)
+            [self.record(k, magnitudes) for k in range(3)],
+            self.arm.plant,
+            held_out,
+            pulled=any(kind.outside for kind in kinds),
         )
 
     def strength(self, place: int, floor: Array, found: Array) -> float:

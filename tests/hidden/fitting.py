@@ -35,8 +35,11 @@ def low_pass(values: Array, band: float, rate: float) -> Array:
     return np.asarray(gaussian_filter1d(values, math.sqrt(math.log(2)) / (2 * math.pi * band) * rate, axis=0))
 
 
-def equations(log: Log, described: Plant) -> Rows:
-    """Regressor of links and standard friction, and effort, low-passed alike."""
+def equations(log: Log, described: Plant, pulled: bool = False) -> Rows:
+    """Regressor of links and standard friction, and effort, low-passed alike.
+
+    pulled: with a spring and a constant current at each joint besides.
+    """
     n = int(described["n"])
     flat = butter(4, POSITION_BAND, fs=log.rate, output="sos")  # a bell would round off the motion itself
     q = sosfiltfilt(flat, joints_of(log, described), axis=0)
@@ -57,6 +60,8 @@ def equations(log: Log, described: Plant) -> Rows:
         effort[1:] = 0.5 * (log.current[1:] + log.current[:-1])
         effort = low_pass(effort, BAND, log.rate)[::thin]
         columns = columns[:, :, independent(described)]
+        if pulled:
+            columns = np.concatenate([columns, pulls(described, q[::thin])], axis=2)
     rate = log.rate / thin
     step, edge = max(1, int(rate / (2.4 * BAND))), int(EDGE * rate)
     kept = slice(edge, len(columns) - edge, step)
@@ -64,6 +69,17 @@ def equations(log: Log, described: Plant) -> Rows:
         -1, n, columns.shape[2]
     )
     return Rows(kept_columns, effort[kept], moving[::thin][kept].astype(float))
+
+
+def pulls(described: Plant, q: Array) -> Array:
+    """(N, n, 3 n) [A]: at each joint a constant current, a constant torque and one in proportion to q."""
+    n = int(described["n"])
+    unit = native.regressor(described, q, np.ones_like(q), np.zeros_like(q))  # viscous: slope over constant
+    out = np.zeros((len(q), n, n, 3))
+    for j in range(n):
+        torque = 1.0 / (unit[:, j, 10 * n + 3 * j + 1] * described["torque_constant"][j] ** 2)
+        out[:, j, j] = np.column_stack([np.ones(len(q)), torque, torque * q[:, j]])
+    return out.reshape(len(q), n, 3 * n)
 
 
 def standard_links(plant: Plant) -> Array:
@@ -123,9 +139,11 @@ def rms(residuals: list[Array], rows: list[Rows]) -> Array:
     return np.asarray(np.sqrt(total / sum(item.moving.sum(axis=0) for item in rows)))
 
 
-def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...]) -> Array:
+def rotated(
+    records: list[Log], described: Plant, held_out: tuple[int, ...], pulled: bool = False
+) -> Array:
     """RMSE (n,) over the records of these numbers, each predicted by a fit to the others."""
-    rows = [equations(log, described) for log in records]
+    rows = [equations(log, described, pulled) for log in records]
     left_over = []
     for k in held_out:
         estimate = solve([item for number, item in enumerate(rows) if number != k])
