@@ -176,6 +176,14 @@ def test_beside_a_fluid_a_cause_is_more_than_its_law_may_leave() -> None:
     assert beside({"added_mass": 0.5, "lever_geometry": 10.0}).refused == ""
 
 
+def test_beside_what_swings_a_cause_is_more_than_its_simulation_may_leave() -> None:
+    """A tenth of what that explains; friction is nothing like it."""
+    assert beside({"joint_flexibility": 5.0}, size=1.5).refused == "gain"
+    assert beside({"joint_flexibility": 5.0}, size=2.5).refused == ""
+    assert beside({"joint_flexibility": 5.0}, "stribeck_friction", size=0.5).refused == ""
+    assert beside({"joint_flexibility": 0.5}).refused == ""
+
+
 def test_a_delay_is_more_than_sticking_leaves_and_still_more_beside_it() -> None:
     """A share of a sample, at reversals; with evidence that sticking never has, any gain that counts."""
     assert 1.5 < beside({}, "time_delay", 0.16).gain < 3.0

@@ -9,8 +9,13 @@ from arms_support import base_vector, standard_vector
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.objects import to_json
 from modelgen.diagnosis.run import diagnose
+from modelgen.diagnosis.selection import at_one_joint
+from modelgen.diagnosis.stack import Gain
+from modelgen.diagnosis.trials import Trial
 from modelgen.functions import build_model
 from modelgen.probing import Motion, Prober, with_effect
 
@@ -105,3 +110,18 @@ def test_an_effect_that_is_there_already_is_not_named_again(tmp_path: Path) -> N
     arm = with_effect(ARM, "friction_offset", 1, {})
     records = [replace(r, arm=arm) for r in three("friction_offset", 1, 0.04)]
     assert diagnose(arm, records).verdict == "nothing_missing"
+
+
+def test_what_one_joint_promises_alone_is_not_in_all_of_them() -> None:
+    """A delay of one drive of three, which the mean of all three spreads; and one that all have."""
+
+    def judged(promised: dict[int | None, float]) -> list[int | None]:
+        gain = Gain(50.0, np.array([0.005]), np.ones(3), np.ones(3), 1)
+        pairs = [
+            (Trial(Candidate("time_delay", joint), {}, [], gain), Judgement(x, x, ""))
+            for joint, x in promised.items()
+        ]
+        return [pair[0].candidate.joint for pair in pairs if not at_one_joint(pair, pairs)]
+
+    assert judged({None: 3.2, 1: 0.2, 3: 7.1}) == [1, 3]
+    assert judged({None: 7.0, 1: 5.0, 3: 7.1}) == [None, 1, 3]

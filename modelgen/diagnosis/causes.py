@@ -31,12 +31,17 @@ class Cause:
     rivals: list[tuple[Trial, float]] = field(default_factory=list)
 
 
-def together(trials: Sequence[Trial], rest: System, *, fair: bool = False) -> float:
-    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations."""
+def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike: bool = False) -> float:
+    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations; alike: of its
+    plain ones, as if noise hid columns of all colours alike, as that of functions of no law is.
+    """
     columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
     positive = [above for t in trials for above in t.candidate.positive]
-    stack = rest.fair if fair else rest
-    gain = stack.gain(columns, float(sum(len(t.values) for t in trials)), positive)
+    extra = float(sum(len(t.values) for t in trials))
+    if alike:
+        gain = rest.plain.gain(columns, extra, positive, alike=True)
+    else:
+        gain = (rest.fair if fair else rest).gain(columns, extra, positive)
     return -np.inf if gain is None else gain.delta_bic
 
 

@@ -95,9 +95,10 @@ def _outdone(
     most = max(w.evidence for _, w in able)
     if most > BESIDE and TWICE * own < most:
         return True
+    rough = max(cause.delta_bic, together([cause.trial], without, alike=True) - cause.trial.doubt)
     for shape, added in able:
         instead = worth(shape, without)
-        more, slow = instead.evidence - own, instead.slow - cause.delta_bic
+        more, slow = instead.evidence - own, instead.slow - rough
         seen = doubted or added.evidence > BESIDE or (added.evidence > least and more > CLEARLY)
         if more > 0.0 and seen and slow > -BEHIND:
             return True

@@ -176,7 +176,7 @@ def diagnose(
                 None if p is None else float(f"{p * r.step:.9g}")
                 for p, r in zip(lengths, found[:-1], strict=True)
             ],
-            "evidence_threshold": EVIDENCE,
+            "evidence_threshold": EVIDENCE * selection.system.price,
             "practical_gain_percent": round(practical(PRACTICAL, made.narrowed), 3),
         },
         Positions(share, noisy),

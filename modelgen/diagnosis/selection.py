@@ -20,7 +20,7 @@ from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Court, Trial, sensible
 from modelgen.probing import Prober
 
-EVIDENCE = 15.0  # delta BIC that it takes to name a cause, and to name it rather than another one
+EVIDENCE = 10.0  # delta BIC that it takes to name a cause, and to name it rather than another one
 UNSUPPORTED = -3.0  # delta BIC in the fair equations, below which faint evidence in the plain ones is noise
 PASSING = (LATER, WARMING)  # do not repeat
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
@@ -60,7 +60,6 @@ def select(
     pool: Sequence[Candidate],
     periods: Sequence[int | None],
     report: Report | None = None,
-    evidence: float = EVIDENCE,
     blur: Array | None = None,
     narrowed: float = 1.0,
 ) -> Selection:
@@ -72,6 +71,7 @@ def select(
     p = baseline[0].shape[2]
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
+    evidence = EVIDENCE * system.price
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
@@ -109,7 +109,7 @@ def select(
             if not judged.refused:
                 eligible.append((t, judged))
         turns.append(_best_of_each(ranking))
-        eligible = [pair for pair in eligible if not _at_one_joint(pair, eligible)]
+        eligible = [pair for pair in eligible if not at_one_joint(pair, eligible)]
         if not eligible:
             break
         first = eligible[0][0].gain.delta_bic
@@ -122,7 +122,7 @@ def select(
             for t, other in eligible
             if t is not best
             and (
-                best.gain.delta_bic - t.gain.delta_bic <= EVIDENCE
+                best.gain.delta_bic - t.gain.delta_bic <= evidence
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
@@ -159,7 +159,7 @@ def left_to(trial: Trial, system: System) -> float:
     return -np.inf if gain is None else gain.delta_bic
 
 
-def _at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
+def at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
     """Whether what was tried for all joints together promises at none what it does alone at one of them."""
     trial, by = pair
     return trial.candidate.joint is None and any(
@@ -180,7 +180,7 @@ def unsupported(trial: Trial, system: System) -> bool:
 
     What does not repeat is a part of the noise by which the others are whitened.
     """
-    if trial.gain.delta_bic >= FAINT or trial.candidate.effect in PASSING:
+    if trial.gain.delta_bic >= FAINT * system.price or trial.candidate.effect in PASSING:
         return False
     gain = system.fair.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
     return gain is None or gain.delta_bic < UNSUPPORTED

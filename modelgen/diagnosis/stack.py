@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from modelgen.diagnosis.colour import Colour
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.told import FAITH, Told
 
@@ -39,7 +40,7 @@ class Stack:
 
     stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
     p) and (M, n); said: of the first of the columns. alone: (R, b), as basis, of the records alone, None
-    where nothing is told.
+    where nothing is told. colour: of the noise, None where it is white or not known.
     """
 
     def __init__(
@@ -50,8 +51,10 @@ class Stack:
         columns: Sequence[Array],
         efforts: Sequence[Array],
         said: Told | None = None,
+        colour: Colour | None = None,
     ) -> None:
         self.records = stacked
+        self.colour = colour
         self.joint = joint
         self.counts = counts
         self.matrix = stacked(columns)
@@ -86,14 +89,19 @@ class Stack:
         return np.asarray(found, dtype=float)
 
     def gain(
-        self, columns: Sequence[Array], extra: float = 0.0, positive: Sequence[bool] = ()
+        self,
+        columns: Sequence[Array],
+        extra: float = 0.0,
+        positive: Sequence[bool] = (),
+        *,
+        alike: bool = False,
     ) -> Gain | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
-        negative; empty for none.
+        negative; empty for none. alike: as if noise hid columns of all colours alike.
         """
-        return explained(self.stacked(columns), self, extra, positive)
+        return explained(self.stacked(columns), self, extra, positive, alike=alike)
 
 
 @dataclass(frozen=True)
@@ -152,10 +160,18 @@ def joints_of(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
     return np.concatenate([np.full(int(f[:, j].sum()), j) for f in flags for j in range(f.shape[1])])
 
 
-def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequence[bool] = ()) -> Gain | None:
+def explained(
+    stacked: Array,
+    stack: Stack,
+    extra: float = 0.0,
+    positive: Sequence[bool] = (),
+    *,
+    alike: bool = False,
+) -> Gain | None:
     """What columns (R + D, k) explain of what the stack's baseline leaves.
 
-    positive: columns whose value may not be negative: it is zero where it would be.
+    positive: columns whose value may not be negative: it is zero where it would be. alike: as if noise hid
+    columns of all colours alike.
     """
     basis, left, n = stack.basis, stack.left, len(stack.counts)
     norms = np.linalg.norm(stacked, axis=0)
@@ -183,10 +199,24 @@ def explained(stacked: Array, stack: Stack, extra: float = 0.0, positive: Sequen
     values[there] = found / norms[there]
     rss0, rss1 = stack.squares, stack.by_group(left - u[:, kept] @ scores)
     rank = int(kept.sum())
-    used = stack.weights > 0
-    drop = (stack.weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
+    used, weights = stack.weights > 0, stack.weights.copy()
+    if stack.colour is not None and not alike:
+        weights[:n] *= _unhidden(u[:, kept], scores, stack, stack.colour)
+    drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
     return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
+
+
+def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour) -> float:
+    """Share of the evidence of scores (k,) along orthonormal columns (R + D, k) that noise of this colour
+    leaves: as many rows are independent as the variance of the scores says, not more than for any column.
+    """
+    count = len(stack.joint)
+    variance = colour.variance(basis[:count]) + basis[count:].T @ basis[count:] / stack.share
+    sizes, vectors = np.linalg.eigh(variance)
+    squares = (vectors.T @ scores) ** 2
+    known = np.minimum(1.0, 1.0 / np.maximum(stack.share * sizes, 1e-300))
+    return float(known @ squares / max(squares.sum(), 1e-300))
 
 
 def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import noise_of
+from modelgen.diagnosis.colour import LAGS, Colour, correlations
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.stack import Gain, Stack, joints_of, weighted
 from modelgen.diagnosis.whitening import Whitener, all_usable, whitened, whitener
 
-LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats
+DEARER = 1.5  # times the evidence that it takes where the colour of the noise is not known
 EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this
 
 
@@ -54,6 +55,7 @@ class System:
             rows[0].baseline.said,
         )
         shares = np.array([_independent(self, j) for j in range(self.n)])
+        coloured = correlations(self.residuals, moving, self.periods)
         self.plain = Stack(
             lambda c: weighted(c, moving, self.sizes),
             joints_of(moving),
@@ -61,6 +63,7 @@ class System:
             columns,
             efforts,
             rows[0].baseline.said,
+            None if coloured is None else Colour(coloured, moving),
         )
 
     def _whitener(self, j: int) -> Whitener:
@@ -86,6 +89,11 @@ class System:
         return any(p is not None for p in self.periods)
 
     @property
+    def price(self) -> float:
+        """Times the evidence that it takes where noise of a known colour hides what is of the same colour."""
+        return 1.0 if self.plain.colour is not None else DEARER
+
+    @property
     def fair(self) -> Stack:
         """The equations by which a law and a function of no law are compared: the more a function bends, the
         more noise of any colour it follows. Plain ones where no noise is known by which to whiten.
@@ -99,8 +107,8 @@ class System:
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
         negative; empty for none. The evidence is that of the whitened equations, or of the plain ones with
-        as many of their rows as are independent, whichever is more: whitening takes slow effects for slow
-        noise.
+        as many of their rows as are independent for these columns, whichever is more: after a rest, and to
+        what does not repeat, the filter is blind.
         """
         white = self.white.gain(columns, extra, positive)
         plain = self.plain.gain(columns, extra, positive)

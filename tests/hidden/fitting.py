@@ -139,9 +139,7 @@ def rms(residuals: list[Array], rows: list[Rows]) -> Array:
     return np.asarray(np.sqrt(total / sum(item.moving.sum(axis=0) for item in rows)))
 
 
-def rotated(
-    records: list[Log], described: Plant, held_out: tuple[int, ...], pulled: bool = False
-) -> Array:
+def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...], pulled: bool = False) -> Array:
     """RMSE (n,) over the records of these numbers, each predicted by a fit to the others."""
     rows = [equations(log, described, pulled) for log in records]
     left_over = []

@@ -1,0 +1,63 @@
+"""How much noise of one colour hides of columns: slow columns in slow noise have fewer independent rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import fftconvolve
+
+from modelgen.dataset.periods import noise_of
+from modelgen.diagnosis.rows import Array
+
+LAGS = 80  # rows of autocorrelation that count
+
+
+class Colour:
+    """Of the noise of rows that are stacked record after record, joint after joint in each.
+
+    correlations: (n, LAGS) of each joint's noise, from lag 0, tapered so that no combination of rows has a
+    negative variance (Newey and West 1987).
+    """
+
+    def __init__(self, correlations: Array, moving: Sequence[NDArray[np.bool_]]) -> None:
+        self.kernels = [np.concatenate([c[:0:-1], c]) for c in correlations]
+        self.places: list[list[tuple[slice, NDArray[np.intp]]]] = [[] for _ in correlations]
+        self.length, row = 0, 0
+        for flags in moving:
+            for j, places in enumerate(self.places):
+                at = np.flatnonzero(flags[:, j])
+                places.append((slice(row, row + len(at)), self.length + at))
+                row += len(at)
+            self.length += len(flags) + LAGS
+
+    def variance(self, columns: Array) -> Array:
+        """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""
+        found = np.zeros((columns.shape[1], columns.shape[1]))
+        for kernel, places in zip(self.kernels, self.places, strict=True):
+            spread = np.zeros((self.length, columns.shape[1]))
+            for rows, at in places:
+                spread[at] = columns[rows]
+            if spread.any():
+                found += spread.T @ fftconvolve(spread, kernel[:, None], mode="same", axes=0)
+        return 0.5 * (found + found.T)
+
+
+def correlations(
+    residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], periods: Sequence[int | None]
+) -> Array | None:
+    """Of what differs between the periods of residuals (M, n) of each record, tapered: (n, LAGS). None where
+    in some record nothing repeats: what is left has the colour of what the model lacks.
+    """
+    if any(p is None for p in periods):
+        return None
+    n = residuals[0].shape[1]
+    sums = np.zeros((n, LAGS))
+    for e, flags, p in zip(residuals, moving, periods, strict=True):
+        for j in range(n):
+            values, there = noise_of(e[:, j], flags[:, j], int(p or 0))
+            values = np.where(there, values, 0.0)
+            count = min(LAGS, len(values))
+            sums[j, :count] += [values[k:] @ values[: len(values) - k] for k in range(count)]
+    return np.asarray(sums / np.maximum(sums[:, :1], 1e-300) * (1.0 - np.arange(LAGS) / LAGS))

@@ -1,0 +1,100 @@
+"""Noise of one colour hides columns of the same colour: against draws of such noise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.random import Generator, default_rng
+from scipy.signal import lfilter
+from scipy.stats import chi2
+
+from modelgen.diagnosis.baseline import Baseline
+from modelgen.diagnosis.colour import LAGS, Colour, correlations
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System
+
+PERIOD, PERIODS = 500, 3
+LONG = PERIOD * PERIODS
+UNUSED: Any = None  # records, of which the equations know nothing
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
+KEPT = 0.8  # from row to row, of the slow noise
+
+
+def slow_noise(random: Generator, count: int = LONG) -> Array:
+    """White, and slow of as much power."""
+    drift = np.sqrt(1 - KEPT**2) * lfilter([1.0], [1.0, -KEPT], random.normal(size=count + 200))[200:]
+    return np.asarray(drift + random.normal(size=count))
+
+
+def wave(cycles: float, phase: float = 0.0) -> Array:
+    """(N,), as often in every period."""
+    return np.sin(2 * np.pi * cycles * np.arange(LONG) / PERIOD + phase)
+
+
+def test_the_variance_of_a_sum_is_that_of_draws() -> None:
+    """Of a slow and a fast column, with gaps where the joint rests."""
+    moving = np.arange(LONG) % 250 > 40
+    columns = np.column_stack([wave(2.0), wave(120.0, 0.3)])[moving]
+    lags: Array = KEPT ** np.arange(LAGS, dtype=float)
+    lags[0] = 2.0
+    colour = Colour((lags / 2.0)[None], [moving[:, None]])
+    random = default_rng(1)
+    sums = np.array([columns.T @ slow_noise(random)[moving] for _ in range(2000)]) / np.sqrt(2.0)
+    np.testing.assert_allclose(np.diag(colour.variance(columns)), sums.var(axis=0), rtol=0.1)
+
+
+def test_the_colour_is_found_between_periods() -> None:
+    """Whatever repeats in every period has no part in it."""
+    random = default_rng(2)
+    residuals = [(slow_noise(random) + 5.0 * wave(3.0))[:, None] for _ in range(6)]
+    flags = [np.ones((LONG, 1), dtype=bool)] * 6
+    found = correlations(residuals, flags, [PERIOD] * 6)
+    assert found is not None
+    expected = 0.5 * KEPT ** np.arange(1, LAGS) * (1.0 - np.arange(1, LAGS) / LAGS)
+    np.testing.assert_allclose(found[0, 1:], expected, atol=0.06)
+    assert correlations(residuals, flags, [PERIOD] * 5 + [None]) is None
+
+
+def evidence(seed: int, cycles: float, size: float = 0.0) -> list[float]:
+    """Twice the log likelihood ratio of a wave that is there to this extent in two records: in the plain
+    equations, and in them as if noise hid all columns alike.
+    """
+    random = default_rng([3, seed])
+    rows, columns = [], []
+    for k in range(2):
+        own = wave(cycles, 0.5 * k)
+        effort = 2.0 * wave(1.0) + size * own + slow_noise(random)
+        table = wave(1.0)[:, None, None]
+        rows.append(Rows(UNUSED, effort[:, None], table, np.ones((LONG, 1), dtype=bool), BARE))
+        columns.append(own[:, None, None])
+    plain = System(rows, [r.columns for r in rows], [PERIOD] * 2).plain
+    found = [plain.gain(columns, alike=alike) for alike in (False, True)]
+    return [x.delta_bic + float(np.log(plain.counts.sum())) for x in found if x is not None]
+
+
+@pytest.mark.parametrize("cycles", [2.0, 6.0])
+def test_evidence_of_what_is_not_there_is_that_of_chance(cycles: float) -> None:
+    """A likelihood ratio: above the quantile of chi-square as often as that says. As if noise hid all columns
+    alike, four times as often.
+    """
+    table = np.array([evidence(k, cycles) for k in range(400)])
+    often = (table > chi2.ppf(0.95, 1)).mean(axis=0)
+    assert 0.02 < often[0] < 0.09
+    assert often[1] > 0.12
+
+
+def test_fast_columns_lose_nothing() -> None:
+    own, alike = evidence(1, 120.0, 0.5)
+    assert own == alike > 20.0
+
+
+def test_noise_of_unknown_colour_asks_for_more() -> None:
+    rows = [
+        Rows(UNUSED, slow_noise(default_rng(k))[:, None], wave(1.0)[:, None, None], flags, BARE)
+        for k, flags in enumerate([np.ones((LONG, 1), dtype=bool)] * 2)
+    ]
+    columns = [r.columns for r in rows]
+    assert System(rows, columns, [PERIOD] * 2).price == 1.0
+    assert System(rows, columns, [PERIOD, None]).price > 1.0
