@@ -253,6 +253,31 @@ def test_an_effect_reaches_the_strength_asked_for(effect: str, name: str, joint:
     assert bench.strength(0, floor, bench.errors({0: 0.3 * magnitude})) < 1.2
 
 
+def test_a_spring_and_an_offset_are_not_outside_the_catalogue() -> None:
+    """Of either nothing is left for what the strength of an effect from outside is; of a spot most is."""
+    for effect, least, most in (
+        ("spring", 0.97, 1.03),
+        ("friction_offset", 0.97, 1.03),
+        ("hard_spot", 1.2, 1.4),
+    ):
+        bench = Bench(Case("levered2", 103, (Hidden(effect, 2, 1.3),)))
+        magnitude = bench.tune(0, bench.errors({}))[0]
+        clean, hidden = ([bench.record(k, given) for k in range(3)] for given in ({}, {0: magnitude}))
+        left = [fitting.rotated(logs, bench.arm.plant, (0, 1, 2), pulled=True) for logs in (hidden, clean)]
+        assert least < (left[0] / left[1])[1] < most
+
+
+def test_what_the_training_records_show_of_an_effect() -> None:
+    """Nothing of one that is not there; of one that is, about n (s^2 - 1) of n independent samples."""
+    bench = Bench(Case("direct2", 103, (Hidden("stribeck_friction", 2, 1.3),)))
+    clean = [bench.record(k, {}) for k in range(2)]
+    assert fitting.shown(clean, clean, bench.arm.plant) == 0.0
+    magnitude = bench.tune(0, bench.errors({}))[0]
+    found = fitting.shown([bench.record(k, {0: magnitude}) for k in range(2)], clean, bench.arm.plant)
+    samples = 2 * bench.duration * 2 * fitting.BAND
+    assert 0.5 < found / (samples * math.log(1.3**2)) < 1.5
+
+
 def test_every_effect_has_a_place() -> None:
     for effect in EFFECTS:
         assert any(joints_for(effect, arms.draw(name, default_rng(0))) for name in arms.DESIGNS)

@@ -106,8 +106,9 @@ def run_item(item: Item, seed: int) -> dict[str, Any]:
     folder = Path(tempfile.mkdtemp(prefix="hidden-"))
     try:
         case = draw(own, item.effects, item.strength, names, item.encoder)
-        outcome, strength, seconds = run(case, folder / "case")
-        line |= {"case": asdict(case), **asdict(outcome), "reached": strength, "seconds": seconds}
+        outcome, label, seconds = run(case, folder / "case")
+        line |= {"case": asdict(case), **asdict(outcome), "reached": label.strength}
+        line |= {"shown": label.shown, "seconds": seconds}
     except PlantError as error:
         line["no_case"] = str(error)
     except CommandError as error:

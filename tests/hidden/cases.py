@@ -50,13 +50,17 @@ class Case:
 
 @dataclass(frozen=True)
 class Label:
-    """The truth about a case. strength: reached, by effect. floor, with_effect: RMSE (n,) on test."""
+    """The truth about a case. strength: reached, by effect. floor, with_effect: RMSE (n,) on test.
+
+    shown: what the training records say for the effects, twice the logarithm of a likelihood ratio.
+    """
 
     case: dict[str, Any]
     strength: list[float]
     magnitude: list[float]
     floor: list[float]
     with_effect: list[float]
+    shown: float = 0.0
 
 
 def _random(case: Case, *more: int) -> Generator:
@@ -224,12 +228,14 @@ def make(case: Case, folder: Path) -> Label:
     free = case.arm in arms.FREE
     entry = arms.describe(bench.arm, _random(case, 5), exact_links=free)
     arms.write_description(folder / "arms.yaml", case.name, entry)
+    clean = [bench.record(k, {}) for k in range(3)]
     return Label(
         asdict(case),
         strengths,
         [magnitudes[place] for place in range(len(case.hidden))],
-        _test(bench, [bench.record(k, {}) for k in range(3)]),
+        _test(bench, clean),
         _test(bench, kept),
+        fitting.shown(kept[:2], clean[:2], bench.arm.plant) if case.hidden else 0.0,
     )
 
 

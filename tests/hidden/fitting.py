@@ -22,12 +22,13 @@ REST, SPREAD = 0.01, 0.02  # of the top speed; s about it
 class Rows:
     """Decimated equations. columns: (N, n, p), effort: (N, n) [A], or N m of a free motion.
 
-    moving: (N, n), 1 where the joint is neither at rest nor about to reverse, else 0.
+    moving: (N, n), 1 where the joint is neither at rest nor about to reverse, else 0. step: [s].
     """
 
     columns: Array
     effort: Array
     moving: Array
+    step: float
 
 
 def low_pass(values: Array, band: float, rate: float) -> Array:
@@ -68,7 +69,7 @@ def equations(log: Log, described: Plant, pulled: bool = False) -> Rows:
     kept_columns = low_pass(columns.reshape(len(columns), -1), BAND, rate)[kept].reshape(
         -1, n, columns.shape[2]
     )
-    return Rows(kept_columns, effort[kept], moving[::thin][kept].astype(float))
+    return Rows(kept_columns, effort[kept], moving[::thin][kept].astype(float), step / rate)
 
 
 def pulls(described: Plant, q: Array) -> Array:
@@ -147,3 +148,16 @@ def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...], pul
         estimate = solve([item for number, item in enumerate(rows) if number != k])
         left_over.append(residual(rows[k], estimate))
     return rms(left_over, [rows[k] for k in held_out])
+
+
+def shown(records: list[Log], clean: list[Log], described: Plant) -> float:
+    """Twice the log likelihood ratio of effects: what one fit to the records leaves with them over without,
+    in white noise, of which twice BAND samples are independent in a second.
+    """
+    found = []
+    for logs in (records, clean):
+        rows = [equations(log, described) for log in logs]
+        estimate = solve(rows)
+        found.append(rms([residual(item, estimate) for item in rows], rows))
+    count = sum(item.moving.sum(axis=0) for item in rows) * min(1.0, 2 * BAND * rows[0].step)
+    return float((count * 2 * np.log(found[0] / found[1])).sum())

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hidden.arms import FREE
-from hidden.cases import Case, make, seal, unseal
+from hidden.cases import Case, Label, make, seal, unseal
 from hidden.judging import Outcome, judge
 from hidden.recovery import reachable
 
@@ -39,8 +39,8 @@ def diagnose(folder: Path, name: str) -> tuple[dict[str, Any], float]:
     return printed, time.perf_counter() - begin
 
 
-def run(case: Case, folder: Path) -> tuple[Outcome, list[float], float]:
-    """Makes the case, lets it be diagnosed, opens the label. Outcome, strengths reached, seconds."""
+def run(case: Case, folder: Path) -> tuple[Outcome, Label, float]:
+    """Makes the case, lets it be diagnosed, opens the label. Outcome, label, seconds."""
     sealed = folder.with_suffix(".sealed")
     seal(make(case, folder), sealed)
     answer, seconds = diagnose(folder, case.name)
@@ -48,4 +48,4 @@ def run(case: Case, folder: Path) -> tuple[Outcome, list[float], float]:
     free = case.arm in FREE
     measured = case.hidden and answer["causes"] and not free
     floor = reachable(case, folder, answer["settings"]["cutoff_hz"]) if measured else None
-    return judge(answer, label, floor), label.strength, seconds
+    return judge(answer, label, floor), label, seconds
