@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,6 +89,30 @@ def test_evidence_of_what_is_not_there_is_that_of_chance(cycles: float) -> None:
 def test_fast_columns_lose_nothing() -> None:
     own, alike = evidence(1, 120.0, 0.5)
     assert own == alike > 20.0
+
+
+def test_what_passes_is_not_the_noise_that_hides_it() -> None:
+    """A drift over the whole record is among what differs between periods, unless it is taken off."""
+    drift = np.linspace(-1.0, 1.0, LONG)
+    rows = [
+        Rows(
+            UNUSED, (3.0 * drift + slow_noise(default_rng(k)))[:, None], wave(1.0)[:, None, None], flags, BARE
+        )
+        for k, flags in enumerate([np.ones((LONG, 1), dtype=bool)] * 2)
+    ]
+    plain = System(rows, [r.columns for r in rows], [PERIOD] * 2).plain
+    hidden, seen = (plain.gain([drift[:, None, None]] * 2, passing=passing) for passing in (False, True))
+    assert hidden is not None
+    assert seen is not None
+    assert hidden.delta_bic < 0.5 * seen.delta_bic
+    without = [replace(r, effort=r.effort - 3.0 * drift[:, None]) for r in rows]
+    clean = System(without, [r.columns for r in rows], [PERIOD] * 2).plain.colour
+    found = plain.colour
+    assert clean is not None
+    assert found is not None
+    left = plain.left - plain.stacked([drift[:, None, None]] * 2)[:, 0] * seen.values[0]
+    columns = plain.stacked([wave(6.0)[:, None, None]] * 2)
+    np.testing.assert_allclose(found.of(left).variance(columns), clean.variance(columns), rtol=0.1)
 
 
 def test_noise_of_unknown_colour_asks_for_more() -> None:

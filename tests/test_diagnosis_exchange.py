@@ -12,7 +12,6 @@ from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause, measured
 from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import unsupported
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.probing import Prober
@@ -79,21 +78,3 @@ def test_a_cause_that_took_another_ones_place_has_its_own_evidence_and_gain() ->
     assert found.delta_bic == own.delta_bic
     # an offset of 0.6 against noise of unit size: 1 - 1 / sqrt(1.36), less what the spring takes of it
     assert 5.0 < found.expected_gain < 14.3
-
-
-def test_faint_evidence_needs_more_than_the_plain_equations() -> None:
-    """Of a law that is there and of one that is not; what does not repeat is among the noise, and passes."""
-    rows, periods, trial = scene()
-    bare = System(rows, [r.columns for r in rows], periods)
-
-    def refused(effect: str, law: Any, evidence: float) -> bool:
-        found = trial(effect, law)
-        return unsupported(replace(found, gain=replace(found.gain, delta_bic=evidence)), bare)
-
-    def absent(x: Array) -> Array:
-        return np.asarray(np.sin(40.0 * x))
-
-    assert refused("asymmetric_viscous_friction", absent, 20.0)
-    assert not refused("asymmetric_viscous_friction", absent, 30.0)
-    assert not refused("friction_offset", offset, 20.0)
-    assert not refused("friction_warm_up", absent, 20.0)

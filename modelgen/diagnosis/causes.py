@@ -7,11 +7,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from modelgen.diagnosis.candidates import WARMING
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import Gates
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.trials import Trial, beside
 
 CONTRADICTION = 3.0  # standard deviations below zero, of what cannot be negative
 
@@ -38,10 +39,13 @@ def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike
     columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
     positive = [above for t in trials for above in t.candidate.positive]
     extra = float(sum(len(t.values) for t in trials))
+    passing = any(t.candidate.effect == WARMING for t in trials)
     if alike:
         gain = rest.plain.gain(columns, extra, positive, alike=True)
+    elif fair:
+        gain = rest.fair.gain(columns, extra, positive)
     else:
-        gain = (rest.fair if fair else rest).gain(columns, extra, positive)
+        gain = rest.gain(columns, extra, positive, passing=passing)
     return -np.inf if gain is None else gain.delta_bic
 
 
@@ -105,7 +109,7 @@ def _gain(trial: Trial, gates: Gates) -> float:
 
 def _worth(trial: Trial, without: System) -> float:
     """Delta BIC given all others."""
-    gain = without.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
+    gain = beside(trial, without)
     return -np.inf if gain is None else gain.delta_bic - trial.doubt
 
 

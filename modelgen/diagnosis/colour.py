@@ -18,10 +18,16 @@ class Colour:
     """Of the noise of rows that are stacked record after record, joint after joint in each.
 
     correlations: (n, LAGS) of each joint's noise, from lag 0, tapered so that no combination of rows has a
-    negative variance (Newey and West 1987).
+    negative variance (Newey and West 1987). moving: (M, n) of each record. periods: rows in a period of each.
     """
 
-    def __init__(self, correlations: Array, moving: Sequence[NDArray[np.bool_]]) -> None:
+    def __init__(
+        self,
+        correlations: Array,
+        moving: Sequence[NDArray[np.bool_]],
+        periods: Sequence[int | None] = (),
+    ) -> None:
+        self.moving, self.periods = moving, periods
         self.kernels = [np.concatenate([c[:0:-1], c]) for c in correlations]
         self.places: list[list[tuple[slice, NDArray[np.intp]]]] = [[] for _ in correlations]
         self.length, row = 0, 0
@@ -31,6 +37,16 @@ class Colour:
                 places.append((slice(row, row + len(at)), self.length + at))
                 row += len(at)
             self.length += len(flags) + LAGS
+
+    def of(self, left: Array) -> Colour:
+        """That of what is left, (R,), once what does not repeat is taken off."""
+        residuals = [np.zeros(flags.shape) for flags in self.moving]
+        ends = np.cumsum([len(flags) + LAGS for flags in self.moving])
+        for j, places in enumerate(self.places):
+            for (rows, at), table, end in zip(places, residuals, ends, strict=True):
+                table[at - (end - len(table) - LAGS), j] = left[rows]
+        found = correlations(residuals, self.moving, self.periods)
+        return self if found is None else Colour(found, self.moving, self.periods)
 
     def variance(self, columns: Array) -> Array:
         """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""

@@ -7,22 +7,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.exchange import TIE, exchanged
 from modelgen.diagnosis.forms import with_causes
-from modelgen.diagnosis.gates import FAINT, PRACTICAL, Gates, Judgement, instrumented
+from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares
-from modelgen.diagnosis.trials import Court, Trial, sensible
+from modelgen.diagnosis.trials import Court, Trial, beside, sensible
 from modelgen.probing import Prober
 
 EVIDENCE = 10.0  # delta BIC that it takes to name a cause, and to name it rather than another one
-UNSUPPORTED = -3.0  # delta BIC in the fair equations, below which faint evidence in the plain ones is noise
-PASSING = (LATER, WARMING)  # do not repeat
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
 MOST = 4  # causes, or one for each joint where there are more
@@ -90,7 +88,7 @@ def select(
             found = court.trial(candidate)
             if found is None:
                 continue
-            if found.gain.delta_bic < evidence or unsupported(found, system):
+            if found.gain.delta_bic < evidence:
                 ranking.append(_ranked(found, None, "evidence"))
             elif not sensible(found, prober.arm):
                 ranking.append(_ranked(found, None, "values"))
@@ -155,7 +153,7 @@ def select(
 
 def left_to(trial: Trial, system: System) -> float:
     """Evidence of a candidate, with the values it was found at, beside the system's causes."""
-    gain = system.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
+    gain = beside(trial, system)
     return -np.inf if gain is None else gain.delta_bic
 
 
@@ -173,17 +171,6 @@ def correlated(system: System) -> bool:
     """Whether errors of the positions matter: the regressor's correlation with those of the equations."""
     found = endogeneity(system)
     return found is not None and found.found and float(found.share.max()) > PRACTICAL
-
-
-def unsupported(trial: Trial, system: System) -> bool:
-    """Whether faint evidence is that of the plain equations alone, which slow noise may give as well.
-
-    What does not repeat is a part of the noise by which the others are whitened.
-    """
-    if trial.gain.delta_bic >= FAINT * system.price or trial.candidate.effect in PASSING:
-        return False
-    gain = system.fair.gain(trial.columns, float(len(trial.values)), trial.candidate.positive)
-    return gain is None or gain.delta_bic < UNSUPPORTED
 
 
 def _harmless(rows: Sequence[Rows], blur: Array | None, system: System) -> bool:

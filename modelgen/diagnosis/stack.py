@@ -95,13 +95,15 @@ class Stack:
         positive: Sequence[bool] = (),
         *,
         alike: bool = False,
+        passing: bool = False,
     ) -> Gain | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
-        negative; empty for none. alike: as if noise hid columns of all colours alike.
+        negative; empty for none. alike: as if noise hid columns of all colours alike. passing: they do not
+        repeat with the periods, and their part in what differs between these is not noise.
         """
-        return explained(self.stacked(columns), self, extra, positive, alike=alike)
+        return explained(self.stacked(columns), self, extra, positive, alike=alike, passing=passing)
 
 
 @dataclass(frozen=True)
@@ -167,11 +169,12 @@ def explained(
     positive: Sequence[bool] = (),
     *,
     alike: bool = False,
+    passing: bool = False,
 ) -> Gain | None:
     """What columns (R + D, k) explain of what the stack's baseline leaves.
 
-    positive: columns whose value may not be negative: it is zero where it would be. alike: as if noise hid
-    columns of all colours alike.
+    positive: columns whose value may not be negative: it is zero where it would be. alike, passing: as of
+    `Stack.gain`.
     """
     basis, left, n = stack.basis, stack.left, len(stack.counts)
     norms = np.linalg.norm(stacked, axis=0)
@@ -197,25 +200,27 @@ def explained(
         found = not_negative(s[kept, None] * vt[kept], scores, limited)
         scores = s[kept] * (vt[kept] @ found)
     values[there] = found / norms[there]
-    rss0, rss1 = stack.squares, stack.by_group(left - u[:, kept] @ scores)
+    after = left - u[:, kept] @ scores
+    rss0, rss1 = stack.squares, stack.by_group(after)
     rank = int(kept.sum())
     used, weights = stack.weights > 0, stack.weights.copy()
     if stack.colour is not None and not alike:
-        weights[:n] *= _unhidden(u[:, kept], scores, stack, stack.colour)
+        colour, most = (stack.colour.of(after), 1.0 / stack.share) if passing else (stack.colour, 1.0)
+        weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, most)
     drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
     return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
 
 
-def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour) -> float:
+def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour, most: float) -> float:
     """Share of the evidence of scores (k,) along orthonormal columns (R + D, k) that noise of this colour
-    leaves: as many rows are independent as the variance of the scores says, not more than for any column.
+    leaves, `most` at most: as many rows are independent as the variance of the scores says.
     """
     count = len(stack.joint)
     variance = colour.variance(basis[:count]) + basis[count:].T @ basis[count:] / stack.share
     sizes, vectors = np.linalg.eigh(variance)
     squares = (vectors.T @ scores) ** 2
-    known = np.minimum(1.0, 1.0 / np.maximum(stack.share * sizes, 1e-300))
+    known = np.minimum(most, 1.0 / np.maximum(stack.share * sizes, 1e-300))
     return float(known @ squares / max(squares.sum(), 1e-300))
 
 

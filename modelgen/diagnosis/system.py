@@ -63,7 +63,7 @@ class System:
             columns,
             efforts,
             rows[0].baseline.said,
-            None if coloured is None else Colour(coloured, moving),
+            None if coloured is None else Colour(coloured, moving, self.periods),
         )
 
     def _whitener(self, j: int) -> Whitener:
@@ -101,17 +101,22 @@ class System:
         return self.white if self.noise_known else self.plain
 
     def gain(
-        self, columns: Sequence[Array], extra: float = 0.0, positive: Sequence[bool] = ()
+        self,
+        columns: Sequence[Array],
+        extra: float = 0.0,
+        positive: Sequence[bool] = (),
+        *,
+        passing: bool = False,
     ) -> Gain | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
-        negative; empty for none. The evidence is that of the whitened equations, or of the plain ones with
-        as many of their rows as are independent for these columns, whichever is more: after a rest, and to
-        what does not repeat, the filter is blind.
+        negative; empty for none. passing: they do not repeat with the periods. The evidence is that of the
+        whitened equations, or of the plain ones with as many of their rows as are independent for these
+        columns, whichever is more: after a rest, and to what does not repeat, the filter is blind.
         """
         white = self.white.gain(columns, extra, positive)
-        plain = self.plain.gain(columns, extra, positive)
+        plain = self.plain.gain(columns, extra, positive, passing=passing)
         if white is None or plain is None:
             return white or plain
         return plain if plain.delta_bic > white.delta_bic else white

@@ -29,7 +29,7 @@ REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and other
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
 CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
-WORTH = 4.0  # evidence below which a grid's best is not refined
+WORTH = 4.0  # evidence below which nothing is refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
 SETTLED = 1.0  # change of evidence that needs no more of it
 
@@ -70,6 +70,12 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
         mass = found["mass"]
         return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
     return found
+
+
+def beside(trial: Trial, system: System) -> Gain | None:
+    """What a candidate explains beside another system's columns, with the values it was found at."""
+    c = trial.candidate
+    return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.effect == of.WARMING)
 
 
 def sensible(trial: Trial, arm: Arm) -> bool:
@@ -125,7 +131,7 @@ class Court:
         if found is not None and self.aged and found.gain.delta_bic >= WORTH:
             self.fresh = True
             found = self._trial(candidate)
-        if found is None or found.gain.delta_bic < CERTAIN or candidate.effect not in CURVED:
+        if found is None or found.gain.delta_bic < WORTH or candidate.effect not in CURVED:
             return found
         for _ in range(SECANTS):
             before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
@@ -168,7 +174,7 @@ class Court:
             columns = of.columns(candidate, around, self.rows, self.prober, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
-        gain = self.system.gain(columns, extra, candidate.positive)
+        gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.effect == of.WARMING)
         if gain is None:
             return None
         held = np.array(candidate.positive) & (gain.values == 0.0)
