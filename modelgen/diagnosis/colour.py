@@ -27,7 +27,7 @@ class Colour:
         moving: Sequence[NDArray[np.bool_]],
         periods: Sequence[int | None] = (),
     ) -> None:
-        self.moving, self.periods = moving, periods
+        self.correlations, self.moving, self.periods = correlations, moving, periods
         self.kernels = [np.concatenate([c[:0:-1], c]) for c in correlations]
         self.places: list[list[tuple[slice, NDArray[np.intp]]]] = [[] for _ in correlations]
         self.length, row = 0, 0
@@ -47,6 +47,10 @@ class Colour:
                 table[at - (end - len(table) - LAGS), j] = left[rows]
         found = correlations(residuals, self.moving, self.periods)
         return self if found is None else Colour(found, self.moving, self.periods)
+
+    def along(self, moving: Sequence[NDArray[np.bool_]]) -> Colour:
+        """The same in rows of other motions."""
+        return Colour(self.correlations, moving)
 
     def variance(self, columns: Array) -> Array:
         """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.colour import Colour
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.stack import NOTHING, joints_of, orthonormal, weighted
 from modelgen.diagnosis.system import System
@@ -57,13 +58,15 @@ def hypothesis(trial: Trial) -> Hypothesis:
 @dataclass(frozen=True)
 class _Scale:
     """One way to weigh equations. stacked: columns (M, n, k) of all records to (R, k); joint: (R,), of rows;
-    variance: of the noise, shares: of rows that are independent, by joint (n,).
+    variance: of the noise, shares: of rows that are independent, by joint (n,); colour: of the noise, None
+    where it is white or not known.
     """
 
     stacked: Callable[[Sequence[Array]], Array]
     joint: NDArray[np.intp]
     variance: Array
     shares: Array
+    colour: Colour | None = None
 
     @property
     def rows(self) -> Array:
@@ -83,7 +86,12 @@ class _Scale:
         power = np.bincount(self.joint, weights=left**2, minlength=len(self.variance))
         used = self.rows > 0
         ratio = power[used] / (self.rows[used] * np.maximum(self.variance[used], 1e-300))
-        return float((self.counts[used] * np.log1p(ratio)).sum())
+        counted = float((self.counts[used] * np.log1p(ratio)).sum())
+        if self.colour is None or not left.any():
+            return counted
+        unit = left[:, None] / np.linalg.norm(left)
+        hidden = float(self.colour.variance(unit)[0, 0] * self.counts.sum() / self.rows.sum())
+        return counted / max(1.0, hidden)
 
 
 class Judge:
@@ -193,8 +201,13 @@ class Judge:
 
     def _weighted(self, rows: Sequence[Rows]) -> _Scale:
         moving = [r.moving for r in rows]
+        colour = self.system.plain.colour
         return _Scale(
-            lambda c: weighted(c, moving, self.system.sizes), joints_of(moving), self.plain, self.shares
+            lambda c: weighted(c, moving, self.system.sizes),
+            joints_of(moving),
+            self.plain,
+            self.shares,
+            None if colour is None else colour.along(moving),
         )
 
 
