@@ -267,15 +267,34 @@ def test_a_spring_and_an_offset_are_not_outside_the_catalogue() -> None:
         assert least < (left[0] / left[1])[1] < most
 
 
+def test_the_noise_has_the_covariance_that_its_filters_give() -> None:
+    """Of the mean of two samples, low-passed: every 14th, against draws."""
+    step, rate = 14, 500.0
+    found = fitting.noise_covariance(8, step, rate)
+    drawn = []
+    for k in range(40):
+        current = logs.noise(20000, np.ones(1), rate, default_rng([5, k]))
+        current[1:] = 0.5 * (current[1:] + current[:-1])
+        kept = fitting.low_pass(current, fitting.BAND, rate)[500:-500:step, 0]
+        drawn.append([np.mean(kept[lag:] * kept[: len(kept) - lag]) for lag in range(8)])
+    np.testing.assert_allclose(found[0], np.mean(drawn, axis=0), atol=0.05 * found[0, 0])
+
+
 def test_what_the_training_records_show_of_an_effect() -> None:
-    """Nothing of one that is not there; of one that is, about n (s^2 - 1) of n independent samples."""
+    """Nothing of one that is not there. Of one that is, about what so much less error in as many independent
+    samples is, and with the square of its size.
+    """
     bench = Bench(Case("direct2", 103, (Hidden("stribeck_friction", 2, 1.3),)))
     clean = [bench.record(k, {}) for k in range(2)]
     assert fitting.shown(clean, clean, bench.arm.plant) == 0.0
     magnitude = bench.tune(0, bench.errors({}))[0]
-    found = fitting.shown([bench.record(k, {0: magnitude}) for k in range(2)], clean, bench.arm.plant)
+    found = [
+        fitting.shown([bench.record(k, {0: size}) for k in range(2)], clean, bench.arm.plant)
+        for size in (0.5 * magnitude, magnitude)
+    ]
     samples = 2 * bench.duration * 2 * fitting.BAND
-    assert 0.5 < found / (samples * math.log(1.3**2)) < 1.5
+    assert 0.5 < found[1] / (samples * math.log(1.3**2)) < 2.0
+    assert 2.0 < found[1] / found[0] < 6.0
 
 
 def test_every_effect_has_a_place() -> None:

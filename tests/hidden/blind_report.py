@@ -33,8 +33,9 @@ coloured, of the RMS without the effect. The strength s is the held-out RMSE of 
 effect over without, on the affected joint, by the plant's own least squares below 15 Hz, each record held out
 in its turn; of an effect from outside the catalogue, what a spring and a constant current at each joint
 leave. A fit to few motions can take up what then costs 5 % on another: shown in the training records is an
-effect by which twice the log likelihood of the plant's own fit to them falls by {shown:g}, which a cause with
-one or two parameters needs for its name. In brackets: 95 % Wilson intervals, in %.
+effect by which twice the log likelihood of the plant's own fit to them, with the noise's colour known, falls
+by {shown:g}, which a cause with one or two parameters needs for its name. In brackets: 95 % Wilson
+intervals, in %.
 """
 
 

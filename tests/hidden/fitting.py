@@ -4,12 +4,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import qr, solve_triangular, toeplitz
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from hidden import native
-from hidden.logs import Log, joints_of
+from hidden.logs import COLOUR, COLOURED, WHITE, Log, joints_of
 from hidden.native import Array, Plant
 
 POSITION_BAND, BAND = 60.0, 15.0  # Hz
@@ -151,13 +151,53 @@ def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...], pul
 
 
 def shown(records: list[Log], clean: list[Log], described: Plant) -> float:
-    """Twice the log likelihood ratio of effects: what one fit to the records leaves with them over without,
-    in white noise, of which twice BAND samples are independent in a second.
+    """Twice the log likelihood that one fit to the records loses by the effects, over one to those without
+    them, in noise of the colour that is drawn.
     """
-    found = []
+    sizes, counts = [], np.zeros(0)
     for logs in (records, clean):
         rows = [equations(log, described) for log in logs]
-        estimate = solve(rows)
-        found.append(rms([residual(item, estimate) for item in rows], rows))
-    count = sum(item.moving.sum(axis=0) for item in rows) * min(1.0, 2 * BAND * rows[0].step)
-    return float((count * 2 * np.log(found[0] / found[1])).sum())
+        sizes.append(_whitened_squares(rows, clean[0].rate))
+        counts = np.asarray(sum(item.moving.sum(axis=0) for item in rows))
+    return float((counts * np.log(sizes[0] / sizes[1])).sum())
+
+
+def _whitened_squares(rows: list[Rows], rate: float) -> Array:
+    """What generalised least squares leaves by joint (n,), the joints weighted by what they leave."""
+    n = rows[0].effort.shape[1]
+    parts: list[list[Array]] = [[] for _ in range(n)]
+    for item in rows:
+        covariance = noise_covariance(len(item.effort), round(item.step * rate), rate)
+        for j in range(n):
+            used = item.moving[:, j] > 0.5
+            factor = np.linalg.cholesky(covariance[np.ix_(used, used)])
+            table = np.column_stack([item.columns[used, j], item.effort[used, j]])
+            parts[j].append(solve_triangular(factor, table, lower=True))
+    tables, weight = [np.concatenate(part) for part in parts], np.ones(n)
+    left = weight
+    for _ in range(3):
+        stacked = np.concatenate([table * by for table, by in zip(tables, weight, strict=True)])
+        estimate = np.linalg.lstsq(stacked[:, :-1], stacked[:, -1], rcond=None)[0]
+        left = np.array([((table[:, -1] - table[:, :-1] @ estimate) ** 2).sum() for table in tables])
+        weight = 1.0 / np.sqrt(left)
+    return left
+
+
+def noise_covariance(count: int, step: int, rate: float) -> Array:
+    """(count, count) of the noise of every `step`-th sample, low-passed as efforts are [A^2, of a current of
+    1 A RMS], and a hundredth of it for what the encoders' counts leave.
+    """
+    length = int(rate)
+    white = np.zeros(2 * length)
+    white[length : length + 2] = 0.5  # the mean with the one before
+    pole = math.exp(-2 * math.pi * COLOUR / rate)
+    coloured = lfilter([math.sqrt(1 - pole**2)], [1, -pole], white)
+    total = np.zeros(length)
+    for size, response in ((WHITE, white), (COLOURED, coloured)):
+        passed = low_pass(response, BAND, rate)
+        total += size**2 * np.correlate(passed, passed, mode="full")[2 * length - 1 : 3 * length - 1]
+    lags = np.zeros(count)
+    kept = total[::step][:count]
+    lags[: len(kept)] = kept
+    lags[0] *= 1.01
+    return np.asarray(toeplitz(lags))
