@@ -10,7 +10,7 @@ from numpy.random import default_rng
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.baseline import Baseline, estimated
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import EVIDENCE
+from modelgen.diagnosis.selection import RATHER
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.told import Told, told
 from modelgen.functions import Model, build_model, grouped
@@ -166,7 +166,7 @@ def test_one_link_that_is_not_as_described_is_not_taken_for_a_cause(count: int) 
     true, like = (white.gain([c[:, None, None]]) for c in (force, force + 0.9 * x[:, 0]))
     assert true is not None
     assert like is not None
-    assert like.delta_bic - true.delta_bic < EVIDENCE
+    assert like.delta_bic - true.delta_bic < RATHER
 
 
 def test_what_the_links_parameters_can_do_is_no_cause() -> None:

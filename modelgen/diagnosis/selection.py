@@ -20,7 +20,8 @@ from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Court, Trial, beside, sensible
 from modelgen.probing import Prober
 
-EVIDENCE = 10.0  # delta BIC that it takes to name a cause, and to name it rather than another one
+EVIDENCE = 10.0  # delta BIC that it takes to name a cause (very strong: Kass and Raftery 1995)
+RATHER = 15.0  # delta BIC that it takes to name it rather than another one that passes
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
 MOST = 4  # causes, or one for each joint where there are more
@@ -120,7 +121,7 @@ def select(
             for t, other in eligible
             if t is not best
             and (
-                best.gain.delta_bic - t.gain.delta_bic <= evidence
+                best.gain.delta_bic - t.gain.delta_bic <= RATHER
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
