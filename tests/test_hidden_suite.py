@@ -43,10 +43,10 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
                 time.sleep(0.2)
         else:
             try:
-                found, strength, seconds = run(case, shared / name)
+                found, label, seconds = run(case, shared / name)
                 written = (shared / name / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8")
                 like = json.loads(written)["most_like"]
-                content = {**asdict(found), "strength": strength, "seconds": seconds, "like": like}
+                content = {**asdict(found), "strength": label.strength, "seconds": seconds, "like": like}
             except Exception as error:
                 content = {"error": str(error)}
             draft = result.with_suffix(".draft")
