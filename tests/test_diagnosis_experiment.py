@@ -17,13 +17,14 @@ from modelgen.dataset import Record, choose, drives_of, prepare, read
 from modelgen.description import Arm, load
 from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.candidates import candidates
+from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.motions import Stage, stage
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.proposal import Proposal, propose
 from modelgen.diagnosis.run import settings_for
 from modelgen.diagnosis.separation import Judge, hypothesis
 from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Court, Trial
+from modelgen.diagnosis.trials import Trial
 from modelgen.effects import known_effects
 from modelgen.excitation.writing import data
 from modelgen.functions import build_model

@@ -22,25 +22,25 @@ from modelgen.diagnosis.candidates import (
     candidates,
     cold,
 )
-from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.checks import Place, asked, check_one_arm
-from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
+from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import released, settings_of_swings
 from modelgen.diagnosis.gates import PRACTICAL, practical
-from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit, place
+from modelgen.diagnosis.lack_of_fit import lack_of_fit
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
-from modelgen.diagnosis.outdone import Likeness, outdone
+from modelgen.diagnosis.outdone import outdone
 from modelgen.diagnosis.positions import feigned, harmless
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, Selection, select
 from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.diagnosis.system import mean_squares
+from modelgen.diagnosis.verdict import verdict_of
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober, places
@@ -134,7 +134,7 @@ def diagnose(
     moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
-    verdict, reason = _verdict(selection, beside, fit, share, tested, likeness, counted=counted)
+    verdict, reason = verdict_of(selection, beside, fit, share, tested, likeness, counted=counted)
     selection = stiffened(selection, rows, prober)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
@@ -181,74 +181,6 @@ def diagnose(
         },
         Positions(share, noisy),
     )
-
-
-def _verdict(
-    selection: Selection,
-    beside: Sequence[Cause],
-    fit: LackOfFit | None,
-    noisy: Array,
-    correlated: Endogeneity | None,
-    likeness: Likeness | None,
-    *,
-    counted: bool,
-) -> tuple[str, str]:
-    """beside: what gained something and left most of what repeats, or explained less than a shape; noisy:
-    percent of the RMSE by joint that errors of the positions could feign; counted: whether such errors are
-    all the noise there is, and what remains is no more than that.
-    """
-    like = "" if likeness is None else f", most like {likeness.shape.text}"
-    if selection.causes:
-        left = like or (fit is not None and fit.found)
-        return "named", "a cause passed every gate" + (
-            f"; something deterministic remains beside it{like}" if left else ""
-        )
-    if counted:
-        return "nothing_missing", (
-            "what remains is no more than what the counts of the encoders leave; whatever is less than that "
-            "takes finer ones to see"
-        )
-    if noisy.max() > PRACTICAL:
-        joint = int(np.argmax(noisy)) + 1
-        return "cannot_tell", (
-            f"the positions are too coarse: their errors alone could feign a gain of {noisy.max():.1f} % at "
-            f"joint {joint}, and nothing explains more; finer encoders, or encoders at the motors, can tell"
-        )
-    if fit is None:
-        return "cannot_tell", (
-            "nothing could be named, and no period repeats by which the noise could be measured: excite with "
-            "two or more identical periods (--period gives their length where it is not found)"
-        )
-    if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
-        joint = int(np.argmax(correlated.cost)) + 1
-        return "cannot_tell", (
-            "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
-            f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
-            f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
-        )
-    if fit.found or likeness is not None:
-        near = ", ".join(_title(c.trial.candidate) for c in beside)
-        more = f"; {near} comes nearest" if near else ""
-        return (
-            "outside_catalogue",
-            f"something deterministic remains{_where(fit, selection)} that no effect of the catalogue "
-            f"explains{like}{more}",
-        )
-    return "nothing_missing", "what remains does not repeat from period to period: it is noise"
-
-
-def _where(fit: LackOfFit, selection: Selection) -> str:
-    if not fit.found:
-        return ""
-    where = place(fit, selection.system.rows)
-    part = ""
-    if where is not None:
-        part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
-    return f" at joint {fit.worst.joint + 1}{part}"
-
-
-def _title(c: Candidate) -> str:
-    return c.effect if c.joint is None else f"{c.effect} at joint {c.joint}"
 
 
 def _named(

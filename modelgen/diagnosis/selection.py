@@ -10,6 +10,7 @@ import numpy as np
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
+from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.exchange import TIE, exchanged
 from modelgen.diagnosis.forms import with_causes
@@ -17,7 +18,7 @@ from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, mean_squares
-from modelgen.diagnosis.trials import Court, Trial, beside, sensible
+from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
 EVIDENCE = 10.0  # delta BIC that it takes to name a cause (very strong: Kass and Raftery 1995)
