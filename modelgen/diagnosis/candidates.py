@@ -42,6 +42,7 @@ LINK_SEARCHES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
 PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "actuator_mass": (("inertia", "moment_x"), ("moment_x",)),
     "lever_geometry": (("l1",), ("l2",), ("length",)),
+    "payload_change": (("mass", "moment_x"),),  # held along the last link
 }
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
