@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.dataset.drives import Drive
 from modelgen.dataset.objects import Array
-from modelgen.description import Arm, NoDrive
+from modelgen.description import Arm, LeveredDrive, NoDrive
 from modelgen.errors import InputError
 from modelgen.transmission import of_joint
 
@@ -109,15 +109,15 @@ def check_range(
         shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {printed}"
         limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"
         if excess > MARGIN * (high - low) or not np.isfinite(q[:, k]).all():
-            hint = _unit_hint(found, (low, high), unit)
+            hint = _unit_hint(found, (low, high), unit, motor_side and isinstance(joint.drive, LeveredDrive))
             raise InputError(f"{file}: {shown}, {limits}{hint}")
         if excess > 0.0:
             remarks.append(f"{shown}, {limits}")
     return remarks
 
 
-def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: str) -> str:
-    """The unit in which the values would fit."""
+def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: str, lever: bool) -> str:
+    """The unit in which the values would fit, else what may be wrong. lever: whether a lever's lengths may."""
     slack = MARGIN * (limits[1] - limits[0])
     options = {
         "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
@@ -127,4 +127,5 @@ def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: st
         low, high = sorted((found[0] * factor, found[1] * factor))
         if low >= limits[0] - slack and high <= limits[1] + slack:
             return f": these look like {words}; declare `unit: {name}` in a mapping file (--mapping)"
-    return ": correct unit, sign or offset in a mapping file (--mapping), or the limits in the description"
+    described = "the limits or the lever's lengths" if lever else "the limits"
+    return f": correct unit, sign or offset in a mapping file (--mapping), or {described} in the description"

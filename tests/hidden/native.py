@@ -127,14 +127,20 @@ def drive(plant: Plant, joint: int, q: float) -> tuple[float, float, float]:
 
 
 def joint_from_motor(plant: Plant, joint: int, x: Array) -> Array:
-    """Joint coordinate of motor coordinates (N,)."""
+    """Joint coordinate of motor coordinates (N,).
+
+    Raises PlantError where a lever leaves its stroke by more than a tenth: nobody takes that for the lever.
+    """
     kind = plant["kind"][joint]
     if kind < 0.5:
         return x
     if kind < 1.5:
         return np.asarray(x / plant["ratio"][joint])
     (begin, end), (first, last) = plant["length"][joint], plant["motor"][joint]
-    length = begin + (x - first) * (end - begin) / (last - first)
+    part = (x - first) / (last - first)
+    if part.min() < -0.1 or part.max() > 1.1:
+        raise PlantError(f"motor {joint + 1} leaves the stroke of the lever that is described")
+    length = begin + part * (end - begin)
     l1, l2 = plant["l1"][joint], plant["l2"][joint]
     inner = np.arccos(np.clip((l1**2 + l2**2 - length**2) / (2 * l1 * l2), -1, 1))
     return np.asarray(plant["offset"][joint] + plant["rev"][joint] * inner)
