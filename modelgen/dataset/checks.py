@@ -117,7 +117,7 @@ def check_range(
 
 
 def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: str, lever: bool) -> str:
-    """The unit in which the values would fit, else what may be wrong. lever: whether a lever's lengths may."""
+    """The unit in which the values would fit, else what may be wrong, a lever's lengths included."""
     slack = MARGIN * (limits[1] - limits[0])
     options = {
         "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
