@@ -23,7 +23,9 @@ BESIDE = 7.0  # delta BIC beside a cause, from which a shape may take its place
 LIKE = float(np.quantile(NULLS[SHAPE], CLEAN))  # delta BIC from which what is left is called like a shape
 TWICE = 2.0  # a cause's evidence: what has that beside it makes it a detail
 CLEARLY = 7.0  # delta BIC by which a shape is more than a cause that stands alone, with half of BESIDE
-SLOW = 20.0  # delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else
+# Delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else: in complete
+# models shapes have 37 there once in 200.
+SLOW = 40.0
 AS_GOOD, OF_IT = (
     5.0,
     0.01,
