@@ -23,10 +23,10 @@ BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 KEPT = 0.8  # from row to row, of the slow noise
 
 
-def slow_noise(random: Generator, count: int = LONG) -> Array:
+def slow_noise(random: Generator, kept: float = KEPT) -> Array:
     """White, and slow of as much power."""
-    drift = np.sqrt(1 - KEPT**2) * lfilter([1.0], [1.0, -KEPT], random.normal(size=count + 200))[200:]
-    return np.asarray(drift + random.normal(size=count))
+    drift = np.sqrt(1 - kept**2) * lfilter([1.0], [1.0, -kept], random.normal(size=LONG + 500))[500:]
+    return np.asarray(drift + random.normal(size=LONG))
 
 
 def wave(cycles: float, phase: float = 0.0) -> Array:
@@ -40,7 +40,7 @@ def test_the_variance_of_a_sum_is_that_of_draws() -> None:
     columns = np.column_stack([wave(2.0), wave(120.0, 0.3)])[moving]
     lags: Array = KEPT ** np.arange(LAGS, dtype=float)
     lags[0] = 2.0
-    colour = Colour((lags / 2.0)[None], [moving[:, None]])
+    colour = Colour((lags / 2.0)[None], [moving[:, None]], [None])
     random = default_rng(1)
     sums = np.array([columns.T @ slow_noise(random)[moving] for _ in range(2000)]) / np.sqrt(2.0)
     np.testing.assert_allclose(np.diag(colour.variance(columns)), sums.var(axis=0), rtol=0.1)
@@ -55,23 +55,29 @@ def test_the_colour_is_found_between_periods() -> None:
     assert found is not None
     expected = 0.5 * KEPT ** np.arange(1, LAGS) * (1.0 - np.arange(1, LAGS) / LAGS)
     np.testing.assert_allclose(found[0, 1:], expected, atol=0.06)
-    assert correlations(residuals, flags, [PERIOD] * 5 + [None]) is None
+    assert correlations(residuals, flags, [None] * 6) is None
 
 
-def evidence(seed: int, cycles: float, size: float = 0.0) -> list[float]:
-    """Twice the log likelihood ratio of a wave that is there to this extent in two records: in the plain
-    equations, and in them as if noise hid all columns alike.
+def evidence(
+    seed: int, cycles: float, size: float = 0.0, kept: tuple[float, ...] = (KEPT,), drift: bool = False
+) -> list[float]:
+    """Twice the log likelihood ratio of a wave, or a drift, that is there to this extent in two records, at
+    the first of joints whose noise keeps so much from row to row: in the plain equations, and in them as if
+    noise hid all columns alike.
     """
-    random = default_rng([3, seed])
+    random, n = default_rng([3, seed]), len(kept)
     rows, columns = [], []
     for k in range(2):
-        own = wave(cycles, 0.5 * k)
-        effort = 2.0 * wave(1.0) + size * own + slow_noise(random)
-        table = wave(1.0)[:, None, None]
-        rows.append(Rows(UNUSED, effort[:, None], table, np.ones((LONG, 1), dtype=bool), BARE))
-        columns.append(own[:, None, None])
+        own = np.linspace(-1.0, 1.0, LONG) if drift else wave(cycles, 0.5 * k)
+        effort = np.stack([2.0 * wave(1.0) + slow_noise(random, kept=part) for part in kept], axis=1)
+        effort[:, 0] += size * own
+        table = np.zeros((LONG, n, n))
+        table[:, range(n), range(n)] = wave(1.0)[:, None]
+        rows.append(Rows(UNUSED, effort, table, np.ones((LONG, n), dtype=bool), BARE))
+        columns.append(np.zeros((LONG, n, 1)))
+        columns[-1][:, 0, 0] = own
     plain = System(rows, [r.columns for r in rows], [PERIOD] * 2).plain
-    found = [plain.gain(columns, alike=alike) for alike in (False, True)]
+    found = [plain.gain(columns, alike=alike, passing=drift) for alike in (False, True)]
     return [x.delta_bic + float(np.log(plain.counts.sum())) for x in found if x is not None]
 
 
@@ -84,6 +90,17 @@ def test_evidence_of_what_is_not_there_is_that_of_chance(cycles: float) -> None:
     often = (table > chi2.ppf(0.95, 1)).mean(axis=0)
     assert 0.02 < often[0] < 0.09
     assert often[1] > 0.12
+
+
+@pytest.mark.parametrize(
+    ("kept", "drift"),
+    [((0.95, 0.0, 0.0), False), ((0.0, 0.95, 0.95), False), ((0.0, 0.95, 0.95), True), ((0.95,), True)],
+)
+def test_every_joint_has_a_colour_of_its_own(kept: tuple[float, ...], drift: bool) -> None:
+    """Slow noise at one, white at others, and the other way round; what repeats and what does not."""
+    found = np.array([evidence(k, 2.0, 0.0, kept, drift)[0] for k in range(300)])
+    assert 0.6 < found.mean() < 1.7  # of chi-square 1
+    assert (found > chi2.ppf(0.95, 1)).mean() < 0.11
 
 
 def test_fast_columns_lose_nothing() -> None:
@@ -122,4 +139,7 @@ def test_noise_of_unknown_colour_asks_for_more() -> None:
     ]
     columns = [r.columns for r in rows]
     assert System(rows, columns, [PERIOD] * 2).price == 1.0
-    assert System(rows, columns, [PERIOD, None]).price > 1.0
+    assert System(rows, columns, [None, None]).price > 1.0
+    once = np.arange(LONG)[:, None] < PERIOD  # moves in the first period alone: nothing repeats
+    still = [replace(r, moving=once) for r in rows]
+    assert System(still, columns, [PERIOD] * 2).price > 1.0

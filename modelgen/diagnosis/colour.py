@@ -12,6 +12,7 @@ from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.rows import Array
 
 LAGS = 80  # rows of autocorrelation that count
+LEAST = 300  # rows from which noise is told from what repeats
 
 
 class Colour:
@@ -25,7 +26,7 @@ class Colour:
         self,
         correlations: Array,
         moving: Sequence[NDArray[np.bool_]],
-        periods: Sequence[int | None] = (),
+        periods: Sequence[int | None],
     ) -> None:
         self.correlations, self.moving, self.periods = correlations, moving, periods
         self.kernels = [np.concatenate([c[:0:-1], c]) for c in correlations]
@@ -50,7 +51,7 @@ class Colour:
 
     def along(self, moving: Sequence[NDArray[np.bool_]]) -> Colour:
         """The same in rows of other motions."""
-        return Colour(self.correlations, moving)
+        return Colour(self.correlations, moving, [None] * len(moving))
 
     def variance(self, columns: Array) -> Array:
         """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""
@@ -68,16 +69,17 @@ def correlations(
     residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], periods: Sequence[int | None]
 ) -> Array | None:
     """Of what differs between the periods of residuals (M, n) of each record, tapered: (n, LAGS). None where
-    in some record nothing repeats: what is left has the colour of what the model lacks.
+    hardly anything repeats of some joint that moves: what is left has the colour of what the model lacks.
     """
-    if any(p is None for p in periods):
-        return None
     n = residuals[0].shape[1]
-    sums = np.zeros((n, LAGS))
+    sums, counts = np.zeros((n, LAGS)), np.zeros(n)
     for e, flags, p in zip(residuals, moving, periods, strict=True):
-        for j in range(n):
+        for j in range(n if p is not None else 0):
             values, there = noise_of(e[:, j], flags[:, j], int(p or 0))
-            values = np.where(there, values, 0.0)
+            counts[j] += there.sum()
             count = min(LAGS, len(values))
             sums[j, :count] += [values[k:] @ values[: len(values) - k] for k in range(count)]
+    moves = np.any([flags.any(axis=0) for flags in moving], axis=0)
+    if (moves & (counts <= LEAST)).any() or not moves.any():
+        return None
     return np.asarray(sums / np.maximum(sums[:, :1], 1e-300) * (1.0 - np.arange(LAGS) / LAGS))

@@ -52,7 +52,7 @@ class Forms:
     def least(self, effect: str) -> Array:
         """Percent of the RMSE (n,) that a cause of this effect must exceed at each joint.
 
-        Friction beside friction at its joint; anything beside what a fluid does; and all but friction, at any
+        Friction beside friction at its joint; anything beside what a fluid does; and all but FRICTION, at any
         joint, beside what swings at one, which shakes all links.
         """
         found = self._of(FLUID, FORM)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, WARMING, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
@@ -17,7 +17,7 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import System, mean_squares
+from modelgen.diagnosis.system import DEARER, System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
@@ -90,14 +90,15 @@ def select(
             found = court.trial(candidate)
             if found is None:
                 continue
-            if found.gain.delta_bic < evidence:
+            # the colour of noise is known over a second or two: slower drifts look like warming
+            if found.gain.delta_bic < (EVIDENCE * DEARER if candidate.effect == WARMING else evidence):
                 ranking.append(_ranked(found, None, "evidence"))
             elif not sensible(found, prober.arm):
                 ranking.append(_ranked(found, None, "values"))
             else:
                 trials.append(found)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
-        eligible: list[tuple[Trial, Judgement]] = []
+        tried: list[tuple[Trial, Judgement]] = []
         for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
             judged = gates.judged(t)
             if noisy and not judged.refused and not instrumented(t, system):
@@ -105,11 +106,13 @@ def select(
                 # behind an elastic joint a link swings otherwise in every period, as errors do
                 if t.candidate.effect not in COMPLIANT or correlated(System(rows, together, periods)):
                     judged = replace(judged, refused="positions")
-            ranking.append(_ranked(t, judged, judged.refused))
-            if not judged.refused:
-                eligible.append((t, judged))
+            tried.append((t, judged))
+        passed = [pair for pair in tried if not pair[1].refused]
+        eligible = [pair for pair in passed if not at_one_joint(pair, passed)]
+        for t, judged in tried:
+            less = not judged.refused and all(t is not other for other, _ in eligible)
+            ranking.append(_ranked(t, judged, "one joint" if less else judged.refused))
         turns.append(_best_of_each(ranking))
-        eligible = [pair for pair in eligible if not at_one_joint(pair, eligible)]
         if not eligible:
             break
         first = eligible[0][0].gain.delta_bic

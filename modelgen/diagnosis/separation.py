@@ -90,7 +90,8 @@ class _Scale:
         if self.colour is None or not left.any():
             return counted
         unit = left[:, None] / np.linalg.norm(left)
-        hidden = float(self.colour.variance(unit)[0, 0] * self.counts.sum() / self.rows.sum())
+        share = float(self.shares[self.joint] @ unit[:, 0] ** 2)
+        hidden = share * float(self.colour.variance(unit)[0, 0])
         return counted / max(1.0, hidden)
 
 

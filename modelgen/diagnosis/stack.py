@@ -205,23 +205,28 @@ def explained(
     rank = int(kept.sum())
     used, weights = stack.weights > 0, stack.weights.copy()
     if stack.colour is not None and not alike:
-        colour, most = (stack.colour.of(after), 1.0 / stack.share) if passing else (stack.colour, 1.0)
-        weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, most)
+        colour = stack.colour.of(after) if passing else stack.colour
+        weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, passing=passing)
     drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
     return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
 
 
-def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour, most: float) -> float:
+def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour, *, passing: bool) -> float:
     """Share of the evidence of scores (k,) along orthonormal columns (R + D, k) that noise of this colour
-    leaves, `most` at most: as many rows are independent as the variance of the scores says.
+    leaves: as many rows are independent as the variance of the scores says, and not more than for variances,
+    or, where what passes was a part of the noise by which those were counted, than there are.
     """
     count = len(stack.joint)
+    rows = np.bincount(stack.joint, minlength=len(stack.counts))
+    share = np.append(stack.counts / np.maximum(rows, 1), stack.share)[stack.groups]
     variance = colour.variance(basis[:count]) + basis[count:].T @ basis[count:] / stack.share
     sizes, vectors = np.linalg.eigh(variance)
     squares = (vectors.T @ scores) ** 2
-    known = np.minimum(most, 1.0 / np.maximum(stack.share * sizes, 1e-300))
-    return float(known @ squares / max(squares.sum(), 1e-300))
+    counted = share @ (basis @ vectors) ** 2
+    most = np.ones(len(sizes)) if passing else counted
+    known = np.minimum(most, 1.0 / np.maximum(sizes, 1e-300))
+    return float(known @ squares / max(float(counted @ squares), 1e-300))
 
 
 def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import noise_of
-from modelgen.diagnosis.colour import LAGS, Colour, correlations
+from modelgen.diagnosis.colour import LAGS, LEAST, Colour, correlations
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.stack import Gain, Stack, joints_of, weighted
 from modelgen.diagnosis.whitening import Whitener, all_usable, whitened, whitener
 
-LEAST = 300  # rows from which noise is told from what repeats
 DEARER = 1.5  # times the evidence that it takes where the colour of the noise is not known
 EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this
 
@@ -90,7 +89,7 @@ class System:
 
     @property
     def price(self) -> float:
-        """Times the evidence that it takes where noise of a known colour hides what is of the same colour."""
+        """Times the evidence that it takes to name a cause: more where the noise's colour is not known."""
         return 1.0 if self.plain.colour is not None else DEARER
 
     @property

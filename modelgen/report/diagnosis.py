@@ -113,6 +113,7 @@ _REFUSED = {
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
     "rest": "shows beside rests alone",
+    "one joint": "does more at one joint alone",
 }
 _SHOWN = 12  # candidates of a turn
 

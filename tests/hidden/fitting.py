@@ -154,12 +154,15 @@ def shown(records: list[Log], clean: list[Log], described: Plant) -> float:
     """Twice the log likelihood that one fit to the records loses by the effects, over one to those without
     them, in noise of the colour that is drawn.
     """
-    sizes, counts = [], np.zeros(0)
+    if any(log.current is None for log in records):
+        return math.nan  # all noise of a free motion is that of its positions
+    sizes, counts = [], []
     for logs in (records, clean):
         rows = [equations(log, described) for log in logs]
-        sizes.append(_whitened_squares(rows, clean[0].rate))
-        counts = np.asarray(sum(item.moving.sum(axis=0) for item in rows))
-    return float((counts * np.log(sizes[0] / sizes[1])).sum())
+        counts.append(np.sum([item.moving.sum(axis=0) for item in rows], axis=0))
+        sizes.append(_whitened_squares(rows, clean[0].rate) / np.maximum(counts[-1], 1.0))
+    used = np.minimum(*counts) > 0
+    return float((counts[1] * np.log(sizes[0] / sizes[1], where=used, out=np.zeros(len(used)))).sum())
 
 
 def _whitened_squares(rows: list[Rows], rate: float) -> Array:
@@ -179,7 +182,7 @@ def _whitened_squares(rows: list[Rows], rate: float) -> Array:
         stacked = np.concatenate([table * by for table, by in zip(tables, weight, strict=True)])
         estimate = np.linalg.lstsq(stacked[:, :-1], stacked[:, -1], rcond=None)[0]
         left = np.array([((table[:, -1] - table[:, :-1] @ estimate) ** 2).sum() for table in tables])
-        weight = 1.0 / np.sqrt(left)
+        weight = 1.0 / np.sqrt(np.maximum(left, 1e-300))
     return left
 
 
