@@ -96,6 +96,11 @@ class Candidate:
         bounds = {p.name: p.bounds for p in CATALOGUE[self.effect].accepted()}
         return tuple(name in bounds and bounds[name][0] >= 0.0 for name in self.names)
 
+    @property
+    def passing(self) -> bool:
+        """Whether what it does does not repeat with the periods."""
+        return self.effect == WARMING
+
     def joints(self, n: int) -> list[int]:
         """Coordinates (from 0) that it is judged by."""
         if self.joint is None or self.effect in SPREADING:

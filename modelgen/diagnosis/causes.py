@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import WARMING
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import Gates
 from modelgen.diagnosis.rows import Array, Rows
@@ -39,7 +38,7 @@ def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike
     columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
     positive = [above for t in trials for above in t.candidate.positive]
     extra = float(sum(len(t.values) for t in trials))
-    passing = any(t.candidate.effect == WARMING for t in trials)
+    passing = any(t.candidate.passing for t in trials)
     if alike:
         gain = rest.plain.gain(columns, extra, positive, alike=True)
     elif fair:

@@ -106,7 +106,7 @@ class Court:
             columns = of.columns(candidate, around, self.rows, self.prober, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
-        gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.effect == of.WARMING)
+        gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
         if gain is None:
             return None
         held = np.array(candidate.positive) & (gain.values == 0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, WARMING, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
@@ -91,7 +91,7 @@ def select(
             if found is None:
                 continue
             # the colour of noise is known over a second or two: slower drifts look like warming
-            if found.gain.delta_bic < (EVIDENCE * DEARER if candidate.effect == WARMING else evidence):
+            if found.gain.delta_bic < (EVIDENCE * DEARER if candidate.passing else evidence):
                 ranking.append(_ranked(found, None, "evidence"))
             elif not sensible(found, prober.arm):
                 ranking.append(_ranked(found, None, "values"))

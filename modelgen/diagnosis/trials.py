@@ -61,7 +61,7 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
 def beside(trial: Trial, system: System) -> Gain | None:
     """What a candidate explains beside another system's columns, with the values it was found at."""
     c = trial.candidate
-    return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.effect == of.WARMING)
+    return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.passing)
 
 
 def sensible(trial: Trial, arm: Arm) -> bool:
