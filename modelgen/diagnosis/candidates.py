@@ -43,6 +43,7 @@ PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "actuator_mass": (("inertia", "moment_x"), ("moment_x",)),
     "lever_geometry": (("l1",), ("l2",), ("length",)),
     "payload_change": (("mass", "moment_x"),),  # held along the last link
+    "friction_warm_up": (("dry",), ("viscous",)),
 }
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")

@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
+from modelgen.diagnosis.compliance import refine, refined
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.endogeneity import endogeneity
@@ -97,9 +98,10 @@ def select(
                 ranking.append(_ranked(found, None, "values"))
             else:
                 trials.append(found)
+        settled = refined(trials, causes, system, rows, prober)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         tried: list[tuple[Trial, Judgement]] = []
-        for t in sorted(trials, key=lambda t: -t.gain.delta_bic):
+        for t in sorted([*trials, *settled], key=lambda t: -t.gain.delta_bic):
             judged = gates.judged(t)
             if noisy and not judged.refused and not instrumented(t, system):
                 together = with_causes(rows, [*(c.trial for c in causes), t])
@@ -123,14 +125,17 @@ def select(
         rivals = [
             (t, max(0.0, best.gain.delta_bic - t.gain.delta_bic))
             for t, other in eligible
-            if t is not best
+            if t.candidate != best.candidate
             and (
                 best.gain.delta_bic - t.gain.delta_bic <= RATHER
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
-        causes.append(Cause(best, best.gain.delta_bic, by.gain, by.expected, rivals))
+        own = [t for t in settled if t.candidate == best.candidate]
+        causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
+        if not own:
+            refine(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     better = exchanged(causes, rows, prober, periods)
     if better is not causes:

@@ -1,0 +1,155 @@
+"""Values of elastic joints and play beside the arm's parameters.
+
+What such a joint adds to the inputs follows from the efforts that it transmits, and these from parameters
+that took over some of what it does while it was not known: a link that seemed half as heavy lets a joint seem
+twice as soft, or a gap a tenth as wide. Both are found together: for every value that is tried, the
+parameters settle beside what is simulated with it, half a step at a time. A gap behind a link's own position
+stays as it was found: it shows at its edges alone, and any width between them leaves the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+from scipy.optimize import minimize
+
+from modelgen.diagnosis.candidates import COMPLIANT, Values, columns
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
+from modelgen.diagnosis.trials import Trial, beside
+from modelgen.probing import Prober
+
+# A gap has minima of its own at other widths: times the value that was found, where the search begins.
+STARTS = {"play": (0.3, 1.0, 3.0, 10.0), "stiffness": (0.3, 1.0, 3.0)}
+GAP = "backlash"
+FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was found, at a start, at a trial
+EDGE = 0.4  # of the first simplex, in logarithms
+MOST = 45  # trials
+FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
+SINGULAR = 1e-10
+LEAST = 1e-300
+
+
+def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
+    """Finds the values of the elastic joints and gaps among the causes anew, beside all others."""
+    for cause in causes:
+        if "stiffness" in cause.trial.values:
+            others = [c.trial for c in causes if c is not cause]
+            cause.trial = _Beside(rows, others, cause.trial, prober).best([])
+
+
+def refined(
+    trials: Sequence[Trial], causes: Sequence[Cause], system: System, rows: Sequence[Rows], prober: Prober
+) -> list[Trial]:
+    """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
+
+    None beside another one: what is left of that looks like the next.
+    """
+    others = [c.trial for c in causes]
+    first = max(trials, key=lambda t: t.gain.delta_bic, default=None)
+    if first is None or any(t.candidate.effect in COMPLIANT for t in others):
+        return []
+    if first.candidate.effect not in COMPLIANT:
+        return []
+    found = []
+    for t in trials:
+        if "stiffness" in t.values and t.candidate.joint == first.candidate.joint:
+            better = _Beside(rows, others, t, prober).best(_starts(t))
+            gain = beside(better, system)
+            if gain is not None:
+                found.append(replace(better, gain=gain))
+    return found
+
+
+def _starts(trial: Trial) -> list[dict[str, float]]:
+    """Values to begin at, where those that were found may be a gap's at another minimum."""
+    if trial.candidate.effect != GAP:
+        return []
+    return [
+        {**trial.values, **{n: trial.values[n] * f for n, f in zip(STARTS, factors, strict=True)}}
+        for factors in product(*STARTS.values())
+    ]
+
+
+class _Beside:
+    """One of them beside the arm and the other causes, whose columns stay."""
+
+    def __init__(self, rows: Sequence[Rows], others: Sequence[Trial], trial: Trial, prober: Prober) -> None:
+        self.rows, self.prober, self.trial = rows, prober, trial
+        self.own = rows[0].columns.shape[2]
+        table, whole = with_causes(rows, others), with_causes(rows, [*others, trial])
+        self.weights = weights_of(rows, whole, weighted_fit(rows, whole))
+        self.left, self.right = stacked(rows, table, self.weights)
+        norms = np.linalg.norm(self.left, axis=0)
+        norms[norms == 0] = 1.0
+        self.inverse = np.linalg.pinv(self.left / norms, rcond=SINGULAR) / norms[:, None]
+        self.joint = np.concatenate(
+            [np.full(int(r.moving[:, j].sum()), j) for r in rows for j in range(r.effort.shape[1])]
+        )
+        self.count = np.maximum(np.bincount(self.joint), 1)
+        self.rigid = self.inverse @ self.right
+
+    def best(self, starts: Sequence[Values]) -> Trial:
+        """The trial with the values that leave least, and its columns at the parameters that go with them.
+
+        starts: values to begin at besides its own.
+        """
+        values = self.trial.values
+        least, near = self.at(values, self.rigid, FIRST)
+        for start in starts:
+            left, beside = self.at(start, self.rigid, SETTLING)
+            if left < least:
+                least, values, near = left, start, beside
+        names = sorted(values)
+
+        def leaves(logarithms: Array) -> float:
+            nonlocal least, values, near
+            tried = dict(zip(names, np.exp(logarithms).tolist(), strict=True))
+            left, beside = self.at(tried, near, TURNS)
+            if left < least:
+                least, values, near = left, tried, beside
+            return min(left, 1e6)
+
+        first = np.log([values[name] for name in names])
+        simplex = np.vstack([first, first + EDGE * np.eye(len(first))])
+        options = {"initial_simplex": simplex, "maxfev": MOST, "xatol": FINE, "fatol": EVEN}
+        minimize(leaves, first, method="Nelder-Mead", options=options)
+        made = self._columns(values, near)
+        return self.trial if made is None else replace(self.trial, values=values, columns=made)
+
+    def at(self, values: Values, theta: Array, turns: int) -> tuple[float, Array]:
+        """Least sum over the joints of the logarithm of what is left, on the way of the parameters (k,) from
+        these to where they settle, and the parameters there.
+        """
+        least, best = np.inf, theta
+        for turn in range(turns + 1):
+            made = self._columns(values, theta)
+            if made is None:
+                break
+            simulated = self._stacked(made)
+            error = self.right - self.left @ theta - simulated
+            left = float(np.log(np.maximum(np.bincount(self.joint, error**2) / self.count, LEAST)).sum() / 2)
+            if left < least:
+                least, best = left, theta
+            if turn < turns:
+                theta = (theta + self.inverse @ (self.right - simulated)) / 2
+        return least, best
+
+    def _columns(self, values: Values, theta: Array) -> list[Array] | None:
+        base = self.rows[0].baseline.base(theta[: self.own])
+        made = columns(self.trial.candidate, values, self.rows, self.prober, base)
+        return None if made is None or not all(np.isfinite(c).all() for c in made) else made
+
+    def _stacked(self, made: Sequence[Array]) -> Array:
+        return np.concatenate(
+            [
+                c[r.moving[:, j], j, 0] * self.weights[j]
+                for r, c in zip(self.rows, made, strict=True)
+                for j in range(r.effort.shape[1])
+            ]
+        )
