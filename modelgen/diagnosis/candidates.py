@@ -47,7 +47,7 @@ PARTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
 }
 # At one joint, and shown by others: what is wrong with it goes into the parameters that they share.
 SPREADING = ("drive_gain_error", "encoder_offset", "lever_geometry")
-COMPLIANT = ("joint_flexibility", "backlash")
+COMPLIANT = ELASTIC, GAP = "joint_flexibility", "backlash"
 PERIODIC = "torque_ripple"
 # About what the drives are given, or what working warms: of no meaning in a free motion.
 WARMING = "friction_warm_up"
@@ -156,7 +156,7 @@ def search_of(candidate: Candidate, rows: Sequence[Rows]) -> Mapping[str, tuple[
 
 def gap_instead(candidate: Candidate, rows: Sequence[Rows], prober: Prober) -> Candidate | None:
     """Play for an elastic joint, behind a link's own position."""
-    if candidate.effect != "joint_flexibility" or not at_links(candidate.joint, rows):
+    if candidate.effect != ELASTIC or not at_links(candidate.joint, rows):
         return None
     (fixed,) = _fixed("backlash", candidate.joint, rows, prober)
     return Candidate("backlash", candidate.joint, fixed)

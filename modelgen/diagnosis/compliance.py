@@ -16,9 +16,11 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from modelgen.diagnosis.candidates import COMPLIANT, Values, columns
+from modelgen.diagnosis.candidates import COMPLIANT, ELASTIC, GAP, Candidate, Values, columns
 from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.court import ahead
 from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
 from modelgen.diagnosis.trials import Trial, beside
@@ -26,13 +28,15 @@ from modelgen.probing import Prober
 
 # A gap has minima of its own at other widths: times the value that was found, where the search begins.
 STARTS = {"play": (0.3, 1.0, 3.0, 10.0), "stiffness": (0.3, 1.0, 3.0)}
-GAP = "backlash"
 FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was found, at a start, at a trial
 EDGE = 0.4  # of the first simplex, in logarithms
 MOST = 45  # trials
 FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
+SIMPLER = 1.15  # times what an elastic joint carries to rows that were not seen, that a gap must
 SINGULAR = 1e-10
 LEAST = 1e-300
+
+Judged = tuple[Trial, Judgement]
 
 
 def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
@@ -64,6 +68,28 @@ def refined(
             if gain is not None:
                 found.append(replace(better, gain=gain))
     return found
+
+
+def member(first: Judged, eligible: Sequence[Judged]) -> Judged:
+    """The elastic joint or the gap at the place of one of them that comes first; else that one.
+
+    An elastic joint, which is a gap of no width, unless the gap's evidence is certainly more, or what it
+    carries to rows that were not seen. eligible: most evidence first.
+    """
+    there: dict[str, Judged] = {}
+    for trial, by in eligible:
+        if trial.candidate.joint == first[0].candidate.joint:
+            there.setdefault(trial.candidate.effect, (trial, by))
+    if first[0].candidate.effect not in COMPLIANT or not there.keys() >= {*COMPLIANT}:
+        return first
+    elastic, gap = there[ELASTIC], there[GAP]
+    wide = ahead(gap[0], elastic[0]) or gap[1].gain > SIMPLER * elastic[1].gain
+    return gap if wide else elastic
+
+
+def alternatives(one: Candidate, other: Candidate) -> bool:
+    """Whether they are an elastic joint and a gap at the same place."""
+    return one.joint == other.joint and {one.effect, other.effect} == {*COMPLIANT}
 
 
 def _starts(trial: Trial) -> list[dict[str, float]]:

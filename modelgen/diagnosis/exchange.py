@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from modelgen.diagnosis.causes import Cause, together
+from modelgen.diagnosis.compliance import alternatives
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.rows import Rows
@@ -36,6 +37,8 @@ def exchanged(
         for trial, _ in cause.rivals:
             others = [c.trial.candidate for c in best if c is not best[place]]
             if any((c.effect, c.joint) == (trial.candidate.effect, trial.candidate.joint) for c in others):
+                continue
+            if alternatives(trial.candidate, held.candidate):  # chosen by what they carry as well
                 continue
             tried = [replace(c) for c in best]
             tried[place].trial = trial

@@ -111,8 +111,9 @@ class Gates:
         of the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
         estimate by instruments is not zero. By that gain must pass what such errors look like most;
         everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
-        cause; and causes at a joint of another, to which its form may leave some. Friction beside friction,
-        and anything beside what a fluid does, must be more than the form of that may leave.
+        cause; joints where errors of the positions could feign what counts; and causes at a joint of another,
+        to which its form may leave some. Friction beside friction, and anything beside what a fluid does,
+        must be more than the form of that may leave.
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
@@ -125,9 +126,8 @@ class Gates:
         could = feigned(self.blur[places], again[0, places] / self.counts[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
-        doubtful = not self.system.noise_known or bool((could > least).any())
-        doubtful = doubtful or trial.candidate.effect in FEIGNABLE
-        strict = np.array([doubtful or j in self.taken for j in places], dtype=bool)
+        doubtful = not self.system.noise_known or trial.candidate.effect in FEIGNABLE
+        strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
         anew = strict & (refitted >= np.maximum(least, could))
         if strict.all() and not anew.any():
             shut = "gain" if (refitted < least).all() else "positions"

@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
-from modelgen.diagnosis.compliance import refine, refined
+from modelgen.diagnosis.compliance import member, refine, refined
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.endogeneity import endogeneity
@@ -121,6 +121,7 @@ def select(
         best, by = max(
             (pair for pair in eligible if first - pair[0].gain.delta_bic < TIE), key=lambda pair: pair[1].gain
         )
+        best, by = member((best, by), eligible)
         margin = _margin(best, by.gain, system, blur)
         rivals = [
             (t, max(0.0, best.gain.delta_bic - t.gain.delta_bic))
