@@ -23,7 +23,7 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
-from modelgen.diagnosis.trials import Trial, beside
+from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
 # A gap has minima of its own at other widths: times the value that was found, where the search begins.
@@ -65,7 +65,7 @@ def refined(
         if "stiffness" in t.values and t.candidate.joint == first.candidate.joint:
             better = _Beside(rows, others, t, prober).best(_starts(t))
             gain = beside(better, system)
-            if gain is not None:
+            if gain is not None and sensible(replace(better, gain=gain), prober.arm):
                 found.append(replace(better, gain=gain))
     return found
 
