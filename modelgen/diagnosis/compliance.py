@@ -40,9 +40,9 @@ Judged = tuple[Trial, Judgement]
 
 
 def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
-    """Finds the values of the elastic joints and gaps among the causes anew, beside all others."""
+    """Finds the values of the gaps among the causes anew, beside all others; see `stiffness` for the rest."""
     for cause in causes:
-        if "stiffness" in cause.trial.values:
+        if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
             cause.trial = _Beside(rows, others, cause.trial, prober).best([])
 

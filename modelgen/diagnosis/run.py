@@ -38,6 +38,7 @@ from modelgen.diagnosis.positions import feigned, harmless
 from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import EVIDENCE, Selection, select
 from modelgen.diagnosis.shapes import shapes
+from modelgen.diagnosis.stiffness import stiffened
 from modelgen.diagnosis.system import mean_squares
 from modelgen.diagnosis.verdict import verdict_of
 from modelgen.errors import InputError
@@ -134,6 +135,7 @@ def diagnose(
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
     verdict, reason = verdict_of(selection, beside, fit, share, tested, likeness, counted=counted)
+    selection = stiffened(selection, rows, prober)
     named = _named(selection, pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":
