@@ -3,9 +3,17 @@
 import json
 from pathlib import Path
 
+import numpy as np
+import pytest
 from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
 from hidden.running import run
+
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.compliance import member
+from modelgen.diagnosis.gates import Judgement
+from modelgen.diagnosis.stack import Gain
+from modelgen.diagnosis.trials import Trial
 
 GAP = 0.004  # rad in the middle of the stroke, per unit of the plant's magnitude
 
@@ -28,3 +36,27 @@ def test_a_gap_is_named_whose_first_values_explain_too_little(tmp_path: Path) ->
     assert outcome.result == FOUND, outcome
     assert outcome.recovered is not None
     assert outcome.recovered > 0.5
+
+
+@pytest.mark.parametrize(
+    ("elastic", "gap", "named"),
+    [
+        ((900.0, 5.0), (903.0, 5.0), "joint_flexibility"),  # a gap of hardly any width is an elastic joint
+        ((900.0, 5.0), (950.0, 5.0), "backlash"),
+        ((900.0, 2.4), (840.0, 3.5), "backlash"),
+        ((900.0, 7.2), (898.0, 7.8), "joint_flexibility"),
+    ],
+)
+def test_of_an_elastic_joint_and_a_gap_the_simpler_one_is_taken_where_both_explain_as_much(
+    elastic: tuple[float, float], gap: tuple[float, float], named: str
+) -> None:
+    pairs = [judged("joint_flexibility", 2, *elastic), judged("backlash", 2, *gap)]
+    pairs.append(judged("backlash", 1, 700.0, 9.0))  # another joint's has no say
+    pairs.sort(key=lambda pair: -pair[0].gain.delta_bic)
+    trial, _ = member(pairs[0], pairs)
+    assert (trial.candidate.effect, trial.candidate.joint) == (named, 2)
+
+
+def judged(effect: str, joint: int, delta_bic: float, gain: float) -> tuple[Trial, Judgement]:
+    found = Gain(delta_bic, np.ones(1), np.ones(1), np.ones(1), 1)
+    return Trial(Candidate(effect, joint), {}, [], found), Judgement(gain, gain, "")
