@@ -17,7 +17,6 @@ from modelgen.dataset.periods import with_whole_rows
 from modelgen.diagnosis.baseline import estimated, held
 from modelgen.diagnosis.checks import check_excitation, check_motion
 from modelgen.diagnosis.free import away_from_rest
-from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.positions import feigned, with_errors
 from modelgen.diagnosis.rows import Array, Rows
@@ -26,6 +25,7 @@ from modelgen.functions import Model
 from modelgen.probing import Prober
 
 OVER_MOTION = 10.0  # narrow cut-off over the bandwidth of the motion
+LOST = 5.0  # percent of the RMSE that errors of the positions could feign where a band is lost in them
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class Equations:
 
     @property
     def lost(self) -> bool:
-        """Whether errors of the positions alone could feign a gain that counts."""
+        """Whether errors of the positions alone could feign more than the gates ask joint by joint."""
         squares = rmse(self.rows, [r.columns for r in self.rows], self.theta) ** 2
-        return bool(feigned(self.blur, squares).max() > PRACTICAL)
+        return bool(feigned(self.blur, squares).max() > LOST)
 
 
 def equations(

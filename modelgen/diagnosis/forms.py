@@ -32,6 +32,7 @@ EXACT = (
     "encoder_offset",
 )
 
+SPRING = ("spring",)  # none is linear over all its travel
 FLUID = ("added_mass", "fluid_drag")  # one value for all links, whose widths differ
 
 
@@ -52,10 +53,10 @@ class Forms:
     def least(self, effect: str) -> Array:
         """Percent of the RMSE (n,) that a cause of this effect must exceed at each joint.
 
-        Friction beside friction at its joint; anything beside what a fluid does; and all but FRICTION, at any
-        joint, beside what swings at one, which shakes all links.
+        Friction beside friction at its joint; anything beside a spring at its joint, and beside what a fluid
+        does; and all but FRICTION, at any joint, beside what swings at one, which shakes all links.
         """
-        found = self._of(FLUID, FORM)
+        found = np.maximum(self._of(FLUID, FORM), self._of(SPRING, FORM))
         if effect in FRICTION:
             return np.maximum(found, self._of(FRICTION, FORM))
         return np.maximum(found, self._of(COMPLIANT, SWINGS))

@@ -14,7 +14,7 @@ import numpy as np
 
 from modelgen.diagnosis.agreement import agreement
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, WARMING
-from modelgen.diagnosis.folds import folds, left_unseen
+from modelgen.diagnosis.folds import Split, folds, left_unseen
 from modelgen.diagnosis.forms import EXACT, FLUID, Forms, with_causes
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
@@ -33,6 +33,7 @@ AGREED = 1e-4  # probability that parts differ as much on a cause: less contradi
 HARDLY = 0.1  # of the power of play in the record that shows it most
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
 DELAY = "time_delay"
+PLACED = "position_dependent_friction"  # a law of the position, which says nothing of places beyond the fit's
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 # What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
 FEIGNABLE = (*COMPLIANT, DELAY, LATER)
@@ -78,7 +79,7 @@ class Gates:
         known = (*EXACT, *FLUID)
         own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
-        self._known: dict[bool, Array] = {}
+        self._known: dict[Split, Array] = {}
         self.forms = Forms(rows, before, system)
 
     def judged(self, trial: Trial) -> Judgement:
@@ -118,12 +119,13 @@ class Gates:
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
         halves = trial.candidate.effect == LATER or self._somewhere(trial)
-        whole, again = np.stack([self._without(halves), self._with(new, halves)], axis=1)
+        split = Split(halves, (trial.candidate.joint or 1) - 1 if trial.candidate.effect == PLACED else None)
+        whole, again = np.stack([self._without(split), self._with(new, split)], axis=1)
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
         least = np.maximum(least, self.forms.least(trial.candidate.effect)[places])
-        could = feigned(self.blur[places], again[0, places] / self.counts[places])
+        could = feigned(self.blur[places], (again[0] / self._tried(split))[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
         doubtful = not self.system.noise_known or trial.candidate.effect in FEIGNABLE
@@ -132,12 +134,12 @@ class Gates:
         if strict.all() and not anew.any():
             shut = "gain" if (refitted < least).all() else "positions"
             return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
-        expected = self._expected(new, halves)[places]
+        expected = self._expected(new, split)[places]
         hoped = float(expected.max(initial=0.0))
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
         due = ~strict & (expected >= least)
         carried = due & (gains >= CARRIED * expected)
-        agreed = bool(due.any()) and not carried.any() and self._agreed(new, halves)
+        agreed = bool(due.any()) and not carried.any() and self._agreed(new, split)
         if agreed:
             carried = due
         if not (anew | carried).any():
@@ -164,9 +166,9 @@ class Gates:
         power = [float(np.mean(e**2)) for e in left]
         return min(power) < HARDLY * max(power)
 
-    def _agreed(self, new: Sequence[Array], halves: bool) -> bool:
+    def _agreed(self, new: Sequence[Array], split: Split) -> bool:
         """Whether the parts agree on the cause."""
-        parts = [part for _, part in folds(self.rows, halves=halves)]
+        parts = [part for _, part in folds(self.rows, split)]
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
@@ -188,21 +190,26 @@ class Gates:
         there = {t.candidate.joint for t in self.before if t.candidate.effect in effects}
         return bool(there) and (joint is None or None in there or joint in there)
 
-    def _without(self, halves: bool) -> Array:
+    def _tried(self, split: Split) -> Array:
+        """How many rows (n,) are tried, at least one."""
+        counts = [moving_rows(tried) for _, (tried, _) in folds(self.rows, split)]
+        return np.maximum(np.sum(counts, axis=0), 1.0)
+
+    def _without(self, split: Split) -> Array:
         """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
-        if halves not in self._known:
+        if split not in self._known:
             again = np.zeros(self.system.n)
-            for _, (tried, to) in folds(self.rows, halves=halves):
+            for _, (tried, to) in folds(self.rows, split):
                 table = [self.old[i] for i in to]
                 again += moving_rows(tried) * rmse(tried, table, weighted_fit(tried, table)) ** 2
-            self._known[halves] = np.array([left_unseen(self.rows, self.old, halves=halves), again])
-        return self._known[halves]
+            self._known[split] = np.array([left_unseen(self.rows, self.old, split), again])
+        return self._known[split]
 
-    def _with(self, new: Sequence[Array], halves: bool) -> Array:
+    def _with(self, new: Sequence[Array], split: Split) -> Array:
         """The same with the cause, as it was fitted to the other part."""
         own = self.old[0].shape[2]
         found = np.zeros((2, self.system.n))
-        for (fitted, at), (tried, to) in folds(self.rows, halves=halves):
+        for (fitted, at), (tried, to) in folds(self.rows, split):
             theta = weighted_fit(fitted, [new[i] for i in at])
             carried = [
                 replace(r, effort=r.effort - new[i][:, :, own:] @ theta[own:])
@@ -213,12 +220,12 @@ class Gates:
             found[1] += moving_rows(tried) * rmse(carried, table, weighted_fit(carried, table)) ** 2
         return found
 
-    def _expected(self, new: Sequence[Array], halves: bool) -> Array:
+    def _expected(self, new: Sequence[Array], split: Split) -> Array:
         """Percent of the RMSE (n,) that a model without the cause, which is there as found, loses unseen."""
         own = self.old[0].shape[2]
         theta = weighted_fit(self.rows, new)
         shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(self.rows, new, strict=True)]
-        bias = left_unseen(shows, self.old, halves=halves) / np.maximum(self.counts, 1.0)
+        bias = left_unseen(shows, self.old, split) / self._tried(split)
         noise = rmse(self.rows, new, theta) ** 2
         return np.asarray(100.0 * (1.0 - np.sqrt(noise / (noise + bias))))
 
@@ -239,7 +246,7 @@ def practical(percent: float, narrowed: float) -> float:
 
 def _gains(sums: Array) -> Array:
     """Percent of the RMSE by joint, from sums of squares without and with (2, n)."""
-    return np.asarray(100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))))
+    return np.where(sums[0] > 0, 100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))), 0.0)
 
 
 def instrumented(trial: Trial, system: System) -> bool:

@@ -224,7 +224,7 @@ def _hose(p: Plant, s: Site, m: float) -> None:
 EFFECTS: dict[str, Effect] = {
     "friction_offset": Effect(_offset),
     "asymmetric_viscous_friction": Effect(_asymmetric),
-    "stribeck_friction": Effect(_stribeck, "any"),
+    "stribeck_friction": Effect(_stribeck, "any", most=3.0),  # four times the Coulomb friction at rest
     "load_dependent_friction": Effect(_load, "loaded"),
     "nonlinear_viscous_friction": Effect(_power, "any"),
     "position_dependent_friction": Effect(_wave),
