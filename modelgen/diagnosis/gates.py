@@ -193,7 +193,7 @@ class Gates:
     def _tried(self, split: Split) -> Array:
         """How many rows (n,) are tried, at least one."""
         counts = [moving_rows(tried) for _, (tried, _) in folds(self.rows, split)]
-        return np.maximum(np.sum(counts, axis=0), 1.0)
+        return np.asarray(np.maximum(np.sum(counts, axis=0), 1.0))
 
     def _without(self, split: Split) -> Array:
         """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
