@@ -9,7 +9,7 @@ from test_diagnosis_selection import ARM, three
 
 from modelgen.dataset import Record, prepare
 from modelgen.dataset.periods import period_of
-from modelgen.diagnosis.band import Equations, equations
+from modelgen.diagnosis.band import Equations, bands
 from modelgen.diagnosis.gates import practical
 from modelgen.diagnosis.positions import repeating_errors
 from modelgen.diagnosis.rows import rows_of
@@ -23,7 +23,8 @@ SEEN = [coarse(r) for r in EXACT]
 
 def made(records: list[Record], narrower: bool = True) -> Equations:
     lengths = [period_of(r, None) for r in records[:-1]]
-    return equations(build_model(ARM), Prober(ARM), records, lengths, settings_for(records, None), narrower)
+    settings, model = settings_for(records, None), build_model(ARM)
+    return next(bands(model, Prober(ARM), records, lengths, settings, narrower=narrower))
 
 
 def test_coarse_positions_alone_narrow_the_band() -> None:

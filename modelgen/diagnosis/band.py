@@ -8,8 +8,10 @@ what is fast.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from modelgen.dataset import Chosen, Prepared, Record, Settings, choose, prepare
 from modelgen.dataset.choice import motion_bandwidth
@@ -17,6 +19,7 @@ from modelgen.dataset.periods import with_whole_rows
 from modelgen.diagnosis.baseline import estimated, held
 from modelgen.diagnosis.checks import check_excitation, check_motion
 from modelgen.diagnosis.free import away_from_rest
+from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.positions import feigned, with_errors
 from modelgen.diagnosis.rows import Array, Rows
@@ -46,33 +49,35 @@ class Equations:
     narrowed: float = 1.0
 
     @property
-    def lost(self) -> bool:
-        """Whether errors of the positions alone could feign more than the gates ask joint by joint."""
+    def feigned(self) -> float:
+        """Percent of the RMSE that errors of the positions alone could gain at some joint."""
         squares = rmse(self.rows, [r.columns for r in self.rows], self.theta) ** 2
-        return bool(feigned(self.blur, squares).max() > LOST)
+        return float(feigned(self.blur, squares).max())
 
 
-def equations(
+def bands(
     model: Model,
     prober: Prober,
     found: Sequence[Record],
     lengths: Sequence[int | None],
     settings: Settings,
+    *,
     narrower: bool,
-) -> Equations:
-    """Of records of which the last is the test record.
+) -> Iterator[Equations]:
+    """Of records of which the last is the test record, in the bands to ask, the next where one cannot tell.
 
-    narrower: whether a band in which coarse positions are lost may give way to a narrower one.
+    narrower: whether a band in which coarse positions are lost may give way to a narrower one. Where they
+    could feign a little more than what counts, the wide one is asked first: it shows what is fast.
     Raises InputError where the records are too short, rest, or excite too little.
     """
     wide = _equations(model, prober, found, lengths, settings)
-    if not (narrower and wide.lost):
-        return wide
-    cutoff = OVER_MOTION * max(motion_bandwidth(record) for record in found[:-1])
-    if cutoff >= wide.chosen.cutoff:
-        return wide
-    narrow = _equations(model, prober, found, lengths, replace(settings, cutoff=cutoff))
-    return replace(narrow, narrowed=wide.chosen.cutoff / cutoff)
+    cutoff = OVER_MOTION * max(motion_bandwidth(record) for record in found[:-1]) if narrower else np.inf
+    narrowed = cutoff < wide.chosen.cutoff and wide.feigned > PRACTICAL
+    if not narrowed or wide.feigned <= LOST:
+        yield wide
+    if narrowed:
+        narrow = _equations(model, prober, found, lengths, replace(settings, cutoff=cutoff))
+        yield replace(narrow, narrowed=wide.chosen.cutoff / cutoff)
 
 
 def _equations(

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-
-import numpy as np
 
 from modelgen.dataset import Record, Settings, check_separate, read, split
 from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.aliases import aliases
-from modelgen.diagnosis.band import equations
+from modelgen.diagnosis.answer import Progress, answered
+from modelgen.diagnosis.band import bands
 from modelgen.diagnosis.candidates import (
     COMPLIANT,
     LATER,
@@ -19,38 +18,27 @@ from modelgen.diagnosis.candidates import (
     Candidate,
     at_links,
     at_motor,
-    candidates,
     cold,
 )
-from modelgen.diagnosis.checks import Place, asked, check_one_arm
-from modelgen.diagnosis.endogeneity import endogeneity
+from modelgen.diagnosis.checks import Place, check_one_arm
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
 from modelgen.diagnosis.free import released, settings_of_swings
 from modelgen.diagnosis.gates import PRACTICAL, practical
-from modelgen.diagnosis.lack_of_fit import lack_of_fit
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
-from modelgen.diagnosis.outdone import outdone
-from modelgen.diagnosis.positions import feigned, harmless
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, Selection, select
-from modelgen.diagnosis.shapes import shapes
+from modelgen.diagnosis.selection import EVIDENCE, Selection
 from modelgen.diagnosis.stiffness import stiffened
-from modelgen.diagnosis.system import mean_squares
-from modelgen.diagnosis.verdict import verdict_of
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
 from modelgen.probing import Prober, places
 
-Progress = Callable[[str, int, int], None]
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
 FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
-# Times what the encoders' counts leave: a larger RMSE of a free motion has something else in it.
-COUNTED = 1.25
 
 
 def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:
@@ -111,32 +99,17 @@ def diagnose(
         found = [released(record, settings) for record in found]
     lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
     model, prober = build_model(arm), Prober(arm)
-    made = equations(model, prober, found, lengths, settings, cutoff is None and not free)
-    chosen, rows, blurs = made.chosen, made.rows, made.blur
+    for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
+        check_one_arm(arm, model, made.rows, prober, made.rows[0].baseline.base(made.theta))
+        answer = answered(made, arm, prober, effects, progress)
+        if answer.verdict != "cannot_tell":
+            break
+    made, verdict, chosen, rows = answer.made, answer.verdict, answer.made.chosen, answer.made.rows
     train, test = made.prepared[:-1], made.prepared[-1]
-    start = rows[0].baseline.base(made.theta)
-    check_one_arm(arm, model, rows, prober, start)
-    pool = [
-        c
-        for c in candidates(arm, prober, rows)
-        if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
-    ]
-    pool = asked(arm, pool, effects, rows, prober, start)
-    selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
     baseline = rows[0].baseline
-    base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
-    found_shapes = [] if free else list(shapes(rows, prober, base))
-    selection, beside, likeness = outdone(selection, rows, found_shapes)
-    base = baseline.base(selection.system.theta[: rows[0].columns.shape[2]])
-    fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
-    left = mean_squares(selection.system)
-    share = feigned(blurs, left)
-    moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
-    counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
-    tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
-    verdict, reason = verdict_of(selection, beside, fit, share, tested, likeness, counted=counted)
-    selection = stiffened(selection, rows, prober)
-    named = _named(selection, pool, prober, model, base, rows)
+    base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
+    selection = stiffened(answer.selection, rows, prober)
+    named = _named(selection, answer.pool, prober, model, base, rows)
     following = None
     if experiment and verdict == "named":
         plan = None if free else stage(arm, model, prober, train, base)
@@ -150,11 +123,11 @@ def diagnose(
     return Diagnosis(
         arm,
         verdict,
-        reason,
+        answer.reason,
         named,
         _absorbed(arm, rows, selection, made.narrowed > 1.0),
-        fit,
-        likeness,
+        answer.fit,
+        answer.likeness,
         motion_errors(found[-1], *played) if free else errors(last, *pair, unit_of_efforts(test)),
         played,
         before,
@@ -179,7 +152,7 @@ def diagnose(
             "evidence_threshold": EVIDENCE * selection.system.price,
             "practical_gain_percent": round(practical(PRACTICAL, made.narrowed), 3),
         },
-        Positions(share, noisy),
+        Positions(answer.share, answer.noisy),
     )
 
 

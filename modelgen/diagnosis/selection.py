@@ -22,7 +22,7 @@ from modelgen.diagnosis.system import DEARER, System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
-EVIDENCE = 10.0  # delta BIC that it takes to name a cause (very strong: Kass and Raftery 1995)
+EVIDENCE = 6.0  # delta BIC that it takes to name a cause (strong: Kass and Raftery 1995)
 RATHER = 15.0  # delta BIC that it takes to name it rather than another one that passes
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there

@@ -1,0 +1,78 @@
+"""From equations to verdict: causes are selected and tried against functions of no law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.description import Arm
+from modelgen.diagnosis.band import Equations
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate, at_motor, candidates
+from modelgen.diagnosis.checks import Place, asked
+from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
+from modelgen.diagnosis.gates import PRACTICAL
+from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
+from modelgen.diagnosis.outdone import Likeness, outdone
+from modelgen.diagnosis.positions import feigned, harmless
+from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.selection import Selection, select
+from modelgen.diagnosis.shapes import shapes
+from modelgen.diagnosis.system import mean_squares
+from modelgen.diagnosis.verdict import verdict_of
+from modelgen.probing import Prober
+
+Progress = Callable[[str, int, int], None]
+# Times what the encoders' counts leave: a larger RMSE of a free motion has something else in it.
+COUNTED = 1.25
+
+
+@dataclass(frozen=True)
+class Answer:
+    """made: the equations that were asked. pool: what was tried. share: percent of the RMSE by joint (n,)
+    that errors of the positions could feign in what is left.
+    """
+
+    made: Equations
+    pool: Sequence[Candidate]
+    selection: Selection
+    verdict: str
+    reason: str
+    fit: LackOfFit | None
+    likeness: Likeness | None
+    share: Array
+    noisy: Endogeneity | None
+
+
+def answered(
+    made: Equations,
+    arm: Arm,
+    prober: Prober,
+    effects: Sequence[Place],
+    progress: Progress | None,
+) -> Answer:
+    """What these equations say. effects: to be asked for alone; all of the catalogue where there are none.
+
+    Raises InputError where none of the effects can be asked for.
+    """
+    rows, blurs = made.rows, made.blur
+    own = rows[0].columns.shape[2]
+    baseline, free = rows[0].baseline, rows[0].prepared.input is None
+    pool: Sequence[Candidate] = [
+        c
+        for c in candidates(arm, prober, rows)
+        if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
+    ]
+    pool = asked(arm, pool, effects, rows, prober, baseline.base(made.theta))
+    selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
+    base = baseline.base(selection.system.theta[:own])
+    selection, beside, likeness = outdone(selection, rows, [] if free else list(shapes(rows, prober, base)))
+    fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
+    left = mean_squares(selection.system)
+    share = feigned(blurs, left)
+    moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
+    counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
+    tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
+    verdict, reason = verdict_of(selection, beside, fit, share, tested, likeness, counted=counted)
+    return Answer(made, pool, selection, verdict, reason, fit, likeness, share, noisy)
