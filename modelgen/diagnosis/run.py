@@ -30,7 +30,7 @@ from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
 from modelgen.diagnosis.rows import Array, Rows, rows_of
-from modelgen.diagnosis.selection import EVIDENCE, Selection
+from modelgen.diagnosis.selection import Selection, threshold
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.errors import InputError
 from modelgen.functions import Model, build_model
@@ -149,7 +149,7 @@ def diagnose(
                 None if p is None else float(f"{p * r.step:.9g}")
                 for p, r in zip(lengths, found[:-1], strict=True)
             ],
-            "evidence_threshold": EVIDENCE * selection.system.price,
+            "evidence_threshold": threshold(selection.system),
             "practical_gain_percent": round(practical(PRACTICAL, made.narrowed), 3),
         },
         Positions(answer.share, answer.noisy),

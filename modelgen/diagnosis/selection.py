@@ -18,11 +18,13 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.system import DEARER, System, mean_squares
+from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
 EVIDENCE = 6.0  # delta BIC that it takes to name a cause (strong: Kass and Raftery 1995)
+COLOURLESS = 15.0  # the same where the colour of the noise is not known
+PASSING = 9.0  # the same of warming: noise's colour is known over a second or two, slower drifts look like it
 RATHER = 15.0  # delta BIC that it takes to name it rather than another one that passes
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
@@ -72,7 +74,7 @@ def select(
     p = baseline[0].shape[2]
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
-    evidence = EVIDENCE * system.price
+    evidence = threshold(system)
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
@@ -91,8 +93,7 @@ def select(
             found = court.trial(candidate)
             if found is None:
                 continue
-            # the colour of noise is known over a second or two: slower drifts look like warming
-            if found.gain.delta_bic < (EVIDENCE * DEARER if candidate.passing else evidence):
+            if found.gain.delta_bic < (max(PASSING, evidence) if candidate.passing else evidence):
                 ranking.append(_ranked(found, None, "evidence"))
             elif not sensible(found, prober.arm):
                 ranking.append(_ranked(found, None, "values"))
@@ -160,6 +161,11 @@ def select(
         rivals = [r for place, r in reversed(others.items()) if place not in named]
         cause.rivals = [(t, behind) for t, behind in rivals if left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
+
+
+def threshold(system: System) -> float:
+    """Delta BIC that it takes to name a cause."""
+    return EVIDENCE if system.price == 1.0 else COLOURLESS
 
 
 def left_to(trial: Trial, system: System) -> float:

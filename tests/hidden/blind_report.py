@@ -15,7 +15,7 @@ from hidden.effects import CATALOGUE, OUTSIDE
 
 Line = dict[str, Any]
 COMPLIANT = ("backlash", "joint_flexibility")
-SHOWN = 25.0  # twice a log likelihood: evidence of 10 and the price of two parameters
+SHOWN = 25.0  # twice a log likelihood: evidence of 6 and the price of two parameters
 HEAD = """\
 # Diagnosis: measured
 
@@ -34,7 +34,7 @@ effect over without, on the affected joint, by the plant's own least squares bel
 in its turn; of an effect from outside the catalogue, what a spring and a constant current at each joint
 leave. A fit to few motions can take up what then costs 5 % on another: shown in the training records is an
 effect by which twice the log likelihood of the plant's own fit to them, with the noise's colour known, falls
-by {shown:g}, which a cause with one or two parameters needs for its name. In brackets: 95 % Wilson
+by {shown:g}, which a cause with two parameters needs for its name. In brackets: 95 % Wilson
 intervals, in %.
 """
 
