@@ -53,13 +53,14 @@ class Forms:
     def least(self, effect: str) -> Array:
         """Percent of the RMSE (n,) that a cause of this effect must exceed at each joint.
 
-        Friction beside friction at its joint; anything beside a spring at its joint, and beside what a fluid
-        does; and all but FRICTION, at any joint, beside what swings at one, which shakes all links.
+        Friction beside friction at its joint; anything beside what a fluid does; and all but FRICTION beside
+        a spring at its joint, which is a force over the position, and at any joint beside what swings at one,
+        which shakes all links.
         """
-        found = np.maximum(self._of(FLUID, FORM), self._of(SPRING, FORM))
+        found = self._of(FLUID, FORM)
         if effect in FRICTION:
             return np.maximum(found, self._of(FRICTION, FORM))
-        return np.maximum(found, self._of(COMPLIANT, SWINGS))
+        return np.maximum(found, np.maximum(self._of(SPRING, FORM), self._of(COMPLIANT, SWINGS)))
 
     def _of(self, effects: tuple[str, ...], form: float) -> Array:
         if effects not in self._left:
