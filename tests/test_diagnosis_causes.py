@@ -1,12 +1,10 @@
 """Which causes stay in the final model, on equations of which everything is known: white noise, no arm."""
 
-from typing import Any
-
 import numpy as np
 import pytest
+from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause, covariance, eliminated
 from modelgen.diagnosis.gates import with_causes
@@ -15,8 +13,6 @@ from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 
 LONG = 1500
-UNUSED: Any = None
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, sizes: Array) -> tuple[Rows, Array]:

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 from scipy.stats import chi2
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.colour import LAGS, Colour, correlations
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
 
 PERIOD, PERIODS = 500, 3
 LONG = PERIOD * PERIODS
-UNUSED: Any = None  # records, of which the equations know nothing
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 KEPT = 0.8  # from row to row, of the slow noise
 
 

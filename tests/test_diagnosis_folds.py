@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_support import BARE
 from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
 from hidden.running import run
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.folds import Split, folds
 from modelgen.diagnosis.rows import Rows
-
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 # A wave of friction over the joint, tried as a parabola on records that pass different parts of it.
 WAVE = Case(

@@ -1,14 +1,13 @@
 """Gates on equations of which everything is known: no arm, no filter, white noise."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Gates, Judgement
 from modelgen.diagnosis.rows import Array, Rows
@@ -17,8 +16,6 @@ from modelgen.diagnosis.system import System, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
 
 LONG, UNKNOWNS = 300, 6
-UNUSED: Any = None  # records, of which the gates know nothing
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, size: float) -> tuple[Rows, Array]:

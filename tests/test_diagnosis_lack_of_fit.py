@@ -1,13 +1,11 @@
 """What repeats in a short part of the period, in noise of which all is known: no arm, no filter."""
 
-from typing import Any
-
 import numpy as np
 import pytest
+from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import Judgement
@@ -20,8 +18,6 @@ from modelgen.diagnosis.trials import Trial
 
 PERIOD, PERIODS = 480, 3
 BUMP = slice(210, 240)  # a sixteenth of the period
-UNUSED: Any = None
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def record(random: Generator, repeats: Array, colour: float = 0.0) -> Rows:

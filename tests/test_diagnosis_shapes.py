@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_support import BARE, UNUSED
 from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
-from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.outdone import outdone
@@ -22,8 +22,6 @@ from modelgen.diagnosis.trials import Trial
 from modelgen.diagnosis.whitening import ORDER, Whitener
 
 PERIOD, PERIODS = 200, 3
-UNUSED: Any = None
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
 
 
 def positions(seed: int) -> Array:

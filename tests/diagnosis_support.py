@@ -1,0 +1,10 @@
+"""Parts of equations that no arm and no log has."""
+
+from typing import Any
+
+import numpy as np
+
+from modelgen.diagnosis.baseline import Baseline
+
+UNUSED: Any = None  # records, of which nothing is asked
+BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
