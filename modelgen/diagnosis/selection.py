@@ -78,12 +78,14 @@ def select(
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
+    lesser: dict[tuple[str, int | None], list[tuple[Trial, float]]] = {}
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)
-        taken = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
+        taken = {_place(c.trial) for c in causes}
         trials: list[Trial] = []
+        faint: list[Trial] = []
         ranking: list[Ranked] = []
         for k, candidate in enumerate(pool):
             if report is not None:
@@ -95,6 +97,8 @@ def select(
                 continue
             if found.gain.delta_bic < (max(PASSING, evidence) if candidate.passing else evidence):
                 ranking.append(_ranked(found, None, "evidence"))
+                if found.gain.delta_bic > 0 and sensible(found, prober.arm):
+                    faint.append(found)
             elif not sensible(found, prober.arm):
                 ranking.append(_ranked(found, None, "values"))
             else:
@@ -133,6 +137,7 @@ def select(
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
+        lesser[_place(best)] = _lesser(best, tried, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
@@ -153,14 +158,29 @@ def select(
     if len(causes) < every:
         converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
-    named = {(c.trial.candidate.effect, c.trial.candidate.joint) for c in causes}
+    named = {_place(c.trial) for c in causes}
     for cause in causes:  # what is there beside it, or could be, does not stand for it
-        others = {
-            (t.candidate.effect, t.candidate.joint): (t, behind) for t, behind in reversed(cause.rivals)
-        }
+        every_one = [*cause.rivals, *lesser.get(_place(cause.trial), [])]
+        others = {_place(t): (t, behind) for t, behind in reversed(every_one)}
         rivals = [r for place, r in reversed(others.items()) if place not in named]
         cause.rivals = [(t, behind) for t, behind in rivals if left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
+
+
+def _lesser(
+    best: Trial, tried: Sequence[tuple[Trial, Judgement]], faint: Sequence[Trial], gates: Gates
+) -> list[tuple[Trial, float]]:
+    """Rivals of the best that cannot be named themselves and may be what is there all the same: of too little
+    evidence, where the best has little more, and delays that may be what sticking leaves.
+    """
+    behind = [(t, best.gain.delta_bic - t.gain.delta_bic) for t, by in tried if by.refused == "rest"]
+    near = [(t, best.gain.delta_bic - t.gain.delta_bic) for t in faint]
+    behind += [(t, by) for t, by in near if by <= RATHER and not gates.judged(t).refused]
+    return [(t, max(0.0, by)) for t, by in behind if by <= RATHER and t.candidate != best.candidate]
+
+
+def _place(trial: Trial) -> tuple[str, int | None]:
+    return trial.candidate.effect, trial.candidate.joint
 
 
 def threshold(system: System) -> float:
