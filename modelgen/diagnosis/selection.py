@@ -23,6 +23,9 @@ from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
 EVIDENCE = 6.0  # delta BIC that it takes to name a cause (strong: Kass and Raftery 1995)
+# The same with one parameter: its price, the logarithm of some thousand rows, leaves one time in 10,000 by
+# chance, and there are many such candidates; at 10 one in 100,000, at 6 with two parameters fewer yet.
+ALONE = 10.0
 COLOURLESS = 15.0  # the same where the colour of the noise is not known
 PASSING = 9.0  # the same of warming: noise's colour is known over a second or two, slower drifts look like it
 RATHER = 15.0  # delta BIC that it takes to name it rather than another one that passes
@@ -95,7 +98,9 @@ def select(
             found = court.trial(candidate)
             if found is None:
                 continue
-            if found.gain.delta_bic < (max(PASSING, evidence) if candidate.passing else evidence):
+            alone = found.gain.rank + len(candidate.searched) == 1
+            asked = ALONE if alone else PASSING if candidate.passing else EVIDENCE
+            if found.gain.delta_bic < max(asked, evidence):
                 ranking.append(_ranked(found, None, "evidence"))
                 if found.gain.delta_bic > 0 and sensible(found, prober.arm):
                     faint.append(found)
