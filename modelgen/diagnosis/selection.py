@@ -142,7 +142,7 @@ def select(
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
-        lesser[_place(best)] = _lesser(best, tried, faint, gates)
+        lesser[_place(best)] = lesser_rivals(best, tried, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
@@ -172,7 +172,7 @@ def select(
     return Selection(causes, system, turns)
 
 
-def _lesser(
+def lesser_rivals(
     best: Trial, tried: Sequence[tuple[Trial, Judgement]], faint: Sequence[Trial], gates: Gates
 ) -> list[tuple[Trial, float]]:
     """Rivals of the best that cannot be named themselves and may be what is there all the same: of too little
