@@ -49,7 +49,7 @@ def aliases(
         own = None if cause.searched else _span(cause, {}, prober, motion, base, q)
         equal = []
         for other in pool:
-            if (other.effect, other.joint) == (cause.effect, cause.joint):
+            if other.place == cause.place:
                 continue
             if any(_equal(own, there) for there in spans[id(other)]):
                 equal.append(other)

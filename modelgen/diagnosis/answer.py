@@ -9,8 +9,8 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.diagnosis.band import Equations
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate, at_motor, candidates
-from modelgen.diagnosis.checks import Place, asked
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place, at_motor, candidates
+from modelgen.diagnosis.checks import asked
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit

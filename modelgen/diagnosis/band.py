@@ -71,9 +71,10 @@ def bands(
     Raises InputError where the records are too short, rest, or excite too little.
     """
     wide = _equations(model, prober, found, lengths, settings)
+    lost = wide.feigned
     cutoff = OVER_MOTION * max(motion_bandwidth(record) for record in found[:-1]) if narrower else np.inf
-    narrowed = cutoff < wide.chosen.cutoff and wide.feigned > PRACTICAL
-    if not narrowed or wide.feigned <= LOST:
+    narrowed = cutoff < wide.chosen.cutoff and lost > PRACTICAL
+    if not narrowed or lost <= LOST:
         yield wide
     if narrowed:
         narrow = _equations(model, prober, found, lengths, replace(settings, cutoff=cutoff))

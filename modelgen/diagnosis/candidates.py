@@ -18,6 +18,7 @@ from modelgen.errors import InputError
 from modelgen.probing import Prober, places
 
 Values = Mapping[str, float]
+Place = tuple[str, int | None]  # effect and joint
 
 TAIL = 1e-6  # of the largest of all records
 # Elastic joints and play move in proportion to nothing that they have: all of it is searched for,
@@ -74,6 +75,11 @@ class Candidate:
     searched: tuple[Parameter, ...] = ()
     part: tuple[str, ...] = ()
     forms: int = 1
+
+    @property
+    def place(self) -> Place:
+        """Effect and joint."""
+        return self.effect, self.joint
 
     @property
     def names(self) -> tuple[str, ...]:

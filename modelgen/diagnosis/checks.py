@@ -8,7 +8,7 @@ from difflib import get_close_matches
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, columns, scale
+from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, columns, scale
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.stack import orthonormal
 from modelgen.diagnosis.system import moving_share, rmse, stacked, weighted_fit
@@ -18,7 +18,6 @@ from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.probing import Prober
 
-Place = tuple[str, int | None]
 WORST = 1e3  # condition number, columns of unit norm, up to which the motion counts as an excitation
 APART = 3.0  # errors of one model for all records over those of one model each
 LARGE = 0.05  # of the effort: an error that no small cause explains

@@ -118,7 +118,7 @@ class Court:
 
     def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
         given = {**candidate.fixed, **values}
-        key = candidate.effect, candidate.joint, tuple(sorted(given.items()))
+        key = *candidate.place, tuple(sorted(given.items()))
         stays = of.unchanging(candidate, self.prober)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
             every = replace(candidate, part=())

@@ -35,8 +35,8 @@ def exchanged(
     for place, cause in enumerate(causes):
         held = best[place].trial
         for trial, _ in cause.rivals:
-            others = [c.trial.candidate for c in best if c is not best[place]]
-            if any((c.effect, c.joint) == (trial.candidate.effect, trial.candidate.joint) for c in others):
+            others = [c.trial.candidate.place for c in best if c is not best[place]]
+            if trial.candidate.place in others:
                 continue
             if alternatives(trial.candidate, held.candidate):  # chosen by what they carry as well
                 continue

@@ -73,10 +73,8 @@ def next_experiment(
         separates = ((named.effect, named.joint), *rivals, *named.aliases)
         if stage is None:
             return Experiment(separates, (), None, _said(separates), ())
-        trials = [cause.trial] + [
-            t for t, _ in cause.rivals if (t.candidate.effect, t.candidate.joint) in rivals
-        ]
-        claims = [(t.candidate.effect, t.candidate.joint, t.parameters) for t in trials]
+        trials = [cause.trial] + [t for t, _ in cause.rivals if t.candidate.place in rivals]
+        claims = [(*t.candidate.place, t.parameters) for t in trials]
         before = [hypothesis(c.trial) for c in found if c is not cause]
         judge = Judge(system, stage.prober, stage.base, before)
         suited = [t for t in trials if t.candidate.effect not in UNSUITED][:MEMBERS]

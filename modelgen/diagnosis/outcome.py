@@ -63,9 +63,7 @@ def rows_twice(
 
 def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Prepared]) -> Fitted:
     """The arm with the causes, everything else fitted anew."""
-    causes = [
-        (c.trial.candidate.effect, c.trial.candidate.joint, c.trial.parameters) for c in selection.causes
-    ]
+    causes = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     if not causes:
         return before
     bigger = extended_arm(arm, causes)

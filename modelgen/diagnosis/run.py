@@ -16,11 +16,12 @@ from modelgen.diagnosis.candidates import (
     LATER,
     WARMING,
     Candidate,
+    Place,
     at_links,
     at_motor,
     cold,
 )
-from modelgen.diagnosis.checks import Place, check_one_arm
+from modelgen.diagnosis.checks import check_one_arm
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
@@ -171,11 +172,9 @@ def _named(
     result = []
     for cause, same, values in zip(selection.causes, equal, estimates, strict=True):
         c = cause.trial.candidate
-        alias = tuple((other.effect, other.joint) for other in same)
+        alias = tuple(other.place for other in same)
         rivals = tuple(
-            (t.candidate.effect, t.candidate.joint, behind)
-            for t, behind in cause.rivals
-            if (t.candidate.effect, t.candidate.joint) not in alias
+            (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in alias
         )
         gains = cause.cross_gain, cause.expected_gain
         result.append(Named(c.effect, c.joint, values, cause.delta_bic, *gains, alias, rivals))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.compliance import member, refine, refined
 from modelgen.diagnosis.converging import converge
@@ -81,33 +83,15 @@ def select(
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
-    lesser: dict[tuple[str, int | None], list[tuple[Trial, float]]] = {}
+    lesser: dict[Place, list[tuple[Trial, float]]] = {}
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)
-        taken = {_place(c.trial) for c in causes}
-        trials: list[Trial] = []
-        faint: list[Trial] = []
-        ranking: list[Ranked] = []
-        for k, candidate in enumerate(pool):
-            if report is not None:
-                report(f"cause {turn + 1}", k, len(pool))
-            if (candidate.effect, candidate.joint) in taken:
-                continue
-            found = court.trial(candidate)
-            if found is None:
-                continue
-            alone = found.gain.rank + len(candidate.searched) == 1
-            asked = ALONE if alone else PASSING if candidate.passing else EVIDENCE
-            if found.gain.delta_bic < max(asked, evidence):
-                ranking.append(_ranked(found, None, "evidence"))
-                if found.gain.delta_bic > 0 and sensible(found, prober.arm):
-                    faint.append(found)
-            elif not sensible(found, prober.arm):
-                ranking.append(_ranked(found, None, "values"))
-            else:
-                trials.append(found)
+        taken = {c.trial.candidate.place for c in causes}
+        left = [c for c in pool if c.place not in taken]
+        told = None if report is None else partial(report, f"cause {turn + 1}")
+        trials, faint, ranking = _weighed(left, court, evidence, prober.arm, told)
         settled = refined(trials, causes, system, rows, prober)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         tried: list[tuple[Trial, Judgement]] = []
@@ -142,7 +126,7 @@ def select(
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
-        lesser[_place(best)] = lesser_rivals(best, tried, faint, gates)
+        lesser[best.candidate.place] = lesser_rivals(best, tried, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals))
         converge(causes, rows, prober)
@@ -163,13 +147,39 @@ def select(
     if len(causes) < every:
         converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
-    named = {_place(c.trial) for c in causes}
+    named = {c.trial.candidate.place for c in causes}
     for cause in causes:  # what is there beside it, or could be, does not stand for it
-        every_one = [*cause.rivals, *lesser.get(_place(cause.trial), [])]
-        others = {_place(t): (t, behind) for t, behind in reversed(every_one)}
+        every_one = [*cause.rivals, *lesser.get(cause.trial.candidate.place, [])]
+        others = {t.candidate.place: (t, behind) for t, behind in reversed(every_one)}
         rivals = [r for place, r in reversed(others.items()) if place not in named]
         cause.rivals = [(t, behind) for t, behind in rivals if left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
+
+
+def _weighed(
+    pool: Sequence[Candidate],
+    court: Court,
+    evidence: float,
+    arm: Arm,
+    report: Callable[[int, int], None] | None,
+) -> tuple[list[Trial], list[Trial], list[Ranked]]:
+    """Candidates with evidence, those with too little of it, and what evidence or values refuse."""
+    trials, faint, refused = [], [], []
+    for k, candidate in enumerate(pool):
+        if report is not None:
+            report(k, len(pool))
+        found = court.trial(candidate)
+        if found is None:
+            continue
+        if found.gain.delta_bic < max(least_evidence(found), evidence):
+            refused.append(_ranked(found, None, "evidence"))
+            if found.gain.delta_bic > 0 and sensible(found, arm):
+                faint.append(found)
+        elif not sensible(found, arm):
+            refused.append(_ranked(found, None, "values"))
+        else:
+            trials.append(found)
+    return trials, faint, refused
 
 
 def lesser_rivals(
@@ -184,8 +194,11 @@ def lesser_rivals(
     return [(t, max(0.0, by)) for t, by in behind if by <= RATHER and t.candidate != best.candidate]
 
 
-def _place(trial: Trial) -> tuple[str, int | None]:
-    return trial.candidate.effect, trial.candidate.joint
+def least_evidence(trial: Trial) -> float:
+    """Delta BIC that it takes to name this cause where the noise is known."""
+    if trial.gain.rank + len(trial.candidate.searched) == 1:
+        return ALONE
+    return PASSING if trial.candidate.passing else EVIDENCE
 
 
 def threshold(system: System) -> float:
@@ -222,12 +235,12 @@ def _harmless(rows: Sequence[Rows], blur: Array | None, system: System) -> bool:
 
 def _ranked(t: Trial, by: Judgement | None, refused: str) -> Ranked:
     gain, expected = (None, None) if by is None else (by.gain, by.expected)
-    return Ranked(t.candidate.effect, t.candidate.joint, t.gain.delta_bic, gain, expected, refused)
+    return Ranked(*t.candidate.place, t.gain.delta_bic, gain, expected, refused)
 
 
 def _best_of_each(ranking: Sequence[Ranked]) -> list[Ranked]:
     """Best first; of an effect that was tried in several forms at a joint the one that came farthest."""
-    best: dict[tuple[str, int | None], Ranked] = {}
+    best: dict[Place, Ranked] = {}
     for r in sorted(ranking, key=lambda r: (bool(r.refused), -r.delta_bic)):
         best.setdefault((r.effect, r.joint), r)
     return sorted(best.values(), key=lambda r: -r.delta_bic)

@@ -37,11 +37,6 @@ class Hypothesis:
     others: tuple[Mapping[str, float], ...]
 
     @property
-    def place(self) -> tuple[str, int | None]:
-        """Effect and joint."""
-        return self.candidate.effect, self.candidate.joint
-
-    @property
     def parameters(self) -> int:
         """What the information criterion counts."""
         return len(self.theta) + len(self.values)

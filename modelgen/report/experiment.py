@@ -92,7 +92,7 @@ def _trajectory(e: Experiment) -> str:
 def _pairs(e: Experiment) -> list[tuple[str, str, str]]:
     if e.proposal is None:
         return []
-    names = [_place(*h.place) for h in e.members]
+    names = [_place(*h.candidate.place) for h in e.members]
     count = range(len(names))
     return [
         (names[i], names[j], f"{e.proposal.evidence[i, j]:.3g}")

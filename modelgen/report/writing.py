@@ -25,7 +25,7 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
     pictures, a new one in this process by default. Raises InputError.
     """
     trials = [c.trial for c in d.selection.causes]
-    causes = [(t.candidate.effect, t.candidate.joint, t.parameters) for t in trials]
+    causes = [(*t.candidate.place, t.parameters) for t in trials]
     name = d.arm.name
     new = out.with_name(f".{out.name}.new")
     pen, wanted = pen or Pen(), sketches(d)
