@@ -5,8 +5,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from hidden.cases import Case, Hidden
-from hidden.running import run
+from hidden.cases import Case, Hidden, make
+from hidden.running import diagnose, run
 
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Judgement
@@ -20,6 +20,17 @@ def test_a_delay_beside_a_joint_that_sticks(tmp_path: Path) -> None:
     outcome, _, _ = run(case, tmp_path / "case")
     assert outcome.in_set, outcome
     assert outcome.size <= 2
+
+
+def test_coarse_positions_do_not_tell_a_lever_from_a_torque_constant(tmp_path: Path) -> None:
+    """Errors of the positions put the wrong one of two ahead by 3 of 155 of evidence."""
+    case = Case("mixed4", 79368935, (Hidden("lever_geometry", 2, 1.3, 4.598426492040),), "coarse")
+    make(case, tmp_path / "case")
+    answer, _ = diagnose(tmp_path / "case", case.name)
+    assert answer["verdict"] == "cannot_tell"
+    assert answer["causes"] == []
+    assert "drive_gain_error at joint 2" in answer["reason"]
+    assert "lever_geometry at joint 2" in answer["reason"]
 
 
 def tried(effect: str, delta_bic: float) -> Trial:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.description import Arm
 from modelgen.diagnosis.band import Equations
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place, at_motor, candidates
 from modelgen.diagnosis.checks import asked
 from modelgen.diagnosis.endogeneity import Endogeneity, endogeneity
 from modelgen.diagnosis.gates import PRACTICAL
+from modelgen.diagnosis.indistinct import indistinct
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.outdone import Likeness, outdone
 from modelgen.diagnosis.positions import feigned, harmless
@@ -21,6 +21,7 @@ from modelgen.diagnosis.selection import Selection, select
 from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.system import mean_squares
 from modelgen.diagnosis.verdict import verdict_of
+from modelgen.functions import Model
 from modelgen.probing import Prober
 
 Progress = Callable[[str, int, int], None]
@@ -47,7 +48,7 @@ class Answer:
 
 def answered(
     made: Equations,
-    arm: Arm,
+    model: Model,
     prober: Prober,
     effects: Sequence[Place],
     progress: Progress | None,
@@ -61,18 +62,19 @@ def answered(
     baseline, free = rows[0].baseline, rows[0].prepared.input is None
     pool: Sequence[Candidate] = [
         c
-        for c in candidates(arm, prober, rows)
+        for c in candidates(model.arm, prober, rows)
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
-    pool = asked(arm, pool, effects, rows, prober, baseline.base(made.theta))
+    pool = asked(model.arm, pool, effects, rows, prober, baseline.base(made.theta))
     selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
     base = baseline.base(selection.system.theta[:own])
     selection, beside, likeness = outdone(selection, rows, [] if free else list(shapes(rows, prober, base)))
+    selection, close = indistinct(selection, made, pool, prober, model)
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
     left = mean_squares(selection.system)
     share = feigned(blurs, left)
     moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
-    verdict, reason = verdict_of(selection, beside, fit, share, tested, likeness, counted=counted)
+    verdict, reason = verdict_of(selection, beside, close, fit, share, tested, likeness, counted=counted)
     return Answer(made, pool, selection, verdict, reason, fit, likeness, share, noisy)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -73,9 +73,7 @@ def outdone(
             return selection, dropped, max(left, key=lambda likeness: likeness.evidence, default=None)
         worst = min(lost, key=lambda c: c.delta_bic)
         dropped.append(worst)
-        kept = [c for c in causes if c is not worst]
-        system = System(rows, with_causes(rows, [c.trial for c in kept]), system.periods)
-        selection = replace(selection, causes=kept, system=system)
+        selection = selection.without([worst])
 
 
 def _outdone(

@@ -102,7 +102,7 @@ def diagnose(
     model, prober = build_model(arm), Prober(arm)
     for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
         check_one_arm(arm, model, made.rows, prober, made.rows[0].baseline.base(made.theta))
-        answer = answered(made, arm, prober, effects, progress)
+        answer = answered(made, model, prober, effects, progress)
         if answer.verdict != "cannot_tell":
             break
     made, verdict, chosen, rows = answer.made, answer.verdict, answer.made.chosen, answer.made.rows

@@ -61,6 +61,13 @@ class Selection:
     system: System
     turns: list[list[Ranked]]
 
+    def without(self, lost: Sequence[Cause]) -> Selection:
+        """The same with fewer causes."""
+        kept = [c for c in self.causes if all(c is not other for other in lost)]
+        rows = self.system.rows
+        system = System(rows, with_causes(rows, [c.trial for c in kept]), self.system.periods)
+        return replace(self, causes=kept, system=system)
+
 
 def select(
     rows: Sequence[Rows],

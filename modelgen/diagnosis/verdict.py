@@ -19,6 +19,7 @@ from modelgen.diagnosis.selection import Selection
 def verdict_of(
     selection: Selection,
     beside: Sequence[Cause],
+    close: Sequence[Cause],
     fit: LackOfFit | None,
     noisy: Array,
     correlated: Endogeneity | None,
@@ -28,16 +29,20 @@ def verdict_of(
 ) -> tuple[str, str]:
     """Which of the four, and why.
 
-    beside: what gained something and left most of what repeats, or explained less than a shape; noisy:
-    percent of the RMSE by joint that errors of the positions could feign; counted: whether such errors are
-    all the noise there is, and what remains is no more than that.
+    beside: what gained something and left most of what repeats, or explained less than a shape; close: what
+    coarse positions do not tell from its rivals; noisy: percent of the RMSE by joint that errors of the
+    positions could feign; counted: whether such errors are all the noise there is, and what remains is no
+    more than that.
     """
+    coarse = f"the positions are too coarse to tell {' and '.join(map(_rivals, close))}"
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
-        left = like or (fit is not None and fit.found)
-        return "named", "a cause passed every gate" + (
-            f"; something deterministic remains beside it{like}" if left else ""
-        )
+        more = f"; {coarse}" if close else ""
+        if like or (fit is not None and fit.found and not close):
+            more += f"; something deterministic remains beside it{like}"
+        return "named", f"a cause passed every gate{more}"
+    if close:
+        return "cannot_tell", f"{coarse}: each explains what is missing; encoders at the motors can tell"
     if counted:
         return "nothing_missing", (
             "what remains is no more than what the counts of the encoders leave; whatever is less than that "
@@ -80,6 +85,10 @@ def _where(fit: LackOfFit, selection: Selection) -> str:
     if where is not None:
         part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
     return f" at joint {fit.worst.joint + 1}{part}"
+
+
+def _rivals(cause: Cause) -> str:
+    return f"{_title(cause.trial.candidate)} from {' or '.join(_title(t.candidate) for t, _ in cause.rivals)}"
 
 
 def _title(c: Candidate) -> str:

@@ -1,0 +1,53 @@
+"""Causes that coarse positions do not tell from others.
+
+Evidence is that of equations whose regressor is known. Errors of the positions bend it, for one law more than
+for another: of two that are close the wrong one may come out ahead, however much both explain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from modelgen.diagnosis.aliases import aliases
+from modelgen.diagnosis.band import Equations
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.selection import RATHER, Selection
+from modelgen.diagnosis.system import System
+from modelgen.diagnosis.trials import Trial, beside
+from modelgen.functions import Model
+from modelgen.probing import Prober
+
+
+def indistinct(
+    selection: Selection, made: Equations, pool: Sequence[Candidate], prober: Prober, model: Model
+) -> tuple[Selection, list[Cause]]:
+    """The selection without causes that others come close to, and those causes with these alone for rivals.
+
+    None where the positions leave the usual band. Aliases say the same thing, and so does a law with more
+    freedom that holds the cause's own and makes no use of it.
+    """
+    close = [c for c in selection.causes if any(behind <= RATHER for _, behind in c.rivals)]
+    if made.narrowed == 1.0 or not close:
+        return selection, []
+    base = made.rows[0].baseline.base(selection.system.theta[: made.rows[0].columns.shape[2]])
+    equal = aliases([c.trial.candidate for c in close], pool, prober, model, base)
+    lost, told = [], []
+    for cause, same in zip(close, equal, strict=True):
+        places = [other.place for other in same]
+        near = [(t, by) for t, by in cause.rivals if by <= RATHER and t.candidate.place not in places]
+        rivals = [(t, by) for t, by in near if not _holds(t, cause, selection)]
+        if rivals:
+            lost.append(cause)
+            told.append(replace(cause, rivals=rivals))
+    return selection.without(lost), told
+
+
+def _holds(rival: Trial, cause: Cause, selection: Selection) -> bool:
+    """Whether the cause's columns add nothing to the rival's in its place."""
+    rows = selection.system.rows
+    others = [c.trial for c in selection.causes if c is not cause]
+    system = System(rows, with_causes(rows, [*others, rival]), selection.system.periods)
+    return beside(cause.trial, system) is None
