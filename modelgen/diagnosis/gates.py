@@ -23,7 +23,8 @@ from modelgen.diagnosis.system import System, moving_rows, rmse, stacked, weight
 from modelgen.diagnosis.trials import Trial
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
-FAINT, MORE = 15.0, 3.0  # evidence below which it must be more: the best of hundreds of forms by chance
+# Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
+FAINT, MORE = (6.0, 15.0), 3.0
 DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
 STICKING = 5.0  # the same for what acts at reversals beside another such: the form of that leaves more
 LATE = 1.0  # percent of the RMSE where no joint rests nearby, of a delay
@@ -183,7 +184,7 @@ class Gates:
             return STICKING
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
-        return MORE if trial.gain.delta_bic < FAINT * self.system.price else PRACTICAL
+        return float(np.interp(trial.gain.delta_bic / self.system.price, FAINT, (MORE, PRACTICAL)))
 
     def _beside(self, effects: tuple[str, ...], joint: int | None) -> bool:
         """Whether one of them was taken at the joint, or one of the two is everywhere."""
