@@ -42,7 +42,9 @@ def verdict_of(
             more += f"; something deterministic remains beside it{like}"
         return "named", f"a cause passed every gate{more}"
     if close:
-        return "cannot_tell", f"{coarse}: each explains what is missing; encoders at the motors can tell"
+        return "cannot_tell", (
+            f"{coarse}: each explains what is missing; finer encoders, or encoders at the motors, can tell"
+        )
     if counted:
         return "nothing_missing", (
             "what remains is no more than what the counts of the encoders leave; whatever is less than that "
