@@ -184,7 +184,10 @@ class Gates:
             return STICKING
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
-        return float(np.interp(trial.gain.delta_bic / self.system.price, FAINT, (MORE, PRACTICAL)))
+        evidence = trial.gain.delta_bic / self.system.price
+        if self.system.price > 1.0:  # the noise's colour is not known, nor how much chance has in it
+            return MORE if evidence < FAINT[1] else PRACTICAL
+        return float(np.interp(evidence, FAINT, (MORE, PRACTICAL)))
 
     def _beside(self, effects: tuple[str, ...], joint: int | None) -> bool:
         """Whether one of them was taken at the joint, or one of the two is everywhere."""
