@@ -201,6 +201,14 @@ def test_presliding_beside_stribeck_is_more_than_the_form_of_that_leaves() -> No
     assert beside({"friction_offset": 0.3}, "presliding", 0.27).refused == ""
 
 
+@pytest.mark.parametrize("size", [0.09, 0.105, 0.12, 0.14, 0.15, 0.18])
+def test_the_fainter_a_cause_the_more_it_must_promise(size: float) -> None:
+    """From 3 % at an evidence of 6 to 1.5 % at 15: what passes with some evidence passes with more."""
+    expected = beside({}, size=size, evidence=50.0).expected
+    passed = [beside({}, size=size, evidence=e).refused == "" for e in (5.0, 8.0, 10.5, 13.0, 16.0)]
+    assert passed == [expected >= least for least in (3.0, 2.667, 2.25, 1.833, 1.5)]
+
+
 def late(stuck: float, delay: float) -> Judgement:
     """Of a delay whose column is large where a joint sticks for a moment, and moderate elsewhere: what is
     left there looks like it to the extent `stuck`, and it is there to the extent `delay`.
