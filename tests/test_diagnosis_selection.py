@@ -16,6 +16,7 @@ from modelgen.diagnosis.run import diagnose
 from modelgen.diagnosis.selection import at_one_joint
 from modelgen.diagnosis.stack import Gain
 from modelgen.diagnosis.trials import Trial
+from modelgen.errors import InputError
 from modelgen.functions import build_model
 from modelgen.probing import Motion, Prober, with_effect
 
@@ -104,6 +105,20 @@ def test_without_repetition_nothing_can_be_said() -> None:
 
 def replace_part(r: Record, begin: int, end: int) -> Record:
     return r.part(begin, end, r.name)
+
+
+@pytest.mark.parametrize(
+    ("effect", "joint", "values"),
+    [("encoder_offset", 1, {"offset": 0.02}), ("base_tilt", None, {"x": 0.01, "y": 0.0})],
+)
+def test_what_is_described_already_is_not_asked_for(
+    effect: str, joint: int | None, values: dict[str, float]
+) -> None:
+    """Geometry that is off is a part of the model, though none of its parameters."""
+    arm = with_effect(ARM, effect, joint, values)
+    records = [replace(r, arm=arm) for r in three(None, 1, 0.0, 4)]
+    with pytest.raises(InputError, match="has it already"):
+        diagnose(arm, records, effects=[(effect, joint)])
 
 
 def test_an_effect_that_is_there_already_is_not_named_again(tmp_path: Path) -> None:

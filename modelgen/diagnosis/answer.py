@@ -62,14 +62,15 @@ def answered(
     baseline, free = rows[0].baseline, rows[0].prepared.input is None
     pool: Sequence[Candidate] = [
         c
-        for c in candidates(model.arm, prober, rows)
+        for c in candidates(prober.arm, prober, rows)
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
-    pool = asked(model.arm, pool, effects, rows, prober, baseline.base(made.theta))
+    pool = asked(prober.arm, pool, effects, rows, prober, baseline.base(made.theta))
     selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
     base = baseline.base(selection.system.theta[:own])
     selection, beside, likeness = outdone(selection, rows, [] if free else list(shapes(rows, prober, base)))
     selection, close = indistinct(selection, made, pool, prober, model)
+    likeness = None if close else likeness
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
     left = mean_squares(selection.system)
     share = feigned(blurs, left)

@@ -13,6 +13,7 @@ from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.band import Equations
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.compliance import alternatives
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.selection import RATHER, Selection
 from modelgen.diagnosis.system import System
@@ -24,29 +25,32 @@ from modelgen.probing import Prober
 def indistinct(
     selection: Selection, made: Equations, pool: Sequence[Candidate], prober: Prober, model: Model
 ) -> tuple[Selection, list[Cause]]:
-    """The selection without causes that others come close to, and those causes with these alone for rivals.
+    """The selection, with no cause at all where rivals come close to some, and these with such rivals alone.
 
-    None where the positions leave the usual band. Aliases say the same thing, and so does a law with more
-    freedom that holds the cause's own and makes no use of it.
+    What the other causes explain depends on which of them it is. In the usual band none is lost. Aliases say
+    the same thing, and so does a law with more freedom that holds the cause's own and makes no use of it.
     """
     close = [c for c in selection.causes if any(behind <= RATHER for _, behind in c.rivals)]
     if made.narrowed == 1.0 or not close:
         return selection, []
     base = made.rows[0].baseline.base(selection.system.theta[: made.rows[0].columns.shape[2]])
     equal = aliases([c.trial.candidate for c in close], pool, prober, model, base)
-    lost, told = [], []
+    found = []
     for cause, same in zip(close, equal, strict=True):
         places = [other.place for other in same]
         near = [(t, by) for t, by in cause.rivals if by <= RATHER and t.candidate.place not in places]
-        rivals = [(t, by) for t, by in near if not _holds(t, cause, selection)]
+        rivals = [(t, by) for t, by in near if not _the_same(t, cause, selection)]
         if rivals:
-            lost.append(cause)
-            told.append(replace(cause, rivals=rivals))
-    return selection.without(lost), told
+            found.append(replace(cause, rivals=rivals))
+    return (selection.without(selection.causes), found) if found else (selection, [])
 
 
-def _holds(rival: Trial, cause: Cause, selection: Selection) -> bool:
-    """Whether the cause's columns add nothing to the rival's in its place."""
+def _the_same(rival: Trial, cause: Cause, selection: Selection) -> bool:
+    """Whether the cause adds nothing to the rival in its place, or the two are an elastic joint and a gap,
+    which are told apart by what they carry to other records.
+    """
+    if alternatives(rival.candidate, cause.trial.candidate):
+        return True
     rows = selection.system.rows
     others = [c.trial for c in selection.causes if c is not cause]
     system = System(rows, with_causes(rows, [*others, rival]), selection.system.periods)

@@ -34,16 +34,16 @@ def verdict_of(
     positions could feign; counted: whether such errors are all the noise there is, and what remains is no
     more than that.
     """
-    coarse = f"the positions are too coarse to tell {' and '.join(map(_rivals, close))}"
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
-        more = f"; {coarse}" if close else ""
-        if like or (fit is not None and fit.found and not close):
-            more += f"; something deterministic remains beside it{like}"
-        return "named", f"a cause passed every gate{more}"
+        left = like or (fit is not None and fit.found)
+        return "named", "a cause passed every gate" + (
+            f"; something deterministic remains beside it{like}" if left else ""
+        )
     if close:
         return "cannot_tell", (
-            f"{coarse}: each explains what is missing; finer encoders, or encoders at the motors, can tell"
+            f"the positions are too coarse to tell {' and '.join(map(_rivals, close))}: each explains what "
+            "is missing nearly as well; finer encoders, or encoders at the motors, can tell"
         )
     if counted:
         return "nothing_missing", (
