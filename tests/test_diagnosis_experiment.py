@@ -83,7 +83,7 @@ class Scene:
         system = System(rows, [r.columns for r in rows], periods)
         base = rows[0].baseline.base(system.theta)
         court = Court(system, rows, self.prober, base)
-        pool = {(c.effect, c.joint): c for c in candidates(self.arm, self.prober, rows)}
+        pool = {(c.effect, c.joint): c for c in candidates(self.prober, rows)}
         found = [court.trial(pool[place]) for place in self.pair]
         assert found[0] is not None
         assert found[1] is not None

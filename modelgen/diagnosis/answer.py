@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.band import Equations
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place, at_motor, candidates
 from modelgen.diagnosis.checks import asked
@@ -31,13 +32,13 @@ COUNTED = 1.25
 
 @dataclass(frozen=True)
 class Answer:
-    """made: the equations that were asked. pool: what was tried. share: percent of the RMSE by joint (n,)
-    that errors of the positions could feign in what is left.
+    """made: the equations that were asked. equal: aliases of every cause. share: percent of the RMSE by
+    joint (n,) that errors of the positions could feign in what is left.
     """
 
     made: Equations
-    pool: Sequence[Candidate]
     selection: Selection
+    equal: Sequence[Sequence[Candidate]]
     verdict: str
     reason: str
     fit: LackOfFit | None
@@ -58,19 +59,25 @@ def answered(
     Raises InputError where none of the effects can be asked for.
     """
     rows, blurs = made.rows, made.blur
-    own = rows[0].columns.shape[2]
     baseline, free = rows[0].baseline, rows[0].prepared.input is None
+
+    def base(found: Selection) -> Array:
+        return baseline.base(found.system.theta[: rows[0].columns.shape[2]])
+
     pool: Sequence[Candidate] = [
         c
-        for c in candidates(prober.arm, prober, rows)
+        for c in candidates(prober, rows)
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
-    pool = asked(prober.arm, pool, effects, rows, prober, baseline.base(made.theta))
+    pool = asked(pool, effects, rows, prober, baseline.base(made.theta))
     selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
-    base = baseline.base(selection.system.theta[:own])
-    selection, beside, likeness = outdone(selection, rows, [] if free else list(shapes(rows, prober, base)))
-    selection, close = indistinct(selection, made, pool, prober, model)
-    likeness = None if close else likeness
+    tried = [] if free else list(shapes(rows, prober, base(selection)))
+    selection, beside, likeness = outdone(selection, rows, tried)
+    named = [c.trial.candidate for c in selection.causes]
+    equal = aliases(named, pool, prober, model, base(selection)) if named else []
+    selection, close = indistinct(selection, equal, made.narrowed)
+    if close:
+        equal, likeness = [], None
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
     left = mean_squares(selection.system)
     share = feigned(blurs, left)
@@ -78,4 +85,4 @@ def answered(
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
     verdict, reason = verdict_of(selection, beside, close, fit, share, tested, likeness, counted=counted)
-    return Answer(made, pool, selection, verdict, reason, fit, likeness, share, noisy)
+    return Answer(made, selection, equal, verdict, reason, fit, likeness, share, noisy)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset import drives_of, parse
-from modelgen.description import Arm
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.sensitivities import STEPS, payload, sensitivities
 from modelgen.effects import CATALOGUE, Parameter
@@ -116,7 +115,7 @@ class Candidate:
         return [self.joint - 1, *others]
 
 
-def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
+def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
     """Everything of the catalogue that can stand somewhere on the arm and is not there yet."""
     found: list[Candidate] = []
     free = all(r.prepared.input is None for r in rows)
@@ -127,7 +126,7 @@ def candidates(arm: Arm, prober: Prober, rows: Sequence[Rows]) -> list[Candidate
             continue
         if name == WARMING and not cold(rows):
             continue
-        for joint in places(arm, name):
+        for joint in places(prober.arm, name):
             if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
                 continue
             searched = () if name in STEPS else tuple(p for p in effect.nonlinear if p.grid)

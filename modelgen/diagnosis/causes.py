@@ -18,7 +18,8 @@ CONTRADICTION = 3.0  # standard deviations below zero, of what cannot be negativ
 
 @dataclass
 class Cause:
-    """A candidate that passed. rivals: (candidate, delta BIC behind) that passed as well at its turn.
+    """A candidate that passed. rivals: (candidate, delta BIC behind) that passed as well at its turn; lesser:
+    that could not be named then and may be there all the same.
 
     delta_bic: what leaving it out of the final model costs; cross_gain, expected_gain: percent of the RMSE on
     rows that its fit had not seen, as measured and as it must be if the cause is there as found.
@@ -29,6 +30,7 @@ class Cause:
     cross_gain: float
     expected_gain: float
     rivals: list[tuple[Trial, float]] = field(default_factory=list)
+    lesser: list[tuple[Trial, float]] = field(default_factory=list)
 
 
 def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike: bool = False) -> float:

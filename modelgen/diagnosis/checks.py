@@ -113,7 +113,6 @@ def _weights(rows: Sequence[Rows]) -> Array:
 
 
 def asked(
-    arm: Arm,
     pool: Sequence[Candidate],
     wanted: Sequence[Place],
     rows: Sequence[Rows],
@@ -127,7 +126,7 @@ def asked(
     """
     if not wanted:
         return list(pool)
-    found: list[Candidate] = []
+    arm, found = prober.arm, list[Candidate]()
     for effect, joint in wanted:
         if effect not in CATALOGUE:
             near = get_close_matches(effect, CATALOGUE, n=1)

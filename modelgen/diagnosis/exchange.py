@@ -46,7 +46,7 @@ def exchanged(
             found = _worth(tried, bare)
             if found > most + TIE:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
-                tried[place].rivals = [(held, found - most), *rivals]
+                tried[place].rivals, tried[place].lesser = [(held, found - most), *rivals], []
                 best, most = tried, found
     return best
 

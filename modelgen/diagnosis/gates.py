@@ -185,7 +185,7 @@ class Gates:
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
         evidence = trial.gain.delta_bic / self.system.price
-        if self.system.price > 1.0:  # the noise's colour is not known, nor how much chance has in it
+        if not self.system.coloured:
             return MORE if evidence < FAINT[1] else PRACTICAL
         return float(np.interp(evidence, FAINT, (MORE, PRACTICAL)))
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from modelgen.diagnosis.aliases import aliases
-from modelgen.diagnosis.band import Equations
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.compliance import alternatives
@@ -18,25 +16,21 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.selection import RATHER, Selection
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial, beside
-from modelgen.functions import Model
-from modelgen.probing import Prober
 
 
 def indistinct(
-    selection: Selection, made: Equations, pool: Sequence[Candidate], prober: Prober, model: Model
+    selection: Selection, equal: Sequence[Sequence[Candidate]], narrowed: float
 ) -> tuple[Selection, list[Cause]]:
     """The selection, with no cause at all where rivals come close to some, and these with such rivals alone.
 
     What the other causes explain depends on which of them it is. In the usual band none is lost. Aliases say
     the same thing, and so does a law with more freedom that holds the cause's own and makes no use of it.
+    equal: aliases of every cause; narrowed: the usual band over that of the equations.
     """
-    close = [c for c in selection.causes if any(behind <= RATHER for _, behind in c.rivals)]
-    if made.narrowed == 1.0 or not close:
+    if narrowed == 1.0:
         return selection, []
-    base = made.rows[0].baseline.base(selection.system.theta[: made.rows[0].columns.shape[2]])
-    equal = aliases([c.trial.candidate for c in close], pool, prober, model, base)
     found = []
-    for cause, same in zip(close, equal, strict=True):
+    for cause, same in zip(selection.causes, equal, strict=True):
         places = [other.place for other in same]
         near = [(t, by) for t, by in cause.rivals if by <= RATHER and t.candidate.place not in places]
         rivals = [(t, by) for t, by in near if not _the_same(t, cause, selection)]

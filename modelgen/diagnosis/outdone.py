@@ -26,10 +26,8 @@ CLEARLY = 7.0  # delta BIC by which a shape is more than a cause that stands alo
 # Delta BIC in the plain equations, of a shape beside a cause and over it, if it is as good else: in complete
 # models shapes have 37 there once in 200.
 SLOW = 40.0
-AS_GOOD, OF_IT = (
-    5.0,
-    0.01,
-)  # delta BIC less than the cause's, and more by so much of it, in the fair equations
+# Delta BIC less than the cause's, and more by so much of it, in the fair equations.
+AS_GOOD, OF_IT = 5.0, 0.01
 BEHIND = 20.0  # delta BIC less than the cause's, in the plain ones, from which no shape takes its place
 SEARCHED = 8.0  # delta BIC that each further cause costs, as one of some sixty at every joint: 2 ln 60
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from modelgen.dataset import Record, Settings, check_separate, read, split
 from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
-from modelgen.diagnosis.aliases import aliases
 from modelgen.diagnosis.answer import Progress, answered
 from modelgen.diagnosis.band import bands
 from modelgen.diagnosis.candidates import (
@@ -30,11 +29,11 @@ from modelgen.diagnosis.gates import PRACTICAL, practical
 from modelgen.diagnosis.motions import stage
 from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
-from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.selection import Selection, threshold
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.errors import InputError
-from modelgen.functions import Model, build_model
+from modelgen.functions import build_model
 from modelgen.probing import Prober, places
 
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
@@ -110,7 +109,7 @@ def diagnose(
     baseline = rows[0].baseline
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
     selection = stiffened(answer.selection, rows, prober)
-    named = _named(selection, answer.pool, prober, model, base, rows)
+    named = _named(selection, answer.equal, rows, arm)
     following = None
     if experiment and verdict == "named":
         plan = None if free else stage(arm, model, prober, train, base)
@@ -158,17 +157,11 @@ def diagnose(
 
 
 def _named(
-    selection: Selection,
-    pool: Sequence[Candidate],
-    prober: Prober,
-    model: Model,
-    base: Array,
-    rows: Sequence[Rows],
+    selection: Selection, equal: Sequence[Sequence[Candidate]], rows: Sequence[Rows], arm: Arm
 ) -> tuple[Named, ...]:
     if not selection.causes:
         return ()
-    equal = aliases([c.trial.candidate for c in selection.causes], pool, prober, model, base)
-    estimates = cause_estimates(selection, rows, prober.arm)
+    estimates = cause_estimates(selection, rows, arm)
     result = []
     for cause, same, values in zip(selection.causes, equal, estimates, strict=True):
         c = cause.trial.candidate

@@ -90,7 +90,6 @@ def select(
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: list[list[Ranked]] = []
-    lesser: dict[Place, list[tuple[Trial, float]]] = {}
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
@@ -133,9 +132,9 @@ def select(
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
-        lesser[best.candidate.place] = lesser_rivals(best, tried, faint, gates)
+        lesser = lesser_rivals(best, tried, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
-        causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals))
+        causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser))
         converge(causes, rows, prober)
         if not own:
             refine(causes, rows, prober)
@@ -156,8 +155,7 @@ def select(
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     named = {c.trial.candidate.place for c in causes}
     for cause in causes:  # what is there beside it, or could be, does not stand for it
-        every_one = [*cause.rivals, *lesser.get(cause.trial.candidate.place, [])]
-        others = {t.candidate.place: (t, behind) for t, behind in reversed(every_one)}
+        others = {t.candidate.place: (t, by) for t, by in reversed([*cause.rivals, *cause.lesser])}
         rivals = [r for place, r in reversed(others.items()) if place not in named]
         cause.rivals = [(t, behind) for t, behind in rivals if left_to(t, system) < STAYS * t.gain.delta_bic]
     return Selection(causes, system, turns)
@@ -210,7 +208,7 @@ def least_evidence(trial: Trial) -> float:
 
 def threshold(system: System) -> float:
     """Delta BIC that it takes to name a cause."""
-    return EVIDENCE if system.price == 1.0 else COLOURLESS
+    return EVIDENCE if system.coloured else COLOURLESS
 
 
 def left_to(trial: Trial, system: System) -> float:

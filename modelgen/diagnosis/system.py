@@ -88,9 +88,14 @@ class System:
         return any(p is not None for p in self.periods)
 
     @property
+    def coloured(self) -> bool:
+        """Whether the colour of the noise is known, and so how much of any evidence is chance."""
+        return self.plain.colour is not None
+
+    @property
     def price(self) -> float:
         """Times the evidence that it takes to name a cause: more where the noise's colour is not known."""
-        return 1.0 if self.plain.colour is not None else DEARER
+        return 1.0 if self.coloured else DEARER
 
     @property
     def fair(self) -> Stack:

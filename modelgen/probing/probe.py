@@ -30,7 +30,6 @@ from modelgen.probing.series import Series
 from modelgen.probing.variations import Variations
 
 Values = Mapping[str, float]
-Place = tuple[str, int | None]
 
 REMEMBERED = 40  # results that do not depend on an effect's own values
 # Not free: they choose the form of the law, or where it acts.
