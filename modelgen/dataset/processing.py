@@ -17,7 +17,7 @@ from modelgen.dataset.decimation import Decimation, decimation, kept
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.filters import advanced, differences, low_pass
 from modelgen.dataset.objects import Array, Record
-from modelgen.dataset.rest import moving_samples, samples_far_from_rest
+from modelgen.dataset.rest import moving_samples, samples_away_from_rest, samples_far_from_rest
 from modelgen.errors import InputError
 
 FEWEST_ROWS = 10
@@ -33,7 +33,8 @@ class Prepared:
     unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
     times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
-    joint moves there, away from rest. settings: as used, every choice made.
+    joint moves there, away from rest. awake: (N, n), the same of all samples. settings: as used, every choice
+    made.
     """
 
     record: Record
@@ -51,6 +52,7 @@ class Prepared:
     temperature: Array | None
     rows: np.ndarray
     moving: np.ndarray
+    awake: np.ndarray
 
     @property
     def t(self) -> Array:
@@ -163,6 +165,7 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         temperature=record.temperature,
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate),
+        awake=samples_away_from_rest(dq, chosen, rate),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import ndimage
 
 from modelgen.dataset.choice import Chosen
 from modelgen.dataset.decimation import kept
@@ -34,18 +35,34 @@ def samples_far_from_rest(dq: Array, rows: np.ndarray, settings: Chosen, rate: f
     return np.asarray(moving & (share > -SHARE))
 
 
+def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
+    """Samples (N, n) where the joint does not rest, nor stops or starts so near that the filters of its
+    position blend both.
+    """
+    longest = max(2, round(settings.rest_time * rate))
+    reach = settings.half_width
+    if settings.position_cutoff:
+        reach += round(0.5 * rate / settings.position_cutoff)
+    rest = _resting(np.abs(dq) < np.array(settings.gates), longest)
+    return np.asarray(~ndimage.binary_dilation(rest, np.ones((2 * reach + 1, 1))))
+
+
 def _away(
     dq: Array, rows: np.ndarray, settings: Chosen, rate: float, longest: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Whether the rows are away from rests of so many samples, and their share of the filter (M, n)."""
     slow = np.abs(dq) < np.array(settings.gates)
-    rest = np.stack([long_runs(column, longest) for column in slow.T], axis=1)
+    rest = _resting(slow, longest)
     share = np.zeros((len(rows), dq.shape[1]))
     resting = np.flatnonzero(rest.any(axis=0))
     if len(resting):
         flags = rest[:, resting].astype(np.float64)
         share[:, resting] = kept(flags, rows, settings.cutoff, rate, settings.order)
     return np.asarray(~slow[rows] & (share < SHARE)), share
+
+
+def _resting(slow: np.ndarray, longest: int) -> np.ndarray:
+    return np.stack([long_runs(column, longest) for column in slow.T], axis=1)
 
 
 def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:

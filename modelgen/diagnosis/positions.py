@@ -108,7 +108,8 @@ def _left_by_errors(
     p = r.prepared
     if not counts(p.record).any():
         return np.zeros(r.effort.shape)
-    again = rows_of(prober, model, prepare(blurred(p.record, which), p.settings), theta, r.baseline)
+    blurry = replace(prepare(blurred(p.record, which), p.settings), awake=p.awake)
+    again = rows_of(prober, model, blurry, theta, r.baseline)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 
 

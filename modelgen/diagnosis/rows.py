@@ -46,13 +46,19 @@ class Rows:
         """(N, n, k) at full rate through the parallel filter: (M, n, k). What is zero stays so."""
         n, count = columns.shape[1:]
         result = np.zeros((len(self.effort), n, count))
-        used = [(j, k) for j in range(n) for k in range(count) if columns[:, j, k].any()]
-        if used:
-            table = np.column_stack([columns[:, j, k] for j, k in used])
-            found = self.prepared.parallel(table)
-            for place, (j, k) in enumerate(used):
-                result[:, j, k] = found[:, place]
+        for j in range(n):
+            used = columns[:, j].any(axis=0)
+            if used.any():
+                result[:, j, used] = self.equation(j, columns[:, j, used])
         return result
+
+    def equation(self, j: int, columns: Array) -> Array:
+        """Columns (N, k) of the equation of joint j at full rate through the parallel filter: (M, k).
+
+        Without what they have while the joint rests: dry friction is undetermined there, and what the filter
+        carries of it to the rows beside would look like a law of friction.
+        """
+        return self.prepared.parallel(columns * self.prepared.awake[:, [j]])
 
 
 def motion_of(prepared: Prepared) -> Motion:
@@ -84,7 +90,7 @@ def rows_of(
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift
     empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving, known)
-    effort, columns = np.asarray(prepared.parallel(effort)), empty.filtered(columns)
+    effort, columns = empty.filtered(effort[:, :, None])[:, :, 0], empty.filtered(columns)
     # states of a law that does not hold along this motion may leave all bounds
     good = np.isfinite(effort) & np.isfinite(columns).all(axis=2)
     if good.all():

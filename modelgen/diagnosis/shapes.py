@@ -60,16 +60,16 @@ def shapes(rows: Sequence[Rows], prober: Prober, base: Array) -> Iterator[Shape]
         power.append(np.abs(gains * u * r.prepared.dq).sum(axis=1, keepdims=True))
     for j in range(n):
         alone = functions([r.prepared.q[:, [j]] for r in rows], SHORT)
-        spots = [r.prepared.parallel(x) for r, x in zip(rows, alone, strict=True)]
+        spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]
         yield Shape(f"a force at joint {j + 1} that depends on its position", {j: spots})
     for bend in BENDS:
         free = functions([r.prepared.q for r in rows], bend)
-        where = [r.prepared.parallel(x) for r, x in zip(rows, free, strict=True)]
         for j in range(n):
+            where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]
             yield Shape(f"a force at joint {j + 1} that depends on where the arm is", {j: where})
         taken = functions(power, bend)
         columns = {
-            j: [r.prepared.parallel(u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
+            j: [r.equation(j, u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
             for j in range(n)
         }
         yield Shape("a gain of all drives that depends on the power that they take", columns)

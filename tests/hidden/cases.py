@@ -46,6 +46,7 @@ class Case:
     periods: int = 3
     noise: float = 1.0
     name: str = "arm"
+    dry: float = 1.0  # times the usual dry friction
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,7 @@ class Bench:
     def __init__(self, case: Case) -> None:
         self.case = case
         self.arm: Arm = arms.draw(case.arm, _random(case, 1))
+        self.arm.plant["dry"] *= case.dry
         self._encoders(self.arm.plant)
         if any(EFFECTS[hidden.effect].fine for hidden in case.hidden):
             # The speed loop is tuned for one inertia: slower, where a spring parts it in two.

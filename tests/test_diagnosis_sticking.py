@@ -1,0 +1,44 @@
+"""Joints that stick: dry friction is undetermined while they rest, and says nothing about the arm."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden.cases import Case, Hidden, make
+from hidden.running import diagnose, run
+
+from modelgen.dataset import Settings, prepare, read
+from modelgen.description import load
+from modelgen.diagnosis.rows import rows_of
+from modelgen.functions import build_model
+from modelgen.probing import Prober
+
+
+@pytest.mark.parametrize(("arm", "seed"), [("levered2", 3169508213), ("levered3", 3421367267)])
+def test_nothing_is_missing_where_joints_stick_at_every_reversal(arm: str, seed: int, tmp_path: Path) -> None:
+    case = Case(arm, seed, dry=5.0)
+    make(case, tmp_path / "case")
+    answer, _ = diagnose(tmp_path / "case", case.name)
+    assert answer["verdict"] == "nothing_missing", answer["reason"]
+
+
+def test_a_cause_is_found_at_a_joint_that_sticks(tmp_path: Path) -> None:
+    case = Case("levered2", 3169508213, (Hidden("friction_offset", 1, 1.1, 8.679372394998),))
+    outcome, _, _ = run(case, tmp_path / "case")
+    assert outcome.result == "found", outcome
+
+
+def test_what_the_effort_is_while_a_joint_rests_changes_no_equation(tmp_path: Path) -> None:
+    case = Case("levered2", 3169508213, dry=5.0)
+    make(case, tmp_path / "case")
+    arm = load(tmp_path / "case" / "arms.yaml")[case.name]
+    record = read(str(tmp_path / "case" / "train_a.csv"), arm)
+    assert record.input is not None
+    resting = np.abs(np.gradient(record.motor, record.step, axis=0)) < 1e-9
+    assert resting.mean(axis=0).max() > 0.02
+    tried = [record, replace(record, input=np.where(resting, 1e3, record.input))]
+    model, prober = build_model(arm), Prober(arm)
+    before, after = (rows_of(prober, model, prepare(r, Settings(cutoff=18.0))) for r in tried)
+    np.testing.assert_array_equal(after.moving, before.moving)
+    np.testing.assert_allclose(after.effort[after.moving], before.effort[after.moving], atol=1e-9)
