@@ -30,21 +30,27 @@ def samples_far_from_rest(dq: Array, rows: np.ndarray, settings: Chosen, rate: f
     """
     if not settings.cutoff:
         return moving_samples(dq, rows, settings, rate)
-    longest = max(2, min(round(settings.rest_time * rate), round(SHORT / settings.cutoff * rate)))
-    moving, share = _away(dq, rows, settings, rate, longest)
+    moving, share = _away(dq, rows, settings, rate, _moment(settings, rate))
     return np.asarray(moving & (share > -SHARE))
 
 
 def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
-    """Samples (N, n) where the joint does not rest, nor stops or starts so near that the filters of its
-    position blend both.
+    """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts so near that the
+    filters of its position blend both.
     """
-    longest = max(2, round(settings.rest_time * rate))
     reach = settings.half_width
     if settings.position_cutoff:
         reach += round(0.5 * rate / settings.position_cutoff)
-    rest = _resting(np.abs(dq) < np.array(settings.gates), longest)
+    rest = _resting(np.abs(dq) < np.array(settings.gates), _moment(settings, rate))
     return np.asarray(~ndimage.binary_dilation(rest, np.ones((2 * reach + 1, 1))))
+
+
+def _moment(settings: Chosen, rate: float) -> int:
+    """Samples of the shortest rest that leaves something in what the parallel filter lets pass."""
+    longest = settings.rest_time
+    if settings.cutoff:
+        longest = min(longest, SHORT / settings.cutoff)
+    return max(2, round(longest * rate))
 
 
 def _away(
