@@ -181,13 +181,9 @@ def test_beside_what_swings_a_cause_is_more_than_its_simulation_may_leave() -> N
     assert beside({"joint_flexibility": 0.5}).refused == ""
 
 
-def test_a_delay_is_more_than_sticking_leaves_and_still_more_beside_it() -> None:
-    """A share of a sample, at reversals; with evidence that sticking never has, any gain that counts."""
+def test_a_delay_beside_what_acts_at_reversals_is_more_than_the_form_of_that_leaves() -> None:
     assert 1.5 < beside({}, "time_delay", 0.16).gain < 3.0
-    assert beside({}, "time_delay", 0.16).refused == "gain"
-    assert beside({}, "time_delay", 0.16, 500.0).refused == ""
-    assert 3.0 < beside({}, "time_delay", 0.2).gain < 5.0
-    assert beside({}, "time_delay", 0.2).refused == ""
+    assert beside({}, "time_delay", 0.16).refused == ""
     assert 3.0 < beside({"stribeck_friction": 0.3}, "time_delay", 0.27).gain < 5.0
     assert beside({"stribeck_friction": 0.3}, "time_delay", 0.27).refused == "gain"
     assert beside({"stribeck_friction": 0.3}, "time_delay", 0.4).refused == ""
@@ -207,31 +203,3 @@ def test_the_fainter_a_cause_the_more_it_must_promise(size: float) -> None:
     expected = beside({}, size=size, evidence=50.0).expected
     passed = [beside({}, size=size, evidence=e).refused == "" for e in (5.0, 8.0, 10.5, 13.0, 16.0)]
     assert passed == [expected >= least for least in (3.0, 2.667, 2.25, 1.833, 1.5)]
-
-
-def late(stuck: float, delay: float) -> Judgement:
-    """Of a delay whose column is large where a joint sticks for a moment, and moderate elsewhere: what is
-    left there looks like it to the extent `stuck`, and it is there to the extent `delay`.
-    """
-    random = default_rng(23)
-    rows, columns = [], []
-    for _ in range(2):
-        slow = random.normal(size=(LONG, UNKNOWNS))
-        near = (np.arange(LONG) % 20 == 0)[:, None]
-        own = np.where(near, 4.0, 1.0) * random.normal(size=(LONG, 1))
-        effort = slow @ np.ones((UNKNOWNS, 1)) + np.where(near, stuck + delay, delay) * own
-        effort += random.normal(size=(LONG, 1))
-        flags = np.ones((LONG, 1), dtype=bool)
-        rows.append(Rows(UNUSED, effort, slow[:, None, :], flags, BARE, far=~near))
-        columns.append(own[:, None, :])
-    system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
-    gain = system.gain(columns)
-    assert gain is not None
-    return Gates(rows, [], system).judged(Trial(Candidate("time_delay", None), {}, columns, gain))
-
-
-def test_a_delay_that_shows_beside_rests_alone_is_none() -> None:
-    assert late(0.6, 0.0).gain > 3.0
-    assert late(0.6, 0.0).refused == "rest"
-    assert late(0.0, 0.3).refused == ""
-    assert late(0.3, 0.3).refused == ""

@@ -8,7 +8,6 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from modelgen.dataset.decimation import Decimation, decimation, kept
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.filters import advanced, differences, low_pass
 from modelgen.dataset.objects import Array, Record
-from modelgen.dataset.rest import moving_samples, samples_away_from_rest, samples_far_from_rest
+from modelgen.dataset.rest import moving_samples, samples_away_from_rest
 from modelgen.errors import InputError
 
 FEWEST_ROWS = 10
@@ -68,11 +67,6 @@ class Prepared:
     def rate(self) -> float:
         """Rows per second [Hz]."""
         return 1.0 / (self.record.step * self.settings.factor)
-
-    @cached_property
-    def far(self) -> np.ndarray:
-        """Rows (M, n) so far from any rest that the filter carries next to nothing from there."""
-        return samples_far_from_rest(self.dq, self.rows, self.settings, 1.0 / self.record.step)
 
     @property
     def decimation(self) -> Decimation | None:
@@ -165,7 +159,8 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         temperature=record.temperature,
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate),
-        awake=samples_away_from_rest(dq, chosen, rate),
+        # a swing turns slowly, and what is known of its friction is there
+        awake=np.ones(dq.shape, dtype=bool) if given is None else samples_away_from_rest(dq, chosen, rate),
     )
 
 

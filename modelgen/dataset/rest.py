@@ -10,7 +10,7 @@ from modelgen.dataset.decimation import kept
 from modelgen.dataset.objects import Array
 
 SHARE = 0.02  # of the filter's weight that may lie on samples at rest
-SHORT = 0.05  # of a period of the cut-off: a rest that leaves something, and a joint that sticks for a moment
+MOMENT = 0.05  # of a period of the cut-off: a rest so short leaves nothing in what the filter lets pass
 
 
 def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
@@ -20,55 +20,32 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
     taken no more than a fiftieth of its weight from samples at rest.
     """
-    longest = max(2, round(settings.rest_time * rate))
-    return _away(dq, rows, settings, rate, longest)[0]
-
-
-def samples_far_from_rest(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
-    """The same where the filter carries next to nothing from any rest: what sticks for a moment only counts
-    as resting, and so does negative weight, by which the filter swings before and after.
-    """
-    if not settings.cutoff:
-        return moving_samples(dq, rows, settings, rate)
-    moving, share = _away(dq, rows, settings, rate, _moment(settings, rate))
-    return np.asarray(moving & (share > -SHARE))
+    slow = np.abs(dq) < np.array(settings.gates)
+    rest = _resting(slow, settings.rest_time * rate)
+    moving = ~slow[rows]
+    resting = np.flatnonzero(rest.any(axis=0))
+    if len(resting):
+        flags = rest[:, resting].astype(np.float64)
+        moving[:, resting] &= kept(flags, rows, settings.cutoff, rate, settings.order) < SHARE
+    return np.asarray(moving)
 
 
 def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
     """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts so near that the
     filters of its position blend both.
     """
-    reach = settings.half_width
+    longest, reach = settings.rest_time, settings.half_width
+    if settings.cutoff:
+        longest = min(longest, MOMENT / settings.cutoff)
     if settings.position_cutoff:
         reach += round(0.5 * rate / settings.position_cutoff)
-    rest = _resting(np.abs(dq) < np.array(settings.gates), _moment(settings, rate))
+    rest = _resting(np.abs(dq) < np.array(settings.gates), longest * rate)
     return np.asarray(~ndimage.binary_dilation(rest, np.ones((2 * reach + 1, 1))))
 
 
-def _moment(settings: Chosen, rate: float) -> int:
-    """Samples of the shortest rest that leaves something in what the parallel filter lets pass."""
-    longest = settings.rest_time
-    if settings.cutoff:
-        longest = min(longest, SHORT / settings.cutoff)
-    return max(2, round(longest * rate))
-
-
-def _away(
-    dq: Array, rows: np.ndarray, settings: Chosen, rate: float, longest: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Whether the rows are away from rests of so many samples, and their share of the filter (M, n)."""
-    slow = np.abs(dq) < np.array(settings.gates)
-    rest = _resting(slow, longest)
-    share = np.zeros((len(rows), dq.shape[1]))
-    resting = np.flatnonzero(rest.any(axis=0))
-    if len(resting):
-        flags = rest[:, resting].astype(np.float64)
-        share[:, resting] = kept(flags, rows, settings.cutoff, rate, settings.order)
-    return np.asarray(~slow[rows] & (share < SHARE)), share
-
-
-def _resting(slow: np.ndarray, longest: int) -> np.ndarray:
-    return np.stack([long_runs(column, longest) for column in slow.T], axis=1)
+def _resting(slow: np.ndarray, longest: float) -> np.ndarray:
+    """Flags (N, n) of slow samples, in runs of `longest` samples or more."""
+    return np.stack([long_runs(column, max(2, round(longest))) for column in slow.T], axis=1)
 
 
 def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:

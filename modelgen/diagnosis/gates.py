@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -25,10 +24,8 @@ from modelgen.diagnosis.trials import Trial
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 # Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
 FAINT, MORE = (6.0, 15.0), 3.0
-DELAYED = 3.0  # the same for a delay: sticking at reversals leaves a share of a sample; and beside one
-STICKING = 5.0  # the same for what acts at reversals beside another such: the form of that leaves more
-LATE = 1.0  # percent of the RMSE where no joint rests nearby, of a delay
-BEYOND = 400.0  # evidence of a delay from which any gain that counts is enough
+DELAYED = 3.0  # the same for what acts at reversals beside a delay
+STICKING = 5.0  # the same beside what acts at reversals: the form of that leaves more
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 HARDLY = 0.1  # of the power of play in the record that shows it most
@@ -84,24 +81,6 @@ class Gates:
         self.forms = Forms(rows, before, system)
 
     def judged(self, trial: Trial) -> Judgement:
-        """Whether the cause helps and matters; a delay also where no joint rests nearby: dry friction has any
-        value at rest, and what the filter carries to both sides of that looks like one.
-        """
-        found = self._judged(trial)
-        if found.refused or trial.candidate.effect != DELAY or self._far is None:
-            return found
-        return replace(found, refused="rest") if self._far._judged(trial).gain < LATE else found
-
-    @cached_property
-    def _far(self) -> Gates | None:
-        """The same on the rows that are far from any rest; None where all are."""
-        if all(r.far is None or (r.far | ~r.moving).all() for r in self.rows):
-            return None
-        rows = [r if r.far is None else replace(r, moving=r.moving & r.far) for r in self.rows]
-        system = System(rows, with_causes(rows, self.before), self.system.periods)
-        return Gates(rows, self.before, system, self.blur, self.narrowed, last=self.last)
-
-    def _judged(self, trial: Trial) -> Judgement:
         """Whether the cause helps and matters at a joint that it is judged by.
 
         Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the
@@ -176,11 +155,7 @@ class Gates:
     def _least(self, trial: Trial) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
         c = trial.candidate
-        if c.effect == DELAY:
-            if self._beside(REVERSING, c.joint):
-                return STICKING
-            return DELAYED if trial.gain.delta_bic < BEYOND else PRACTICAL
-        if c.effect in REVERSING and self._beside(REVERSING, c.joint):
+        if c.effect in (DELAY, *REVERSING) and self._beside(REVERSING, c.joint):
             return STICKING
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED

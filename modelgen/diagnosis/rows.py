@@ -29,7 +29,6 @@ class Rows:
     moving: NDArray[np.bool_]
     baseline: Baseline
     repeated: Array | None = None
-    far: NDArray[np.bool_] | None = None
 
     @cached_property
     def motion(self) -> Motion:
@@ -94,6 +93,6 @@ def rows_of(
     # states of a law that does not hold along this motion may leave all bounds
     good = np.isfinite(effort) & np.isfinite(columns).all(axis=2)
     if good.all():
-        return Rows(prepared, effort, columns, prepared.moving, known, far=prepared.far)
+        return Rows(prepared, effort, columns, prepared.moving, known)
     effort, columns = np.where(good, effort, 0.0), np.where(good[:, :, None], columns, 0.0)
-    return Rows(prepared, effort, columns, prepared.moving & good, known, far=prepared.far)
+    return Rows(prepared, effort, columns, prepared.moving & good, known)

@@ -132,7 +132,7 @@ def select(
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
-        lesser = lesser_rivals(best, tried, faint, gates)
+        lesser = lesser_rivals(best, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser))
         converge(causes, rows, prober)
@@ -187,16 +187,13 @@ def _weighed(
     return trials, faint, refused
 
 
-def lesser_rivals(
-    best: Trial, tried: Sequence[tuple[Trial, Judgement]], faint: Sequence[Trial], gates: Gates
-) -> list[tuple[Trial, float]]:
+def lesser_rivals(best: Trial, faint: Sequence[Trial], gates: Gates) -> list[tuple[Trial, float]]:
     """Rivals of the best that cannot be named themselves and may be what is there all the same: of too little
-    evidence, where the best has little more, and delays that may be what sticking leaves.
+    evidence, where the best has little more.
     """
-    behind = [(t, best.gain.delta_bic - t.gain.delta_bic) for t, by in tried if by.refused == "rest"]
-    near = [(t, best.gain.delta_bic - t.gain.delta_bic) for t in faint]
-    behind += [(t, by) for t, by in near if by <= RATHER and not gates.judged(t).refused]
-    return [(t, max(0.0, by)) for t, by in behind if by <= RATHER and t.candidate != best.candidate]
+    behind = [(t, best.gain.delta_bic - t.gain.delta_bic) for t in faint]
+    near = [(t, max(0.0, by)) for t, by in behind if by <= RATHER and t.candidate != best.candidate]
+    return [(t, by) for t, by in near if not gates.judged(t).refused]
 
 
 def least_evidence(trial: Trial) -> float:

@@ -112,7 +112,6 @@ _REFUSED = {
     "gain": "gains too little on records that its fit has not seen",
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
-    "rest": "shows beside rests alone",
     "one joint": "does more at one joint alone",
 }
 _SHOWN = 12  # candidates of a turn
