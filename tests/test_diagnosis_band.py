@@ -42,7 +42,8 @@ def test_no_more_than_the_blur_comes_of_the_errors() -> None:
     seen, prober, model = made(SEEN), Prober(ARM), build_model(ARM)
     total, count = np.zeros(2), np.zeros(2)
     for record, rows in zip(EXACT, seen.rows, strict=False):
-        true = rows_of(prober, model, prepare(record, seen.chosen), seen.theta, rows.baseline)
+        exact = replace(prepare(record, seen.chosen), awake=rows.prepared.awake)  # of the same samples
+        true = rows_of(prober, model, exact, seen.theta, rows.baseline)
         left = (true.effort - rows.effort) - (true.columns - rows.columns) @ seen.theta
         total += (left**2 * rows.moving).sum(axis=0)
         count += rows.moving.sum(axis=0)

@@ -64,7 +64,7 @@ def three(effect: str | None, joint: int, size: float, seed: int = 0) -> list[Re
 @pytest.mark.parametrize(
     ("effect", "joint", "size"),
     [
-        ("stribeck_friction", 2, 0.012),
+        ("stribeck_friction", 2, 0.02),
         ("friction_offset", 1, 0.04),
         ("spring", 2, 1.2),
         ("load_dependent_friction", 1, 0.2),

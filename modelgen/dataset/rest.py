@@ -31,16 +31,17 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
 
 
 def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
-    """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts so near that the
-    filters of its position blend both.
+    """Samples (N, n) where the joint does not rest, be it for a moment, nor comes to rest or leaves it so near
+    that the filters of its position blend both.
     """
-    longest, reach = settings.rest_time, settings.half_width
+    slow = np.abs(dq) < np.array(settings.gates)
+    moment, reach = settings.rest_time, settings.half_width
     if settings.cutoff:
-        longest = min(longest, MOMENT / settings.cutoff)
+        moment = min(moment, MOMENT / settings.cutoff)
     if settings.position_cutoff:
         reach += round(0.5 * rate / settings.position_cutoff)
-    rest = _resting(np.abs(dq) < np.array(settings.gates), longest * rate)
-    return np.asarray(~ndimage.binary_dilation(rest, np.ones((2 * reach + 1, 1))))
+    long = ndimage.binary_dilation(_resting(slow, settings.rest_time * rate), np.ones((2 * reach + 1, 1)))
+    return np.asarray(~long & ~_resting(slow, moment * rate))
 
 
 def _resting(slow: np.ndarray, longest: float) -> np.ndarray:

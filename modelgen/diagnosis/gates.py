@@ -25,7 +25,7 @@ PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 # Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
 FAINT, MORE = (6.0, 15.0), 3.0
 DELAYED = 3.0  # the same for what acts at reversals beside a delay
-STICKING = 5.0  # the same beside what acts at reversals: the form of that leaves more
+STICKING = 5.0  # the same beside what acts at reversals, as play does too: the form of that leaves more
 CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 HARDLY = 0.1  # of the power of play in the record that shows it most
@@ -156,6 +156,8 @@ class Gates:
         """Percent of the RMSE that the cause must gain in the usual band."""
         c = trial.candidate
         if c.effect in (DELAY, *REVERSING) and self._beside(REVERSING, c.joint):
+            return STICKING
+        if c.effect == DELAY and self._beside(COMPLIANT, c.joint):
             return STICKING
         if c.effect in REVERSING and self._beside((DELAY,), c.joint):
             return DELAYED
