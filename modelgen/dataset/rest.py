@@ -31,8 +31,8 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
 
 
 def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
-    """Samples (N, n) where the joint does not rest, be it for a moment, nor comes to rest or leaves it so near
-    that the filters of its position blend both.
+    """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts, for longer, so
+    near that the filters of its position blend both.
     """
     slow = np.abs(dq) < np.array(settings.gates)
     moment, reach = settings.rest_time, settings.half_width

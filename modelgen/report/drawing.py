@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 from modelgen.description import NoDrive
 from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.rows import Array, Rows
 from modelgen.figures import COLOURS
 from modelgen.report.sketches import Sketch
 
@@ -23,25 +23,32 @@ def effort(d: Diagnosis) -> Sketch:
     n = held.effort.shape[1]
     made = Sketch(n, 2, (9.0, 1.9 * n))
     axes = made.axes()
-    measured = held.effort * held.gain
-    free = held.prepared.input is None
+    measured, free = measured_efforts(held), held.prepared.input is None
     units = units_of(d)
     for j in range(n):
-        before, after = (measured - r for r in d.residuals)
+        # at rest dry friction has any value: nothing is predicted
+        missed = [np.where(held.moving, r, np.nan) for r in d.residuals]
+        before, after = (measured - r for r in missed)
         left, right = axes[j]
         left.plot(t[shown], measured[shown, j], color="#999999", label="of the links" if free else "measured")
         left.plot(t[shown], before[shown, j], color=COLOURS[0], label="model as described")
         if d.causes:
             left.plot(t[shown], after[shown, j], color=COLOURS[1], label="extended model")
         left.set_ylabel(f"joint {j + 1} [{units[j]}]")
-        right.plot(t[shown], d.residuals[0][shown, j], color=COLOURS[0], linewidth=0.8)
+        right.plot(t[shown], missed[0][shown, j], color=COLOURS[0], linewidth=0.8)
         if d.causes:
-            right.plot(t[shown], d.residuals[1][shown, j], color=COLOURS[1], linewidth=0.8)
+            right.plot(t[shown], missed[1][shown, j], color=COLOURS[1], linewidth=0.8)
         right.set_ylabel("left over")
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
     return made
+
+
+def measured_efforts(held: Rows) -> Array:
+    """(M, n) in the unit of the log, at rest as well; those that the links take of a free motion."""
+    p = held.prepared
+    return np.asarray((held.effort if p.input is None else p.effort) * held.gain)
 
 
 def units_of(d: Diagnosis) -> list[str]:
@@ -57,7 +64,7 @@ def residuals(d: Diagnosis) -> dict[str, Sketch]:
     """What is left over against speed, position, load, motor angle and time, before and after."""
     held, p = d.test, d.test.prepared
     n = held.effort.shape[1]
-    load = np.abs(held.effort * held.gain)
+    load = np.abs(measured_efforts(held))
     against: list[tuple[str, Array]] = [
         ("joint velocity", p.picked(p.dq)),
         ("joint position", p.picked(p.q)),
@@ -89,7 +96,7 @@ def left_over(d: Diagnosis) -> Sketch:
     n = held.effort.shape[1]
     made = Sketch(n, 3, (9.0, 1.9 * n))
     axes = made.axes()
-    against = (p.picked(p.dq), p.picked(p.motor), np.abs(held.effort * held.gain))
+    against = (p.picked(p.dq), p.picked(p.motor), np.abs(measured_efforts(held)))
     for j in range(n):
         m = held.moving[:, j]
         for axis, x, bins in zip(axes[j], against, (24, 120, 24), strict=True):
