@@ -32,8 +32,8 @@ class Prepared:
     unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
     times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
-    joint moves there, away from rest. awake: (N, n), the same of all samples. settings: as used, every choice
-    made.
+    joint moves there, away from rest. awake: (N, n), whether it does so at all samples, rests of a moment
+    counted as well; at all of a free motion. settings: as used, every choice made.
     """
 
     record: Record
