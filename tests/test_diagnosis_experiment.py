@@ -105,7 +105,7 @@ class Set:
 SETS = {
     "offset": Set((("friction_offset", 1), ("asymmetric_viscous_friction", 1)), (0.29, 0.22), 0, 0.3),
     "asymmetric": Set((("friction_offset", 1), ("asymmetric_viscous_friction", 1)), (0.29, 0.22), 1, 0.3),
-    "stribeck": Set((("stribeck_friction", 2), ("presliding", 2)), (0.3, 0.01), 0, 0.15),
+    "stribeck": Set((("stribeck_friction", 2), ("presliding", 2)), (0.15, 0.005), 0, 0.05),
     "backlash": Set((("backlash", 1), ("joint_flexibility", 1)), (0.17, 0.97), 0, 0.25),
 }
 CONVINCING = 10.0  # delta BIC: very strong evidence (Kass and Raftery 1995)
