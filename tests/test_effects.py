@@ -17,6 +17,7 @@ from modelgen.description import Arm, DirectDrive, EffectUse, Joint, LeveredDriv
 from modelgen.description import Drive as Description
 from modelgen.effects import (
     CATALOGUE,
+    BodyEffect,
     Effect,
     Parameter,
     Variables,
@@ -46,7 +47,11 @@ DRIVES: dict[str, tuple[str, Description]] = {
 
 
 # Forces over one coordinate of one joint, and the drives that each can stand at.
-LOCAL = [n for n, e in CATALOGUE.items() if issubclass(e, Effect) and e.place in ("motor", "joint")]
+LOCAL = [
+    n
+    for n, e in CATALOGUE.items()
+    if issubclass(e, BodyEffect) or (issubclass(e, Effect) and e.place in ("motor", "joint"))
+]
 PLACES = [(n, d) for n in LOCAL for d in DRIVES if n != "actuator_mass" or d == "lever"]
 
 

@@ -2,6 +2,7 @@
 
 from modelgen.effects.applied import TIME_STEP, AppliedEffect, Part, applied_effects, free_symbol
 from modelgen.effects.base import (
+    BodyEffect,
     Definition,
     DescriptionEffect,
     Effect,
@@ -9,16 +10,19 @@ from modelgen.effects.base import (
     LinkEffect,
     Parameter,
     Point,
+    Swing,
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE, known_effects
 from modelgen.effects.describing import described
-from modelgen.effects.variables import InputVariables, PointVariables, Variables
+from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
 __all__ = [
     "CATALOGUE",
     "TIME_STEP",
     "AppliedEffect",
+    "BodyEffect",
+    "BodyVariables",
     "Definition",
     "DescriptionEffect",
     "Effect",
@@ -29,6 +33,7 @@ __all__ = [
     "Part",
     "Point",
     "PointVariables",
+    "Swing",
     "Values",
     "Variables",
     "applied_effects",

@@ -10,6 +10,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm, EffectUse
 from modelgen.effects.base import (
+    BodyEffect,
     Definition,
     DescriptionEffect,
     Effect,
@@ -17,13 +18,16 @@ from modelgen.effects.base import (
     LinkEffect,
     Parameter,
     Point,
+    Swing,
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE
 from modelgen.effects.variables import (
+    BodyVariables,
     InputVariables,
     PointVariables,
     Variables,
+    body_variables,
     joint_variables,
     point_variables,
     state_symbols,
@@ -38,16 +42,17 @@ TIME_STEP = sp.Symbol("dt", positive=True)
 class Part:
     """Where an effect acts, and the force there.
 
-    place: that of the `Effect`, "point" or "input". joint: index into `arm.joints`. forces: one, for a
-    point x, y, z in the axes of its link, and its moment likewise where there is one; for an input the
-    required and the effective one.
+    place: that of the `Effect`, "point", "body" or "input". joint: index into `arm.joints`. forces: one, for
+    a point x, y, z in the axes of its link, and its moment likewise where there is one; for a body those of
+    `BodyEffect.force`, one after the other; for an input the required and the effective one.
     """
 
     place: str
     joint: int
-    variables: Variables | PointVariables | InputVariables
+    variables: Variables | PointVariables | BodyVariables | InputVariables
     forces: tuple[sp.Expr, ...]
     point: Point | None = None
+    swing: Swing | None = None
 
 
 @dataclass(frozen=True)
@@ -163,6 +168,15 @@ def _applied(
     potential: sp.Expr = sp.Integer(0)
     if isinstance(effect, LinkEffect):
         parts = tuple(part for i in effect.links(arm, joint) for part in _on_link(effect, i, values))
+    elif isinstance(effect, BodyEffect):
+        assert joint is not None
+        body = body_variables(number, of_joint(arm, arm.joints[joint]))
+        try:
+            swing = effect.swing(body, values)
+        except ValueError as error:
+            raise InputError(f"{use.name}: {error}", use.where) from None
+        forces = tuple(f for force in effect.force(body, values) for f in force)
+        parts, potential = (Part("body", joint, body, forces, swing=swing),), effect.potential(body, values)
     else:
         assert isinstance(effect, Effect)
         assert joint is not None

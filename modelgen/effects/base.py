@@ -1,7 +1,7 @@
 """What an effect is: one definition in SymPy, from which everything else is derived.
 
-There are four kinds. An `Effect` is one generalised force over one coordinate, `LinkEffect` forces at
-points of a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
+There are five kinds. An `Effect` is one generalised force over one coordinate, `LinkEffect` forces at
+points of a link, `BodyEffect` those of a body that swings on a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
 input and the effort that comes of it. Forces are positive where they oppose the input. They are linear
 in their linear parameters, whose columns of the regressor are derivatives; all other parameters are
 fixed by the description. States advance by `step`.
@@ -18,7 +18,7 @@ from typing import ClassVar
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects.variables import InputVariables, PointVariables, Variables
+from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
 Values = Mapping[str, sp.Expr]  # of an effect's parameters, by name
 ANY = (-float("inf"), float("inf"))
@@ -148,6 +148,39 @@ class LinkEffect(Definition):
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """Indices of the links it acts on: the joint's own, all of them for the whole arm."""
         return [joint] if joint is not None else list(range(len(arm.joints)))
+
+
+@dataclass(frozen=True)
+class Swing:
+    """How a body turns with a coordinate q about the direction of its joint.
+
+    cosine, sine: of its angle against the joint's frame before that turns; turn, bend: first and second
+    derivative of the angle by q; pivot: x and y in that frame [m].
+    """
+
+    cosine: sp.Expr
+    sine: sp.Expr
+    turn: sp.Expr
+    bend: sp.Expr
+    pivot: tuple[sp.Expr, sp.Expr]
+
+
+class BodyEffect(Definition):
+    """A body that the link before the joint carries, and that the joint turns against it."""
+
+    @abstractmethod
+    def swing(self, x: BodyVariables, p: Values) -> Swing:
+        """How it turns, over `x.q`. Raises ValueError where the joint's drive moves no such body."""
+
+    @abstractmethod
+    def force(self, x: BodyVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+        """Forces [N], 3 x 1 each, that it takes to accelerate its pivot, and what lies 1 m from that on its
+        x and its y axis as it moves against the pivot.
+        """
+
+    @abstractmethod
+    def potential(self, x: BodyVariables, p: Values) -> sp.Expr:
+        """Energy stored [J], up to a constant."""
 
 
 class DescriptionEffect(Definition):

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
-from modelgen.effects.variables import Variables
-from modelgen.transmission import Levered, Transmission
+from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, Swing, Values, at
+from modelgen.effects.variables import BodyVariables, Variables
+from modelgen.transmission import Levered
 
 
 class DriveInertia(Effect):
@@ -129,56 +129,59 @@ class TransmissionCoupling(Effect):
         return p["inertia"] * x.acceleration + p["viscous"] * x.velocity + p["dry"] * sp.sign(x.velocity)
 
 
-class ActuatorMass(Effect):
+class ActuatorMass(BodyEffect):
     """The mass of a linear actuator that swings about its base as it pushes the lever.
 
-    Its own swing relative to the link before is what counts here; where that link turns as well, what
-    it does to the actuator as to a rigid load is a part of that link's inertia.
+    Its base stands on the link before: what the actuator does there as a point is a part of that link's
+    parameters. What it does besides, to every joint that moves it, follows from its first moments and from
+    its inertia about its base, which a slender body has about both axes across.
     """
 
     name = "actuator_mass"
     seen_over = "position"
     text = "swing and weight of a linear actuator about its base"
     reference = "Khalil and Dombre 2002, chapter 10; Leborne, Creuze, Chemori and Brignone 2018"
-    side = "joint"
     linear = (
         Parameter("inertia", "kg m^2", "inertia of the actuator about its base", "JS"),
         Parameter("moment_x", "kg m", "its first moment along the actuator", "SX", bounds=ANY),
         Parameter("moment_y", "kg m", "the same across the actuator", "SY", bounds=ANY),
     )
+    nonlinear = (
+        Parameter(
+            "base_angle",
+            "rad",
+            "direction from the joint to the actuator's base, against x of the joint's frame before it turns",
+            default=0.0,
+            bounds=ANY,
+            grid=tuple(k * math.pi / 4 for k in range(1, 10)),
+        ),
+    )
     confused_with = ("lever_geometry", "drive_inertia", "spring")
     experiment = "static holds over the stroke, then fast and slow runs"
     shown = at(inertia=0.05, moment_x=0.3, moment_y=0.1)
 
-    def law(self, x: Variables, p: Values) -> sp.Expr:
-        """JS (b'^2 a + b' b'' v^2) + dU/dq with b the angle of the actuator against the lever's base."""
-        turn, bend = _swing(x.transmission, x.q)
-        inertial = p["inertia"] * (turn**2 * x.acceleration + turn * bend * x.square)
-        return inertial + sp.diff(self.potential(x, p), x.q)
+    def swing(self, x: BodyVariables, p: Values) -> Swing:
+        """From the base, at the distance l1 from the joint, to the lever's end, at l2."""
+        drive = x.transmission
+        if not isinstance(drive, Levered):
+            raise ValueError("found on a joint without a lever, expected a levered drive")
+        l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
+        angle = drive.q - drive.drive.offset
+        square = l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle)
+        along, across = l2 * sp.cos(angle) - l1, l2 * sp.sin(angle)
+        turn = (l2**2 - l1 * l2 * sp.cos(angle)) / square
+        c, s = sp.cos(p["base_angle"]), sp.sin(p["base_angle"])
+        length = sp.sqrt(square)
+        cosine, sine = (c * along - s * across) / length, (s * along + c * across) / length
+        parts = (cosine, sine, turn, sp.diff(turn, drive.q))
+        cosine, sine, turn, bend = (part.subs(drive.q, x.q) for part in parts)
+        return Swing(cosine, sine, turn, bend, (l1 * c, l1 * s))
 
-    def potential(self, x: Variables, p: Values) -> sp.Expr:
-        """-g (first moment), in the plane of the lever, from the lever's own base line."""
-        cosine, sine = _direction(x.transmission, x.q)
-        gx, gy, _ = x.gravity
-        along, across = gx * cosine + gy * sine, gy * cosine - gx * sine
-        return -(p["moment_x"] * along + p["moment_y"] * across)
+    def force(self, x: BodyVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+        """SX and SY between pivot and either axis, JS along the actuator."""
+        sx, sy = p["moment_x"], p["moment_y"]
+        return sx * x.along + sy * x.across, sx * x.pivot + p["inertia"] * x.along, sy * x.pivot
 
-
-def _direction(drive: Transmission, q: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
-    """Cosine and sine of the actuator's angle against the line from its base to the joint's axis, less pi."""
-    if not isinstance(drive, Levered):
-        raise ValueError("found on a joint without a lever, expected a levered drive")
-    l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
-    angle = q - drive.drive.offset
-    length = sp.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle))
-    return (l2 * sp.cos(angle) - l1) / length, l2 * sp.sin(angle) / length
-
-
-def _swing(drive: Transmission, q: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
-    """First and second derivative of the actuator's angle by q."""
-    if not isinstance(drive, Levered):
-        raise ValueError("found on a joint without a lever, expected a levered drive")
-    l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
-    angle = q - drive.drive.offset
-    turn = (l2**2 - l1 * l2 * sp.cos(angle)) / (l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle))
-    return turn, sp.diff(turn, q)
+    def potential(self, x: BodyVariables, p: Values) -> sp.Expr:
+        """-g (first moment)."""
+        return -(p["moment_x"] * x.gravity[0] + p["moment_y"] * x.gravity[1])

@@ -67,6 +67,23 @@ class PointVariables:
 
 
 @dataclass(frozen=True)
+class BodyVariables:
+    """Of a body that turns against the link that carries it, everything in its own axes.
+
+    pivot: acceleration of its pivot less gravity, gravity [m/s^2]; along, across: accelerations of what lies
+    1 m from the pivot on its x and its y axis, less the pivot's. q: the coordinate that turns it;
+    transmission: its drive, over its symbol `q`.
+    """
+
+    pivot: sp.Matrix
+    along: sp.Matrix
+    across: sp.Matrix
+    gravity: sp.Matrix
+    q: sp.Symbol
+    transmission: Transmission
+
+
+@dataclass(frozen=True)
 class InputVariables:
     """Of what stands between input and effort: the input, the effect's states."""
 
@@ -111,6 +128,22 @@ def point_variables(number: str) -> PointVariables:
         gravity=triple("gravity"),
         line=triple("line"),
         length=sp.Symbol(f"length{number}", positive=True),
+    )
+
+
+def body_variables(number: str, drive: Transmission) -> BodyVariables:
+    """Variables with the joint's number in their names."""
+
+    def triple(name: str) -> sp.Matrix:
+        return sp.Matrix([sp.Symbol(f"{name}_{axis}{number}", real=True) for axis in "xyz"])
+
+    return BodyVariables(
+        pivot=triple("pivot"),
+        along=triple("along"),
+        across=triple("across"),
+        gravity=triple("gravity"),
+        q=sp.Symbol(f"q{number}", real=True),
+        transmission=drive,
     )
 
 

@@ -7,11 +7,20 @@ from functools import cached_property
 
 import sympy as sp
 
-from modelgen.effects import TIME_STEP, AppliedEffect, InputVariables, Part, PointVariables, Variables
+from modelgen.effects import (
+    TIME_STEP,
+    AppliedEffect,
+    BodyVariables,
+    InputVariables,
+    Part,
+    PointVariables,
+    Variables,
+)
 from modelgen.geometry.frames import turn_z
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.graph.vectors import Vector, add, cross, dot, minus, times
+from modelgen.model.bodies import Swinging, body_port
 from modelgen.model.equations import Equations
 from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
 from modelgen.model.ports import Port, Surroundings, origin_velocities, point_rows
@@ -193,7 +202,11 @@ class EffectForces:
         port = {} if isinstance(x, InputVariables) else self._port(effect, part).bound
         for symbol in sp.sympify(expression).free_symbols - known.keys():
             known[symbol] = port[symbol] if symbol in port else lazy[symbol]()
-        if not isinstance(x, Variables):
+        return self._converted(part, expression, known)
+
+    def _converted(self, part: Part, expression: sp.Expr, known: Mapping[sp.Symbol, Expr]) -> Expr:
+        x = part.variables
+        if not isinstance(x, Variables | BodyVariables):
             return from_sympy(self.graph, expression, known)
         n = self._number(part)
         assert n is not None
@@ -228,6 +241,8 @@ class EffectForces:
         x = part.variables
         if isinstance(x, PointVariables):
             return self._point_port(x, part)
+        if isinstance(x, BodyVariables):
+            return body_port(self.e.frames, self._swinging(x, part), self.rates, self._motions, x)
         assert isinstance(x, Variables)
         n = self._number(part)
         assert n is not None
@@ -282,6 +297,16 @@ class EffectForces:
             bound |= dict(zip(symbols, vector, strict=True))
         return Port(point_rows(self.e.frames, i, place), bound, tuple(x.acceleration))
 
+    def _swinging(self, x: BodyVariables, part: Part) -> Swinging:
+        n, swing = self._number(part), part.swing
+        assert n is not None
+        assert swing is not None
+        known = {**self.e.scalars.symbols, **self.e.free, x.q: self.graph.input("q", n)}
+        parts = (swing.cosine, swing.sine, swing.turn, swing.bend, *swing.pivot)
+        cosine, sine, turn, bend, *pivot = (self._converted(part, e, known) for e in parts)
+        lift = self.e.scalars(self.e.arm.joints[part.joint].lift)
+        return Swinging(part.joint, cosine, sine, turn, bend, (pivot[0], pivot[1]), lift)
+
     def _place(self, part: Part, begin: Vector, span: Vector) -> Vector:
         """In the frame of the link [m]."""
         point = part.point
@@ -294,7 +319,7 @@ class EffectForces:
     def _lazy(self, part: Part) -> dict[sp.Symbol, Lazy]:
         """Variables that few laws use, made where they are needed."""
         x, n = part.variables, self._number(part)
-        if isinstance(x, PointVariables) or n is None:
+        if isinstance(x, PointVariables | BodyVariables) or n is None:
             return {}
         if isinstance(x, InputVariables):
             return {x.input: lambda: self.graph.input("input", n)}

@@ -69,6 +69,15 @@ class Rates:
     reference: Sequence[Expr] | None = None
 
 
+@dataclass(frozen=True)
+class Own:
+    """Rates of one frame against its antecedent: as of `Rates`; `reference` None where none runs along."""
+
+    dq: Expr
+    ddq: Expr
+    reference: Expr | None = None
+
+
 def of_links(frames: Frames, rates: Rates) -> Rates:
     """Rates of the links where they stay behind their drives; accelerations stay the drives'."""
     if not frames.lag_rates:
@@ -95,22 +104,28 @@ def link_motions(frames: Frames, rates: Rates) -> list[LinkMotion]:
     rates = of_links(frames, rates)
     motions: dict[int | None, LinkMotion] = {None: base_motion(frames)}
     for i in frames.order:
-        motions[i] = _link_motion(frames, i, motions[frames[i].antecedent], rates)
+        frame = frames[i]
+        motions[i] = moved(frame, motions[frame.antecedent], _own(rates, frame.coordinate))
     return [motions[i] for i in range(len(frames.frames))]
 
 
-def _link_motion(frames: Frames, i: int, parent: LinkMotion, rates: Rates) -> LinkMotion:
-    frame = frames[i]
+def _own(rates: Rates, n: int | None) -> Own | None:
+    if n is None:
+        return None
+    return Own(rates.dq[n], rates.ddq[n], None if rates.reference is None else rates.reference[n])
+
+
+def moved(frame: Frame, parent: LinkMotion, own: Own | None) -> LinkMotion:
+    """The motion in a frame that moves against its antecedent, or stands still there."""
     velocity = frame.to_link(parent.velocity)
-    reference = velocity if rates.reference is None else frame.to_link(parent.reference)
+    reference = velocity if parent.reference is parent.velocity else frame.to_link(parent.reference)
     axial = frame.to_link(parent.axial)
     acceleration = frame.to_link(add(parent.acceleration, times(parent.field, frame.origin)))
     gravity = frame.to_link(parent.gravity)
-    n = frame.coordinate
-    if n is None:
+    if own is None:
         return LinkMotion(velocity, reference, axial, acceleration, gravity)
-    dq, ddq = rates.dq[n], rates.ddq[n]
-    dr = dq if rates.reference is None else rates.reference[n]
+    dq, ddq = own.dq, own.ddq
+    dr = dq if own.reference is None else own.reference
     # derivative of the axis' direction, times the rates
     x = velocity[1] * dr + reference[1] * dq
     y = -(velocity[0] * dr + reference[0] * dq)
@@ -119,7 +134,7 @@ def _link_motion(frames: Frames, i: int, parent: LinkMotion, rates: Rates) -> Li
         return LinkMotion(velocity, reference, axial, acceleration, gravity)
     along = _axis_in_antecedent(frame)
     spun = (velocity[0], velocity[1], velocity[2] + dq)
-    spun_reference = spun if rates.reference is None else (reference[0], reference[1], reference[2] + dr)
+    spun_reference = spun if own.reference is None else (reference[0], reference[1], reference[2] + dr)
     turned = (axial[0] + x * 0.5, axial[1] + y * 0.5, axial[2] + ddq)
     if along is not None:
         # Points of the axis belong to both links: U z is the antecedent's. That spares the terms
