@@ -129,10 +129,32 @@ def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
         for joint in places(prober.arm, name):
             if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
                 continue
-            searched = () if name in STEPS else tuple(p for p in effect.nonlinear if p.grid)
-            forms = list(product(_fixed(name, joint, rows, prober), ((), *PARTS.get(name, ()))))
-            found += [Candidate(name, joint, fixed, searched, part, len(forms)) for fixed, part in forms]
+            for fixed, part in (forms := _forms(name, joint, rows, prober)):
+                open_to = () if name in STEPS else (p for p in effect.nonlinear if p.grid)
+                searched = tuple(p for p in open_to if p.name not in fixed)
+                found.append(Candidate(name, joint, fixed, searched, part, len(forms)))
     return found
+
+
+def _forms(
+    name: str, joint: int | None, rows: Sequence[Rows], prober: Prober
+) -> list[tuple[Values, tuple[str, ...]]]:
+    """Fixed values and parts that the effect is tried with at a place."""
+    parts = ((), *PARTS.get(name, ()))
+    if name == WEIGHING and carried(joint, prober):
+        parts = PARTS[name]  # where its base is says also where its weight points
+    return list(product(_fixed(name, joint, rows, prober), parts))
+
+
+def carried(joint: int | None, prober: Prober) -> bool:
+    """Whether other joints move the link before this one."""
+    if joint is None:
+        return False
+    arm = prober.arm
+    before = arm.joints[arm.coordinates[joint - 1]].antecedent
+    while before is not None and before not in arm.coordinates:
+        before = arm.joints[before].antecedent
+    return before is not None
 
 
 def cold(rows: Sequence[Rows]) -> bool:
@@ -168,6 +190,8 @@ def gap_instead(candidate: Candidate, rows: Sequence[Rows], prober: Prober) -> C
 
 
 def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:
+    if name == WEIGHING and not carried(joint, prober):
+        return [{"base_angle": 0.0}]
     if name == "transmission_coupling":
         assert joint is not None
         return [{"other": float(k), "ratio": r} for k in range(1, joint) for r in (1.0, -1.0)]

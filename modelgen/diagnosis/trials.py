@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -55,6 +56,8 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
     if candidate.effect == of.LATER and found.get("mass"):
         mass = found["mass"]
         return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
+    if candidate.effect == of.WEIGHING:
+        return {**found, "base_angle": math.remainder(found["base_angle"], math.tau)}
     return found
 
 

@@ -178,7 +178,10 @@ class ActuatorMass(BodyEffect):
         return Swing(cosine, sine, turn, bend, (l1 * c, l1 * s))
 
     def force(self, x: BodyVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
-        """SX and SY between pivot and either axis, JS along the actuator."""
+        """SX x'' + SY y'' at the base, SX a + JS x'' and SY a at the ends of the axes x, y of unit length.
+
+        a: acceleration of the base less gravity.
+        """
         sx, sy = p["moment_x"], p["moment_y"]
         return sx * x.along + sy * x.across, sx * x.pivot + p["inertia"] * x.along, sy * x.pivot
 

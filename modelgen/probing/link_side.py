@@ -29,7 +29,7 @@ STEADY = 1 / 6  # of the cut-off: what of T a rigid drive would transmit through
 WIDE = 2.0  # over the cut-off [s]: how long impacts ring on either side of the gap
 TOLD = 0.02  # of the links' inertia: a drive's below it is not told apart from theirs
 GUESS = 0.2  # of the links' inertia: the drive's that is assumed then
-OFTEN = 0.25  # of the time: a link that is loose for longer is not told from an elastic one
+OFTEN = 0.5  # of the time: a link that is loose for longer is not told from an elastic one
 KEPT = 6  # motions
 
 
