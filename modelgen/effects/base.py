@@ -1,10 +1,10 @@
 """What an effect is: one definition in SymPy, from which everything else is derived.
 
 There are five kinds. An `Effect` is one generalised force over one coordinate, `LinkEffect` forces at
-points of a link, `BodyEffect` those of a body that swings on a link, a `DescriptionEffect` changes what the description says, an `InputEffect` stands between the
-input and the effort that comes of it. Forces are positive where they oppose the input. They are linear
-in their linear parameters, whose columns of the regressor are derivatives; all other parameters are
-fixed by the description. States advance by `step`.
+points of a link, `BodyEffect` those of a body that swings on a link, a `DescriptionEffect` changes what the
+description says, an `InputEffect` stands between the input and the effort that comes of it. Forces are
+positive where they oppose the input. They are linear in their linear parameters, whose columns of the
+regressor are derivatives; all other parameters are fixed by the description. States advance by `step`.
 """
 
 from __future__ import annotations
