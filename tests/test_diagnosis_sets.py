@@ -1,5 +1,6 @@
 """What may be there instead of what is named is in its ambiguity set, though it could not be named itself."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,7 +11,7 @@ from hidden.running import diagnose
 
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.selection import lesser_rivals
+from modelgen.diagnosis.selection import RATHER, lesser_rivals, needed_behind
 from modelgen.diagnosis.stack import Gain
 from modelgen.diagnosis.trials import Trial
 
@@ -43,3 +44,11 @@ def test_what_is_too_faint_to_be_named_where_the_best_has_little_more() -> None:
 
     assert rivals(tried("actuator_mass", 12.0)) == [("lever_geometry", 7.0)]
     assert rivals(tried("actuator_mass", 40.0)) == []  # too far ahead
+
+
+def test_play_and_elasticity_are_told_apart_by_more_of_more_evidence() -> None:
+    """A contact that hardens is neither, and of evidence in thousands its form leaves dozens."""
+    elastic, gap = tried("joint_flexibility", 2600.0), tried("backlash", 2560.0)
+    assert needed_behind(elastic, gap) == needed_behind(replace(gap, gain=elastic.gain), elastic) > 40.0
+    assert needed_behind(elastic, tried("presliding", 2560.0)) == RATHER
+    assert needed_behind(tried("backlash", 300.0), tried("joint_flexibility", 250.0)) == RATHER

@@ -11,7 +11,7 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place
 from modelgen.diagnosis.causes import Cause, eliminated, measured
-from modelgen.diagnosis.compliance import member, refine, refined
+from modelgen.diagnosis.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.endogeneity import endogeneity
@@ -31,6 +31,7 @@ ALONE = 10.0
 COLOURLESS = 15.0  # the same where the colour of the noise is not known
 PASSING = 9.0  # the same of warming: noise's colour is known over a second or two, slower drifts look like it
 RATHER = 15.0  # delta BIC that it takes to name it rather than another one that passes
+FORM = 0.03  # of its evidence, between play and elasticity: a real gear has the form of neither
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
 MOST = 4  # causes, or one for each joint where there are more
@@ -128,7 +129,7 @@ def select(
             for t, other in eligible
             if t.candidate != best.candidate
             and (
-                best.gain.delta_bic - t.gain.delta_bic <= RATHER
+                best.gain.delta_bic - t.gain.delta_bic <= needed_behind(best, t)
                 or 100.0 * (by.gain - other.gain) / (100.0 - other.gain) <= margin
             )
         ]
@@ -206,6 +207,12 @@ def least_evidence(trial: Trial) -> float:
 def threshold(system: System) -> float:
     """Delta BIC that it takes to name a cause."""
     return EVIDENCE if system.coloured else COLOURLESS
+
+
+def needed_behind(best: Trial, other: Trial) -> float:
+    """Delta BIC by which a rival must be behind to be none."""
+    of_it = FORM if alternatives(best.candidate, other.candidate) else 0.0
+    return max(RATHER, of_it * best.gain.delta_bic)
 
 
 def left_to(trial: Trial, system: System) -> float:
