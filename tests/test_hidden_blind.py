@@ -3,10 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hidden import blind, blind_report
 from hidden.arms import DESIGNS
-from hidden.cases import draw
+from hidden.cases import RECORDS, Bench
+from hidden.drawing import draw
 from hidden.effects import CATALOGUE, OUTSIDE
 
 
@@ -39,6 +41,20 @@ def test_a_drawn_case_has_its_strength_and_is_drawn_again_the_same() -> None:
     assert first.hidden[0].magnitude is not None
 
 
+def test_more_training_records_are_of_the_same_arm_with_the_same_effect() -> None:
+    few, many = (draw(77, ("spring",), 1.1, ("direct2", "levered2"), train=count) for count in (2, 5))
+    assert few.hidden == many.hidden
+    assert [RECORDS[k] for k in few.records] == ["train_a", "train_b", "test", "check"]
+    assert [RECORDS[k] for k in many.training] == ["train_a", "train_b", "train_c", "train_d", "train_e"]
+    by = {0: few.hidden[0].magnitude or 0.0}
+    one, other = Bench(few), Bench(many)
+    for k in few.records:
+        np.testing.assert_array_equal(one.record(k, by).current, other.record(k, by).current)
+    # and of motions of their own
+    currents = [other.record(k, by).current for k in many.training]
+    assert all(np.abs(a - b).max() > 0.01 for k, a in enumerate(currents) for b in currents[:k])
+
+
 @pytest.mark.parametrize(
     ("hits", "total", "low", "high"),
     [(0, 200, 0.0, 0.0188), (57, 60, 0.8630, 0.9829), (5, 10, 0.2366, 0.7634), (0, 0, 0.0, 1.0)],
@@ -52,6 +68,7 @@ def line(group: str, effects: list[str], result: str, number: int, **more: Any) 
     return {
         "key": f"{group}/{'+'.join(effects)}/{number}",
         "group": group,
+        "train": 2,
         "effects": effects,
         "strength": 1.3,
         "result": result,
@@ -60,6 +77,7 @@ def line(group: str, effects: list[str], result: str, number: int, **more: Any) 
         "named": named,
         "in_set": result == "found",
         "size": 1.0,
+        "shown": 30.0,
         "recovered": 0.95 if named else None,
         "seconds": 3.0,
         "case": {"arm": "direct2"},
@@ -72,14 +90,24 @@ def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
     lines += [line("single", ["spring"], "found" if k else "missed", k) for k in range(4)]
     lines += [line("outside", [OUTSIDE[0]], "found", 0)]
     lines += [
-        {"key": "x", "group": "single", "effects": ["spring"], "strength": 1.3, "failed": "exit 1\nboom"}
+        {
+            "key": "x",
+            "group": "single",
+            "train": 2,
+            "effects": ["spring"],
+            "strength": 1.3,
+            "failed": "exit 1\nboom",
+        }
     ]
+    lines += [line("single", ["spring"], "found", k, train=4) for k in range(2)]
     for folder in ("one", "two"):
         blind_report.write(lines, 5, "0123456789abcdef", tmp_path / folder, 40)
     page = (tmp_path / "one" / "diagnosis.md").read_text()
-    assert "Seed 5, commit 0123456789ab, 16 of 40 cases: 15 answered, 1 failed, 0\ncould not be" in page
-    assert "| nothing hidden: something named | 0 of 10: 0.0 % (0.0 to 27.8) |" in page
-    assert "| one effect, s = 1.3: cause and joint, no extra | 3 of 4: 75.0 %" in page
+    assert "Seed 5, commit 0123456789ab. 2 training records: 16 of 40 cases, 15 answered, 1 failed" in page
+    assert "\n4 training records: 2 of 40 cases, 2 answered, 0 failed, 0 undrawn.\n" in page
+    assert "| question | 2 training records | 4 training records |" in page
+    assert "| nothing hidden: something named | 0 of 10: 0.0 % (0.0 to 27.8) | no case |" in page
+    assert "| one effect, s = 1.3: cause and joint, no extra | 3 of 4: 75.0 % (30.1 to 95.4) | 2 of 2" in page
     assert "| `spring` | 3 | 1 | 0 | – |" in page
     assert "- `x`: boom" in page
     for name in ("diagnosis.md", "diagnosis_power.svg", "diagnosis_confusion.svg"):

@@ -282,19 +282,25 @@ def test_the_noise_has_the_covariance_that_its_filters_give() -> None:
 
 def test_what_the_training_records_show_of_an_effect() -> None:
     """Nothing of one that is not there. Of one that is, about what so much less error in as many independent
-    samples is, and with the square of its size.
+    samples is, and with the square of its size over that of the noise, and the number of records.
     """
-    bench = Bench(Case("direct2", 103, (Hidden("stribeck_friction", 2, 1.3),)))
-    clean = [bench.record(k, {}) for k in range(2)]
-    assert fitting.shown(clean, clean, bench.arm.plant) == 0.0
+    hidden = (Hidden("stribeck_friction", 2, 1.3),)
+
+    def shown(size: float, train: int = 2, noise: float = 1.0) -> float:
+        bench = Bench(Case("direct2", 103, hidden, noise=noise, train=train))
+        records = [[bench.record(k, by, noisy=False) for k in bench.case.training] for by in ({0: size}, {})]
+        scale = [bench.noise_scale(k) for k in bench.case.training]
+        assert fitting.shown(records[1], records[1], scale, bench.arm.plant) == 0.0
+        return fitting.shown(*records, scale, bench.arm.plant)
+
+    bench = Bench(Case("direct2", 103, hidden))
     magnitude = bench.tune(0, bench.errors({}))[0]
-    found = [
-        fitting.shown([bench.record(k, {0: size}) for k in range(2)], clean, bench.arm.plant)
-        for size in (0.5 * magnitude, magnitude)
-    ]
+    found = shown(magnitude)
     samples = 2 * bench.duration * 2 * fitting.BAND
-    assert 0.5 < found[1] / (samples * math.log(1.3**2)) < 2.0
-    assert 2.0 < found[1] / found[0] < 6.0
+    assert 0.5 < found / (samples * math.log(1.3**2)) < 2.0
+    assert 2.0 < found / shown(0.5 * magnitude) < 6.0
+    assert 2.0 < found / shown(magnitude, noise=2.0) < 6.0
+    assert 1.5 < shown(magnitude, train=4) / found < 4.0  # a fit to few motions takes up more of it
 
 
 def test_every_effect_has_a_place() -> None:
@@ -309,8 +315,8 @@ def test_a_case_is_written_whole_and_its_label_packed(tmp_path: Path) -> None:
     assert b"spring" not in (tmp_path / "label.sealed").read_bytes()
     assert unseal(tmp_path / "label.sealed").case["hidden"][0]["effect"] == "spring"
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"arms.yaml", "label.sealed", *(f"{name}.csv" for name in RECORDS)}
-    for name in RECORDS:
+    assert names == {"arms.yaml", "label.sealed", *(f"{RECORDS[k]}.csv" for k in case.records)}
+    for name in RECORDS[:4]:
         lines = (tmp_path / f"{name}.csv").read_text().splitlines()
         assert lines[0] == "t,qm1,qm2,i1,i2"
         assert len(lines) == 1 + 15000

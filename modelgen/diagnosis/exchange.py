@@ -18,7 +18,7 @@ from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.probing import Prober
 
-TIE = 0.5  # delta BIC that is none: of such causes the one that carries most to other records goes ahead
+TIE = 2.0  # delta BIC that is no evidence (Raftery 1995): of such causes the one that carries most goes ahead
 
 
 def exchanged(

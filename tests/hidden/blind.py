@@ -1,8 +1,9 @@
-"""python -m hidden.blind [--seed N] [--only null,single] [--limit N] [--jobs N]
+"""python -m hidden.blind [--seed N] [--train N] [--only null,single] [--limit N] [--jobs N]
 
 The full matrix of hidden effects on all cores, one line of JSON per case in build/blind/SEED.jsonl: what is
-there is not run again. Writes docs/diagnosis.md and its pictures. Run from the repository with tests/ on the
-path, as `make blind` does; the seed is the commit's hash unless one is given.
+there is not run again. Writes docs/diagnosis.md and its pictures, a column for each number of training
+records that was run. Run from the repository with tests/ on the path, as `make blind` does; the seed is the
+commit's hash unless one is given.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ from rich.progress import Progress
 
 from hidden import blind_report
 from hidden.arms import DRIVEN
-from hidden.cases import draw
+from hidden.cases import RECORDS, TRAIN
+from hidden.drawing import draw
 from hidden.effects import CATALOGUE, OUTSIDE
 from hidden.native import PlantError
 from hidden.running import CommandError, run
@@ -98,14 +100,17 @@ def _two(k: int) -> tuple[str, str]:
     return pairs[k]
 
 
-def run_item(item: Item, seed: int) -> dict[str, Any]:
-    """The line of a case; an error of the plant or of the command line is a line too."""
+def run_item(item: Item, seed: int, train: int) -> dict[str, Any]:
+    """The line of a case; an error of the plant or of the command line is a line too.
+
+    train: number of training records; the arm, the effect and the first two records do not depend on it.
+    """
     own = zlib.crc32(f"{seed}/{item.key}".encode())
     names = FREE if item.group == "free" else SMALL if item.number % 5 else DRIVEN
-    line: dict[str, Any] = {"key": item.key, "seed": seed, **asdict(item)}
+    line: dict[str, Any] = {"key": item.key, "seed": seed, "train": train, **asdict(item)}
     folder = Path(tempfile.mkdtemp(prefix="hidden-"))
     try:
-        case = draw(own, item.effects, item.strength, names, item.encoder)
+        case = draw(own, item.effects, item.strength, names, item.encoder, train)
         outcome, label, seconds = run(case, folder / "case")
         line |= {"case": asdict(case), **asdict(outcome), "reached": label.strength}
         line |= {"shown": label.shown, "seconds": seconds}
@@ -130,6 +135,8 @@ def main() -> int:
     assert __doc__ is not None
     parser = argparse.ArgumentParser(prog="hidden.blind", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--seed", type=lambda text: int(text, 0), default=None)
+    counts = range(2, len(RECORDS) - 1)
+    parser.add_argument("--train", type=int, default=TRAIN, choices=counts, help="number of training records")
     parser.add_argument("--only", default="", help="groups, separated by commas")
     parser.add_argument("--limit", type=int, default=None, help="stop after so many new cases")
     parser.add_argument("--jobs", type=int, default=-1)
@@ -141,15 +148,15 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{seed}.jsonl"
     lines = [json.loads(text) for text in path.read_text().splitlines()] if path.exists() else []
-    done = {line["key"] for line in lines if "failed" not in line}
-    lines = [line for line in lines if line["key"] in done]
+    lines = [line for line in lines if "failed" not in line]
+    done = {line["key"] for line in lines if line["train"] == given.train}
     groups = set(filter(None, given.only.split(",")))
     todo = [item for item in matrix() if item.key not in done and (not groups or item.group in groups)]
     todo = todo[: given.limit]
     with Progress() as progress, path.open("a", encoding="utf-8") as file:
-        task = progress.add_task(f"seed {seed}", total=len(todo))
+        task = progress.add_task(f"seed {seed}, {given.train} training records", total=len(todo))
         results = Parallel(n_jobs=given.jobs, return_as="generator_unordered")(
-            delayed(run_item)(item, seed) for item in todo
+            delayed(run_item)(item, seed, given.train) for item in todo
         )
         for line in results:
             file.write(json.dumps(line) + "\n")

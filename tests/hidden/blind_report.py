@@ -15,6 +15,7 @@ from hidden.effects import CATALOGUE, OUTSIDE
 
 Line = dict[str, Any]
 COMPLIANT = ("backlash", "joint_flexibility")
+SOFT = ("backlash, flexibility", "C1")  # label and colour
 SHOWN = 25.0  # twice a log likelihood: evidence of 6 and the price of two parameters
 HEAD = """\
 # Diagnosis: measured
@@ -22,21 +23,28 @@ HEAD = """\
 What `modelgen diagnose` answers on logs of simulated arms with something hidden in them. Written by
 `make blind`; the method is in [diagnosis_method.md](diagnosis_method.md).
 
-Seed {seed}, commit {commit}, {lines} of {planned} cases: {answered} answered, {failed} failed, {undrawn}
-could not be drawn (the effect reaches the strength on no plausible arm of the draw).
+Seed {seed}, commit {commit}. {runs}
+A case is undrawn where the effect reaches the strength on no plausible arm of the draw.
 
 The plant shares no code with modelgen (`tests/hidden`): other functional forms of the effects, another
 integrator (Moreau's midpoint stepping with set-valued friction), arms of 2 to 6 joints with direct and
-levered drives. Two training records and a test record of 30 s at 500 Hz, each three periods of a Fourier
-trajectory of 0.1 to 0.5 Hz; encoders of 4096 counts at the motor; current noise, 5 % white and 2 %
+levered drives. Training records and a test record of 30 s at 500 Hz, each three periods of a Fourier
+trajectory of its own of 0.1 to 0.5 Hz; encoders of 4096 counts at the motor; current noise, 5 % white and 2 %
 coloured, of the RMS without the effect. The strength s is the held-out RMSE of the standard model with the
 effect over without, on the affected joint, by the plant's own least squares below 15 Hz, each record held out
-in its turn; of an effect from outside the catalogue, what a spring and a constant current at each joint
-leave. A fit to few motions can take up what then costs 5 % on another: shown in the training records is an
-effect by which twice the log likelihood of the plant's own fit to them, with the noise's colour known, falls
-by {shown:g}, which a cause with two parameters needs for its name. In brackets: 95 % Wilson
-intervals, in %.
+in its turn (two records for training, whatever their number below); of an effect from outside the catalogue,
+what a spring and a constant current at each joint leave. A fit to few motions can take up what then costs 5 %
+on another: shown in the training records is an effect by which twice the log likelihood of the plant's own
+fit to them is expected to fall by {shown:g}, with the noise's colour known, which a cause with two parameters
+needs for its name. In brackets: 95 % Wilson intervals, in %.
 """
+PICTURES = (
+    "",
+    "![Share found over the strength, by effect](diagnosis_power.svg)",
+    "",
+    "![What was named, by what was hidden](diagnosis_confusion.svg)",
+    "",
+)
 
 
 def wilson(hits: int, total: int, z: float = 1.96) -> tuple[float, float]:
@@ -63,14 +71,40 @@ def proportion(hits: int, total: int) -> str:
 
 
 def write(lines: list[Line], seed: int, commit: str, docs: Path, planned: int) -> None:
-    """The page and its pictures into `docs`, the same for the same lines; `planned`: cases of the matrix."""
-    lines = sorted(lines, key=lambda line: line["key"])
-    good = [line for line in lines if "result" in line]
+    """The page and its pictures into `docs`, the same for the same lines; `planned`: cases of the matrix.
+
+    A column of answers for each number of training records; the pictures and the table of effects are of the
+    smallest.
+    """
+    lines = sorted(lines, key=lambda line: (line["train"], line["key"]))
+    runs = {count: [line for line in lines if line["train"] == count] for count in _counts(lines)}
+    first = _answered(next(iter(runs.values()), []))
     docs.mkdir(parents=True, exist_ok=True)
-    _confusion(good, docs / "diagnosis_confusion.svg")
-    _power(good, docs / "diagnosis_power.svg")
-    (docs / "diagnosis.md").write_text(
-        "\n".join(_page(lines, good, seed, commit, planned)) + "\n", encoding="utf-8"
+    _confusion(first, docs / "diagnosis_confusion.svg")
+    _power(runs, docs / "diagnosis_power.svg")
+    head = HEAD.format(
+        seed=seed,
+        commit=commit[:12],
+        runs="\n".join(_stated(count, own, planned) for count, own in runs.items()),
+        shown=SHOWN,
+    )
+    page = [head, *_table(runs), *PICTURES, *_by_effect(first), *_failures(lines)]
+    (docs / "diagnosis.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+
+
+def _counts(lines: list[Line]) -> list[int]:
+    return sorted({line["train"] for line in lines})
+
+
+def _answered(lines: list[Line]) -> list[Line]:
+    return [line for line in lines if "result" in line]
+
+
+def _stated(train: int, lines: list[Line], planned: int) -> str:
+    failed, undrawn = (sum(word in line for line in lines) for word in ("failed", "no_case"))
+    return (
+        f"{train} training records: {len(lines)} of {planned} cases, {len(_answered(lines))} answered, "
+        f"{failed} failed, {undrawn} undrawn."
     )
 
 
@@ -86,82 +120,86 @@ def _of(
     ]
 
 
-def _page(lines: list[Line], good: list[Line], seed: int, commit: str, planned: int) -> list[str]:
-    nulls, pairs = _of(good, "null"), _of(good, "pair")
-    counts = (len(good), sum("failed" in line for line in lines), sum("no_case" in line for line in lines))
+def _table(runs: dict[int, list[Line]]) -> list[str]:
+    columns = [dict(_answers(_answered(lines))) for lines in runs.values()]
+    questions = list(dict.fromkeys(question for column in columns for question in column))
+    rows = [[question, *(column.get(question, "no case") for column in columns)] for question in questions]
+    head = ["question", *(f"{train} training records" for train in runs)]
+    return [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
+
+
+def _answers(good: list[Line]) -> list[tuple[str, str]]:
+    """Questions, and what the lines answer."""
+    nulls, singles, outside, coarse, free = (
+        _of(good, group) for group in ("null", "single", "outside", "coarse", "free")
+    )
     out = [
-        HEAD.format(
-            planned=planned,
-            seed=seed,
-            commit=commit[:12],
-            lines=len(lines),
-            answered=counts[0],
-            failed=counts[1],
-            undrawn=counts[2],
-            shown=SHOWN,
-        ),
-        "| question | measured |",
-        "|---|---|",
-        f"| nothing hidden: something named | {rate(nulls, 'result', 'wrong')} |",
-        f"| nothing hidden: `nothing_missing` | {rate(nulls, 'verdict', 'nothing_missing')} |",
+        ("nothing hidden: something named", rate(nulls, "result", "wrong")),
+        ("nothing hidden: `nothing_missing`", rate(nulls, "verdict", "nothing_missing")),
     ]
-    for strength in sorted({line["strength"] for line in _of(good, "single")}):
+    for strength in sorted({line["strength"] for line in singles}):
         rigid = _of(good, "single", strength, compliant=False)
         soft = _of(good, "single", strength, compliant=True)
+        shown = [line for line in rigid if line["shown"] > SHOWN]
+        one, two = f"one effect, s = {strength:g}", f"backlash or flexibility, s = {strength:g}"
         out += [
-            f"| one effect, s = {strength:g}: cause and joint, no extra | {rate(rigid, 'result', 'found')} |",
-            f"| of these, shown in the training records: cause and joint | "
-            f"{rate([x for x in rigid if x.get('shown', math.inf) > SHOWN], 'result', 'found')} |",
-            f"| one effect, s = {strength:g}: something else named | {rate(rigid, 'result', 'wrong')} |",
-            f"| backlash or flexibility, s = {strength:g}: the class | {rate(soft, 'by_class', 'found')} |",
-            f"| backlash or flexibility, s = {strength:g}: the member | {rate(soft, 'result', 'found')} |",
+            (f"{one}: cause and joint, no extra", rate(rigid, "result", "found")),
+            (f"{one}, shown in the training records: cause and joint", rate(shown, "result", "found")),
+            (f"{one}: something else named", rate(rigid, "result", "wrong")),
+            (f"{two}: the class", rate(soft, "by_class", "found")),
+            (f"{two}: the member", rate(soft, "result", "found")),
         ]
-    singles = _of(good, "single")
     named = [line for line in singles if line["named"]]
     recovered = [line["recovered"] for line in singles if line.get("recovered") is not None]
-    size = sum(line["size"] for line in named) / len(named) if named else math.nan
-    outside = _of(good, "outside")
-    coarse = _of(good, "coarse")
     hidden = [line for line in coarse if line["effects"]]
-    free = _of(good, "free")
-    out += [
-        f"| link-side encoder: backlash or flexibility, s = 1.3, the member | "
-        f"{rate(_of(good, 'link_side'), 'result', 'found')} |",
-        f"| two effects, s = 1.15 each: both, no extra | {rate(pairs, 'result', 'found')} |",
-        f"| outside the catalogue, s = 1.3: `outside_catalogue` | {rate(outside, 'result', 'found')} |",
-        f"| outside the catalogue, s = 1.3: something named | {rate(outside, 'result', 'wrong')} |",
-        f"| something named: the truth in the ambiguity set | {rate(named, 'in_set')} |",
-        f"| mean size of an ambiguity set | {size:.2f} |",
-        f"| share of the recoverable error recovered, median (10th percentile) | {_quantiles(recovered)} |",
-        f"| recovered at least 90 % | {proportion(sum(v >= 0.9 for v in recovered), len(recovered))} |",
-        f"| 14-bit joint encoders: a wrong name | {rate(coarse, 'result', 'wrong')} |",
-        f"| 14-bit joint encoders, s = 1.3: cause and joint | {rate(hidden, 'result', 'found')} |",
-        f"| free motion: right answer | {rate(free, 'result', 'found')} |",
-        f"| free motion: a wrong name | {rate(free, 'result', 'wrong')} |",
-        f"| seconds for a diagnosis, median (longest) | {_seconds(good)} |",
-        "",
-        "![Share found over the strength, by effect](diagnosis_power.svg)",
-        "",
-        "![What was named, by what was hidden](diagnosis_confusion.svg)",
-        "",
+    most = sum(value >= 0.9 for value in recovered)
+    size = f"{sum(line['size'] for line in named) / len(named):.2f}" if named else "no case"
+    return [
+        *out,
+        (
+            "link-side encoder: backlash or flexibility, s = 1.3, the member",
+            rate(_of(good, "link_side"), "result", "found"),
+        ),
+        ("two effects, s = 1.15 each: both, no extra", rate(_of(good, "pair"), "result", "found")),
+        ("outside the catalogue, s = 1.3: `outside_catalogue`", rate(outside, "result", "found")),
+        ("outside the catalogue, s = 1.3: something named", rate(outside, "result", "wrong")),
+        ("something named: the truth in the ambiguity set", rate(named, "in_set")),
+        ("mean size of an ambiguity set", size),
+        ("share of the recoverable error recovered, median (10th percentile)", _quantiles(recovered)),
+        ("recovered at least 90 %", proportion(most, len(recovered))),
+        ("14-bit joint encoders: a wrong name", rate(coarse, "result", "wrong")),
+        ("14-bit joint encoders, s = 1.3: cause and joint", rate(hidden, "result", "found")),
+        ("free motion: right answer", rate(free, "result", "found")),
+        ("free motion: a wrong name", rate(free, "result", "wrong")),
+        ("seconds for a diagnosis, median (longest)", _seconds(good)),
+    ]
+
+
+def _by_effect(good: list[Line]) -> list[str]:
+    out = [
         "## By effect",
+        "",
+        f"With {' and '.join(str(count) for count in _counts(good))} training records.",
         "",
         "| hidden | found | missed | wrong or extra | named instead or besides |",
         "|---|---|---|---|---|",
     ]
     for effect in (*CATALOGUE, *OUTSIDE):
-        own = [line for line in (*singles, *outside) if line["effects"] == [effect]]
+        own = [line for group in ("single", "outside") for line in _of(good, group)]
+        own = [line for line in own if line["effects"] == [effect]]
         if not own:
             continue
         counts = [sum(line["result"] == result for line in own) for result in ("found", "missed", "wrong")]
         others = sorted({name for line in own for name, _ in line["named"] if name != effect})
-        shown = ", ".join(f"`{name}`" for name in others) or "–"
-        out.append(f"| `{effect}` | {counts[0]} | {counts[1]} | {counts[2]} | {shown} |")
-    failures = [line for line in lines if "failed" in line]
-    if failures:
-        out += ["", "## Failed", ""]
-        out += [f"- `{line['key']}`: {line['failed'].strip().splitlines()[-1]}" for line in failures]
+        named = ", ".join(f"`{name}`" for name in others) or "–"
+        out.append(f"| `{effect}` | {counts[0]} | {counts[1]} | {counts[2]} | {named} |")
     return out
+
+
+def _failures(lines: list[Line]) -> list[str]:
+    failed = [line for line in lines if "failed" in line]
+    texts = [f"- `{line['key']}`: {line['failed'].strip().splitlines()[-1]}" for line in failed]
+    return ["", "## Failed", "", *texts] if failed else []
 
 
 def _quantiles(values: list[float]) -> str:
@@ -185,30 +223,40 @@ def _save(figure: Any, path: Path) -> None:
     plt.close(figure)
 
 
-def _power(lines: list[Line], path: Path) -> None:
-    strengths = sorted({line["strength"] for line in _of(lines, "single")})
+def _power(runs: dict[int, list[Line]], path: Path) -> None:
+    """Curves of each number of training records; in grey single effects, with the fewest."""
     figure, axis = plt.subplots(figsize=(7.5, 4.2))
-    for compliant, label, colour in (
-        (False, "all other effects", "C0"),
-        (True, "backlash, flexibility", "C1"),
-    ):
-        shares, below, above = [], [], []
-        for strength in strengths:
-            own = _of(lines, "single", strength, compliant)
-            hits = sum(line["by_class" if compliant else "result"] == "found" for line in own)
-            low, high = wilson(hits, len(own))
-            share = hits / len(own) if own else math.nan
-            shares.append(100 * share)
-            below.append(100 * max(0.0, share - low) if own else 0.0)
-            above.append(100 * max(0.0, high - share) if own else 0.0)
-        axis.errorbar(strengths, shares, [below, above], marker="o", capsize=4, color=colour, label=label)
-    for effect in CATALOGUE:
-        own = [[line for line in _of(lines, "single", s) if line["effects"] == [effect]] for s in strengths]
-        hits = [sum(line["result"] == "found" for line in cell) for cell in own]
-        curve = [100 * n / len(cell) if cell else math.nan for n, cell in zip(hits, own, strict=True)]
-        axis.plot(strengths, curve, color="0.8", linewidth=0.7, zorder=0)
+    for place, (train, lines) in enumerate(runs.items()):
+        good = _answered(lines)
+        strengths = sorted({line["strength"] for line in _of(good, "single")})
+        for compliant, label, colour in ((False, "all other effects", "C0"), (True, *SOFT)):
+            cells = [_of(good, "single", strength, compliant) for strength in strengths]
+            hits = [
+                sum(line["by_class" if compliant else "result"] == "found" for line in cell) for cell in cells
+            ]
+            share = [100 * n / len(cell) if cell else math.nan for n, cell in zip(hits, cells, strict=True)]
+            ends = [wilson(n, len(cell)) for n, cell in zip(hits, cells, strict=True)]
+            below = [max(0.0, value - 100 * low) for value, (low, _) in zip(share, ends, strict=True)]
+            above = [max(0.0, 100 * high - value) for value, (_, high) in zip(share, ends, strict=True)]
+            axis.errorbar(
+                [strength + 0.004 * place for strength in strengths],
+                share,
+                [below, above],
+                marker="os^"[place % 3],
+                linestyle=("-", "--", ":")[place % 3],
+                capsize=4,
+                color=colour,
+                label=f"{label}, {train} training records",
+            )
+        for effect in CATALOGUE if not place else ():
+            own = [
+                [line for line in _of(good, "single", s) if line["effects"] == [effect]] for s in strengths
+            ]
+            hits = [sum(line["result"] == "found" for line in cell) for cell in own]
+            curve = [100 * n / len(cell) if cell else math.nan for n, cell in zip(hits, own, strict=True)]
+            axis.plot(strengths, curve, color="0.8", linewidth=0.7, zorder=0)
     axis.set(xlabel="strength s", ylabel="cause and joint found [%]", ylim=(-3, 103))
-    if strengths:
+    if axis.get_legend_handles_labels()[0]:
         axis.legend(loc="lower right")
     axis.grid(alpha=0.3)
     _save(figure, path)

@@ -18,7 +18,10 @@ from hidden.effects import EFFECTS, OUTSIDE, Scales, Site, joints_for, scales
 from hidden.logs import Log
 from hidden.native import Array, Plant, PlantError
 
-RECORDS = ("train_a", "train_b", "test", "check")
+RECORDS = ("train_a", "train_b", "test", "check", "train_c", "train_d", "train_e", "train_f")
+TEST, CHECK = RECORDS.index("test"), RECORDS.index("check")
+ROTATED = (0, 1, TEST)  # by which a strength is measured, however many records train
+TRAIN = 2
 FINE, COARSE = 0.25e-3, 0.5e-3  # s, longest step of the integrator with and without contacts
 TRIES = 10
 SMALL = 1e-3  # magnitude
@@ -36,7 +39,7 @@ class Hidden:
 
 @dataclass(frozen=True)
 class Case:
-    """What is drawn. encoder: motor, joint (20 bits) or coarse (14 bits, joint side)."""
+    """What is drawn. encoder: motor, joint (20 bits) or coarse (14 bits, joint side). train: 2 to 6."""
 
     arm: str
     seed: int
@@ -47,13 +50,25 @@ class Case:
     noise: float = 1.0
     name: str = "arm"
     dry: float = 1.0  # times the usual dry friction
+    train: int = TRAIN
+
+    @property
+    def training(self) -> list[int]:
+        """Numbers of the training records: the first ones are the same whatever their count."""
+        return [k for k in range(len(RECORDS)) if k not in (TEST, CHECK)][: self.train]
+
+    @property
+    def records(self) -> list[int]:
+        """Numbers of all records."""
+        return sorted([*self.training, TEST, CHECK])
 
 
 @dataclass(frozen=True)
 class Label:
     """The truth about a case. strength: reached, by effect. floor, with_effect: RMSE (n,) on test.
 
-    shown: what the training records say for the effects, twice the logarithm of a likelihood ratio.
+    shown: what the training records say for the effects, twice the logarithm of a likelihood ratio; nan of
+    free motions, whose noise is that of their positions.
     """
 
     case: dict[str, Any]
@@ -81,14 +96,15 @@ class Bench:
             for gain, value in (("position_gain", 8.0), ("speed_gain", 16.0), ("integral_gain", 60.0)):
                 self.arm.plant[gain] = value
         free = case.arm in arms.FREE
-        self.paths: list[Plant] = [
-            self._release(k) if free else trajectories.draw(self.arm, _random(case, 2, k))
-            for k in range(len(RECORDS))
-        ]
+        self.paths: dict[int, Plant] = {
+            k: self._release(k) if free else trajectories.draw(self.arm, _random(case, 2, k))
+            for k in case.records
+        }
         self.duration = case.periods / float(self.arm.plant["frequency"])
         q, _, current, _ = native.simulate(self.paths[0], case.rate, self.duration, self._substeps([]))
         times = np.linspace(0.0, 1.0 / float(self.arm.plant["frequency"]), 500)
-        walked = [q] if free else [trajectories.motion(path, times)[0] for path in self.paths]
+        # not of further training records: the same effect, whatever their count
+        walked = [q] if free else [trajectories.motion(self.paths[k], times)[0] for k in (*ROTATED, CHECK)]
         self.scales: Scales = scales(self.arm.plant, q, current, case.rate, walked)
         self._sizes: dict[int, Array] = {}
 
@@ -122,8 +138,11 @@ class Bench:
         longest = FINE if any(EFFECTS[name].fine for name in hidden) else COARSE
         return max(1, math.ceil(1.0 / self.case.rate / longest - 1e-9))
 
-    def record(self, k: int, magnitudes: dict[int, float]) -> Log:
-        """Record k with effects of the case, by their place in its list, at these magnitudes."""
+    def record(self, k: int, magnitudes: dict[int, float], noisy: bool = True) -> Log:
+        """Record k with effects of the case, by their place in its list, at these magnitudes.
+
+        noisy: with noise on the current.
+        """
         case, plant = self.case, self.arm.plant.copy()
         names = [case.hidden[place].effect for place in magnitudes]
         for place, magnitude in magnitudes.items():
@@ -134,9 +153,10 @@ class Bench:
             EFFECTS[hidden.effect].put(plant, site, magnitude)
         plant = trajectories.carry_over(self.paths[k], plant)
         steps = self._substeps(names)
-        return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, self._size(k))
+        size = self.noise_scale(k) if noisy else np.zeros(self.arm.n)
+        return logs.take(plant, case.rate, self.duration, _random(case, 4, k), steps, size)
 
-    def _size(self, k: int) -> Array:
+    def noise_scale(self, k: int) -> Array:
         """RMS (n,) [A] of the current that record k takes without effects: an effect makes no noise."""
         if k not in self._sizes:
             steps = self._substeps([])
@@ -151,9 +171,9 @@ class Bench:
         spring and no constant current at any joint takes up: a hose that is taut throughout is a spring.
         """
         kinds = [EFFECTS[hidden.effect] for hidden in self.case.hidden]
-        held_out = (2,) if any(kind.later for kind in kinds) else (0, 1, 2)
+        held_out = (TEST,) if any(kind.later for kind in kinds) else ROTATED
         return fitting.rotated(
-            [self.record(k, magnitudes) for k in range(3)],
+            [self.record(k, magnitudes) for k in ROTATED],
             self.arm.plant,
             held_out,
             pulled=any(kind.outside for kind in kinds),
@@ -222,27 +242,36 @@ def make(case: Case, folder: Path) -> Label:
         else:
             magnitudes[place], reached = bench.tune(place, floor)
             strengths.append(reached)
-    kept = [bench.record(k, magnitudes) for k in range(len(RECORDS))]
+    kept = {k: bench.record(k, magnitudes) for k in case.records}
     if len(case.hidden) == 1:
         strengths = [bench.strength(0, floor, bench.errors(magnitudes))]
-    for name, log in zip(RECORDS, kept, strict=True):
-        logs.write(folder / f"{name}.csv", log)
+    for k, log in kept.items():
+        logs.write(folder / f"{RECORDS[k]}.csv", log)
     free = case.arm in arms.FREE
     entry = arms.describe(bench.arm, _random(case, 5), exact_links=free)
     arms.write_description(folder / "arms.yaml", case.name, entry)
-    clean = [bench.record(k, {}) for k in range(3)]
+    clean = {k: bench.record(k, {}) for k in ROTATED}
     return Label(
         asdict(case),
         strengths,
         [magnitudes[place] for place in range(len(case.hidden))],
         _test(bench, clean),
         _test(bench, kept),
-        fitting.shown(kept[:2], clean[:2], bench.arm.plant) if case.hidden else 0.0,
+        math.nan if free else _shown(bench, magnitudes),
     )
 
 
-def _test(bench: Bench, records: list[Log]) -> list[float]:
-    return [float(value) for value in fitting.rotated(records[:3], bench.arm.plant, (2,))]
+def _test(bench: Bench, records: dict[int, Log]) -> list[float]:
+    rotated = fitting.rotated([records[k] for k in ROTATED], bench.arm.plant, (TEST,))
+    return [float(value) for value in rotated]
+
+
+def _shown(bench: Bench, magnitudes: dict[int, float]) -> float:
+    if not magnitudes:
+        return 0.0
+    numbers = bench.case.training
+    records = [[bench.record(k, by, noisy=False) for k in numbers] for by in (magnitudes, {})]
+    return fitting.shown(*records, [bench.noise_scale(k) for k in numbers], bench.arm.plant)
 
 
 def seal(label: Label, path: Path) -> None:
@@ -252,7 +281,7 @@ def seal(label: Label, path: Path) -> None:
 
 def unseal(path: Path) -> Label:
     """The label that was sealed."""
-    data = json.loads(zlib.decompress(path.read_bytes()))
+    data: dict[str, Any] = json.loads(zlib.decompress(path.read_bytes()))
     case = data["case"]
     case["hidden"] = tuple(case["hidden"])
     return Label(**data)
@@ -264,55 +293,3 @@ def kind(label: Label) -> str:
     if any(name in OUTSIDE for name in names):
         return "outside"
     return ("null", "single", "pair")[len(names)]
-
-
-def draw_arm(effect: str, random: np.random.Generator, names: tuple[str, ...]) -> tuple[str, int]:
-    """An arm of those names, and a joint (from 1) of it, that the effect can sit at."""
-    possible = [
-        (name, joint + 1) for name in names for joint in joints_for(effect, arms.draw(name, default_rng(0)))
-    ]
-    if not possible:
-        raise PlantError(f"{effect} can sit at no joint of {', '.join(names)}")
-    having = sorted({name for name, _ in possible})
-    name = having[int(random.integers(len(having)))]
-    joints = [joint for arm, joint in possible if arm == name]
-    return name, joints[int(random.integers(len(joints)))]
-
-
-def draw(
-    seed: int, effects: tuple[str, ...], strength: float, names: tuple[str, ...], encoder: str = "motor"
-) -> Case:
-    """A case whose effects reach the strength wanted, within what a plausible arm allows.
-
-    The seed draws arm and joint, and draws again where the effect hides there (a load of one sign hides
-    backlash, a narrow range an offset). Raises PlantError after some draws.
-    """
-    random = default_rng([seed, zlib.crc32("+".join(effects).encode()), round(1000 * strength)])
-    for attempt in range(12):
-        if not effects:
-            name = names[int(random.integers(len(names)))]
-            return Case(name, seed, (), encoder)
-        name, first = draw_arm(effects[0], random, names)
-        arm = arms.draw(name, default_rng(0))
-        joints = [first]
-        for effect in effects[1:]:
-            possible = [j + 1 for j in joints_for(effect, arm)]
-            if possible:
-                joints.append(possible[int(random.integers(len(possible)))])
-        if len(joints) < len(effects):
-            continue
-        # Counts of a motor that are off by some are a wrong length of the lever: only an encoder at the
-        # joint can have an offset of its own.
-        side = "joint" if "encoder_offset" in effects and encoder == "motor" else encoder
-        hidden = tuple(Hidden(e, j, strength) for e, j in zip(effects, joints, strict=True))
-        case = Case(name, seed + 1000 * attempt, hidden, side)
-        bench = Bench(case)
-        floor = bench.errors({})
-        tuned = [bench.tune(place, floor) for place in range(len(hidden))]
-        if all(abs(reached - strength) < 0.25 * (strength - 1.0) for _, reached in tuned):
-            known = tuple(
-                Hidden(item.effect, item.joint, strength, magnitude)
-                for item, (magnitude, _) in zip(hidden, tuned, strict=True)
-            )
-            return Case(name, case.seed, known, side)
-    raise PlantError(f"{' and '.join(effects)} reach {strength:g} on none of the arms drawn with seed {seed}")

@@ -150,30 +150,32 @@ def rotated(records: list[Log], described: Plant, held_out: tuple[int, ...], pul
     return rms(left_over, [rows[k] for k in held_out])
 
 
-def shown(records: list[Log], clean: list[Log], described: Plant) -> float:
-    """Twice the log likelihood that one fit to the records loses by the effects, over one to those without
-    them, in noise of the colour that is drawn.
+def shown(records: list[Log], clean: list[Log], sizes: list[Array], described: Plant) -> float:
+    """Twice the log likelihood that one fit to the records is expected to lose by the effects.
+
+    records, clean: without noise, with and without the effects. sizes: (n,) of each record, the RMS [A] in
+    whose proportion noise of the colour that is drawn comes on top; its level is estimated.
     """
-    if any(log.current is None for log in records):
-        return math.nan  # all noise of a free motion is that of its positions
-    sizes, counts = [], []
+    left, counts = [], []
     for logs in (records, clean):
         rows = [equations(log, described) for log in logs]
         counts.append(np.sum([item.moving.sum(axis=0) for item in rows], axis=0))
-        sizes.append(_whitened_squares(rows, clean[0].rate) / np.maximum(counts[-1], 1.0))
-    used = np.minimum(*counts) > 0
-    return float((counts[1] * np.log(sizes[0] / sizes[1], where=used, out=np.zeros(len(used)))).sum())
+        left.append(_whitened_squares(rows, sizes, clean[0].rate) / np.maximum(counts[-1], 1.0))
+    return float((counts[1] * np.log((1.0 + left[0]) / (1.0 + left[1]))).sum())
 
 
-def _whitened_squares(rows: list[Rows], rate: float) -> Array:
-    """What generalised least squares leaves by joint (n,), the joints weighted by what they leave."""
+def _whitened_squares(rows: list[Rows], sizes: list[Array], rate: float) -> Array:
+    """What generalised least squares leaves by joint (n,), in units of the noise's variance.
+
+    The joints are weighted by what they leave, and the noise.
+    """
     n = rows[0].effort.shape[1]
     parts: list[list[Array]] = [[] for _ in range(n)]
-    for item in rows:
+    for item, size in zip(rows, sizes, strict=True):
         covariance = noise_covariance(len(item.effort), round(item.step * rate), rate)
         for j in range(n):
             used = item.moving[:, j] > 0.5
-            factor = np.linalg.cholesky(covariance[np.ix_(used, used)])
+            factor = size[j] * np.linalg.cholesky(covariance[np.ix_(used, used)])
             table = np.column_stack([item.columns[used, j], item.effort[used, j]])
             parts[j].append(solve_triangular(factor, table, lower=True))
     tables, weight = [np.concatenate(part) for part in parts], np.ones(n)
@@ -182,7 +184,7 @@ def _whitened_squares(rows: list[Rows], rate: float) -> Array:
         stacked = np.concatenate([table * by for table, by in zip(tables, weight, strict=True)])
         estimate = np.linalg.lstsq(stacked[:, :-1], stacked[:, -1], rcond=None)[0]
         left = np.array([((table[:, -1] - table[:, :-1] @ estimate) ** 2).sum() for table in tables])
-        weight = 1.0 / np.sqrt(np.maximum(left, 1e-300))
+        weight = 1.0 / np.sqrt(1.0 + left / np.array([max(1, len(table)) for table in tables]))
     return left
 
 

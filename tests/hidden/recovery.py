@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from hidden import logs
-from hidden.cases import RECORDS, Bench, Case
+from hidden.cases import RECORDS, TEST, Bench, Case
 from modelgen.dataset import choose, prepare
 from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import load
@@ -25,10 +25,11 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
     folder: where the case was made.
     """
     bench, arm = Bench(case), load(folder / "arms.yaml")[case.name]
-    paths = [folder / f"{name}_without.csv" for name in RECORDS[:3]]
-    for k, path in enumerate(paths):
-        logs.write(path, bench.record(k, {}))
-    found = records(arm, [str(path) for path in paths[:2]], [str(paths[2])], None)
+    paths = []
+    for k in (*case.training, TEST):
+        paths.append(str(folder / f"{RECORDS[k]}_without.csv"))
+        logs.write(Path(paths[-1]), bench.record(k, {}))
+    found = records(arm, paths[:-1], paths[-1:], None)
     lengths = [period_of(record, None) for record in found[:-1]]
     settings = with_whole_rows(choose(list(found), settings_for(found, cutoff)), lengths)
     model, prober = build_model(arm), Prober(arm)

@@ -25,7 +25,8 @@ class CommandError(RuntimeError):
 def diagnose(folder: Path, name: str) -> tuple[dict[str, Any], float]:
     """The answer of the command line on the logs in the folder, and the seconds it took."""
     command = [sys.executable, "-m", "modelgen", "diagnose", str(folder / "arms.yaml"), "--arm", name]
-    command += ["--train", str(folder / "train_a.csv"), "--train", str(folder / "train_b.csv")]
+    for path in sorted(folder.glob("train_?.csv")):
+        command += ["--train", str(path)]
     command += ["--test", str(folder / "test.csv"), "--out", str(folder / "diagnosis"), "--json"]
     begin = time.perf_counter()
     environment = {**os.environ, **ONE_THREAD}
