@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from markupsafe import Markup
 
+from modelgen.dataset.drives import drives_of
 from modelgen.description import NoDrive
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.rows import Array, Rows
@@ -60,22 +61,36 @@ def units_of(d: Diagnosis) -> list[str]:
     return [u if isinstance(j.drive, NoDrive) else "A" for j, u in zip(joints, forces, strict=True)]
 
 
+def _position_units(d: Diagnosis) -> list[str]:
+    """Of the joint coordinates."""
+    return ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
+
+
+def _against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
+    """What the leftovers of the test record are shown against: (M, n) each, and its units by joint."""
+    p, positions = d.test.prepared, _position_units(d)
+    n = len(positions)
+    driven = zip(drives_of(d.arm), positions, strict=True)
+    motors = [drive.unit if drive.driven else unit for drive, unit in driven]
+    motors = ["motor unit" if unit == "unit" else unit for unit in motors]
+    found = {
+        "joint velocity": (p.picked(p.dq), [f"{unit}/s" for unit in positions]),
+        "joint position": (p.picked(p.q), positions),
+        "size of the effort": (np.abs(measured_efforts(d.test)), units_of(d)),
+        "motor position": (p.picked(p.motor), motors),
+        "time": (np.tile(p.t[:, None], (1, n)), ["s"] * n),
+    }
+    if p.temperature is not None:
+        found["temperature"] = (p.picked(p.temperature), ["deg C"] * n)
+    return found
+
+
 def residuals(d: Diagnosis) -> dict[str, Sketch]:
     """What is left over against speed, position, load, motor angle and time, before and after."""
-    held, p = d.test, d.test.prepared
+    held = d.test
     n = held.effort.shape[1]
-    load = np.abs(measured_efforts(held))
-    against: list[tuple[str, Array]] = [
-        ("joint velocity", p.picked(p.dq)),
-        ("joint position", p.picked(p.q)),
-        ("size of the effort", load),
-        ("motor position", p.picked(p.motor)),
-        ("time [s]", np.tile(p.t[:, None], (1, n))),
-    ]
-    if p.temperature is not None:
-        against.append(("temperature [deg C]", p.picked(p.temperature)))
     pictures = {}
-    for name, x in against:
+    for name, (x, units) in _against(d).items():
         made = Sketch(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
         axes = made.axes()
         for j in range(n):
@@ -84,28 +99,29 @@ def residuals(d: Diagnosis) -> dict[str, Sketch]:
                 centre, mean = binned(x[m, j], r[m, j], 120 if name == "motor position" else 24)
                 axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
             axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
-            axes[0, j].set_xlabel(f"{name}, joint {j + 1}", fontsize=7)
+            axes[0, j].set_xlabel(f"{name} [{units[j]}], joint {j + 1}", fontsize=7)
         axes[0, 0].set_ylabel(f"left over [{units_of(d)[0]}]", fontsize=7)
-        pictures[name.split(" [")[0]] = made
+        pictures[name] = made
     return pictures
 
 
 def left_over(d: Diagnosis) -> Sketch:
     """Means of what is left over by speed, motor position and effort, before and after."""
-    held, p = d.test, d.test.prepared
+    held, against = d.test, _against(d)
     n = held.effort.shape[1]
-    made = Sketch(n, 3, (9.0, 1.9 * n))
+    made = Sketch(n, 3, (9.0, 1.9 * n + 0.3))
     axes = made.axes()
-    against = (p.picked(p.dq), p.picked(p.motor), np.abs(measured_efforts(held)))
+    shown = (("joint velocity", 24), ("motor position", 120), ("size of the effort", 24))
     for j in range(n):
         m = held.moving[:, j]
-        for axis, x, bins in zip(axes[j], against, (24, 120, 24), strict=True):
+        for axis, (name, bins) in zip(axes[j], shown, strict=True):
+            x, units = against[name]
             for k, r in enumerate(d.residuals[: 2 if d.causes else 1]):
                 axis.plot(*binned(x[m, j], r[m, j], bins), color=COLOURS[k], linewidth=0.9)
             axis.axhline(0.0, color="#999999", linewidth=0.6)
+            if j == n - 1 or units[j] != units[j + 1]:
+                axis.set_xlabel(f"{name} [{units[j]}]", fontsize=7)
         axes[j, 0].set_ylabel(f"joint {j + 1} [{units_of(d)[j]}]", fontsize=7)
-    for axis, name in zip(axes[-1], ("speed", "motor position", "size of the effort"), strict=True):
-        axis.set_xlabel(name, fontsize=7)
     return made
 
 
@@ -133,7 +149,7 @@ def replayed(d: Diagnosis) -> Sketch | None:
     made = Sketch(n, 2, (9.0, 2.1 * n))
     axes = made.axes()
     labels = (("model as described", COLOURS[0]), ("extended model", COLOURS[1]))
-    unit = ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
+    unit = _position_units(d)
     for j in range(n):
         left, right = axes[j]
         for scores, (label, colour) in zip(d.simulation, labels, strict=True):
