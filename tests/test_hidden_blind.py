@@ -10,6 +10,7 @@ from hidden.arms import DESIGNS
 from hidden.cases import RECORDS, Bench
 from hidden.drawing import draw
 from hidden.effects import CATALOGUE, OUTSIDE
+from hidden.tallies import wilson
 
 
 def test_the_matrix_holds_enough_of_everything() -> None:
@@ -60,13 +61,15 @@ def test_more_training_records_are_of_the_same_arm_with_the_same_effect() -> Non
     [(0, 200, 0.0, 0.0188), (57, 60, 0.8630, 0.9829), (5, 10, 0.2366, 0.7634), (0, 0, 0.0, 1.0)],
 )
 def test_wilson_intervals(hits: int, total: int, low: float, high: float) -> None:
-    assert blind_report.wilson(hits, total) == pytest.approx((low, high), abs=2e-4)
+    assert wilson(hits, total) == pytest.approx((low, high), abs=2e-4)
 
 
 def line(group: str, effects: list[str], result: str, number: int, **more: Any) -> dict[str, Any]:
     named = [[effects[0], 1]] if effects and result == "found" and group != "outside" else []
     return {
         "key": f"{group}/{'+'.join(effects)}/{number}",
+        "seed": 5,
+        "commit": "0123456789ab",
         "group": group,
         "train": 2,
         "effects": effects,
@@ -92,6 +95,8 @@ def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
     lines += [
         {
             "key": "x",
+            "seed": 5,
+            "commit": "0123456789ab",
             "group": "single",
             "train": 2,
             "effects": ["spring"],
@@ -101,7 +106,7 @@ def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
     ]
     lines += [line("single", ["spring"], "found", k, train=4) for k in range(2)]
     for folder in ("one", "two"):
-        blind_report.write(lines, 5, "0123456789abcdef", tmp_path / folder, 40)
+        blind_report.write(lines, tmp_path / folder, 40)
     page = (tmp_path / "one" / "diagnosis.md").read_text()
     assert "Seed 5, commit 0123456789ab. 2 training records: 16 of 40 cases, 15 answered, 1 failed" in page
     assert "\n4 training records: 2 of 40 cases, 2 answered, 0 failed, 0 undrawn.\n" in page
@@ -112,3 +117,10 @@ def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
     assert "- `x`: boom" in page
     for name in ("diagnosis.md", "diagnosis_power.svg", "diagnosis_confusion.svg"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+def test_a_run_is_taken_up_again_but_for_its_failures(tmp_path: Path) -> None:
+    path = tmp_path / "5.jsonl"
+    assert blind.kept(path) == []
+    path.write_text('{"key": "a", "result": "found"}\n{"key": "b", "failed": "boom"}\n')
+    assert [item["key"] for item in blind.kept(path)] == ["a"]

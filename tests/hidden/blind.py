@@ -1,7 +1,7 @@
 """python -m hidden.blind [--seed N] [--train N] [--only null,single] [--limit N] [--jobs N]
 
-The full matrix of hidden effects on all cores, one line of JSON per case in build/blind/SEED.jsonl: what is
-there is not run again. Writes docs/diagnosis.md and its pictures, a column for each number of training
+The full matrix of hidden effects on all cores, one line of JSON a case in tests/hidden/runs/SEED.jsonl: what
+is there is not run again. Writes docs/diagnosis.md and its pictures, a column for each number of training
 records that was run. Run from the repository with tests/ on the path, as `make blind` does; the seed is the
 commit's hash unless one is given.
 """
@@ -33,6 +33,7 @@ from hidden.effects import CATALOGUE, OUTSIDE
 from hidden.native import PlantError
 from hidden.running import CommandError, run
 
+RUNS = Path(__file__).with_name("runs")
 STRENGTHS = (1.05, 1.10, 1.30)
 NULLS, PAIRS, REPEATS = 200, 30, 3
 SMALL = tuple(name for name in DRIVEN if name not in ("direct6", "mixed5"))
@@ -100,14 +101,15 @@ def _two(k: int) -> tuple[str, str]:
     return pairs[k]
 
 
-def run_item(item: Item, seed: int, train: int) -> dict[str, Any]:
+def run_item(item: Item, seed: int, train: int, head: str) -> dict[str, Any]:
     """The line of a case; an error of the plant or of the command line is a line too.
 
     train: number of training records; the arm, the effect and the first two records do not depend on it.
+    head: commit that is checked out.
     """
     own = zlib.crc32(f"{seed}/{item.key}".encode())
     names = FREE if item.group == "free" else SMALL if item.number % 5 else DRIVEN
-    line: dict[str, Any] = {"key": item.key, "seed": seed, "train": train, **asdict(item)}
+    line: dict[str, Any] = {"key": item.key, "seed": seed, "train": train, "commit": head, **asdict(item)}
     folder = Path(tempfile.mkdtemp(prefix="hidden-"))
     try:
         case = draw(own, item.effects, item.strength, names, item.encoder, train)
@@ -130,6 +132,12 @@ def commit() -> str:
     ).stdout.strip()
 
 
+def kept(path: Path) -> list[dict[str, Any]]:
+    """Lines of earlier runs but failures, which are tried again."""
+    texts = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return [line for line in map(json.loads, texts) if "failed" not in line]
+
+
 def main() -> int:
     """Exit status 0; 1 where the command line failed on a case."""
     assert __doc__ is not None
@@ -140,15 +148,15 @@ def main() -> int:
     parser.add_argument("--only", default="", help="groups, separated by commas")
     parser.add_argument("--limit", type=int, default=None, help="stop after so many new cases")
     parser.add_argument("--jobs", type=int, default=-1)
-    parser.add_argument("--out", type=Path, default=Path("build/blind"))
+    parser.add_argument("--out", type=Path, default=RUNS)
     parser.add_argument("--docs", type=Path, default=Path("docs"))
     given = parser.parse_args()
     head = commit()
     seed = int(head[:8], 16) if given.seed is None else given.seed
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{seed}.jsonl"
-    lines = [json.loads(text) for text in path.read_text().splitlines()] if path.exists() else []
-    lines = [line for line in lines if "failed" not in line]
+    lines = kept(path)
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     done = {line["key"] for line in lines if line["train"] == given.train}
     groups = set(filter(None, given.only.split(",")))
     todo = [item for item in matrix() if item.key not in done and (not groups or item.group in groups)]
@@ -156,14 +164,14 @@ def main() -> int:
     with Progress() as progress, path.open("a", encoding="utf-8") as file:
         task = progress.add_task(f"seed {seed}, {given.train} training records", total=len(todo))
         results = Parallel(n_jobs=given.jobs, return_as="generator_unordered")(
-            delayed(run_item)(item, seed, given.train) for item in todo
+            delayed(run_item)(item, seed, given.train, head[:12]) for item in todo
         )
         for line in results:
             file.write(json.dumps(line) + "\n")
             file.flush()
             lines.append(line)
             progress.advance(task)
-    blind_report.write(lines, seed, head, given.docs, len(matrix()))
+    blind_report.write(lines, given.docs, len(matrix()))
     return 1 if any("failed" in line for line in lines) else 0
 
 
