@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
 from modelgen.diagnosis.baseline import Array, Baseline, estimated
+from modelgen.diagnosis.slipping import of_arm
 from modelgen.functions import Model
 from modelgen.probing import Motion, Prober
 
@@ -88,11 +89,12 @@ def rows_of(
     if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift
-    empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), prepared.moving, known)
+    moving = prepared.moving & of_arm(prober.arm, prepared)
+    empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), moving, known)
     effort, columns = empty.filtered(effort[:, :, None])[:, :, 0], empty.filtered(columns)
     # states of a law that does not hold along this motion may leave all bounds
     good = np.isfinite(effort) & np.isfinite(columns).all(axis=2)
     if good.all():
-        return Rows(prepared, effort, columns, prepared.moving, known)
+        return Rows(prepared, effort, columns, moving, known)
     effort, columns = np.where(good, effort, 0.0), np.where(good[:, :, None], columns, 0.0)
-    return Rows(prepared, effort, columns, prepared.moving & good, known)
+    return Rows(prepared, effort, columns, moving & good, known)

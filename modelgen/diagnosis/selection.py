@@ -20,6 +20,7 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.slipping import without_rests
 from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
@@ -136,6 +137,7 @@ def select(
         lesser = lesser_rivals(best, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser))
+        rows = without_rests(rows, best.candidate)
         converge(causes, rows, prober)
         if not own:
             refine(causes, rows, prober)
