@@ -9,7 +9,7 @@ from test_diagnosis_shapes import cubic, made, offset
 
 from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause, measured
+from modelgen.diagnosis.causes import Cause, measured, together
 from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System
@@ -43,6 +43,24 @@ def test_the_law_that_is_there_takes_the_place_of_one_like_it() -> None:
     ((rival, behind),) = found[0].rivals
     assert rival is first
     assert behind > 0.0
+
+
+def test_a_rival_that_is_ahead_by_less_than_two_stays_one() -> None:
+    """Two units of evidence are worth no more than a bare mention (Raftery 1995): not a change of names."""
+    rows, periods, trial = scene()
+    bare = System(rows, [r.columns for r in rows], periods)
+    right, second = trial("friction_offset", offset), trial("nonlinear_viscous_friction", cubic)
+    seen = []
+    for bend in np.geomspace(1e-3, 1.0, 60):
+        worse = trial("asymmetric_viscous_friction", lambda x, bend=bend: offset(x) + bend * x**2)
+        ahead = together([right, second], bare) - together([worse, second], bare)
+        if 0.7 < ahead < 3.0 and abs(ahead - 2.0) > 0.2:
+            causes = [Cause(worse, 30.0, 5.0, 5.0, [(right, 0.0)]), Cause(second, 30.0, 5.0, 5.0)]
+            found = exchanged(causes, rows, Prober(ARM), periods)
+            assert (found is causes) == (ahead < 2.0), ahead
+            seen.append(ahead)
+    assert min(seen) < 1.8
+    assert max(seen) > 2.2
 
 
 def test_a_rival_that_explains_less_stays_one() -> None:

@@ -63,6 +63,24 @@ def weight(prober: Prober, motion: Motion, base: np.ndarray) -> float:
     return float(held[0, 1]) * RATIO * CONSTANT
 
 
+def test_play_is_asked_for_where_the_link_is_loose_up_to_half_of_the_time() -> None:
+    """A pendulum about its rest: the wider the gap, the longer the link lies in it."""
+    model, prober = build_model(ARM), Prober(ARM)
+    base = base_vector(model, standard_vector(model, np.random.default_rng(3)))
+    t = np.arange(0.0, 16.0, 0.002)
+    w = 2 * np.pi / 8.0
+    q = np.column_stack([np.zeros_like(t), 2.0 * np.sin(w * t)])
+    dq = np.column_stack([np.zeros_like(t), 2.0 * w * np.cos(w * t)])
+    motion = Motion(t, q, dq, -(w**2) * q, (False, False), 18.0)
+    shares = []
+    for play in np.geomspace(1e-5, 10.0, 80):
+        values = {"play": float(play), "stiffness": 300.0, "damping": 3.0}
+        found = prober.contribution("backlash", 2, motion, values, base)
+        shares.append(np.mean(found[:, 1] != 0.0))
+    assert 0.35 < max(shares) <= 0.5
+    assert shares[-1] == 0.0
+
+
 @pytest.mark.parametrize(
     "case",
     [

@@ -1,19 +1,22 @@
 """The report in a browser."""
 
 import multiprocessing
+import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from test_diagnosis_selection import ARM, three
 
+from modelgen.description import DirectDrive
 from modelgen.diagnosis.objects import Diagnosis
 from modelgen.diagnosis.run import diagnose
 from modelgen.figures import figure, svg
 from modelgen.report.diagnosis import report
-from modelgen.report.drawing import binned
+from modelgen.report.drawing import binned, left_over, residuals
 from modelgen.report.sketches import Pen, Sketch
 
 WORDS = ("stribeck_friction", "joint 2", "Error on the test record", "What these records cannot show")
@@ -51,6 +54,24 @@ def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
     there[0, 0].legend(loc="upper right")
     there[0, 1].set_xlabel("time [s]")
     assert drawn == svg(made)
+
+
+def test_every_axis_has_its_unit(found: Diagnosis) -> None:
+    """Also where joints differ: a carriage before a turning joint, a motor that knows increments alone."""
+    first, *others = found.arm.joints
+    carriage = replace(first, type="prismatic", drive=DirectDrive(1.0, 2.0))
+    mixed = replace(found, arm=replace(found.arm, joints=(carriage, *others)))
+    drawn = {**residuals(mixed), "left over": left_over(mixed)}
+    words = [
+        call[3][0]
+        for sketch in drawn.values()
+        for call in sketch.calls
+        if call[2] in ("set_xlabel", "set_ylabel")
+    ]
+    assert all(re.search(r"\[.+\]", word) for word in words)
+    assert {"joint velocity [m/s], joint 1", "joint velocity [rad/s], joint 2"} <= set(words)
+    rows = [call[0] for call in drawn["left over"].calls if call[2] == "set_xlabel"]
+    assert {0, len(found.arm.coordinates) - 1} <= set(rows)
 
 
 def test_an_error_leaves_no_process_behind() -> None:

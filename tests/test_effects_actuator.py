@@ -30,6 +30,7 @@ def arm_with(joint: int, *, spatial: bool) -> Arm:
             f"j{k + 1}",
             "revolute",
             alpha=alpha[k],
+            theta=0.3 * (k + 1) * spatial,
             d=0.4 * (k > 0),
             r=0.15 * k,
             antecedent=k - 1 if k else None,
@@ -62,7 +63,7 @@ class Actuator:
     def places(self, q: np.ndarray) -> np.ndarray:
         """(5, 3) in the base's frame, the base of the actuator last."""
         still = q.copy()
-        still[self.joint] = 0.0
+        still[self.joint] = -float(self.arm.joints[self.joint].theta)
         pose = np.array(self.links.poses(still))[self.joint]
 
         def there(radius: float, angle: float) -> np.ndarray:

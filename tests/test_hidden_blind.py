@@ -1,5 +1,6 @@
 """The matrix of `make blind`, and the page it writes."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -114,13 +115,26 @@ def test_the_page_counts_what_the_lines_say(tmp_path: Path) -> None:
     assert "| nothing hidden: something named | 0 of 10: 0.0 % (0.0 to 27.8) | no case |" in page
     assert "| one effect, s = 1.3: cause and joint, no extra | 3 of 4: 75.0 % (30.1 to 95.4) | 2 of 2" in page
     assert "| `spring` | 3 | 1 | 0 | – |" in page
-    assert "- `x`: boom" in page
+    assert "- `x`, 2 training records: boom" in page
     for name in ("diagnosis.md", "diagnosis_power.svg", "diagnosis_confusion.svg"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
 def test_a_run_is_taken_up_again_but_for_its_failures(tmp_path: Path) -> None:
     path = tmp_path / "5.jsonl"
-    assert blind.kept(path) == []
-    path.write_text('{"key": "a", "result": "found"}\n{"key": "b", "failed": "boom"}\n')
-    assert [item["key"] for item in blind.kept(path)] == ["a"]
+    assert blind.kept(path) == {}
+    texts = ["a", 2, "result"], ["b", 2, "failed"], ["b", 4, "failed"], ["b", 2, "result"]
+    path.write_text("".join(json.dumps({"key": k, "train": n, word: "x"}) + "\n" for k, n, word in texts))
+    found = blind.kept(path)
+    assert list(found) == [("a", 2), ("b", 2), ("b", 4)]
+    assert ["failed" in item for item in found.values()] == [False, False, True]
+
+
+def test_a_page_of_no_cases_and_of_unlike_columns(tmp_path: Path) -> None:
+    blind_report.write([], tmp_path, 40)
+    assert "## By effect" not in (tmp_path / "diagnosis.md").read_text()
+    weak = line("single", ["spring"], "found", 1, train=4) | {"strength": 1.05}
+    blind_report.write([line("single", ["spring"], "found", 0), weak], tmp_path, 40)
+    page = (tmp_path / "diagnosis.md").read_text()
+    assert "| one effect, s = 1.05: cause and joint, no extra | no case | 1 of 1" in page
+    assert page.index("s = 1.05: cause") < page.index("s = 1.3: cause") < page.index("seconds for")

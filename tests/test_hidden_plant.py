@@ -320,6 +320,8 @@ def test_a_case_is_written_whole_and_its_label_packed(tmp_path: Path) -> None:
         lines = (tmp_path / f"{name}.csv").read_text().splitlines()
         assert lines[0] == "t,qm1,qm2,i1,i2"
         assert len(lines) == 1 + 15000
+    quiet = Case("direct2", 3, (Hidden("spring", 1, 1.3, magnitude=0.5),), noise=0.0)
+    assert math.isnan(make(quiet, tmp_path / "quiet").shown)
     again = tmp_path / "again"
     make(case, again)
     assert (again / "test.csv").read_bytes() == (tmp_path / "test.csv").read_bytes()

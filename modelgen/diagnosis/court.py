@@ -93,8 +93,7 @@ class Court:
         best = _best(trials)
         if best is None or best.gain.delta_bic < WORTH:
             return best
-        k = trials.index(best)
-        low, high = grid[max(0, k - 1)], grid[min(len(grid) - 1, k + 1)]
+        low, high = bracket(grid, trials.index(best), turns=parameter.turns)
         return self._refined(candidate, parameter.name, low, high, best, 1.0)
 
     def _at(
@@ -209,6 +208,16 @@ class Court:
 def ahead(one: Trial, other: Trial) -> bool:
     """Whether one explains more than the other for certain."""
     return one.gain.delta_bic - other.gain.delta_bic > CERTAIN
+
+
+def bracket(grid: Sequence[float], k: int, *, turns: bool) -> tuple[float, float]:
+    """Between the neighbours of the k-th value; at an end from it on, but for angles, which go round."""
+    last = len(grid) - 1
+    if turns and k == 0:
+        return grid[last], grid[1] + math.tau
+    if turns and k == last:
+        return grid[last - 1], grid[0] + math.tau
+    return grid[max(0, k - 1)], grid[min(last, k + 1)]
 
 
 def golden(

@@ -1,4 +1,4 @@
-"""Rests of parts that turn with two joints: their dry friction is undetermined there, as a joint's at rest."""
+"""Rests of parts that turn with two joints: their dry friction is undetermined there, as a joint's is."""
 
 from __future__ import annotations
 

@@ -34,7 +34,8 @@ class Parameter:
     None where the description must give a value for a nonlinear parameter. bounds: sensible values.
     grid: where a diagnosis begins to look for the value of a nonlinear parameter, in units of `scale`:
     "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time" (the record's
-    length), "stiffness" (largest effort over the span) or "1".
+    length), "stiffness" (largest effort over the span) or "1". turns: an angle, whose grid goes once round
+    in equal steps, above zero; a value less a turn is the same.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Parameter:
     bounds: tuple[float, float] = (0.0, float("inf"))
     scale: str = "1"
     grid: tuple[float, ...] = ()
+    turns: bool = False
 
 
 def at(**values: float) -> Mapping[str, float]:

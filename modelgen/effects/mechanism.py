@@ -150,10 +150,11 @@ class ActuatorMass(BodyEffect):
         Parameter(
             "base_angle",
             "rad",
-            "direction from the joint to the actuator's base, against x of the joint's frame before it turns",
+            "direction from the joint to the actuator's base, against x of its frame at q = -theta",
             default=0.0,
             bounds=ANY,
-            grid=tuple(k * math.pi / 4 for k in range(1, 10)),
+            grid=tuple(k * math.pi / 4 for k in range(1, 9)),
+            turns=True,
         ),
     )
     confused_with = ("lever_geometry", "drive_inertia", "spring")
@@ -178,9 +179,9 @@ class ActuatorMass(BodyEffect):
         return Swing(cosine, sine, turn, bend, (l1 * c, l1 * s))
 
     def force(self, x: BodyVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
-        """SX x'' + SY y'' at the base, SX a + JS x'' and SY a at the ends of the axes x, y of unit length.
+        """SX x'' + SY y'' at the base, SX a + JS x'' and SY a at 1 m on its axes; a that of the base.
 
-        a: acceleration of the base less gravity.
+        x, y: its axes, along the actuator and across. a: acceleration of the base less gravity.
         """
         sx, sy = p["moment_x"], p["moment_y"]
         return sx * x.along + sy * x.across, sx * x.pivot + p["inertia"] * x.along, sy * x.pivot

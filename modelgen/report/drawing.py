@@ -39,7 +39,7 @@ def effort(d: Diagnosis) -> Sketch:
         right.plot(t[shown], missed[0][shown, j], color=COLOURS[0], linewidth=0.8)
         if d.causes:
             right.plot(t[shown], missed[1][shown, j], color=COLOURS[1], linewidth=0.8)
-        right.set_ylabel("left over")
+        right.set_ylabel(f"left over [{units[j]}]")
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
@@ -88,7 +88,7 @@ def _against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
 def residuals(d: Diagnosis) -> dict[str, Sketch]:
     """What is left over against speed, position, load, motor angle and time, before and after."""
     held = d.test
-    n = held.effort.shape[1]
+    n, efforts = held.effort.shape[1], units_of(d)
     pictures = {}
     for name, (x, units) in _against(d).items():
         made = Sketch(1, n, (max(3.0, min(9.0, 3.0 * n)), 2.0))
@@ -100,7 +100,8 @@ def residuals(d: Diagnosis) -> dict[str, Sketch]:
                 axes[0, j].plot(centre, mean, color=COLOURS[k], marker=".", markersize=3)
             axes[0, j].axhline(0.0, color="#999999", linewidth=0.6)
             axes[0, j].set_xlabel(f"{name} [{units[j]}], joint {j + 1}", fontsize=7)
-        axes[0, 0].set_ylabel(f"left over [{units_of(d)[0]}]", fontsize=7)
+            if not j or efforts[j] != efforts[j - 1]:
+                axes[0, j].set_ylabel(f"left over [{efforts[j]}]", fontsize=7)
         pictures[name] = made
     return pictures
 
@@ -162,7 +163,7 @@ def replayed(d: Diagnosis) -> Sketch | None:
                 left.plot(t, path, color=colour, linewidth=0.9, label=label if w == 0 else None)
                 right.plot(t, path - truth, color=colour, linewidth=0.9)
         left.set_ylabel(f"joint {j + 1} [{unit[j]}]")
-        right.set_ylabel("off by")
+        right.set_ylabel(f"off by [{unit[j]}]")
     axes[0, 0].legend(loc="upper right", fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")

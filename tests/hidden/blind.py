@@ -132,10 +132,10 @@ def commit() -> str:
     ).stdout.strip()
 
 
-def kept(path: Path) -> list[dict[str, Any]]:
-    """Lines of earlier runs but failures, which are tried again."""
+def kept(path: Path) -> dict[tuple[str, int], dict[str, Any]]:
+    """Lines of earlier runs by key and number of training records, the last one of each."""
     texts = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    return [line for line in map(json.loads, texts) if "failed" not in line]
+    return {(line["key"], line["train"]): line for line in map(json.loads, texts)}
 
 
 def main() -> int:
@@ -156,8 +156,7 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{seed}.jsonl"
     lines = kept(path)
-    path.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
-    done = {line["key"] for line in lines if line["train"] == given.train}
+    done = {key for (key, train), line in lines.items() if train == given.train and "failed" not in line}
     groups = set(filter(None, given.only.split(",")))
     todo = [item for item in matrix() if item.key not in done and (not groups or item.group in groups)]
     todo = todo[: given.limit]
@@ -169,10 +168,10 @@ def main() -> int:
         for line in results:
             file.write(json.dumps(line) + "\n")
             file.flush()
-            lines.append(line)
+            lines[line["key"], line["train"]] = line
             progress.advance(task)
-    blind_report.write(lines, given.docs, len(matrix()))
-    return 1 if any("failed" in line for line in lines) else 0
+    blind_report.write(list(lines.values()), given.docs, len(matrix()))
+    return 1 if any("failed" in line for line in lines.values()) else 0
 
 
 if __name__ == "__main__":

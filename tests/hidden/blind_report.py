@@ -64,7 +64,7 @@ def write(lines: list[Line], docs: Path, planned: int) -> None:
     """
     lines = sorted(lines, key=lambda line: (line["train"], line["key"]))
     runs = {count: [line for line in lines if line["train"] == count] for count in _counts(lines)}
-    first = answered(next(iter(runs.values()), []))
+    first = next(filter(None, map(answered, runs.values())), [])
     docs.mkdir(parents=True, exist_ok=True)
     confusion(first, docs / "diagnosis_confusion.svg")
     power(runs, docs / "diagnosis_power.svg")
@@ -91,15 +91,16 @@ def _stated(train: int, lines: list[Line], planned: int) -> str:
 
 
 def _table(runs: dict[int, list[Line]]) -> list[str]:
-    columns = [dict(_answers(answered(lines))) for lines in runs.values()]
-    questions = list(dict.fromkeys(question for column in columns for question in column))
-    rows = [[question, *(column.get(question, "no case") for column in columns)] for question in questions]
+    every = [answered(lines) for lines in runs.values()]
+    strengths = sorted({line["strength"] for lines in every for line in of(lines, "single")})
+    columns = [_answers(lines, strengths) for lines in every]
+    rows = [[asked[0][0], *(answer for _, answer in asked)] for asked in zip(*columns, strict=True)]
     head = ["question", *(f"{train} training records" for train in runs)]
     return [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
 
 
-def _answers(good: list[Line]) -> list[tuple[str, str]]:
-    """Questions, and what the lines answer."""
+def _answers(good: list[Line], strengths: list[float]) -> list[tuple[str, str]]:
+    """Questions, and what the lines answer. strengths: of single effects."""
     nulls, singles, outside, coarse, free = (
         of(good, group) for group in ("null", "single", "outside", "coarse", "free")
     )
@@ -107,7 +108,7 @@ def _answers(good: list[Line]) -> list[tuple[str, str]]:
         ("nothing hidden: something named", rate(nulls, "result", "wrong")),
         ("nothing hidden: `nothing_missing`", rate(nulls, "verdict", "nothing_missing")),
     ]
-    for strength in sorted({line["strength"] for line in singles}):
+    for strength in strengths:
         rigid = of(good, "single", strength, compliant=False)
         soft = of(good, "single", strength, compliant=True)
         shown = [line for line in rigid if line["shown"] > SHOWN]
@@ -146,10 +147,12 @@ def _answers(good: list[Line]) -> list[tuple[str, str]]:
 
 
 def _by_effect(good: list[Line]) -> list[str]:
+    if not good:
+        return []
     out = [
         "## By effect",
         "",
-        f"With {' and '.join(str(count) for count in _counts(good))} training records.",
+        f"With {good[0]['train']} training records.",
         "",
         "| hidden | found | missed | wrong or extra | named instead or besides |",
         "|---|---|---|---|---|",
@@ -168,7 +171,10 @@ def _by_effect(good: list[Line]) -> list[str]:
 
 def _failures(lines: list[Line]) -> list[str]:
     failed = [line for line in lines if "failed" in line]
-    texts = [f"- `{line['key']}`: {line['failed'].strip().splitlines()[-1]}" for line in failed]
+    texts = [
+        f"- `{line['key']}`, {line['train']} training records: {line['failed'].strip().splitlines()[-1]}"
+        for line in failed
+    ]
     return ["", "## Failed", "", *texts] if failed else []
 
 

@@ -67,8 +67,8 @@ class Case:
 class Label:
     """The truth about a case. strength: reached, by effect. floor, with_effect: RMSE (n,) on test.
 
-    shown: what the training records say for the effects, twice the logarithm of a likelihood ratio; nan of
-    free motions, whose noise is that of their positions.
+    shown: what the training records say for the effects, twice the logarithm of a likelihood ratio; nan
+    without noise on the current, and of free motions, whose noise is that of their positions.
     """
 
     case: dict[str, Any]
@@ -221,7 +221,7 @@ def _next(tried: list[tuple[float, float]], goal: float) -> float:
 
 
 def make(case: Case, folder: Path) -> Label:
-    """Writes arms.yaml and the records train_a, train_b, test, check as CSV into the folder.
+    """Writes arms.yaml and the case's records as CSV into the folder.
 
     Raises PlantError where an effect cannot sit at that joint of that arm.
     """
@@ -257,7 +257,7 @@ def make(case: Case, folder: Path) -> Label:
         [magnitudes[place] for place in range(len(case.hidden))],
         _test(bench, clean),
         _test(bench, kept),
-        math.nan if free else _shown(bench, magnitudes),
+        math.nan if free or not case.noise else _shown(bench, magnitudes),
     )
 
 

@@ -1,4 +1,4 @@
-"""The cases of the test suite. Seeds in order of the list; magnitudes as hidden.cases.draw finds them."""
+"""The cases of the test suite. Seeds in order of the list; magnitudes as hidden.drawing.draw finds them."""
 
 from hidden.cases import Case, Hidden
 

@@ -1,0 +1,65 @@
+"""Where the base of an actuator stands is found all the way round."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden.cases import Case, make
+
+from modelgen.dataset import choose, prepare
+from modelgen.description import load
+from modelgen.diagnosis.baseline import estimated
+from modelgen.diagnosis.candidates import Candidate, candidates, columns
+from modelgen.diagnosis.court import Court, bracket
+from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.run import records, settings_for
+from modelgen.diagnosis.system import System, weighted_fit
+from modelgen.functions import build_model
+from modelgen.probing import Prober
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Rows], Prober, Array, Candidate]:
+    """Rows of an arm without an actuator's mass, what else they show, and the mass as a candidate."""
+    folder = tmp_path_factory.mktemp("angle") / "case"
+    make(Case("levered2", 5), folder)
+    arm = load(folder / "arms.yaml")["arm"]
+    found = records(arm, [str(folder / "train_a.csv")], [str(folder / "test.csv")], None)
+    model, prober = build_model(arm), Prober(arm)
+    prepared = [prepare(r, choose(list(found), settings_for(found, None))) for r in found]
+    rows = rows_twice(prober, model, prepared, estimated(model))
+    base = rows[0].baseline.base(weighted_fit(rows, [r.columns for r in rows]))
+    forms = [c for c in candidates(prober, rows) if c.effect == "actuator_mass" and c.joint == 2]
+    assert all([p.name for p in c.searched] == ["base_angle"] for c in forms)  # joint 1 moves its base
+    return rows, prober, base, max(forms, key=lambda c: len(c.part))
+
+
+@pytest.mark.parametrize("degrees", [5, 40, 44, 58, 130, 222, 357])
+def test_the_base_is_found_where_it_stands(
+    scene: tuple[list[Rows], Prober, Array, Candidate], degrees: float
+) -> None:
+    rows, prober, base, candidate = scene
+    there = {"base_angle": math.radians(degrees)}
+    added = columns(replace(candidate, part=()), there, rows, prober, base)
+    assert added is not None
+    moved = [
+        replace(r, effort=r.effort + c @ np.array([0.2, 1.0, 0.0])) for r, c in zip(rows, added, strict=True)
+    ]
+    court = Court(System(moved, [r.columns for r in moved]), moved, prober, base)
+    found = court.trial(candidate)
+    assert found is not None
+    off = math.remainder(found.parameters["base_angle"] - there["base_angle"], math.tau)
+    assert abs(math.degrees(off)) < 3.0
+    assert abs(found.parameters["base_angle"]) <= math.pi
+
+
+def test_neighbours_of_an_angle_go_round() -> None:
+    angles = [1.0, 2.0, 3.0]
+    assert bracket(angles, 0, turns=False) == (1.0, 2.0)
+    assert bracket(angles, 1, turns=True) == (1.0, 3.0)
+    assert bracket(angles, 0, turns=True) == (3.0, 2.0 + math.tau)
+    assert bracket(angles, 2, turns=True) == (2.0, 1.0 + math.tau)
