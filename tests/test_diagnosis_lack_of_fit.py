@@ -1,5 +1,7 @@
 """What repeats in a short part of the period, in noise of which all is known: no arm, no filter."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnosis_support import BARE, UNUSED
@@ -33,11 +35,11 @@ def record(random: Generator, repeats: Array, colour: float = 0.0) -> Rows:
     return Rows(UNUSED, effort[:, None], columns[:, None, :], flags, BARE)
 
 
-def system(seed: int, repeats: Array, colour: float = 0.0) -> System:
-    """Two records."""
+def system(seed: int, repeats: Array, colour: float = 0.0, records: int = 2) -> System:
+    """Of one arm, two records or more."""
     random = default_rng([3, seed])
-    rows = [record(random, repeats, colour) for _ in range(2)]
-    return System(rows, [r.columns for r in rows], [PERIOD] * 2)
+    rows = [record(random, repeats, colour) for _ in range(records)]
+    return System(rows, [r.columns for r in rows], [PERIOD] * records)
 
 
 def bump(size: float) -> Array:
@@ -66,6 +68,29 @@ def test_noise_alone_is_not_found(colour: float) -> None:
     found = [ratios(system(k, np.zeros(PERIOD), colour)) for k in range(60)]
     assert max(r[PART] for r in found) < 1.0
     assert max(r[WHOLE] for r in found) < 1.0
+
+
+def test_noise_alone_is_not_found_in_many_records() -> None:
+    """Whose quantile of F comes near one: the threshold stays above it."""
+    for seed in range(20):
+        fit = lack_of_fit(system(seed, np.zeros(PERIOD), 0.7, records=24))
+        assert fit is not None
+        assert fit.threshold > 1.0
+        assert not fit.found
+
+
+def test_errors_of_the_positions_that_repeat_are_no_lack_of_fit() -> None:
+    """Counts round the same motion alike: as large as the noise, they are found unless told of."""
+    for seed in range(10):
+        errors = default_rng([4, seed]).normal(size=PERIOD)
+        made = system(seed, errors)
+        found = lack_of_fit(made)
+        assert found is not None
+        assert found.found
+        told = [replace(r, repeated=np.tile(errors, PERIODS)[:, None]) for r in made.rows]
+        fit = lack_of_fit(System(told, [r.columns for r in told], made.periods))
+        assert fit is not None
+        assert not fit.found
 
 
 def test_excess_is_the_power_that_repeats() -> None:

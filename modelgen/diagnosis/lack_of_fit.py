@@ -5,7 +5,8 @@ where the model is complete; what it has beyond that is deterministic (Draper an
 Swevers, Verdonck and De Schutter 2007 for periodic excitation). The test is made on the residuals as they
 are, with the degrees of freedom that their colour leaves, over all rows and over short parts of the period,
 where a contact or a hard spot shows. Whitened residuals would show errors of the encoders, which repeat with
-the motion and are large at high frequencies alone.
+the motion and are large at high frequencies alone. Counts that round the same motion alike in every period
+repeat too: what they are expected to leave is no lack of fit.
 """
 
 from __future__ import annotations
@@ -48,8 +49,13 @@ class Test:
 
     @property
     def threshold(self) -> float:
-        """The quantile, and how far above it complete models come."""
-        return inflation(self.kind) * self.quantile
+        """The quantile, with what it has above one scaled to what complete models reach."""
+        return 1.0 + inflation(self.kind) * (self.quantile - 1.0)
+
+    @property
+    def beyond(self) -> float:
+        """What the statistic has above one over what the quantile has, whatever the records' length."""
+        return (self.statistic - 1.0) / (self.quantile - 1.0)
 
     @property
     def found(self) -> bool:
@@ -83,16 +89,22 @@ class LackOfFit:
 
 @dataclass
 class _Sums:
-    """Of one joint: between and within periods, and by record the squares of the means by phase."""
+    """Of one joint: between and within periods, and by record the squares of the means by phase.
+
+    rounding: the sum that errors of the positions that repeat are expected to add between.
+    """
 
     between: float = 0.0
+    rounding: float = 0.0
     within: float = 0.0
     free_between: float = 0.0
     free_within: float = 0.0
     phases: list[tuple[int, Array, Array]] = field(default_factory=list)
 
-    def add(self, record: int, table: Array, share: float) -> None:
-        """A record of one joint, one line a period; `share` of its rows are independent."""
+    def add(self, record: int, table: Array, share: float, error: float) -> None:
+        """A record of one joint, one line a period; `share` of its rows are independent. error: mean square
+        of what errors of its positions leave alike in every period.
+        """
         there = np.isfinite(table)
         count = there.sum(axis=0)
         full = count >= 2
@@ -103,17 +115,23 @@ class _Sums:
         squares, free = np.zeros(len(full)), np.where(full, share, 0.0)
         squares[full] = k * mean**2
         self.between += float(squares.sum())
+        self.rounding += error * float(k.sum())
         self.within += float(np.nansum((part - mean) ** 2))
         self.free_between += float(free.sum())
         self.free_within += share * float((k - 1).sum())
         self.phases.append((record, squares, free))
+
+    @property
+    def chance(self) -> float:
+        """What a complete model leaves between, for each independent phase."""
+        return self.within / self.free_within + self.rounding / self.free_between
 
     def whole(self, joint: int, tests: int) -> Test:
         """Of all rows."""
         if self.free_within < 10 or self.within <= 0:
             return Test(WHOLE, joint, 0.0, np.inf)
         free = max(5.0, self.free_between)
-        statistic = (self.between / free) / (self.within / self.free_within)
+        statistic = (self.between / free) / self.chance
         return Test(WHOLE, joint, statistic, self._quantile(free, tests))
 
     def parts(self, joint: int, tests: int) -> Iterator[Test]:
@@ -127,7 +145,7 @@ class _Sums:
                 count = float(free[phases].sum())
                 if count < FEWEST:
                     continue
-                statistic = (float(squares[phases].sum()) / count) / (self.within / self.free_within)
+                statistic = (float(squares[phases].sum()) / count) / self.chance
                 excess = float(squares[phases].sum()) * (1.0 - 1.0 / statistic) if statistic > 0 else 0.0
                 yield Test(PART, joint, statistic, self._quantile(count, tests), record, begin, end, excess)
 
@@ -171,16 +189,14 @@ def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | No
 
 @cache
 def inflation(kind: str) -> float:
-    """Of the nominal thresholds of a kind of test, from the calibrated null distribution."""
+    """Of what the nominal thresholds have above one, by kind of test: calibrated on nulls."""
     return float(np.quantile(NULLS[kind], CLEAN))
 
 
 def ratios(system: System) -> dict[str, float]:
-    """The largest statistic over its quantile of F, of every kind of test."""
+    """By kind of test, how far a statistic goes beyond one at most, over how far its quantile of F does."""
     found, _ = _tests(system)
-    return {
-        k: max((t.statistic / t.quantile for t in found if t.kind == k), default=0.0) for k in (WHOLE, PART)
-    }
+    return {k: max((t.beyond for t in found if t.kind == k), default=0.0) for k in (WHOLE, PART)}
 
 
 def _tests(system: System) -> tuple[list[Test], int]:
@@ -194,8 +210,11 @@ def _tests(system: System) -> tuple[list[Test], int]:
             continue
         most = max(most, -(-len(r.effort) // rows))
         for j in range(n):
-            table = folded(np.where(r.moving[:, j], system.residuals[i][:, j], np.nan), rows)
-            sums[j].add(i, table, independent_rows(table))
+            moving = r.moving[:, j]
+            table = folded(np.where(moving, system.residuals[i][:, j], np.nan), rows)
+            repeated = r.repeated[moving, j] if r.repeated is not None else np.zeros(0)
+            error = float((repeated**2).mean()) if len(repeated) else 0.0
+            sums[j].add(i, table, independent_rows(table), error)
     found = [s.whole(j, n) for j, s in enumerate(sums)]
     return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
 

@@ -1,8 +1,9 @@
 """python -m hidden.nulls [--count N] [--seed N] [--jobs N]
 
-What complete models leave. Of the lack of fit: statistic over the quantile of F of every joint and test, the
-largest of each null by kind of test; of shapes: the largest evidence. Sorted. Writes
-modelgen/diagnosis/null_distribution.py. Run from the repository with tests/ on the path.
+What complete models leave. Of the lack of fit: how far beyond one the statistic of every joint and test
+goes, over how far its quantile of F does, the largest of each null by kind of test; of shapes: the largest
+evidence. Sorted. Writes modelgen/diagnosis/null_distribution.py. Run from the repository with tests/ on the
+path.
 """
 
 from __future__ import annotations
@@ -17,27 +18,28 @@ from joblib import Parallel, delayed
 from numpy.random import default_rng
 
 from hidden.blind import SMALL
-from hidden.cases import Case, make
+from hidden.cases import RECORDS, TEST, Case, make
 from modelgen.dataset import choose, prepare
 from modelgen.dataset.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.lack_of_fit import ratios
 from modelgen.diagnosis.outcome import rows_twice
+from modelgen.diagnosis.positions import with_errors
 from modelgen.diagnosis.run import records, settings_for
 from modelgen.diagnosis.shapes import SHAPE, shapes, worth
-from modelgen.diagnosis.system import System
+from modelgen.diagnosis.system import System, weighted_fit
 from modelgen.functions import build_model
 from modelgen.probing import Prober
 
 OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
 HEAD = '''\
-"""What complete models leave: lack of fit over its nominal threshold, and the evidence of shapes (delta BIC).
+"""What complete models leave: lack of fit and the evidence of shapes (delta BIC).
 
-The largest of all joints of a null, by kind of test (lack_of_fit.py), and of all shapes (shapes.py).
-Simulated records of {count} arms with nothing hidden (tests/hidden/nulls.py, seed {seed}), sorted. Above one
-where coloured residuals have fewer degrees of freedom than were counted, and where errors that repeat with
-the motion, as those of encoders, stand out of little noise.
+The largest of all joints of a null, by kind of test (lack_of_fit.py: how far beyond one a statistic goes,
+over how far its quantile does), and of all shapes (shapes.py). Two to four simulated records of {count} arms
+with nothing hidden (tests/hidden/nulls.py, seed {seed}), sorted. Above one where coloured residuals have
+fewer degrees of freedom than were counted.
 """
 
 # fmt: off
@@ -45,19 +47,22 @@ NULLS: dict[str, tuple[float, ...]] = {{
 '''
 
 
-def of_null(arm: str, seed: int) -> dict[str, float]:
-    """Of one null: the largest statistic over its quantile of F, by kind of test, and evidence of a shape."""
+def of_null(arm: str, seed: int, train: int) -> dict[str, float]:
+    """Of one null: lack of fit by kind of test, and the evidence of a shape."""
     with tempfile.TemporaryDirectory(prefix="null-") as name:
         folder = Path(name)
-        make(Case(arm, seed), folder)
+        case = Case(arm, seed, train=train)
+        make(case, folder)
         described = load(folder / "arms.yaml")["arm"]
-        paths = [str(folder / f"{record}.csv") for record in ("train_a", "train_b", "test")]
-        found = records(described, paths[:2], paths[2:], None)[:2]
+        paths = [str(folder / f"{RECORDS[k]}.csv") for k in (*case.training, TEST)]
+        found = records(described, paths[:-1], paths[-1:], None)[:-1]
     lengths = [period_of(record, None) for record in found]
     chosen = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
     model, prober = build_model(described), Prober(described)
     rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
     periods = [None if p is None else p // chosen.factor for p in lengths]
+    theta = weighted_fit(rows, [r.columns for r in rows])
+    rows, _ = with_errors(rows, periods, prober, model, theta)
     system = System(rows, [r.columns for r in rows], periods)
     evidence = [worth(s, system).evidence for s in shapes(rows, prober, system.theta)]
     return {**ratios(system), SHAPE: max(evidence)}
@@ -67,15 +72,16 @@ def main() -> int:
     """Exit status 0."""
     assert __doc__ is not None
     parser = argparse.ArgumentParser(prog="hidden.nulls", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--count", type=int, default=240)
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--jobs", type=int, default=-1)
     given = parser.parse_args()
     random = default_rng(given.seed)
     drawn = [
-        (SMALL[int(random.integers(len(SMALL)))], int(random.integers(10**6))) for _ in range(given.count)
+        (SMALL[int(random.integers(len(SMALL)))], int(random.integers(10**6)), int(random.integers(2, 5)))
+        for _ in range(given.count)
     ]
-    found = Parallel(n_jobs=given.jobs)(delayed(of_null)(arm, seed) for arm, seed in drawn)
+    found = Parallel(n_jobs=given.jobs)(delayed(of_null)(*one) for one in drawn)
     text = HEAD.format(count=given.count, seed=given.seed)
     for kind in found[0]:
         values = [f"{value:.3f}" for value in sorted(ratio[kind] for ratio in found)]
