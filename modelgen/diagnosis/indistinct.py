@@ -13,6 +13,7 @@ from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.compliance import alternatives
 from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.ranking import COARSE
 from modelgen.diagnosis.selection import RATHER, Selection
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial, beside
@@ -36,7 +37,7 @@ def indistinct(
         rivals = [(t, by) for t, by in near if not _the_same(t, cause, selection)]
         if rivals:
             found.append(replace(cause, rivals=rivals))
-    return (selection.without(selection.causes), found) if found else (selection, [])
+    return (selection.without(selection.causes, COARSE), found) if found else (selection, [])
 
 
 def _the_same(rival: Trial, cause: Cause, selection: Selection) -> bool:

@@ -15,8 +15,9 @@ from modelgen.diagnosis.experiments import to_json as experiment_json
 from modelgen.diagnosis.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.outdone import Likeness
+from modelgen.diagnosis.ranking import Ranked
 from modelgen.diagnosis.rows import Array, Rows
-from modelgen.diagnosis.selection import Ranked, Selection
+from modelgen.diagnosis.selection import Selection
 from modelgen.simulation.windows import Windows
 
 VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
@@ -153,6 +154,7 @@ def _rank(r: Ranked) -> dict[str, Any]:
         "delta_bic": rounded(r.delta_bic),
         "cross_gain_percent": None if r.cross_gain is None else rounded(r.cross_gain),
         "expected_gain_percent": None if r.expected_gain is None else rounded(r.expected_gain),
+        "taken": r.taken,
         "refused": r.refused or None,
     }
 

@@ -13,6 +13,7 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.lack_of_fit import CLEAN
 from modelgen.diagnosis.null_distribution import NULLS
+from modelgen.diagnosis.ranking import STANDS_IN
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.shapes import SHAPE, Shape, Worth, worth
@@ -71,7 +72,7 @@ def outdone(
             return selection, dropped, max(left, key=lambda likeness: likeness.evidence, default=None)
         worst = min(lost, key=lambda c: c.delta_bic)
         dropped.append(worst)
-        selection = selection.without([worst])
+        selection = selection.without([worst], STANDS_IN)
 
 
 def _outdone(

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate, Place
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.converging import converge
@@ -19,6 +19,7 @@ from modelgen.diagnosis.exchange import TIE, exchanged
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
+from modelgen.diagnosis.ranking import EXCHANGED, SUPERFLUOUS, Ranked, Turns, best_of_each, ranked, taken_back
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.slipping import without_rests
 from modelgen.diagnosis.system import System, mean_squares
@@ -41,34 +42,22 @@ Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
-class Ranked:
-    """A candidate's evidence at one turn, and why it was not taken: empty for what passed every gate.
-
-    cross_gain, expected_gain: as a cause's, None where that was not asked.
-    """
-
-    effect: str
-    joint: int | None
-    delta_bic: float
-    cross_gain: float | None
-    expected_gain: float | None
-    refused: str
-
-
-@dataclass(frozen=True)
 class Selection:
     """The causes and the final system. turns: all candidates with evidence, best first, by turn."""
 
     causes: list[Cause]
     system: System
-    turns: list[list[Ranked]]
+    turns: Turns
 
-    def without(self, lost: Sequence[Cause]) -> Selection:
-        """The same with fewer causes."""
+    def without(self, lost: Sequence[Cause], why: str) -> Selection:
+        """The same with fewer causes, and in its turns why."""
         kept = [c for c in self.causes if all(c is not other for other in lost)]
         rows = self.system.rows
         system = System(rows, with_causes(rows, [c.trial for c in kept]), self.system.periods)
-        return replace(self, causes=kept, system=system)
+        turns = self.turns
+        for c in lost:
+            turns = taken_back(turns, c.trial.candidate.place, why)
+        return Selection(kept, system, turns)
 
 
 def select(
@@ -91,7 +80,7 @@ def select(
     evidence = threshold(system)
     known: dict[object, list[Array] | None] = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
-    turns: list[list[Ranked]] = []
+    turns: Turns = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
@@ -115,15 +104,16 @@ def select(
         eligible = [pair for pair in passed if not at_one_joint(pair, passed)]
         for t, judged in tried:
             less = not judged.refused and all(t is not other for other, _ in eligible)
-            ranking.append(_ranked(t, judged, "one joint" if less else judged.refused))
-        turns.append(_best_of_each(ranking))
+            ranking.append(ranked(t, judged, "one joint" if less else judged.refused))
         if not eligible:
+            turns.append(best_of_each(ranking, None))
             break
         first = eligible[0][0].gain.delta_bic
         best, by = max(
             (pair for pair in eligible if first - pair[0].gain.delta_bic < TIE), key=lambda pair: pair[1].gain
         )
         best, by = member((best, by), eligible)
+        turns.append(best_of_each(ranking, best.candidate.place))
         margin = _margin(best, by.gain, system, blur)
         rivals = [
             (t, max(0.0, best.gain.delta_bic - t.gain.delta_bic))
@@ -144,6 +134,10 @@ def select(
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     better = exchanged(causes, rows, prober, periods)
     if better is not causes:
+        for old, new in zip(causes, better, strict=True):
+            place = new.trial.candidate.place
+            if place != old.trial.candidate.place:
+                turns = taken_back(turns, old.trial.candidate.place, EXCHANGED, place)
         system = System(rows, with_causes(rows, [c.trial for c in better]), periods)
         causes = [
             new
@@ -151,9 +145,11 @@ def select(
             else measured(new, better, rows, system, blur, narrowed)
             for new, old in zip(better, causes, strict=True)
         ]
-    every = len(causes)
+    every = causes[:]
     causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
-    if len(causes) < every:
+    if len(causes) < len(every):
+        for lost in (c for c in every if all(c is not kept for kept in causes)):
+            turns = taken_back(turns, lost.trial.candidate.place, SUPERFLUOUS)
         converge(causes, rows, prober)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     named = {c.trial.candidate.place for c in causes}
@@ -180,11 +176,11 @@ def _weighed(
         if found is None:
             continue
         if found.gain.delta_bic < max(least_evidence(found), evidence):
-            refused.append(_ranked(found, None, "evidence"))
+            refused.append(ranked(found, None, "evidence"))
             if found.gain.delta_bic > 0 and sensible(found, arm):
                 faint.append(found)
         elif not sensible(found, arm):
-            refused.append(_ranked(found, None, "values"))
+            refused.append(ranked(found, None, "values"))
         else:
             trials.append(found)
     return trials, faint, refused
@@ -242,19 +238,6 @@ def correlated(system: System) -> bool:
 def _harmless(rows: Sequence[Rows], blur: Array | None, system: System) -> bool:
     """Whether errors of the positions need no other price than `blur`."""
     return blur is not None and harmless(rows, blur, mean_squares(system), PRACTICAL)
-
-
-def _ranked(t: Trial, by: Judgement | None, refused: str) -> Ranked:
-    gain, expected = (None, None) if by is None else (by.gain, by.expected)
-    return Ranked(*t.candidate.place, t.gain.delta_bic, gain, expected, refused)
-
-
-def _best_of_each(ranking: Sequence[Ranked]) -> list[Ranked]:
-    """Best first; of an effect that was tried in several forms at a joint the one that came farthest."""
-    best: dict[Place, Ranked] = {}
-    for r in sorted(ranking, key=lambda r: (bool(r.refused), -r.delta_bic)):
-        best.setdefault((r.effect, r.joint), r)
-    return sorted(best.values(), key=lambda r: -r.delta_bic)
 
 
 def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> float:

@@ -69,8 +69,8 @@ def verdict_of(
             f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
     if fit.found or likeness is not None:
-        near = ", ".join(_title(c.trial.candidate) for c in beside)
-        more = f"; {near} comes nearest" if near else ""
+        near = max(beside, key=lambda c: c.delta_bic, default=None)
+        more = "" if near is None else f"; {_title(near.trial.candidate)} comes nearest"
         return (
             "outside_catalogue",
             f"something deterministic remains{_where(fit, selection)} that no effect of the catalogue "

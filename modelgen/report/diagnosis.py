@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from modelgen.diagnosis.lack_of_fit import place
 from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.selection import Ranked
+from modelgen.diagnosis.ranking import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
 from modelgen.effects import CATALOGUE
 from modelgen.report.drawing import effort, inline, left_over, replayed, residuals
 from modelgen.report.experiment import described, picture
@@ -105,7 +105,7 @@ def _sentence(d: Diagnosis) -> Markup:
     return Markup("The model lacks {}.").format(Markup(" and ").join(found))
 
 
-# Why a candidate was not taken, by the gate that stayed shut.
+# Why a candidate was not taken, by the gate that stayed shut, or taken back.
 _REFUSED = {
     "evidence": "too little evidence",
     "values": "values that the effect cannot have",
@@ -113,6 +113,10 @@ _REFUSED = {
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
     "one joint": "does more at one joint alone",
+    EXCHANGED: "taken, then exchanged: another one explains more with all values found anew",
+    SUPERFLUOUS: "taken, then superfluous beside the others",
+    STANDS_IN: "taken, then taken back: it stands in for something that the catalogue lacks",
+    COARSE: "taken, then taken back: the positions are too coarse to tell it from others",
 }
 _SHOWN = 12  # candidates of a turn
 
@@ -127,10 +131,8 @@ def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
 def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
     """The candidates of one turn with their evidence, the losing ones too."""
     rows: list[Sequence[str]] = []
-    taken = False
     for r in turn[:_SHOWN]:
-        word = _REFUSED.get(r.refused, "passes every gate too" if taken else "taken")
-        taken = taken or not r.refused
+        word = _REFUSED.get(r.refused, "taken" if r.taken else "passes every gate too")
         gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
         rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", *gains, word))
     return rows
