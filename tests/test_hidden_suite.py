@@ -45,8 +45,9 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
             try:
                 found, label, seconds = run(case, shared / name)
                 written = (shared / name / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8")
-                like = json.loads(written)["most_like"]
-                content = {**asdict(found), "strength": label.strength, "seconds": seconds, "like": like}
+                answer = json.loads(written)
+                content = {**asdict(found), "strength": label.strength, "seconds": seconds}
+                content |= {"like": answer["most_like"], "ranking": answer["ranking"]}
             except Exception as error:
                 content = {"error": str(error)}
             draft = result.with_suffix(".draft")
@@ -63,6 +64,16 @@ def title(case: Case | str) -> str:
     if isinstance(case, str):
         return case
     return "+".join(f"{item.effect}.{item.joint}" for item in case.hidden) + f"@{case.arm}"
+
+
+@pytest.mark.parametrize("case", [*NULLS, *SINGLES, *OUTSIDE, *PAIRS], ids=title)
+def test_the_ranking_tells_the_story_of_what_is_named(case: Case, outcome: Any) -> None:
+    """One candidate is taken at a turn; those that nothing took back are the causes."""
+    found = outcome(case)
+    taken = [[r for r in turn if r["taken"]] for turn in found["ranking"]]
+    assert all(len(turn) <= 1 for turn in taken)
+    stayed = [[r["effect"], r["joint"]] for turn in taken for r in turn if r["refused"] is None]
+    assert sorted(stayed, key=str) == sorted(found["named"], key=str)
 
 
 @pytest.mark.parametrize("case", NULLS, ids=title)
