@@ -7,7 +7,7 @@ from scipy import stats
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.plausible import doubt, obvious
+from modelgen.diagnosis.plausible import doubt, elsewhere, obvious
 
 ROD = 0.42  # m, the actuator at its longest
 MASS = 0.3 * 20.0
@@ -42,6 +42,14 @@ def test_forms_of_an_effect_share_what_it_is_given() -> None:
     one, four = (doubt(Candidate("spring", 2, forms=n), {"stiffness": 5.0}, ARM) for n in (1, 4))
     assert one == 0.0
     assert math.exp(-four / 2) == pytest.approx(1 / 4)
+
+
+def test_places_of_an_effect_share_its_odds_and_not_its_evidence() -> None:
+    """A spring somewhere is as likely as a tilted base; whether anything is there is not asked of places."""
+    one, four = (Candidate("spring", 2, places=n) for n in (1, 4))
+    assert elsewhere(one) == 0.0
+    assert math.exp(-elsewhere(four) / 2) == pytest.approx(1 / 4)
+    assert doubt(four, {"stiffness": 5.0}, ARM) == 0.0
 
 
 def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:

@@ -63,7 +63,7 @@ WEIGHING = "actuator_mass"  # shows by its weight alone where its inertia is los
 class Candidate:
     """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are;
     part: of the parameters that are estimated, those that are asked for, empty for all; forms: how many
-    candidates there are for the effect at the place.
+    candidates there are for the effect at the place; places: how many places the effect is asked for at.
 
     joint counts coordinates from 1, None for the whole arm.
     """
@@ -74,6 +74,7 @@ class Candidate:
     searched: tuple[Parameter, ...] = ()
     part: tuple[str, ...] = ()
     forms: int = 1
+    places: int = 1
 
     @property
     def place(self) -> Place:
@@ -126,13 +127,16 @@ def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
             continue
         if name == WARMING and not cold(rows):
             continue
-        for joint in places(prober.arm, name):
-            if name in COMPLIANT and not (at_motor(joint, rows) or at_links(joint, rows)):
-                continue
+        there = [
+            joint
+            for joint in places(prober.arm, name)
+            if name not in COMPLIANT or at_motor(joint, rows) or at_links(joint, rows)
+        ]
+        for joint in there:
             for fixed, part in (forms := _forms(name, joint, rows, prober)):
                 open_to = () if name in STEPS else (p for p in effect.nonlinear if p.grid)
                 searched = tuple(p for p in open_to if p.name not in fixed)
-                found.append(Candidate(name, joint, fixed, searched, part, len(forms)))
+                found.append(Candidate(name, joint, fixed, searched, part, len(forms), len(there)))
     return found
 
 
@@ -186,7 +190,7 @@ def gap_instead(candidate: Candidate, rows: Sequence[Rows], prober: Prober) -> C
     if candidate.effect != ELASTIC or not at_links(candidate.joint, rows):
         return None
     (fixed,) = _fixed("backlash", candidate.joint, rows, prober)
-    return Candidate("backlash", candidate.joint, fixed)
+    return Candidate("backlash", candidate.joint, fixed, places=candidate.places)
 
 
 def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:

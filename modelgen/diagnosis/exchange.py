@@ -14,17 +14,16 @@ from modelgen.diagnosis.causes import Cause, together
 from modelgen.diagnosis.compliance import alternatives
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.plausible import elsewhere
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.probing import Prober
-
-TIE = 2.0  # delta BIC that is no evidence (Raftery 1995): of such causes the one that carries most goes ahead
 
 
 def exchanged(
     causes: list[Cause], rows: Sequence[Rows], prober: Prober, periods: Sequence[int | None]
 ) -> list[Cause]:
-    """The causes, each replaced by the rival with which all of them together have the most evidence.
+    """The causes, each replaced by the rival with which all of them together have the best odds.
 
     Who is replaced becomes the rival. The same list where nothing is replaced.
     """
@@ -44,12 +43,14 @@ def exchanged(
             tried[place].trial = trial
             converge(tried, rows, prober)
             found = _worth(tried, bare)
-            if found > most + TIE:
+            if found > most:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
-                tried[place].rivals, tried[place].lesser = [(held, found - most), *rivals], []
+                less = found - most + elsewhere(trial.candidate) - elsewhere(held.candidate)
+                tried[place].rivals, tried[place].lesser = [(held, max(0.0, less)), *rivals], []
                 best, most = tried, found
     return best
 
 
 def _worth(causes: Sequence[Cause], bare: System) -> float:
-    return together([c.trial for c in causes], bare) - sum(c.trial.doubt for c in causes)
+    charged = sum(c.trial.doubt + elsewhere(c.trial.candidate) for c in causes)
+    return together([c.trial for c in causes], bare) - charged

@@ -36,6 +36,15 @@ def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
     return 2.0 * (charged + math.log(candidate.forms))
 
 
+def elsewhere(candidate: Candidate) -> float:
+    """What the effect's other places take off the odds of the candidate against one of another effect.
+
+    No effect is likelier than another before any record: one that may be at every joint is as likely at each
+    as its share. Whether anything is there at all is asked of the evidence alone.
+    """
+    return 2.0 * math.log(candidate.places)
+
+
 def obvious(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
     """Whether someone would have seen it, so that the records must be about something else."""
     scales = usual(candidate, arm) if candidate.effect in SEEN else {}

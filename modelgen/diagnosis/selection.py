@@ -15,7 +15,7 @@ from modelgen.diagnosis.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.converging import converge
 from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.endogeneity import endogeneity
-from modelgen.diagnosis.exchange import TIE, exchanged
+from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
@@ -92,7 +92,7 @@ def select(
         settled = refined(trials, causes, system, rows, prober)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         tried: list[tuple[Trial, Judgement]] = []
-        for t in sorted([*trials, *settled], key=lambda t: -t.gain.delta_bic):
+        for t in sorted([*trials, *settled], key=lambda t: -t.odds):
             judged = gates.judged(t)
             if noisy and not judged.refused and not instrumented(t, system):
                 together = with_causes(rows, [*(c.trial for c in causes), t])
@@ -108,11 +108,7 @@ def select(
         if not eligible:
             turns.append(best_of_each(ranking, None))
             break
-        first = eligible[0][0].gain.delta_bic
-        best, by = max(
-            (pair for pair in eligible if first - pair[0].gain.delta_bic < TIE), key=lambda pair: pair[1].gain
-        )
-        best, by = member((best, by), eligible)
+        best, by = member(eligible[0], eligible)
         turns.append(best_of_each(ranking, best.candidate.place))
         margin = _margin(best, by.gain, system, blur)
         rivals = [

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate, Values
-from modelgen.diagnosis.plausible import obvious
+from modelgen.diagnosis.plausible import elsewhere, obvious
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.stack import Gain
@@ -35,6 +35,11 @@ class Trial:
     gain: Gain
     doubt: float = 0.0
     around: Values = field(default_factory=dict)
+
+    @property
+    def odds(self) -> float:
+        """By which rivals are compared, see `plausible.elsewhere`."""
+        return self.gain.delta_bic - elsewhere(self.candidate)
 
     @property
     def parameters(self) -> dict[str, float]:
