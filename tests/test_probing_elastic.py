@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from modelgen.description import Arm, load
 from modelgen.probing import Motion, Prober
+from modelgen.probing.carried import carried
 
 UPRIGHT = """
 schema: 1
@@ -94,3 +95,33 @@ def test_a_lever_hangs_on_its_actuator(q: float, stiffness: float, tmp_path: Pat
     values = {"stiffness": stiffness, "damping": 1.0}
     found = p.inputs(m, base) + p.contribution("joint_flexibility", 1, m, values, base)
     np.testing.assert_allclose(found, current, rtol=1e-5)
+
+
+@pytest.mark.parametrize("share", [-0.3, 0.02, 0.3])
+def test_links_lighter_than_nothing_have_a_part_of_what_is_moved(share: float, tmp_path: Path) -> None:
+    """A rigid model of an elastic arm may have all inertia in the drive and less than none in the link: with
+    a twentieth of the whole, which is known all the same, its swings can be simulated. Others stay.
+    """
+    found_at = arm(LEVERED, tmp_path)
+    p = Prober(found_at)
+    w, t = 2 * math.pi * 0.4, np.arange(2000) / 500
+    q = 0.5 * np.sin(w * t)[:, None]
+    m = Motion(t, q, 0.5 * w * np.cos(w * t)[:, None], -(w**2) * q)
+    of_link = parameters(p, ZZ1=1.0, MX1=1.0, MY1=1.0)
+    force = np.array([(length(x + 1e-6) - length(x - 1e-6)) / 2e-6 for x in q[:, 0]]) * TURNS / (LONG - SHORT)
+    drive = 1e-4 * np.median(force**2)
+    link = share / (1 - share) * drive
+    base = parameters(p, IA1=1e-4, MX1=3.0, ZZ1=link)
+
+    def links(motion: Motion, values: np.ndarray) -> np.ndarray:
+        return p.inputs(motion, values * of_link)
+
+    def drives(motion: Motion, values: np.ndarray) -> np.ndarray:
+        return p.inputs(motion, values * (1 - of_link))
+
+    held = carried(found_at, p.base, 1, m, base, links, drives)
+    expected = parameters(p, IA1=1e-4, MX1=3.0, ZZ1=max(link, 0.05 * (link + drive)))
+    np.testing.assert_allclose(held, expected, rtol=1e-3)
+    swings = p.contribution("joint_flexibility", 1, m, {"stiffness": 400.0, "damping": 4.0}, base)
+    assert np.isfinite(swings).all()
+    assert np.abs(swings).max() < np.abs(p.inputs(m, base)).max()

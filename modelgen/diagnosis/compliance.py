@@ -26,7 +26,8 @@ from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.probing import Prober
 
-# A gap has minima of its own at other widths: times the value that was found, where the search begins.
+# A gap has minima of its own at other widths, and what was found beside a rigid arm's parameters may be far
+# from what is best beside the right ones: times the value that was found, where the search begins.
 STARTS = {"play": (0.3, 1.0, 3.0, 10.0), "stiffness": (0.3, 1.0, 3.0)}
 FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was found, at a start, at a trial
 EDGE = 0.4  # of the first simplex, in logarithms
@@ -93,12 +94,11 @@ def alternatives(one: Candidate, other: Candidate) -> bool:
 
 
 def _starts(trial: Trial) -> list[dict[str, float]]:
-    """Values to begin at, where those that were found may be a gap's at another minimum."""
-    if trial.candidate.effect != GAP:
-        return []
+    """Values to begin at, where those that were found may be near another minimum."""
+    names = [name for name in STARTS if name in trial.values]
     return [
-        {**trial.values, **{n: trial.values[n] * f for n, f in zip(STARTS, factors, strict=True)}}
-        for factors in product(*STARTS.values())
+        {**trial.values, **{n: trial.values[n] * f for n, f in zip(names, factors, strict=True)}}
+        for factors in product(*(STARTS[name] for name in names))
     ]
 
 

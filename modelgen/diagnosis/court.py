@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,6 +24,7 @@ WHOLE = 0.02  # off a whole number of waves, of that number
 REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and others are searched
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
+HALVINGS = 6  # between two values of a scan
 CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
 WORTH = 4.0  # evidence below which nothing is refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
@@ -151,7 +153,8 @@ class Court:
         extra = float(len(search))
         start = {name: units[name] * grid[0] for name, grid in search.items()}
         (first, grid), *_ = search.items()
-        best = _best([self._whole(candidate, {**start, first: units[first] * g}, extra) for g in grid])
+        scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in grid]
+        best = _best([self._if_whole(t) for t in scanned]) or self._between(scanned, first, extra)
         if best is None or best.gain.delta_bic < WORTH:
             return best
         for turn in range(ROUNDS):
@@ -168,11 +171,34 @@ class Court:
         return best
 
     def _whole(self, candidate: Candidate, values: Values, extra: float) -> Trial | None:
+        return self._if_whole(self._at(candidate, values, extra))
+
+    def _if_whole(self, found: Trial | None) -> Trial | None:
         """Behind a link's own position, only what is found about as large as it was simulated."""
-        found = self._at(candidate, values, extra)
-        if found is None or not of.at_links(candidate.joint, self.rows):
+        if found is None or not of.at_links(found.candidate.joint, self.rows):
             return found
         return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
+
+    def _between(self, scanned: Sequence[Trial | None], name: str, extra: float) -> Trial | None:
+        """Where less of what was simulated is found at one value of a scan and more at the next, one between
+        them at which all of it is. None where no neighbours are so.
+        """
+        for low, high in pairwise(t for t in scanned if t is not None):
+            if low.gain.values[0] < 1.0 < high.gain.values[0]:
+                return self._halved(low, high, name, extra)
+        return None
+
+    def _halved(self, low: Trial, high: Trial, name: str, extra: float) -> Trial | None:
+        for _ in range(HALVINGS):
+            middle = math.sqrt(low.values[name] * high.values[name])
+            found = self._at(low.candidate, {**low.values, name: middle}, extra)
+            if found is None or self._if_whole(found) is not None:
+                return found
+            if found.gain.values[0] < 1.0:
+                low = found
+            else:
+                high = found
+        return None
 
     def _periodic(self, candidate: Candidate) -> Trial | None:
         assert candidate.joint is not None

@@ -13,6 +13,7 @@ from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
+from modelgen.probing.carried import carried
 from modelgen.probing.delays import acting, added
 from modelgen.probing.hidden_weight import HiddenWeight
 from modelgen.probing.levers import gain, leverage, reread
@@ -191,21 +192,31 @@ class Prober:
         if (e, "added") not in self._made:
             self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
         call = self._made[e, "added"]
+        if joint is not None:
+            parameters = self._carried(joint, motion, parameters)
         return self._run(call, e, call.function, motion, values, parameters) - self._links(motion, parameters)
 
+    def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
+        """Parameters with which what the joint carries can be simulated."""
+        drives = self.link_side.drives
+
+        def make() -> Array:
+            return carried(self.arm, self.base, joint, motion, parameters, self._links_along, drives)
+
+        return self._kept(("carried", joint), motion, parameters, make)
+
     def _links(self, motion: Motion, parameters: Array) -> Array:
-        """Inputs of the links alone."""
+        """Inputs of the links alone, remembered."""
+        return self._kept("links", motion, parameters, lambda: self._links_along(motion, parameters))
+
+    def _links_along(self, motion: Motion, parameters: Array) -> Array:
         if "links" not in self._made:
             alone = described(self.arm).without_effects()
             self._made["links"] = NumpyFunction(
                 links_and_effect(Equations(slid(alone), lazy=True), self.base)
             )
         call = self._made["links"]
-
-        def inputs() -> Array:
-            return np.asarray(call(**given_for(call.function, motion, parameters)))
-
-        return self._kept("links", motion, parameters, inputs)
+        return np.asarray(call(**given_for(call.function, motion, parameters)))
 
     # -- inside -----------------------------------------------------------------------------
 
