@@ -15,7 +15,7 @@
 #   make prove   Frama-C on every function of ariane4 and ur10e (needs frama-c)
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make hidden  diagnose two dozen simulated recordings with hidden effects (a part of make test)
-#   make blind   diagnose the full matrix of hidden effects (SEED=n, TRAIN=records; hours), write docs/diagnosis.md
+#   make blind   diagnose the full matrix of hidden effects (SEED=n, TRAIN=4 records; hours), write docs/diagnosis.md
 #   make clean   remove the environment and the caches
 
 PYTHON ?= python3
