@@ -3,7 +3,7 @@
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from modelgen.description import Arm, load
 from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.candidates import candidates
 from modelgen.diagnosis.court import Court
+from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.motions import Stage, stage
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.proposal import Proposal, propose
@@ -157,6 +158,17 @@ def test_the_trajectory_keeps_the_limits_and_ends_where_it_begins(tmp_path: Path
         assert q.max() <= high
         assert np.abs(np.gradient(q, t)).max() <= joint.limits.velocity
         assert np.abs(np.gradient(np.gradient(q, t), t)).max() <= joint.limits.acceleration
+
+
+def test_a_trajectory_that_tells_too_little_is_run_more_often(tmp_path: Path) -> None:
+    """Evidence grows with the rows: three periods with 5 of it want nine until there are 15."""
+    case = SETS["offset"]
+    _, found = proposed(Scene(case.pair, case.magnitudes, tmp_path), case.true)
+    for evidence, periods in ((5.0, 9), (40.0, 3)):
+        table = np.array([[np.nan, evidence], [evidence + 1.0, np.nan]])
+        planned = Experiment((), (), replace(found, evidence=table), (), ())
+        assert planned.periods == periods
+        assert f"{periods} times over" in planned.best
 
 
 @pytest.fixture(scope="module")

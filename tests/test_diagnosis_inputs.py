@@ -81,6 +81,39 @@ def test_records_with_and_without_efforts(logs: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("record", ["train_a.csv", "train_b.csv"])
+def test_efforts_of_the_wrong_sign(record: str, logs: Path, tmp_path: Path) -> None:
+    """Friction takes work from a motion, whatever else is unknown."""
+    head, *lines = table(logs / record)
+    turned = [
+        ["-" + x if name.startswith("i") else x for name, x in zip(head, line, strict=True)] for line in lines
+    ]
+    turned = [[x.removeprefix("--") for x in line] for line in turned]
+    wrong = written(tmp_path / "turned.csv", [head, *turned])
+    other = str(logs / ("train_b.csv" if record == "train_a.csv" else "train_a.csv"))
+    answer = ask(logs, tmp_path / "out", train=(wrong, other), test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert "turned.csv" in answer.said
+    assert "sign" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def test_efforts_that_have_nothing_to_do_with_the_motion(logs: Path, tmp_path: Path) -> None:
+    head, *lines = table(logs / "train_a.csv")
+    random = np.random.default_rng(4)
+    noise = [
+        [f"{random.normal():.4f}" if name.startswith("i") else x for name, x in zip(head, line, strict=True)]
+        for line in lines
+    ]
+    wrong = written(tmp_path / "noise.csv", [head, *noise])
+    answer = ask(
+        logs, tmp_path / "out", train=(str(logs / "train_b.csv"), wrong), test=(str(logs / "test.csv"),)
+    )
+    assert answer.code == 2
+    assert "noise.csv: the model explains next to nothing" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
 def test_test_record_also_given_for_training(logs: Path, tmp_path: Path) -> None:
     a, b = str(logs / "train_a.csv"), str(logs / "train_b.csv")
     answer = ask(logs, tmp_path / "out", train=(a, b), test=(b,))

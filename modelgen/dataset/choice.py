@@ -24,6 +24,7 @@ HIGHEST = 0.45  # of the rate: a filter above it does nothing
 DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
 SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
 GATE = 0.01  # of the joint's speed (99 % quantile)
+STILL = 5  # readings: a joint that has no more rests, be it shaken under its brake
 
 
 @dataclass(frozen=True)
@@ -196,11 +197,13 @@ def _frequencies(q: Array, rate: float) -> tuple[float, float]:
 
 
 def chosen_gates(record: Record, cutoff: float, order: int, half_width: int) -> tuple[float, ...]:
-    """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds.
+    """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds, and all of their
+    speeds where they have a few readings alone.
 
     cutoff, order: of the positions' filter [Hz]. half_width: of the differences.
     """
     q = low_pass(record.q, cutoff, 1.0 / record.step, order) if cutoff else record.q
     speed, _ = differences(q, record.step, half_width)
     high = np.quantile(np.abs(speed), 0.99, axis=0)
-    return tuple(float(GATE * x) for x in high)
+    still = [len(np.unique(q)) <= STILL for q in record.q.T]
+    return tuple(np.where(still, (1.0 + GATE) * np.abs(speed).max(axis=0), GATE * high).tolist())

@@ -88,7 +88,8 @@ def _equations(
     lengths: Sequence[int | None],
     settings: Settings,
 ) -> Equations:
-    chosen = with_whole_rows(choose(list(found), settings), lengths)
+    chosen = with_whole_rows(choose(list(found[:-1]), settings), lengths)
+    choose(list(found), chosen)  # the test record has no say in what is chosen, and its rate all the same
     periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
     prepared = [prepare(record, chosen) for record in found]
     free = found[0].input is None

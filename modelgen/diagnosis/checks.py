@@ -7,6 +7,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
+from modelgen.dataset import drives_of
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, columns, scale
 from modelgen.diagnosis.rows import Array, Rows
@@ -20,7 +21,8 @@ from modelgen.probing import Prober
 
 WORST = 1e3  # condition number, columns of unit norm, up to which the motion counts as an excitation
 APART = 3.0  # errors of one model for all records over those of one model each
-LARGE = 0.05  # of the effort: an error that no small cause explains
+LARGE = 0.05  # of the effort or its power: an error that no small cause explains
+NONE = 0.95  # of the effort, left where nothing is explained
 OWN = 1e-4  # part of a column that the model's own columns must leave over
 INERTIAL = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 LEAST = 0.02  # share of rows in which a joint must move
@@ -70,6 +72,40 @@ def check_excitation(arm: Arm, model: Model, rows: Sequence[Rows]) -> None:
     )
 
 
+def check_efforts(arm: Arm, model: Model, rows: Sequence[Rows]) -> None:
+    """Raises InputError where the efforts of a record cannot belong to its motion.
+
+    A model of that record alone must explain some of them, and what it has at the drives takes work from the
+    motion: friction does, and inertia gives back what it took. Efforts of the wrong sign would pass for a
+    payload that the other records have.
+    """
+    effects = _of_effects(model)
+    for r in rows:
+        if r.prepared.input is None:
+            continue
+        theta = weighted_fit([r], [r.columns])
+        size = rmse([r], [np.zeros_like(r.columns)], np.zeros(len(theta)))
+        moving = [j for j in range(r.effort.shape[1]) if r.moving[:, j].any()]
+        name = r.prepared.record.name
+        if moving and (rmse([r], [r.columns], theta)[moving] > NONE * size[moving]).all():
+            raise InputError(
+                f"{name}: the model explains next to nothing of the efforts, fitted to this record alone; "
+                "expected efforts and positions of the same joints at the same time"
+            )
+        q, dq = r.prepared.picked(r.prepared.q), r.prepared.picked(r.prepared.dq)
+        speed = dq * np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(arm))])
+        taken, power = r.columns[:, :, effects] @ theta[effects] * speed, np.abs(r.effort * speed)
+        given = [
+            j + 1 for j in moving if taken[r.moving[:, j], j].sum() < -LARGE * power[r.moving[:, j], j].sum()
+        ]
+        if given:
+            raise InputError(
+                f"{name}: friction at joint {', '.join(map(str, given))} would drive the motion there; "
+                "expected efforts that act in the direction of the positions: is their sign the other way "
+                "round, or that of torque_constant?"
+            )
+
+
 def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, base: Array) -> None:
     """Raises InputError where no one model of this arm comes near to all records.
 
@@ -79,9 +115,7 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, 
     if len(rows) < 2 or any(r.prepared.input is None for r in rows):
         return
     n = rows[0].effort.shape[1]
-    of_effects = [
-        k for k, b in enumerate(model.grouping.base) if not any(_link(model, i) for i, _ in b.terms)
-    ]
+    of_effects = _of_effects(model)
     for r in rows[1:]:
         pair = [rows[0], r]
         payload = columns(Candidate(LATER, None), {}, pair, prober, base)
@@ -101,6 +135,11 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, 
                 f"{names}: no one model of {arm.name} fits both, at joint {joints} it leaves {ratio:.1f} "
                 "times what a model of each leaves; expected records of one arm, their columns in one order"
             )
+
+
+def _of_effects(model: Model) -> list[int]:
+    """Places of the base parameters in which no link has a part."""
+    return [k for k, b in enumerate(model.grouping.base) if not any(_link(model, i) for i, _ in b.terms)]
 
 
 def _link(model: Model, standard: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.proposal import PERIODS, Progress, Proposal, propose
 from modelgen.diagnosis.rows import Array
+from modelgen.diagnosis.selection import RATHER
 from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE
@@ -45,12 +47,18 @@ class Experiment:
         return None if self.proposal is None else least(self.proposal.evidence)
 
     @property
+    def periods(self) -> int:
+        """How many of the trajectory tell the causes apart: evidence grows with them."""
+        evidence = self.evidence or 0.0
+        return PERIODS if not 0.0 < evidence < RATHER else math.ceil(PERIODS * RATHER / evidence)
+
+    @property
     def best(self) -> str:
         """What to do: the test that promises most evidence, the trajectory where no test has more."""
         first = self.tests[0] if self.tests else None
         if self.proposal is None or (first and (first.evidence or 0.0) > (self.evidence or 0.0)):
             return first.text if first else ""
-        return f"run {STEM}_set_points.csv {PERIODS} times over and add its log to the training records"
+        return f"run {STEM}_set_points.csv {self.periods} times over and add its log to the training records"
 
 
 def next_experiment(
@@ -125,6 +133,7 @@ def _trajectory(e: Experiment, p: Proposal) -> dict[str, Any]:
         "set_points": f"{STEM}_set_points.csv",
         "period_s": float(f"{s.period:.9g}"),
         "periods": PERIODS,
+        "periods_to_tell_apart": e.periods,
         "expected_delta_bic": _rounded(e.evidence),
         "pairs": pairs,
         "limits_used": {name: round(x, 4) for name, x in p.excitation.usage.items()},

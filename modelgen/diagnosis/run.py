@@ -20,7 +20,7 @@ from modelgen.diagnosis.candidates import (
     at_motor,
     cold,
 )
-from modelgen.diagnosis.checks import check_one_arm
+from modelgen.diagnosis.checks import check_efforts, check_one_arm
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
@@ -63,14 +63,15 @@ def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path |
 def settings_for(found: Sequence[Record], cutoff: float | None) -> Settings:
     """A wide band: what friction and backlash do lies far above the motion's own frequencies.
 
-    Narrower for free motions, which lack what drives do and whose noise is all in the positions.
+    Narrower for free motions, which lack what drives do and whose noise is all in the positions. The last
+    record, the test record, has no say.
     """
     rate, free = 1.0 / found[0].step, found[0].input is None
     widest = FREE_CUTOFF if free else CUTOFF
     chosen = Settings(cutoff=min(widest, rate / SAMPLES) if cutoff is None else cutoff)
     if not free:
         return chosen
-    return settings_of_swings(found, chosen)
+    return settings_of_swings(found[:-1], chosen)
 
 
 def diagnose(
@@ -100,6 +101,7 @@ def diagnose(
     lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
     model, prober = build_model(arm), Prober(arm)
     for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
+        check_efforts(arm, model, made.rows)
         check_one_arm(arm, model, made.rows, prober, made.rows[0].baseline.base(made.theta))
         answer = answered(made, model, prober, effects, progress)
         if answer.verdict != "cannot_tell":
@@ -119,7 +121,8 @@ def diagnose(
     after = extended(arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)
     pair = residuals(last, before, selection, after, prober, base)
-    played = (replay(before, last), replay(after, last)) if verdict == "named" or free else (None, None)
+    described = replay(before, last)
+    played = described, replay(after, last) if selection.causes else described
     return Diagnosis(
         arm,
         verdict,

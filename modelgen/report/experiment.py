@@ -22,6 +22,8 @@ def followed(e: Experiment) -> str:
     first = e.tests[0].evidence if e.tests else None
     by_trajectory = e.proposal is not None and e.best.startswith("run ")
     figure = e.evidence if by_trajectory else first
+    if by_trajectory and figure is not None:
+        figure *= e.periods / PERIODS
     said = "" if figure is None else f"; expected delta BIC {figure:.3g}"
     return f"{e.best}{said}"
 
@@ -82,8 +84,9 @@ def _trajectory(e: Experiment) -> str:
     text = (
         f"{STEM}.csv holds a period of {s.period:.4g} s, {STEM}_set_points.csv the same for a position "
         f"controller in motor coordinates; {100 * used:.0f} % of the tightest limit is used. The evidence is "
-        f"that of {PERIODS} periods with the noise of the training records."
+        f"that of {PERIODS} periods with the noise of the training records"
     )
+    text += "." if e.periods == PERIODS else f"; {e.periods} tell the causes apart."
     if e.assumed:
         text += f" Not in the description, taken from the training records: {', '.join(e.assumed)}."
     return text

@@ -31,7 +31,7 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
         logs.write(Path(paths[-1]), bench.record(k, {}))
     found = records(arm, paths[:-1], paths[-1:], None)
     lengths = [period_of(record, None) for record in found[:-1]]
-    settings = with_whole_rows(choose(list(found), settings_for(found, cutoff)), lengths)
+    settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff)), lengths)
     model, prober = build_model(arm), Prober(arm)
     *train, test = rows_twice(prober, model, [prepare(r, settings) for r in found], estimated(model))
     theta = weighted_fit(train, [r.columns for r in train])
