@@ -21,8 +21,9 @@ from modelgen.probing import Prober
 
 WORST = 1e3  # condition number, columns of unit norm, up to which the motion counts as an excitation
 APART = 3.0  # errors of one model for all records over those of one model each
-LARGE = 0.05  # of the effort or its power: an error that no small cause explains
+LARGE = 0.05  # of the effort: an error that no small cause explains
 NONE = 0.95  # of the effort, left where nothing is explained
+GIVEN = 0.2  # of the power at a joint: what friction that is not there may seem to give
 OWN = 1e-4  # part of a column that the model's own columns must leave over
 INERTIAL = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 LEAST = 0.02  # share of rows in which a joint must move
@@ -96,7 +97,7 @@ def check_efforts(arm: Arm, model: Model, rows: Sequence[Rows]) -> None:
         speed = dq * np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(arm))])
         taken, power = r.columns[:, :, effects] @ theta[effects] * speed, np.abs(r.effort * speed)
         given = [
-            j + 1 for j in moving if taken[r.moving[:, j], j].sum() < -LARGE * power[r.moving[:, j], j].sum()
+            j + 1 for j in moving if taken[r.moving[:, j], j].sum() < -GIVEN * power[r.moving[:, j], j].sum()
         ]
         if given:
             raise InputError(
