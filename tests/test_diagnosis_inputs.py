@@ -81,6 +81,36 @@ def test_records_with_and_without_efforts(logs: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (("--period", "7"), "does not repeat after 7 s"),
+        (("--period", "0"), "found 0 s, expected at least 4 samples"),
+        (("--period", "nan"), "found nan s"),
+        (("--period", "inf"), "found inf s"),
+        (("--period", "1e9"), "expected one of which a training record holds two"),
+        (("--cutoff", "0"), "--cutoff: found 0 Hz, expected more than 0"),
+    ],
+)
+def test_periods_and_bands_that_are_none(
+    more: tuple[str, str], said: str, logs: Path, tmp_path: Path
+) -> None:
+    train = str(logs / "train_a.csv"), str(logs / "train_b.csv")
+    answer = ask(logs, tmp_path / "out", *more, train=train, test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert said in answer.said
+    assert "Traceback" not in answer.said
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_test_record_at_rest(logs: Path, tmp_path: Path) -> None:
+    train = str(logs / "train_a.csv"), str(logs / "train_b.csv")
+    answer = ask(logs, tmp_path / "out", train=train, test=(lockstep(tmp_path, "still.csv", 3e-5),))
+    assert answer.code == 2
+    assert "still.csv: all joints rest in the test record" in answer.said
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize("record", ["train_a.csv", "train_b.csv"])
 def test_efforts_of_the_wrong_sign(record: str, logs: Path, tmp_path: Path) -> None:
     """Friction takes work from a motion, whatever else is unknown."""

@@ -14,6 +14,8 @@ from modelgen.description import Arm
 from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
+from modelgen.generation.folders import check_output
+from modelgen.report.diagnosis import unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.sketches import Pen
 from modelgen.report.writing import write
@@ -36,6 +38,7 @@ def run(
     """Diagnose and write everything into `out`. Raises InputError."""
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out}: found a file, expected a folder")
+    check_output(out, [])
     wanted = [_place(text) for text in effects]
     console = Console(stderr=True)
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
@@ -78,12 +81,9 @@ def sentence(d: Diagnosis) -> str:
         said = [f"{c.effect} {'of the arm' if c.joint is None else f'at joint {c.joint}'}" for c in d.causes]
         gains = d.errors.gain[~(d.errors.gain != d.errors.gain)]
         best = max(gains, default=0.0)
-        return f"The model lacks {' and '.join(said)}: {best:.1f} % less error on the test record with it."
-    return {
-        "nothing_missing": "Nothing is missing that these records could show.",
-        "outside_catalogue": "Something is missing that is not in the catalogue.",
-        "cannot_tell": "These records cannot tell.",
-    }[d.verdict] + f" {d.reason[0].upper()}{d.reason[1:]}."
+        gained = f"{best:.1f} % less error" if best > 0.0 else "no less error"
+        return f"The model lacks {' and '.join(said)}: {gained} on the test record with it."
+    return f"{unnamed(d)} {d.reason[0].upper()}{d.reason[1:]}."
 
 
 def _print(d: Diagnosis, out: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 from rich import box
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 _WIDTH = 120  # columns where stdout is no terminal
@@ -16,7 +17,7 @@ _WIDTH = 120  # columns where stdout is no terminal
 
 def print_table(title: str, columns: dict[str, str], rows: list[list[str]]) -> None:
     """A table on stdout; `columns` maps the headings to "left" or "right"."""
-    table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold")
+    table = Table(title=escape(title) or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold")
     for heading, side in columns.items():
         table.add_column(heading, justify="right" if side == "right" else "left", overflow="fold")
     for row in rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,20 +11,23 @@ from numpy.typing import NDArray
 
 from modelgen.dataset.choice import Chosen
 from modelgen.dataset.objects import Record
+from modelgen.errors import InputError
 
 Array = NDArray[np.float64]
 REPEATS = 2e-3  # of the positions' power may differ from one period to the next
+LOOSE = 0.05  # the same where the period is given: someone knows that it repeats
+SHORTEST = 4  # samples
 
 
 def period_of(record: Record, given: float | None) -> int | None:
     """Samples in a period of the motion, as given [s] or the first lag at which all positions repeat.
 
-    None where the record does not hold two whole periods, or nothing repeats.
+    None where the record does not hold two whole periods, or nothing repeats. Raises InputError for a given
+    period that is none.
     """
-    count, step = len(record.t), record.step
     if given is not None:
-        samples = round(given / step)
-        return samples if 0 < 2 * samples <= count + 1 else None
+        return _checked(record, given)
+    count = len(record.t)
     coarse = max(1, count // 3000)
     q = record.q[::coarse] - record.q.mean(axis=0)
     scale = np.maximum((q**2).mean(axis=0), 1e-300)
@@ -43,6 +47,28 @@ def period_of(record: Record, given: float | None) -> int | None:
     near = range(max(1, about - 2 * coarse), min(about + 2 * coarse, count // 2) + 1)
     exact = [float(((record.q[lag:] - record.q[:-lag]) ** 2).mean()) for lag in near]
     return near[int(np.argmin(exact))]
+
+
+def _checked(record: Record, given: float) -> int | None:
+    """Samples in a given period [s]; None where the record does not hold two of them."""
+    if not (math.isfinite(given) and given >= SHORTEST * record.step):
+        raise InputError(
+            f"--period: found {given:g} s, expected at least {SHORTEST} samples of {record.name}, "
+            f"{SHORTEST * record.step:.3g} s"
+        )
+    lag = round(min(given / record.step, len(record.t)))
+    if 2 * lag > len(record.t) + 1:
+        return None
+    power = np.maximum(2 * record.q.var(axis=0), 1e-300)
+    differs = float((((record.q[lag:] - record.q[:-lag]) ** 2).mean(axis=0) / power).max())
+    if differs > LOOSE:
+        found = period_of(record, None)
+        hint = "leave it out" if found is None else f"found is {found * record.step:.6g} s"
+        raise InputError(
+            f"--period: {record.name} does not repeat after {given:g} s: its positions differ by "
+            f"{100 * differs:.2g} % of their power, expected {100 * LOOSE:g} % at most; {hint}"
+        )
+    return lag
 
 
 def with_whole_rows(chosen: Chosen, periods: Sequence[int | None]) -> Chosen:

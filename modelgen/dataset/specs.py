@@ -114,7 +114,7 @@ def _advice(texts: Sequence[str]) -> str:
     file = parse(texts[0]).path if texts else Path("LOG")
     return (
         "one file can serve for both in parts that do not overlap, the last quarter held out, say: "
-        f"--train {file}@0:45 --test {file}@45:60 (times in seconds)"
+        f"--train {file}@:T --test {file}@T:, T in seconds"
     )
 
 

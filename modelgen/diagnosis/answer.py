@@ -84,5 +84,7 @@ def answered(
     moving = np.any([r.moving.any(axis=0) for r in rows], axis=0)
     counted = free and fit is None and bool((left <= COUNTED**2 * blurs)[moving].all())
     tested = None if harmless(rows, blurs, left, PRACTICAL) else noisy
-    verdict, reason = verdict_of(selection, beside, close, fit, share, tested, likeness, counted=counted)
+    verdict, reason = verdict_of(
+        selection, beside, close, fit, share, tested, likeness, counted=counted, asked=bool(effects)
+    )
     return Answer(made, selection, equal, verdict, reason, fit, likeness, share, noisy)

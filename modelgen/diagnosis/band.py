@@ -17,7 +17,7 @@ from modelgen.dataset import Chosen, Prepared, Record, Settings, choose, prepare
 from modelgen.dataset.choice import motion_bandwidth
 from modelgen.dataset.periods import with_whole_rows
 from modelgen.diagnosis.baseline import estimated, held
-from modelgen.diagnosis.checks import check_excitation, check_motion
+from modelgen.diagnosis.checks import check_excitation, check_motion, check_test
 from modelgen.diagnosis.free import away_from_rest
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
@@ -95,6 +95,7 @@ def _equations(
     free = found[0].input is None
     if free:
         prepared = [away_from_rest(p) for p in prepared]
+    check_test(prepared[-1])
     train = prepared[:-1]
     rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
     check_motion(model.arm, rows)

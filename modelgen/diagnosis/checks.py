@@ -7,7 +7,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from modelgen.dataset import drives_of
+from modelgen.dataset import Prepared, drives_of
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, columns, scale
 from modelgen.diagnosis.rows import Array, Rows
@@ -46,6 +46,15 @@ def check_motion(arm: Arm, rows: Sequence[Rows]) -> None:
         raise InputError(
             f"{arm.name}: {equations} equations for {unknowns} parameters: the records are too short or move "
             "too little, expected at least three times as many; see modelgen excite"
+        )
+
+
+def check_test(test: Prepared) -> None:
+    """Raises InputError where no joint moves in the test record."""
+    if not test.moving.any():
+        raise InputError(
+            f"{test.record.name}: all joints rest in the test record; expected a motion like those of the "
+            "training records, on which the gain can be measured"
         )
 
 

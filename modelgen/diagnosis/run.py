@@ -49,7 +49,7 @@ def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path |
     if not test:
         raise InputError(
             "found no test record: the gain cannot be measured on what was fitted; record the arm once more, "
-            f"or hold a part out: --train {train[0]}@0:45 --test {train[0]}@45:60 (times in seconds)"
+            f"or hold its last quarter out: --train {train[0]}@:T --test {train[0]}@T:, T in seconds"
         )
     check_separate(train, test)
     if len(test) != 1:
@@ -66,6 +66,8 @@ def settings_for(found: Sequence[Record], cutoff: float | None) -> Settings:
     Narrower for free motions, which lack what drives do and whose noise is all in the positions. The last
     record, the test record, has no say.
     """
+    if cutoff is not None and not cutoff > 0.0:
+        raise InputError(f"--cutoff: found {cutoff:g} Hz, expected more than 0: a diagnosis needs a band")
     rate, free = 1.0 / found[0].step, found[0].input is None
     widest = FREE_CUTOFF if free else CUTOFF
     chosen = Settings(cutoff=min(widest, rate / SAMPLES) if cutoff is None else cutoff)
@@ -99,6 +101,8 @@ def diagnose(
     if free:
         found = [released(record, settings) for record in found]
     lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
+    if period is not None and all(p is None for p in lengths):
+        raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
     model, prober = build_model(arm), Prober(arm)
     for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
         check_efforts(arm, model, made.rows)

@@ -26,13 +26,14 @@ def verdict_of(
     likeness: Likeness | None,
     *,
     counted: bool,
+    asked: bool = False,
 ) -> tuple[str, str]:
     """Which of the four, and why.
 
     beside: what gained something and left most of what repeats, or explained less than a shape; close: what
     coarse positions do not tell from its rivals; noisy: percent of the RMSE by joint that errors of the
     positions could feign; counted: whether such errors are all the noise there is, and what remains is no
-    more than that.
+    more than that; asked: whether some effects alone were asked for.
     """
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
@@ -71,10 +72,10 @@ def verdict_of(
     if fit.found or likeness is not None:
         near = max(beside, key=lambda c: c.delta_bic, default=None)
         more = "" if near is None else f"; {_title(near.trial.candidate)} comes nearest"
+        pool = "none of the effects asked for" if asked else "no effect of the catalogue"
         return (
             "outside_catalogue",
-            f"something deterministic remains{_where(fit, selection)} that no effect of the catalogue "
-            f"explains{like}{more}",
+            f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}{more}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 

@@ -98,9 +98,16 @@ _SIMULATED = {
 }
 
 
+def unnamed(d: Diagnosis) -> str:
+    """The verdict where no cause is named."""
+    if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
+        return "Something is missing that is none of the effects asked for."
+    return _SENTENCES[d.verdict]
+
+
 def _sentence(d: Diagnosis) -> Markup:
     if d.verdict != "named":
-        return Markup(_SENTENCES[d.verdict])
+        return Markup(unnamed(d))
     found = [Markup("<b>{}</b> at {}").format(c.effect, _place(c.joint)) for c in d.causes]
     return Markup("The model lacks {}.").format(Markup(" and ").join(found))
 

@@ -27,7 +27,7 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
     trials = [c.trial for c in d.selection.causes]
     causes = [(*t.candidate.place, t.parameters) for t in trials]
     name = d.arm.name
-    new = out.with_name(f".{out.name}.new")
+    new, there = out / ".new", out.exists()  # on the file system of `out`, whatever that is
     pen, wanted = pen or Pen(), sketches(d)
     pen.give(wanted)
     try:
@@ -45,7 +45,6 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
         (new / "report.html").write_text(report(d, drawn), encoding="utf-8", newline="\n")
         for picture, text in {**pictures(drawn), **plans(d, drawn.get(NEXT, ""))}.items():
             (new / picture).write_text(text, encoding="utf-8", newline="\n")
-        out.mkdir(parents=True, exist_ok=True)
         for stale in NAMES:  # of a diagnosis before
             (out / stale).unlink(missing_ok=True)
         for path in sorted(new.iterdir()):
@@ -57,3 +56,5 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
         raise InputError(f"--out {out}: cannot write: {error.strerror or error}") from error
     finally:
         shutil.rmtree(new, ignore_errors=True)
+        if not there and out.is_dir() and not any(out.iterdir()):
+            out.rmdir()
