@@ -21,6 +21,7 @@ from modelgen.diagnosis.candidates import (
     cold,
 )
 from modelgen.diagnosis.checks import check_efforts, check_one_arm
+from modelgen.diagnosis.deviations import valued
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
@@ -114,8 +115,8 @@ def diagnose(
     train, test = made.prepared[:-1], made.prepared[-1]
     baseline = rows[0].baseline
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
-    selection = stiffened(answer.selection, rows, prober)
-    named = _named(selection, answer.equal, rows, arm)
+    selection = valued(stiffened(answer.selection, rows, prober))
+    named = _named(selection, answer.equal, prober)
     following = None
     if experiment and verdict == "named":
         plan = None if free else stage(arm, model, prober, train, base)
@@ -139,7 +140,7 @@ def diagnose(
         played,
         before,
         after,
-        base_estimates(after.model, after.rows, after.theta),
+        base_estimates(after.model, after.rows, after.theta, made.periods),
         following,
         last,
         pair,
@@ -163,12 +164,10 @@ def diagnose(
     )
 
 
-def _named(
-    selection: Selection, equal: Sequence[Sequence[Candidate]], rows: Sequence[Rows], arm: Arm
-) -> tuple[Named, ...]:
+def _named(selection: Selection, equal: Sequence[Sequence[Candidate]], prober: Prober) -> tuple[Named, ...]:
     if not selection.causes:
         return ()
-    estimates = cause_estimates(selection, rows, arm)
+    estimates = cause_estimates(selection, prober)
     result = []
     for cause, same, values in zip(selection.causes, equal, estimates, strict=True):
         c = cause.trial.candidate

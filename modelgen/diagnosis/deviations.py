@@ -1,0 +1,131 @@
+"""How far estimates may be off: of weighted least squares in coloured noise.
+
+The estimate is that of the plain equations, rows weighted by joint, whose errors have the noise's colour: its
+covariance is R^-1 V R^-T, with the equations X = Q R and V the variance of such noise along Q (Newey and
+West 1987). What is searched for has a column as well, the slope of what its cause adds (Gauss and Newton;
+Bates and Watts 1988, 2.2): what is said of the others then counts that it is not known either.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.diagnosis.candidates import COMPLIANT, columns
+from modelgen.diagnosis.causes import Cause
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.system import System, weighted_fit
+from modelgen.diagnosis.trials import Trial
+from modelgen.probing import Prober
+
+STEP = 0.01  # of a value, over which slopes are taken
+OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
+KNOWN = 0.5  # of a value: a larger deviation says that it is not determined
+
+
+def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
+    """Of the least squares estimate of a system's columns (p), and of what has these slopes (M, n, m) of each
+    record: (p + m, p + m). known: columns whose factor is.
+    """
+    plain = system.plain
+    matrix = plain.matrix.copy()
+    matrix[:, list(known)] = 0.0
+    if slopes:
+        matrix = np.hstack([matrix, plain.records(slopes)])
+    norms = np.linalg.norm(matrix, axis=0)
+    norms[norms == 0] = 1.0
+    u, s, vt = np.linalg.svd(matrix / norms, full_matrices=False)
+    kept = s > OPEN * s.max(initial=0.0)
+    along = u[:, kept]
+    noise = np.eye(int(kept.sum())) / plain.share if plain.colour is None else plain.colour.variance(along)
+    back = (vt[kept].T / s[kept]) / norms[:, None]
+    return np.asarray(back @ noise @ back.T)
+
+
+def valued(selection: Selection) -> Selection:
+    """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
+    system, rows = selection.system, selection.system.rows
+    theta = weighted_fit(rows, system.columns)
+    place, causes = rows[0].columns.shape[2], []
+    for cause in selection.causes:
+        trial = cause.trial
+        end = place + trial.columns[0].shape[2]
+        if trial.candidate.effect not in COMPLIANT:  # which are as they were simulated
+            values = np.where(trial.candidate.positive, np.maximum(theta[place:end], 0.0), theta[place:end])
+            trial = replace(trial, gain=replace(trial.gain, values=values))
+        causes.append(replace(cause, trial=trial))
+        place = end
+    return replace(selection, causes=causes)
+
+
+def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
+    """Standard deviations of the causes' parameters by name; nan of what was fixed, or is not determined."""
+    if not selection.causes:
+        return []
+    system, rows = selection.system, selection.system.rows
+    own = rows[0].columns.shape[2]
+    base = rows[0].baseline.base(weighted_fit(rows, system.columns)[:own])
+    slopes = [_slopes(c, rows, prober, base) for c in selection.causes]
+    together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
+    places = own + np.cumsum([0, *(c.trial.columns[0].shape[2] for c in selection.causes)])
+    held = [
+        int(at)
+        for at, c in zip(places, selection.causes, strict=False)
+        if c.trial.candidate.effect in COMPLIANT
+    ]
+    whole = covariance_of(system, together if together[0].shape[2] else (), held)
+    place, searched, found = own, int(places[-1]), []
+    for cause, slope in zip(selection.causes, slopes, strict=True):
+        trial = cause.trial
+        end, last = place + trial.columns[0].shape[2], searched + slope[0].shape[2]
+        at = np.r_[place:end, searched:last]
+        found.append(_physical(trial, whole[np.ix_(at, at)], end - place))
+        place, searched = end, last
+    return found
+
+
+def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> list[Array]:
+    """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
+    trial = cause.trial
+    theta = np.ones(1) if trial.candidate.effect in COMPLIANT else trial.gain.values
+    parts: list[list[Array]] = [[] for _ in rows]
+    for name, value in trial.values.items():
+        step = STEP * (abs(value) or 1.0)
+        ends = [
+            columns(trial.candidate, {**trial.values, **trial.around, name: x}, rows, prober, base)
+            for x in (value - step, value + step)
+        ]
+        for k, part in enumerate(parts):
+            if ends[0] is None or ends[1] is None:
+                part.append(np.zeros(trial.columns[k].shape[:2]))
+            else:
+                part.append((ends[1][k] - ends[0][k]) @ theta / (2 * step))
+    return [
+        np.stack(part, axis=2) if part else np.zeros((*c.shape[:2], 0))
+        for part, c in zip(parts, trial.columns, strict=True)
+    ]
+
+
+def _physical(trial: Trial, covariance: Array, linear: int) -> dict[str, float]:
+    """Of the effect's own parameters, by how they follow from what was estimated and searched for."""
+    names, now = list(trial.values), trial.parameters
+    moved: list[dict[str, float]] = []
+    sizes: Array = np.sqrt(np.maximum(0.0, np.diag(covariance)))
+    for k in range(linear):
+        values = trial.gain.values.copy()
+        values[k] += sizes[k]
+        moved.append(replace(trial, gain=replace(trial.gain, values=values)).parameters)
+    for name, size in zip(names, sizes[linear:], strict=True):
+        moved.append(replace(trial, values={**trial.values, name: trial.values[name] + size}).parameters)
+    safe = np.where(sizes > 0, sizes, 1.0)
+    found = {}
+    for name, value in now.items():
+        slope = np.array([other.get(name, value) - value for other in moved]) / safe
+        std = math.sqrt(max(0.0, float(slope @ covariance @ slope)))
+        undetermined = name in names and std > KNOWN * abs(value)
+        found[name] = np.nan if std == 0.0 or undetermined else std
+    return found

@@ -1,0 +1,59 @@
+"""Standard deviations of estimates: what they scatter by over many draws of the noise."""
+
+import numpy as np
+from diagnosis_support import BARE, UNUSED
+from numpy.random import Generator, default_rng
+from scipy.optimize import curve_fit
+from scipy.signal import lfilter
+
+from modelgen.diagnosis.deviations import covariance_of
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.system import System
+
+PERIOD, PERIODS, DRAWS = 500, 3, 60
+TIME = np.arange(PERIOD * PERIODS) * (2 * np.pi / PERIOD)
+POLE = 0.9
+
+
+def coloured(random: Generator) -> Array:
+    """Noise that remembers some ten rows."""
+    return np.asarray(lfilter([1.0], [1.0, -POLE], random.normal(size=len(TIME) + 200))[200:])
+
+
+def system_of(columns: Array, effort: Array) -> System:
+    moving = np.ones((len(TIME), 1), dtype=bool)
+    rows = [Rows(UNUSED, effort[:, None], columns[:, None, :], moving, BARE)]
+    return System(rows, [r.columns for r in rows], [PERIOD])
+
+
+def test_of_slow_columns_in_slow_noise() -> None:
+    """White noise of the same size would leave them a third of that."""
+    columns = np.column_stack([np.sin(TIME), np.cos(2 * TIME), np.sin(40 * TIME)])
+    found, stated = [], []
+    for seed in range(DRAWS):
+        effort = columns @ np.array([1.0, -2.0, 0.5]) + coloured(default_rng([1, seed]))
+        system = system_of(columns, effort)
+        found.append(system.theta)
+        stated.append(np.sqrt(np.diag(covariance_of(system))))
+    np.testing.assert_allclose(np.std(found, axis=0), np.mean(stated, axis=0), rtol=0.25)
+
+
+def test_what_is_searched_for_is_not_known_to_the_others() -> None:
+    """A law c (1 - exp(-|x| / v)), fitted by another program: c would be surer if v were known."""
+    x = np.abs(2.0 * np.sin(TIME) + 0.7 * np.sin(3 * TIME))
+
+    def law(_: Array, c: float, v: float) -> Array:
+        return c * (1.0 - np.exp(-x / v))
+
+    found, stated, bold = [], [], []
+    for seed in range(DRAWS):
+        effort = law(x, 3.0, 0.8) + 0.1 * coloured(default_rng([2, seed]))
+        (c, v), _ = curve_fit(law, x, effort, p0=(3.0, 0.8))
+        system = system_of(law(x, 1.0, v)[:, None], effort)
+        slope = (law(x, c, 1.01 * v) - law(x, c, 0.99 * v)) / (0.02 * v)
+        found.append((c, v))
+        stated.append(np.sqrt(np.diag(covariance_of(system, [slope[:, None, None]]))))
+        bold.append(np.sqrt(covariance_of(system)[0, 0]))
+    scatter = np.std(found, axis=0)
+    np.testing.assert_allclose(scatter, np.mean(stated, axis=0), rtol=0.25)
+    assert np.mean(bold) < 0.75 * scatter[0]
