@@ -37,6 +37,20 @@ def test_the_report_stands_alone_and_is_the_same_again(found: Diagnosis) -> None
     assert all(word in page for word in WORDS)
 
 
+def test_one_value_in_the_answer_the_description_and_the_table(found: Diagnosis) -> None:
+    """What is reported is what predicted the test record."""
+    (cause,) = found.causes
+    (use,) = [c.trial for c in found.selection.causes]
+    (place,) = [n for n in found.parameters if n.startswith("FS")]
+    assert use.parameters["magnitude"] == cause.parameters["magnitude"].value
+    assert found.parameters[place].value == pytest.approx(cause.parameters["magnitude"].value, rel=1e-5)
+    described = found.after.arm.joints[1].effects[-1].values["velocity"]
+    assert described == pytest.approx(cause.parameters["velocity"].value, rel=1e-8)
+    assert 0.0 < cause.parameters["velocity"].std < 0.3 * cause.parameters["velocity"].value
+    assert cause.parameters["magnitude"].std > found.parameters[place].std  # the velocity is not known
+    assert np.isnan(cause.parameters["exponent"].std)
+
+
 @pytest.mark.parametrize("ended", [False, True])
 def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
     sketch = Sketch(1, 2, (4.0, 2.0))
