@@ -58,7 +58,8 @@ class Rows:
         Without what they have while the joint rests: dry friction is undetermined there, and what the filter
         carries of it to the rows beside would look like a law of friction.
         """
-        return self.prepared.parallel(columns * self.prepared.awake[:, [j]])
+        with np.errstate(over="ignore", invalid="ignore"):  # states of a law that does not hold here
+            return self.prepared.parallel(columns * self.prepared.awake[:, [j]])
 
 
 def motion_of(prepared: Prepared) -> Motion:

@@ -142,12 +142,13 @@ class Series:
             return np.diff(state[:, self.lags], 3, axis=0).ravel()
 
         places, found = [*self.lags, *self.rates], start.copy()
-        now, moved = bends(start), np.eye(len(start))[places] * TOUCH
-        slopes = np.stack([(bends(start + more) - now) / TOUCH for more in moved], axis=1)
-        if not np.isfinite(slopes).all() or not np.isfinite(now).all():
-            return start
-        found[places] -= np.linalg.lstsq(slopes, now, rcond=None)[0]
-        return found if np.sum(bends(found) ** 2) < np.sum(now**2) else start
+        with np.errstate(over="ignore", invalid="ignore"):  # what holds no link leaves all bounds
+            now, moved = bends(start), np.eye(len(start))[places] * TOUCH
+            slopes = np.stack([(bends(start + more) - now) / TOUCH for more in moved], axis=1)
+            if not np.isfinite(slopes).all() or not np.isfinite(now).all():
+                return start
+            found[places] -= np.linalg.lstsq(slopes, now, rcond=None)[0]
+            return found if np.sum(bends(found) ** 2) < np.sum(now**2) else start
 
     def _at_rest(self, heads: Array, values: Array) -> Array:
         """Lags at which the transmissions carry their load.
