@@ -18,6 +18,7 @@ from modelgen.probing.delays import acting, added
 from modelgen.probing.hidden_weight import HiddenWeight
 from modelgen.probing.levers import gain, leverage, reread
 from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
+from modelgen.probing.links import Links
 from modelgen.probing.motion import Array, Motion, given_for
 from modelgen.probing.places import changes_description, with_effect
 from modelgen.probing.programs import (
@@ -198,25 +199,16 @@ class Prober:
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
-        drives = self.link_side.drives
-
-        def make() -> Array:
-            return carried(self.arm, self.base, joint, motion, parameters, self._links_along, drives)
-
-        return self._kept(("carried", joint), motion, parameters, make)
+        given = self.arm, self.base, joint, motion, parameters, self._bare, self.link_side.drives
+        return self._kept(("carried", joint), motion, parameters, lambda: carried(*given))
 
     def _links(self, motion: Motion, parameters: Array) -> Array:
-        """Inputs of the links alone, remembered."""
-        return self._kept("links", motion, parameters, lambda: self._links_along(motion, parameters))
+        """Inputs of the links alone."""
+        return self._kept("links", motion, parameters, lambda: self._bare(motion, parameters))
 
-    def _links_along(self, motion: Motion, parameters: Array) -> Array:
-        if "links" not in self._made:
-            alone = described(self.arm).without_effects()
-            self._made["links"] = NumpyFunction(
-                links_and_effect(Equations(slid(alone), lazy=True), self.base)
-            )
-        call = self._made["links"]
-        return np.asarray(call(**given_for(call.function, motion, parameters)))
+    @cached_property
+    def _bare(self) -> Links:
+        return Links(self.arm, self.base)
 
     # -- inside -----------------------------------------------------------------------------
 
