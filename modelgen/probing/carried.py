@@ -41,10 +41,11 @@ def carried(
     def inertia(inputs: Inputs, values: Array) -> Array:
         return (inputs(faster, values) - inputs(here, values))[:, j]
 
-    own, all_of_it = inertia(links, parameters), inertia(links, parameters) + inertia(drives, parameters)
+    own = inertia(links, parameters)
+    whole = own + inertia(drives, parameters)
     for place in places:
         unit = inertia(links, np.eye(len(parameters))[place])
-        lacking = float(np.max(LEAST * np.median(all_of_it / unit) - own / unit))
+        lacking = float(np.max(LEAST * np.median(whole / unit) - own / unit))
         if lacking > 0.0:
             parameters = parameters.copy()
             parameters[place] += lacking
