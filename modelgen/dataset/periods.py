@@ -59,8 +59,7 @@ def _checked(record: Record, given: float) -> int | None:
     lag = round(min(given / record.step, len(record.t)))
     if 2 * lag > len(record.t) + 1:
         return None
-    power = np.maximum(2 * record.q.var(axis=0), 1e-300)
-    differs = float((((record.q[lag:] - record.q[:-lag]) ** 2).mean(axis=0) / power).max())
+    differs = float(_differing(record.q, lag)[_differing(record.q, 1) < LOOSE].max(initial=0.0))
     if differs > LOOSE:
         found = period_of(record, None)
         hint = "leave it out" if found is None else f"found is {found * record.step:.6g} s"
@@ -69,6 +68,12 @@ def _checked(record: Record, given: float) -> int | None:
             f"{100 * differs:.2g} % of their power, expected {100 * LOOSE:g} % at most; {hint}"
         )
     return lag
+
+
+def _differing(q: Array, lag: int) -> Array:
+    """By how much of their power positions (N, n) differ after a lag: (n,); noise does so after one."""
+    power = np.maximum(2 * q.var(axis=0), 1e-300)
+    return np.asarray(((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / power)
 
 
 def with_whole_rows(chosen: Chosen, periods: Sequence[int | None]) -> Chosen:
