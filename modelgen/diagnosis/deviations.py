@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from modelgen.diagnosis.candidates import COMPLIANT, columns
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
-from modelgen.diagnosis.system import System, weighted_fit
+from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.probing import Prober
 
@@ -48,18 +49,21 @@ def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[
 
 def valued(selection: Selection) -> Selection:
     """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
-    system, rows = selection.system, selection.system.rows
-    theta = weighted_fit(rows, system.columns)
-    place, causes = rows[0].columns.shape[2], []
-    for cause in selection.causes:
-        trial = cause.trial
-        end = place + trial.columns[0].shape[2]
+    causes = []
+    for cause, own in zip(selection.causes, _columns_of(selection), strict=True):
+        trial, values = cause.trial, selection.system.theta[own]
         if trial.candidate.effect not in COMPLIANT:  # which are as they were simulated
-            values = np.where(trial.candidate.positive, np.maximum(theta[place:end], 0.0), theta[place:end])
+            values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
             trial = replace(trial, gain=replace(trial.gain, values=values))
         causes.append(replace(cause, trial=trial))
-        place = end
     return replace(selection, causes=causes)
+
+
+def _columns_of(selection: Selection) -> list[slice]:
+    """Places of the causes' columns in the system's."""
+    counts = [c.trial.columns[0].shape[2] for c in selection.causes]
+    ends = selection.system.rows[0].columns.shape[2] + np.cumsum([0, *counts])
+    return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
 
 def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
@@ -67,24 +71,19 @@ def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
     if not selection.causes:
         return []
     system, rows = selection.system, selection.system.rows
-    own = rows[0].columns.shape[2]
-    base = rows[0].baseline.base(weighted_fit(rows, system.columns)[:own])
+    base = rows[0].baseline.base(system.theta[: rows[0].columns.shape[2]])
     slopes = [_slopes(c, rows, prober, base) for c in selection.causes]
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
-    places = own + np.cumsum([0, *(c.trial.columns[0].shape[2] for c in selection.causes)])
-    held = [
-        int(at)
-        for at, c in zip(places, selection.causes, strict=False)
-        if c.trial.candidate.effect in COMPLIANT
-    ]
+    places = _columns_of(selection)
+    compliant = [c.trial.candidate.effect in COMPLIANT for c in selection.causes]
+    held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     whole = covariance_of(system, together if together[0].shape[2] else (), held)
-    place, searched, found = own, int(places[-1]), []
-    for cause, slope in zip(selection.causes, slopes, strict=True):
-        trial = cause.trial
-        end, last = place + trial.columns[0].shape[2], searched + slope[0].shape[2]
-        at = np.r_[place:end, searched:last]
-        found.append(_physical(trial, whole[np.ix_(at, at)], end - place))
-        place, searched = end, last
+    searched, found = len(system.theta), []
+    for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
+        last = searched + slope[0].shape[2]
+        at = np.r_[own, searched:last]
+        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
+        searched = last
     return found
 
 
