@@ -118,6 +118,7 @@ def diagnose(
     period: given.Period = None,
     effect: given.AskedEffects = None,
     no_experiment: given.NoExperiment = False,
+    jobs: given.Jobs = None,
     as_json: given.Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
@@ -136,6 +137,7 @@ def diagnose(
         period=period,
         effects=effect or [],
         experiment=not no_experiment,
+        jobs=jobs,
         as_json=as_json,
     )
 

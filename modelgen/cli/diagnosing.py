@@ -15,6 +15,7 @@ from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
 from modelgen.generation.folders import check_output
+from modelgen.jobs import Where
 from modelgen.report.diagnosis import unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.sketches import Pen
@@ -33,6 +34,7 @@ def run(
     period: float | None,
     effects: Sequence[str],
     experiment: bool,
+    jobs: int | None,
     as_json: bool,
 ) -> None:
     """Diagnose and write everything into `out`. Raises InputError."""
@@ -58,6 +60,7 @@ def run(
                 progress=progress,
                 experiment=experiment,
                 effects=wanted,
+                where=Where(jobs),
             )
             bar.update(task, description="writing", completed=0, total=None)
             write(result, file, out, pen=pen)

@@ -23,6 +23,7 @@ from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.system import mean_squares
 from modelgen.diagnosis.verdict import verdict_of
 from modelgen.functions import Model
+from modelgen.jobs import HERE, Where
 from modelgen.probing import Prober
 
 Progress = Callable[[str, int, int], None]
@@ -53,6 +54,7 @@ def answered(
     prober: Prober,
     effects: Sequence[Place],
     progress: Progress | None,
+    where: Where = HERE,
 ) -> Answer:
     """What these equations say. effects: to be asked for alone; all of the catalogue where there are none.
 
@@ -70,7 +72,9 @@ def answered(
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
     pool = asked(pool, effects, rows, prober, baseline.base(made.theta))
-    selection = select(rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed)
+    selection = select(
+        rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed, where=where
+    )
     tried = [] if free else list(shapes(rows, prober, base(selection)))
     selection, beside, likeness = outdone(selection, rows, tried)
     named = [c.trial.candidate for c in selection.causes]

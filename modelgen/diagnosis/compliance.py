@@ -32,6 +32,7 @@ STARTS = {"play": (0.3, 1.0, 3.0, 10.0), "stiffness": (0.3, 1.0, 3.0)}
 FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was found, at a start, at a trial
 EDGE = 0.4  # of the first simplex, in logarithms
 MOST = 45  # trials
+PATIENCE = 15  # trials after which what still leaves more than a rigid joint is none
 FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
 SIMPLER = 1.15  # times what an elastic joint carries to rows that were not seen, that a gap must
 SINGULAR = 1e-10
@@ -45,7 +46,7 @@ def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> Non
     for cause in causes:
         if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
-            cause.trial = _Beside(rows, others, cause.trial, prober).best([])
+            cause.trial = _Beside(rows, others, cause.trial, prober).best([]) or cause.trial
 
 
 def refined(
@@ -65,8 +66,8 @@ def refined(
     for t in trials:
         if "stiffness" in t.values and t.candidate.joint == first.candidate.joint:
             better = _Beside(rows, others, t, prober).best(_starts(t))
-            gain = beside(better, system)
-            if gain is not None and sensible(replace(better, gain=gain), prober.arm):
+            gain = None if better is None else beside(better, system)
+            if better is not None and gain is not None and sensible(replace(better, gain=gain), prober.arm):
                 found.append(replace(better, gain=gain))
     return found
 
@@ -119,9 +120,11 @@ class _Beside:
         )
         self.count = np.maximum(np.bincount(self.joint), 1)
         self.rigid = self.inverse @ self.right
+        self.least = self._left(self.right - self.left @ self.rigid)  # by a rigid joint
 
-    def best(self, starts: Sequence[Values]) -> Trial:
+    def best(self, starts: Sequence[Values]) -> Trial | None:
         """The trial with the values that leave least, and its columns at the parameters that go with them.
+        None where a rigid joint leaves less.
 
         starts: values to begin at besides its own.
         """
@@ -131,7 +134,7 @@ class _Beside:
             left, beside = self.at(start, self.rigid, SETTLING)
             if left < least:
                 least, values, near = left, start, beside
-        names = sorted(values)
+        names, done = sorted(values), list[float]()
 
         def leaves(logarithms: Array) -> float:
             nonlocal least, values, near
@@ -139,12 +142,19 @@ class _Beside:
             left, beside = self.at(tried, near, TURNS)
             if left < least:
                 least, values, near = left, tried, beside
+            done.append(left)
             return min(left, 1e6)
+
+        def hopeless(_: Array) -> None:
+            if len(done) >= PATIENCE and least > self.least:
+                raise StopIteration  # ends the search
 
         first = np.log([values[name] for name in names])
         simplex = np.vstack([first, first + EDGE * np.eye(len(first))])
         options = {"initial_simplex": simplex, "maxfev": MOST, "xatol": FINE, "fatol": EVEN}
-        minimize(leaves, first, method="Nelder-Mead", options=options)
+        minimize(leaves, first, method="Nelder-Mead", options=options, callback=hopeless)
+        if least > self.least:
+            return None
         made = self._columns(values, near)
         return self.trial if made is None else replace(self.trial, values=values, columns=made)
 
@@ -158,13 +168,16 @@ class _Beside:
             if made is None:
                 break
             simulated = self._stacked(made)
-            error = self.right - self.left @ theta - simulated
-            left = float(np.log(np.maximum(np.bincount(self.joint, error**2) / self.count, LEAST)).sum() / 2)
+            left = self._left(self.right - self.left @ theta - simulated)
             if left < least:
                 least, best = left, theta
             if turn < turns:
                 theta = (theta + self.inverse @ (self.right - simulated)) / 2
         return least, best
+
+    def _left(self, error: Array) -> float:
+        """Sum over the joints of the logarithm of the RMS of errors (R,)."""
+        return float(np.log(np.maximum(np.bincount(self.joint, error**2) / self.count, LEAST)).sum() / 2)
 
     def _columns(self, values: Values, theta: Array) -> list[Array] | None:
         base = self.rows[0].baseline.base(theta[: self.own])

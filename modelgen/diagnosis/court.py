@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 
@@ -30,6 +31,8 @@ WORTH = 4.0  # evidence below which nothing is refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
 SETTLED = 1.0  # change of evidence that needs no more of it
 
+Columns: TypeAlias = dict[object, list[Array] | None]  # of every record, by candidate and values
+
 
 class Court:
     """Tries candidates against one system.
@@ -45,7 +48,7 @@ class Court:
         rows: Sequence[Rows],
         prober: Prober,
         base: Array,
-        known: dict[object, list[Array] | None] | None = None,
+        known: Columns | None = None,
         elastic: Collection[int | None] = (),
     ) -> None:
         self.system = system
@@ -57,6 +60,7 @@ class Court:
         self.fresh = True  # whether columns that change are made anew
         self.aged = False  # whether some were not
         self.renewed: set[object] = set()  # made with the parameters of this court
+        self.told: set[object] = set()  # of these
 
     def trial(self, candidate: Candidate) -> Trial | None:
         """The best that the candidate can do; None where it adds nothing of its own."""
@@ -72,6 +76,18 @@ class Court:
             if abs(found.gain.delta_bic - before.gain.delta_bic) < SETTLED:
                 break
         return found
+
+    def news(self) -> Columns:
+        """Columns that were made since this was last asked."""
+        fresh = self.renewed - self.told
+        self.told |= fresh
+        return {key: self.known[key] for key in fresh}
+
+    def learn(self, columns: Columns) -> None:
+        """Takes columns over that this court made in another process."""
+        self.known.update(columns)
+        self.renewed |= columns.keys()
+        self.told |= columns.keys()
 
     def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:

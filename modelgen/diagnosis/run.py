@@ -35,6 +35,7 @@ from modelgen.diagnosis.selection import Selection, threshold
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.errors import InputError
 from modelgen.functions import build_model
+from modelgen.jobs import HERE, Where
 from modelgen.probing import Prober, places
 
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
@@ -86,11 +87,13 @@ def diagnose(
     progress: Progress | None = None,
     experiment: bool = True,
     effects: Sequence[Place] = (),
+    where: Where = HERE,
 ) -> Diagnosis:
     """What the arm's model gets wrong in the records, of which the last is looked at for the errors alone.
 
     experiment: whether to look for what would separate causes that stand for each other. effects: to be asked
-    for alone, with a joint from 1 or at any place; all of the catalogue where there are none.
+    for alone, with a joint from 1 or at any place; all of the catalogue where there are none. where:
+    processes among which the candidates are shared; the answer is the same.
     Raises InputError where the records cannot answer.
     """
     free = found[0].input is None
@@ -108,7 +111,7 @@ def diagnose(
     for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
         check_efforts(arm, model, made.rows)
         check_one_arm(arm, model, made.rows, prober, made.rows[0].baseline.base(made.theta))
-        answer = answered(made, model, prober, effects, progress)
+        answer = answered(made, model, prober, effects, progress, where)
         if answer.verdict != "cannot_tell":
             break
     made, verdict, chosen, rows = answer.made, answer.verdict, answer.made.chosen, answer.made.rows

@@ -13,7 +13,7 @@ from modelgen.diagnosis.candidates import COMPLIANT, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.converging import converge
-from modelgen.diagnosis.court import Court
+from modelgen.diagnosis.court import Columns, Court
 from modelgen.diagnosis.endogeneity import endogeneity
 from modelgen.diagnosis.exchange import exchanged
 from modelgen.diagnosis.forms import with_causes
@@ -24,6 +24,8 @@ from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.slipping import without_rests
 from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
+from modelgen.diagnosis.trying import tried
+from modelgen.jobs import HERE, Where
 from modelgen.probing import Prober
 
 EVIDENCE = 6.0  # delta BIC that it takes to name a cause (strong: Kass and Raftery 1995)
@@ -68,17 +70,19 @@ def select(
     report: Report | None = None,
     blur: Array | None = None,
     narrowed: float = 1.0,
+    where: Where = HERE,
 ) -> Selection:
     """Causes in the order in which they were found. blur: what errors of the positions leave in the
     residuals, mean squares by joint (n,): a cause must explain more than they could feign. narrowed: the
-    usual band over that of the rows, where coarse positions asked for a narrower one.
+    usual band over that of the rows, where coarse positions asked for a narrower one. where: processes among
+    which the candidates are shared.
     """
     baseline = [r.columns for r in rows]
     p = baseline[0].shape[2]
     causes: list[Cause] = []
     system = System(rows, baseline, periods)
     evidence = threshold(system)
-    known: dict[object, list[Array] | None] = {}
+    known: Columns = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: Turns = []
     for turn in range(max(MOST, rows[0].effort.shape[1])):
@@ -88,10 +92,10 @@ def select(
         taken = {c.trial.candidate.place for c in causes}
         left = [c for c in pool if c.place not in taken]
         told = None if report is None else partial(report, f"cause {turn + 1}")
-        trials, faint, ranking = _weighed(left, court, evidence, prober.arm, told)
+        trials, faint, ranking = _weighed(tried(left, court, where, told), evidence, prober.arm)
         settled = refined(trials, causes, system, rows, prober)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
-        tried: list[tuple[Trial, Judgement]] = []
+        weighed: list[tuple[Trial, Judgement]] = []
         for t in sorted([*trials, *settled], key=lambda t: -t.odds):
             judged = gates.judged(t)
             if noisy and not judged.refused and not instrumented(t, system):
@@ -99,10 +103,10 @@ def select(
                 # behind an elastic joint a link swings otherwise in every period, as errors do
                 if t.candidate.effect not in COMPLIANT or correlated(System(rows, together, periods)):
                     judged = replace(judged, refused="positions")
-            tried.append((t, judged))
-        passed = [pair for pair in tried if not pair[1].refused]
+            weighed.append((t, judged))
+        passed = [pair for pair in weighed if not pair[1].refused]
         eligible = [pair for pair in passed if not at_one_joint(pair, passed)]
-        for t, judged in tried:
+        for t, judged in weighed:
             less = not judged.refused and all(t is not other for other, _ in eligible)
             ranking.append(ranked(t, judged, "one joint" if less else judged.refused))
         if not eligible:
@@ -157,18 +161,11 @@ def select(
 
 
 def _weighed(
-    pool: Sequence[Candidate],
-    court: Court,
-    evidence: float,
-    arm: Arm,
-    report: Callable[[int, int], None] | None,
+    every: Sequence[Trial | None], evidence: float, arm: Arm
 ) -> tuple[list[Trial], list[Trial], list[Ranked]]:
     """Candidates with evidence, those with too little of it, and what evidence or values refuse."""
     trials, faint, refused = [], [], []
-    for k, candidate in enumerate(pool):
-        if report is not None:
-            report(k, len(pool))
-        found = court.trial(candidate)
+    for found in every:
         if found is None:
             continue
         if found.gain.delta_bic < max(least_evidence(found), evidence):

@@ -1,6 +1,7 @@
 """Independent jobs, on the processors of this machine or on a Dask cluster."""
 
+from modelgen.jobs.forked import forked
 from modelgen.jobs.run import run
-from modelgen.jobs.where import Where
+from modelgen.jobs.where import HERE, Where
 
-__all__ = ["Where", "run"]
+__all__ = ["HERE", "Where", "forked", "run"]

@@ -20,6 +20,9 @@ class Where:
         return max(1, min(self.processes or _available(), jobs))
 
 
+HERE = Where(1)  # in this process alone
+
+
 def _available() -> int:
     """Processors that this process may use."""
     try:

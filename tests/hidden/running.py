@@ -28,6 +28,7 @@ def diagnose(folder: Path, name: str) -> tuple[dict[str, Any], float]:
     for path in sorted(folder.glob("train_?.csv")):
         command += ["--train", str(path)]
     command += ["--test", str(folder / "test.csv"), "--out", str(folder / "diagnosis"), "--json"]
+    command += ["--jobs", "1"]  # cases run side by side
     begin = time.perf_counter()
     environment = {**os.environ, **ONE_THREAD}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)

@@ -1,0 +1,43 @@
+"""All candidates tried at once, on all processors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate
+from modelgen.diagnosis.court import Columns, Court
+from modelgen.diagnosis.trials import Trial
+from modelgen.jobs import Where, forked
+
+
+def tried(
+    pool: Sequence[Candidate],
+    court: Court,
+    where: Where,
+    report: Callable[[int, int], None] | None = None,
+) -> list[Trial | None]:
+    """The best that each candidate can do, as `Court.trial`, in the order of the pool.
+
+    Candidates that share columns are one job, so that the answer does not depend on the number of processors.
+    """
+    groups: dict[object, list[int]] = {}
+    for k, candidate in enumerate(pool):
+        # play is tried where an elastic joint was
+        key = candidate.joint if candidate.effect in COMPLIANT else candidate.place
+        groups.setdefault(key, []).append(k)
+    jobs = list(groups.values())
+
+    def job(number: int) -> tuple[list[Trial | None], Columns]:
+        found = [court.trial(pool[k]) for k in jobs[number]]
+        return found, court.news()
+
+    def told(number: int) -> None:
+        if report is not None:
+            report(jobs[number][0], len(pool))
+
+    result: list[Trial | None] = [None] * len(pool)
+    for places, (found, columns) in zip(jobs, forked(job, len(jobs), where, told), strict=True):
+        court.learn(columns)
+        for k, trial in zip(places, found, strict=True):
+            result[k] = trial
+    return result

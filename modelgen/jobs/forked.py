@@ -1,0 +1,91 @@
+"""Jobs in forks of this process: they see all that it has, and only their answers are sent."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import sys
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any, TypeVar
+
+from modelgen.jobs.where import Where
+
+T = TypeVar("T")
+BYTES = 2  # of the number of a job
+MOST = 2000  # jobs whose numbers a pipe holds
+
+
+def forked(
+    job: Callable[[int], T], count: int, where: Where, told: Callable[[int], None] | None = None
+) -> list[T]:
+    """job(0) to job(count - 1), in this order, by this process and forks of it on its other processors.
+
+    Whoever is free takes the next one. Jobs must not depend on another one. What a fork did not answer,
+    because it was killed say, is done here. told: called with the number of every job that starts here.
+    Where there are no forks, or these are not safe (macOS, Windows), all is done here.
+    """
+    forks = where.count(count) - 1 if sys.platform == "linux" and count <= MOST else 0
+    if forks < 1:
+        return [_told(job, k, told) for k in range(count)]
+    numbers, end = os.pipe()
+    os.write(end, b"".join(k.to_bytes(BYTES, "big") for k in range(count)))
+    os.close(end)
+    helpers = []
+    try:
+        for _ in range(forks):
+            with suppress(OSError):  # no process to be had: as without one
+                helpers.append(_started(job, numbers))
+        found = _answers(numbers, lambda k: _told(job, k, told))
+        for _, answers in helpers:
+            with suppress(EOFError, OSError, pickle.UnpicklingError):
+                found.update(answers.recv())
+    finally:
+        os.close(numbers)
+        for process, answers in helpers:
+            answers.close()
+            process.kill()
+            process.join()
+    return [found[k] if k in found else _told(job, k, told) for k in range(count)]
+
+
+def _started(job: Callable[[int], Any], numbers: int) -> tuple[Any, Connection]:
+    context = get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    process = context.Process(target=_help, args=(job, numbers, there), daemon=True)
+    with warnings.catch_warnings():
+        # Threads whose locks a fork would inherit draw progress bars and wait for pictures; it does neither.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        process.start()
+    there.close()
+    return process, here
+
+
+def _help(job: Callable[[int], Any], numbers: int, answers: Connection) -> None:
+    """What a fork does. An error is left to the process that asked, which meets it again."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; that process answers
+    found: dict[int, Any] = {}
+    with suppress(Exception):
+        _answers(numbers, job, found)
+    with suppress(Exception):
+        answers.send(found)
+    os._exit(0)  # nothing of the parent's is to be flushed or closed here
+
+
+def _answers(numbers: int, job: Callable[[int], T], found: dict[int, T] | None = None) -> dict[int, T]:
+    """Answers of the jobs whose numbers this process took from the pipe."""
+    found = {} if found is None else found
+    while taken := os.read(numbers, BYTES):
+        number = int.from_bytes(taken, "big")
+        found[number] = job(number)
+    return found
+
+
+def _told(job: Callable[[int], T], k: int, told: Callable[[int], None] | None) -> T:
+    if told is not None:
+        told(k)
+    return job(k)
