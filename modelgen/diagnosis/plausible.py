@@ -26,7 +26,7 @@ USUAL: Mapping[str, Mapping[str, float]] = {
 MEASURED = 0.03  # of a length, as drawings and tapes leave it
 HEAVY = 0.3  # of the mass of all links, of one actuator
 OBVIOUS = 10.0  # times the scale: nobody overlooks such a one
-SEEN = ("base_tilt", "lever_geometry")  # at a glance, or with a tape
+SEEN = ("base_tilt", "lever_geometry", WEIGHING)  # at a glance, with a tape, or in the hand
 
 
 def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
