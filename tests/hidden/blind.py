@@ -167,9 +167,10 @@ def main() -> int:
             delayed(run_item)(item, seed, given.train, head[:12]) for item in todo
         )
         for line in results:
-            file.write(json.dumps(line) + "\n")
+            text = json.dumps(line)
+            file.write(text + "\n")
             file.flush()
-            lines[line["key"], line["train"]] = line
+            lines[line["key"], line["train"]] = json.loads(text)  # as one that was read: lists, no tuples
             progress.advance(task)
     blind_report.write(list(lines.values()), given.docs, len(matrix()))
     return 1 if any("failed" in line for line in lines.values()) else 0
