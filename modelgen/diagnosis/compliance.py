@@ -66,8 +66,8 @@ def refined(
     for t in trials:
         if "stiffness" in t.values and t.candidate.joint == first.candidate.joint:
             better = _Beside(rows, others, t, prober).best(_starts(t))
-            gain = None if better is None else beside(better, system)
-            if better is not None and gain is not None and sensible(replace(better, gain=gain), prober.arm):
+            gain = better and beside(better, system)
+            if better and gain and sensible(replace(better, gain=gain), prober.arm):
                 found.append(replace(better, gain=gain))
     return found
 

@@ -60,7 +60,6 @@ class Court:
         self.fresh = True  # whether columns that change are made anew
         self.aged = False  # whether some were not
         self.renewed: set[object] = set()  # made with the parameters of this court
-        self.told: set[object] = set()  # of these
 
     def trial(self, candidate: Candidate) -> Trial | None:
         """The best that the candidate can do; None where it adds nothing of its own."""
@@ -77,17 +76,10 @@ class Court:
                 break
         return found
 
-    def news(self) -> Columns:
-        """Columns that were made since this was last asked."""
-        fresh = self.renewed - self.told
-        self.told |= fresh
-        return {key: self.known[key] for key in fresh}
-
     def learn(self, columns: Columns) -> None:
         """Takes columns over that this court made in another process."""
         self.known.update(columns)
         self.renewed |= columns.keys()
-        self.told |= columns.keys()
 
     def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:

@@ -28,8 +28,9 @@ def tried(
     jobs = list(groups.values())
 
     def job(number: int) -> tuple[list[Trial | None], Columns]:
+        before = set(court.renewed)
         found = [court.trial(pool[k]) for k in jobs[number]]
-        return found, court.news()
+        return found, {key: court.known[key] for key in court.renewed - before}
 
     def told(number: int) -> None:
         if report is not None:

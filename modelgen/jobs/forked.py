@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import signal
 import sys
 import warnings
 from collections.abc import Callable
@@ -13,6 +12,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
+from modelgen.jobs.local import ignore_interrupt
 from modelgen.jobs.where import Where
 
 T = TypeVar("T")
@@ -67,7 +67,7 @@ def _started(job: Callable[[int], Any], numbers: int) -> tuple[Any, Connection]:
 
 def _help(job: Callable[[int], Any], numbers: int, answers: Connection) -> None:
     """What a fork does. An error is left to the process that asked, which meets it again."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; that process answers
+    ignore_interrupt()
     found: dict[int, Any] = {}
     with suppress(Exception):
         _answers(numbers, job, found)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
-import signal
 from collections.abc import Mapping
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -16,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from modelgen.figures import figure, svg
+from modelgen.jobs import Where, ignore_interrupt
 
 
 @dataclass(frozen=True)
@@ -68,11 +67,11 @@ class Pen:
         self._sketches: dict[str, Sketch] = {}
         self._drawn: dict[str, Future[str]] = {}
         self._pool: ProcessPoolExecutor | None = None
-        if beside and processors() > 1:
+        if beside and Where().count(2) > 1:
             # a fork would inherit the locks of this process's threads
             context = multiprocessing.get_context("spawn")
             with suppress(OSError, NotImplementedError):  # no process to be had: as without one
-                pool = ProcessPoolExecutor(1, mp_context=context, initializer=_ignore_interrupt)
+                pool = ProcessPoolExecutor(1, mp_context=context, initializer=ignore_interrupt)
                 pool.submit(Sketch(1, 1, (1.0, 1.0)).drawn)
                 self._pool = pool
 
@@ -100,13 +99,3 @@ class Pen:
             with suppress(BrokenProcessPool):  # no memory for it, or ended by someone
                 return self._drawn[name].result()
         return self._sketches[name].drawn()
-
-
-def processors() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _ignore_interrupt() -> None:
-    """Ctrl-C reaches the whole group; the parent process answers for all."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
