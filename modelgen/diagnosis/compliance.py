@@ -24,6 +24,7 @@ from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
 from modelgen.diagnosis.trials import Trial, beside, sensible
+from modelgen.jobs import HERE, Where, forked
 from modelgen.probing import Prober
 
 # A gap has minima of its own at other widths, and what was found beside a rigid arm's parameters may be far
@@ -50,11 +51,17 @@ def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> Non
 
 
 def refined(
-    trials: Sequence[Trial], causes: Sequence[Cause], system: System, rows: Sequence[Rows], prober: Prober
+    trials: Sequence[Trial],
+    causes: Sequence[Cause],
+    system: System,
+    rows: Sequence[Rows],
+    prober: Prober,
+    where: Where = HERE,
 ) -> list[Trial]:
     """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
 
-    None beside another one: what is left of that looks like the next.
+    None beside another one: what is left of that looks like the next. where: processes among which they are
+    shared.
     """
     others = [c.trial for c in causes]
     first = max(trials, key=lambda t: t.gain.delta_bic, default=None)
@@ -62,14 +69,15 @@ def refined(
         return []
     if first.candidate.effect not in COMPLIANT:
         return []
-    found = []
-    for t in trials:
-        if "stiffness" in t.values and t.candidate.joint == first.candidate.joint:
-            better = _Beside(rows, others, t, prober).best(_starts(t))
-            gain = better and beside(better, system)
-            if better and gain and sensible(replace(better, gain=gain), prober.arm):
-                found.append(replace(better, gain=gain))
-    return found
+    there = [t for t in trials if "stiffness" in t.values and t.candidate.joint == first.candidate.joint]
+
+    def job(k: int) -> Trial | None:
+        better = _Beside(rows, others, there[k], prober).best(_starts(there[k]))
+        gain = better and beside(better, system)
+        return replace(better, gain=gain) if better and gain else None
+
+    found = forked(job, len(there), where)
+    return [t for t in found if t is not None and sensible(t, prober.arm)]
 
 
 def member(first: Judged, eligible: Sequence[Judged]) -> Judged:

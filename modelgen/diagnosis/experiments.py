@@ -19,6 +19,7 @@ from modelgen.diagnosis.selection import RATHER
 from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE
+from modelgen.jobs import HERE, Where
 
 if TYPE_CHECKING:
     from modelgen.diagnosis.objects import Named
@@ -68,6 +69,7 @@ def next_experiment(
     system: System,
     period: int | None,
     progress: Progress | None = None,
+    where: Where = HERE,
 ) -> Experiment | None:
     """For the first cause that others could stand for; None where there is none.
 
@@ -87,7 +89,7 @@ def next_experiment(
         judge = Judge(system, stage.prober, stage.base, before)
         suited = [t for t in trials if t.candidate.effect not in UNSUITED][:MEMBERS]
         members = tuple(hypothesis(t) for t in suited) if len(suited) > 1 else ()
-        proposal = propose(stage, judge, members, period, progress) if members else None
+        proposal = propose(stage, judge, members, period, progress, where) if members else None
         bench = readings(stage, judge, claims)
         if members:
             bench += tests(stage, judge, members, proposal)

@@ -19,6 +19,7 @@ from modelgen.functions import Model
 from modelgen.probing import Motion, Prober
 
 HARMONICS = 5
+FEWEST = 2  # samples of a slow motion from one row to the next
 SHORTEST, USUAL, LONGEST = 4.0, 10.0, 12.0  # s, period of a motion
 
 
@@ -42,9 +43,15 @@ class Stage:
         """Sampling period [s]."""
         return self.prepared[0].record.step
 
-    def times(self, count: int) -> Array:
-        """Of so many samples (N,) [s]."""
-        return np.asarray(self.step * np.arange(count), dtype=np.float64)
+    def times(self, count: int, every: int = 1) -> Array:
+        """Of so many samples (N,) [s]. every: sampling periods between them."""
+        return np.asarray(every * self.step * np.arange(count), dtype=np.float64)
+
+    @property
+    def coarsest(self) -> int:
+        """Most sampling periods between samples of a slow motion from which the same rows follow."""
+        factor = self.prepared[0].settings.factor
+        return next(factor // rest for rest in range(min(FEWEST, factor), factor + 1) if factor % rest == 0)
 
     def settings(self, period: int | None, seed: int = 0) -> Settings:
         """Of the excitation. period: samples in that of the training records."""
@@ -53,19 +60,26 @@ class Stage:
         samples = round(float(np.clip(length, SHORTEST, LONGEST)) * rate)
         return Settings(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
 
-    def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
-        """Equations of a motion q (N, n) [rad, m] at the records' rate; None where it cannot be logged."""
+    def rows(self, q: Array, parameters: Array | None = None, every: int = 1) -> Rows | None:
+        """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged.
+
+        every: sampling periods of the records between two of its samples. Where there are several the motion
+        must be slow, and its positions are not filtered.
+        """
         first = self.prepared[0]
+        settings = first.settings
+        if every > 1:
+            settings = replace(settings, factor=settings.factor // every, position_cutoff=0.0)
         motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.prober.arm))])
         if not np.isfinite(motor).all():
             return None
         nothing = np.zeros(q.shape)
         record = Record(
-            "next", self.times(len(q)), q, motor, nothing, nothing + 1.0,
+            "next", self.times(len(q), every), q, motor, nothing, nothing + 1.0,
             motor_side=first.record.motor_side, arm=first.record.arm,
         )  # fmt: skip
         try:
-            prepared = prepare(record, first.settings)
+            prepared = prepare(record, settings)
         except InputError:
             return None
         if len(prepared.rows) < 3 * ORDER:
@@ -73,12 +87,15 @@ class Stage:
         base = self.base if parameters is None else parameters
         return rows_of(self.prober, self.model, prepared, base)
 
-    def overload(self, q: Array, dq: Array, ddq: Array) -> float:
-        """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
+    def overload(self, q: Array, dq: Array, ddq: Array, every: int = 1) -> float:
+        """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one.
+
+        every: sampling periods between its samples.
+        """
         limits = [b for b in bounds(self.arm, Settings())[0] if b.signal in ("input", "effort")]
         if not limits:
             return 0.0
-        given = self.prober.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)
+        given = self.prober.inputs(Motion(self.times(len(q), every), q, dq, ddq), self.base)
         drives, most = drives_of(self.prober.arm), 0.0
         for b in limits:
             x = given[:, b.coordinate]

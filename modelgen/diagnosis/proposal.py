@@ -14,14 +14,17 @@ import numpy as np
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.separation import Hypothesis, Judge
+from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.problem import SIGNALS, Problem, problem
 from modelgen.excitation.random_motion import feasible, shrunk
 from modelgen.excitation.run import Excitation, described
+from modelgen.jobs import HERE, Where, forked
 
 SCALES = (1.0, 0.3, 0.1)  # of the random starts: some causes show in small motions
 DRAWS = 8  # of each scale
-STEPS = 60  # of the evolution strategy
+STEPS = 30  # of the evolution strategy, from each of the best starts
+BEST = 2  # starts that are refined
 PERIODS = 3  # to be run
 FIRST_STEP = 0.3  # of the coefficients' size
 GROWTH, DECAY = 1.5, 0.84  # of a step that succeeded, or not: a fifth should (Rechenberg 1973)
@@ -46,8 +49,12 @@ def propose(
     members: Sequence[Hypothesis],
     period: int | None,
     progress: Progress | None = None,
+    where: Where = HERE,
 ) -> Proposal | None:
-    """The best of all starts, refined; None where no motion is within the limits or separates anything."""
+    """The best of all starts, refined; None where no motion is within the limits or separates anything.
+
+    where: processes among which starts are shared; the answer is the same.
+    """
     settings = stage.settings(period)
     try:
         p = problem(stage.arm, settings)
@@ -55,22 +62,41 @@ def propose(
         drawn = [feasible(p, first, MARGIN) for _ in range(DRAWS)]
     except InputError:
         return None
-    rng = np.random.default_rng([settings.seed, 1])
-    total, done = len(stage.prepared) + len(SCALES) * DRAWS + STEPS, 0
+    runs = [as_run(stage, p, k) for k in range(len(stage.prepared))]
+    starts = [z for z in runs if z is not None] + [scaled(z, factor) for z in drawn for factor in SCALES]
+
+    stepped = any(CATALOGUE[h.candidate.effect].states for h in (*members, *judge.before))
+    every = 1 if stepped or stage.model.states else stage.coarsest
 
     def value(z: Array) -> float:
-        nonlocal done
-        if progress is not None:
-            progress("next experiment", done, total)
-        done += 1
-        return worth(stage, judge, members, p, z)
+        return worth(stage, judge, members, p, z, every)
 
-    best, most = drawn[0], -np.inf
-    starts = [z for z in (as_run(stage, p, k) for k in range(len(stage.prepared))) if z is not None]
-    for z in [*starts, *(scaled(z, factor) for z in drawn for factor in SCALES)]:
-        found = value(z)
-        if found > most:
-            best, most = z, found
+    def told(k: int) -> None:
+        if progress is not None:
+            progress("next experiment", k, len(starts) + BEST)
+
+    found = forked(lambda k: value(starts[k]), len(starts), where, told)
+    order = sorted(range(len(starts)), key=lambda k: -found[k])[:BEST]
+
+    def refined(k: int) -> tuple[Array, float]:
+        rng = np.random.default_rng([settings.seed, 1, k])
+        return evolved(p, value, starts[order[k]], found[order[k]], rng)
+
+    ends = forked(refined, len(order), where, lambda k: told(len(starts) + k))
+    best, most = max(ends, key=lambda end: end[1])
+    if not np.isfinite(most):
+        return None
+    q = positions(p, best, PERIODS)[0]
+    rows = stage.rows(q)
+    if rows is None:
+        return None
+    return Proposal(described(stage.arm, p, best), q, rows, judge.evidence(members, [rows]))
+
+
+def evolved(
+    p: Problem, value: Callable[[Array], float], best: Array, most: float, rng: np.random.Generator
+) -> tuple[Array, float]:
+    """Coefficients better than these, whose value is `most`, and theirs: one parent, one child."""
     step = FIRST_STEP
     for _ in range(STEPS):
         size = np.abs(best[:, 1:]).max(axis=1, keepdims=True)
@@ -82,21 +108,20 @@ def propose(
         step *= GROWTH if found > most else DECAY
         if trial is not None and found > most:
             best, most = trial, found
-    if not np.isfinite(most):
-        return None
-    q = positions(p, best, PERIODS)[0]
-    rows = stage.rows(q)
-    if rows is None:
-        return None
-    return Proposal(described(stage.arm, p, best), q, rows, judge.evidence(members, [rows]))
+    return best, most
 
 
-def worth(stage: Stage, judge: Judge, members: Sequence[Hypothesis], p: Problem, z: Array) -> float:
-    """The least evidence of one period over all pairs; minus infinity where an effort would be too large."""
-    q, dq, ddq = positions(p, z, 1)
-    if stage.overload(q, dq, ddq) > 1:
+def worth(
+    stage: Stage, judge: Judge, members: Sequence[Hypothesis], p: Problem, z: Array, every: int = 1
+) -> float:
+    """The least evidence of one period over all pairs; minus infinity where an effort would be too large.
+
+    every: sampling periods between the samples that are looked at.
+    """
+    q, dq, ddq = positions(p, z, 1, every)
+    if stage.overload(q, dq, ddq, every) > 1:
         return -np.inf
-    rows = stage.rows(q)
+    rows = stage.rows(q, every=every)
     return -np.inf if rows is None else float(judge.evidence(members, [rows], wide=False).min())
 
 
@@ -117,8 +142,8 @@ def as_run(stage: Stage, p: Problem, k: int) -> Array | None:
     return shrunk(p, z, p.grid(), 1 - MARGIN)
 
 
-def positions(p: Problem, z: Array, periods: int) -> tuple[Array, Array, Array]:
-    """q, dq, ddq (N, n) of so many periods at the settings' rate."""
-    signals = dict(zip(SIGNALS, p.sampled(p.motion, z, p.at_rate()), strict=True))
+def positions(p: Problem, z: Array, periods: int, every: int = 1) -> tuple[Array, Array, Array]:
+    """q, dq, ddq (N, n) of so many periods at every so many samples of the settings' rate."""
+    signals = dict(zip(SIGNALS, p.sampled(p.motion, z, p.at_rate()[::every]), strict=True))
     q, dq, ddq = (np.tile(signals[name][:, :, 0], (periods, 1)) for name in ("q", "dq", "ddq"))
     return q, dq, ddq

@@ -124,7 +124,9 @@ def diagnose(
     if experiment and verdict == "named":
         plan = None if free else stage(arm, model, prober, train, base)
         shortest = min((p for p in lengths if p is not None), default=None)
-        following = next_experiment(named, selection.causes, plan, selection.system, shortest, progress)
+        following = next_experiment(
+            named, selection.causes, plan, selection.system, shortest, progress, where
+        )
     before = fitted(arm, model, rows)
     after = extended(arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)

@@ -93,7 +93,7 @@ def select(
         left = [c for c in pool if c.place not in taken]
         told = None if report is None else partial(report, f"cause {turn + 1}")
         trials, faint, ranking = _weighed(tried(left, court, where, told), evidence, prober.arm)
-        settled = refined(trials, causes, system, rows, prober)
+        settled = refined(trials, causes, system, rows, prober, where)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
         weighed: list[tuple[Trial, Judgement]] = []
         for t in sorted([*trials, *settled], key=lambda t: -t.odds):
