@@ -61,7 +61,7 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
     [
         ("base_tilt", "y", -1.4, True),
         ("base_tilt", "y", 0.2, False),
-        ("lever_geometry", "l1", 0.2, True),
+        ("lever_geometry", "l1", 0.09, True),
         ("lever_geometry", "l1", 0.05, False),
         ("encoder_offset", "offset", 1.57, False),
         ("actuator_mass", "moment_x", 90.0 * ROD / 2, True),
@@ -69,5 +69,5 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
     ],
 )
 def test_what_nobody_overlooks(effect: str, name: str, value: float, seen: bool) -> None:
-    """A tilt of 80 degrees, 90 kg of actuator on an arm of 20; not an encoder that is a quarter turn off."""
+    """A tilt of 80 degrees, a quarter of a length, 90 kg of actuator on an arm of 20; not an encoder that is a quarter turn off."""
     assert obvious(Candidate(effect, 1), {name: value}, ARM) is seen

@@ -33,7 +33,6 @@ STARTS = {"play": (0.3, 1.0, 3.0, 10.0), "stiffness": (0.3, 1.0, 3.0)}
 FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was found, at a start, at a trial
 EDGE = 0.4  # of the first simplex, in logarithms
 MOST = 45  # trials
-PATIENCE = 15  # trials after which what still leaves more than a rigid joint is none
 FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
 SIMPLER = 1.15  # times what an elastic joint carries to rows that were not seen, that a gap must
 SINGULAR = 1e-10
@@ -134,7 +133,8 @@ class _Beside:
         """The trial with the values that leave least, and its columns at the parameters that go with them.
         None where a rigid joint leaves less.
 
-        starts: values to begin at besides its own.
+        starts: values to begin at besides its own. Where all of them leave more than a rigid joint does, a
+        search only leads back to that, and is left out.
         """
         values = self.trial.values
         least, near = self.at(values, self.rigid, FIRST)
@@ -142,7 +142,9 @@ class _Beside:
             left, beside = self.at(start, self.rigid, SETTLING)
             if left < least:
                 least, values, near = left, start, beside
-        names, done = sorted(values), list[float]()
+        if starts and least > self.least:
+            return None
+        names = sorted(values)
 
         def leaves(logarithms: Array) -> float:
             nonlocal least, values, near
@@ -150,17 +152,12 @@ class _Beside:
             left, beside = self.at(tried, near, TURNS)
             if left < least:
                 least, values, near = left, tried, beside
-            done.append(left)
             return min(left, 1e6)
-
-        def hopeless(_: Array) -> None:
-            if len(done) >= PATIENCE and least > self.least:
-                raise StopIteration  # ends the search
 
         first = np.log([values[name] for name in names])
         simplex = np.vstack([first, first + EDGE * np.eye(len(first))])
         options = {"initial_simplex": simplex, "maxfev": MOST, "xatol": FINE, "fatol": EVEN}
-        minimize(leaves, first, method="Nelder-Mead", options=options, callback=hopeless)
+        minimize(leaves, first, method="Nelder-Mead", options=options)
         if least > self.least:
             return None
         made = self._columns(values, near)

@@ -25,8 +25,8 @@ USUAL: Mapping[str, Mapping[str, float]] = {
 }
 MEASURED = 0.03  # of a length, as drawings and tapes leave it
 HEAVY = 0.3  # of the mass of all links, of one actuator
-OBVIOUS = 10.0  # times the scale: nobody overlooks such a one
-SEEN = ("base_tilt", "lever_geometry", WEIGHING)  # at a glance, with a tape, or in the hand
+# Times the scale, beyond which nobody overlooks it: at a glance, with a tape, or in the hand.
+OBVIOUS = {"base_tilt": 10.0, "lever_geometry": 5.0, WEIGHING: 10.0}
 
 
 def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
@@ -47,8 +47,8 @@ def elsewhere(candidate: Candidate) -> float:
 
 def obvious(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
     """Whether someone would have seen it, so that the records must be about something else."""
-    scales = usual(candidate, arm) if candidate.effect in SEEN else {}
-    return any(abs(values.get(name, 0.0)) > OBVIOUS * scale for name, scale in scales.items())
+    times = OBVIOUS.get(candidate.effect, math.inf)
+    return any(abs(values.get(name, 0.0)) > times * scale for name, scale in usual(candidate, arm).items())
 
 
 def usual(candidate: Candidate, arm: Arm) -> Mapping[str, float]:
