@@ -21,12 +21,14 @@ from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.motions import Stage, stage
 from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.proposal import Proposal, propose
+from modelgen.diagnosis.proposal import MARGIN, Proposal, propose, worth
 from modelgen.diagnosis.run import settings_for
 from modelgen.diagnosis.separation import Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.effects import known_effects
+from modelgen.excitation.problem import problem
+from modelgen.excitation.random_motion import feasible
 from modelgen.excitation.writing import data
 from modelgen.functions import build_model
 from modelgen.probing import Prober
@@ -117,13 +119,18 @@ def beyond(found: list[Trial], true: int) -> float:
     return found[true].gain.delta_bic - found[1 - true].gain.delta_bic
 
 
-def proposed(scene: Scene, true: int) -> tuple[float, Proposal]:
-    """Evidence that the record of the scene gives for the truth, and the trajectory proposed after it."""
+def judged(scene: Scene, true: int) -> tuple[list[Trial], Stage, Judge]:
+    """Both members fitted to the record of the scene."""
     found, system, planned = scene.trials([scene.record("old", 0, true)])
     named = [
         np.concatenate([r.columns, c], axis=2) for r, c in zip(system.rows, found[true].columns, strict=True)
     ]
-    judge = Judge(System(system.rows, named, system.periods), scene.prober, planned.base)
+    return found, planned, Judge(System(system.rows, named, system.periods), scene.prober, planned.base)
+
+
+def proposed(scene: Scene, true: int) -> tuple[float, Proposal]:
+    """Evidence that the record of the scene gives for the truth, and the trajectory proposed after it."""
+    found, planned, judge = judged(scene, true)
     result = propose(planned, judge, [hypothesis(t) for t in found], round(PERIOD / planned.step))
     assert result is not None
     return beyond(found, true), result
@@ -142,6 +149,18 @@ def test_the_plant_on_the_proposed_trajectory_tells_apart_what_its_record_did_no
     for truth in (0, 1):
         trials, _, _ = scene.trials([scene.record("new", 1, truth)])
         assert beyond(trials, truth) > CONVINCING
+
+
+def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: Path) -> None:
+    case = SETS["offset"]
+    found, planned, judge = judged(Scene(case.pair, case.magnitudes, tmp_path), case.true)
+    members = [hypothesis(t) for t in found]
+    p = problem(planned.arm, planned.settings(round(PERIOD / planned.step)))
+    rng = default_rng(3)
+    assert planned.coarsest == 6
+    for z in (feasible(p, rng, MARGIN) for _ in range(5)):
+        every, sixth = (worth(planned, judge, members, p, z, n) for n in (1, planned.coarsest))
+        assert sixth == pytest.approx(every, rel=0.15)
 
 
 def test_the_trajectory_keeps_the_limits_and_ends_where_it_begins(tmp_path: Path) -> None:

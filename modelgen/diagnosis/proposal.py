@@ -29,6 +29,7 @@ PERIODS = 3  # to be run
 FIRST_STEP = 0.3  # of the coefficients' size
 GROWTH, DECAY = 1.5, 0.84  # of a step that succeeded, or not: a fifth should (Rechenberg 1973)
 MARGIN = 0.01  # of every limit
+FAST = ("torque_ripple", "stribeck_friction")  # change within less than samples that are left out
 
 Progress = Callable[[str, int, int], None]
 
@@ -65,8 +66,9 @@ def propose(
     runs = [as_run(stage, p, k) for k in range(len(stage.prepared))]
     starts = [z for z in runs if z is not None] + [scaled(z, factor) for z in drawn for factor in SCALES]
 
-    stepped = any(CATALOGUE[h.candidate.effect].states for h in (*members, *judge.before))
-    every = 1 if stepped or stage.model.states else stage.coarsest
+    effects = [h.candidate.effect for h in (*members, *judge.before)]
+    fast = any(e in FAST or CATALOGUE[e].states for e in effects) or stage.model.states
+    every = 1 if fast else stage.coarsest
 
     def value(z: Array) -> float:
         return worth(stage, judge, members, p, z, every)
