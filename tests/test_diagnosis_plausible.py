@@ -63,6 +63,8 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
         ("base_tilt", "y", 0.2, False),
         ("lever_geometry", "l1", 0.09, True),
         ("lever_geometry", "l1", 0.05, False),
+        ("lever_geometry", "l2", 0.024, False),  # pivots lie inside
+        ("lever_geometry", "l2", 0.04, True),
         ("encoder_offset", "offset", 1.57, False),
         ("actuator_mass", "moment_x", 90.0 * ROD / 2, True),
         ("actuator_mass", "moment_x", 20.0 * ROD / 2, False),

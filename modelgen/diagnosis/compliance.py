@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -59,24 +60,36 @@ def refined(
 ) -> list[Trial]:
     """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
 
-    None beside another one: what is left of that looks like the next. where: processes among which they are
-    shared.
+    Where a rigid joint leaves less than all of them, whatever is ahead of the other trials. None beside
+    another one: what is left of that looks like the next. where: processes among which they are shared.
     """
     others = [c.trial for c in causes]
-    first = max(trials, key=lambda t: t.gain.delta_bic, default=None)
-    if first is None or any(t.candidate.effect in COMPLIANT for t in others):
+    if any(t.candidate.effect in COMPLIANT for t in others):
         return []
-    if first.candidate.effect not in COMPLIANT:
-        return []
-    there = [t for t in trials if "stiffness" in t.values and t.candidate.joint == first.candidate.joint]
+    left = sorted(trials, key=lambda t: -t.gain.delta_bic)
+    while left and left[0].candidate.effect in COMPLIANT:
+        joint = left[0].candidate.joint
+        there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
+        job = partial(_better, there, others, system, rows, prober)
+        better = [t for t in forked(job, len(there), where) if t is not None]
+        if better:
+            return [t for t in better if sensible(t, prober.arm)]
+        left = [t for t in left if t.candidate.effect not in COMPLIANT or t.candidate.joint != joint]
+    return []
 
-    def job(k: int) -> Trial | None:
-        better = _Beside(rows, others, there[k], prober).best(_starts(there[k]))
-        gain = better and beside(better, system)
-        return replace(better, gain=gain) if better and gain else None
 
-    found = forked(job, len(there), where)
-    return [t for t in found if t is not None and sensible(t, prober.arm)]
+def _better(
+    trials: Sequence[Trial],
+    others: Sequence[Trial],
+    system: System,
+    rows: Sequence[Rows],
+    prober: Prober,
+    k: int,
+) -> Trial | None:
+    """Trial k with its best values; None where a rigid joint leaves less."""
+    better = _Beside(rows, others, trials[k], prober).best(_starts(trials[k]))
+    gain = better and beside(better, system)
+    return replace(better, gain=gain) if better and gain else None
 
 
 def member(first: Judged, eligible: Sequence[Judged]) -> Judged:

@@ -27,6 +27,7 @@ MEASURED = 0.03  # of a length, as drawings and tapes leave it
 HEAVY = 0.3  # of the mass of all links, of one actuator
 # Times the scale, beyond which nobody overlooks it: at a glance, with a tape, or in the hand.
 OBVIOUS = {"base_tilt": 10.0, "lever_geometry": 5.0, WEIGHING: 10.0}
+HIDDEN = 0.03  # m, by which a length between pivots may be off however short it is
 
 
 def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
@@ -48,7 +49,9 @@ def elsewhere(candidate: Candidate) -> float:
 def obvious(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
     """Whether someone would have seen it, so that the records must be about something else."""
     times = OBVIOUS.get(candidate.effect, math.inf)
-    return any(abs(values.get(name, 0.0)) > times * scale for name, scale in usual(candidate, arm).items())
+    least = HIDDEN if candidate.effect == "lever_geometry" else 0.0
+    scales = usual(candidate, arm)
+    return any(abs(values.get(name, 0.0)) > max(times * scale, least) for name, scale in scales.items())
 
 
 def usual(candidate: Candidate, arm: Arm) -> Mapping[str, float]:
