@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from modelgen.dataset import read
 from modelgen.description import load
 from modelgen.effects import known_effects
 from modelgen.probing import places
@@ -68,6 +69,13 @@ def test_one_record_and_none_to_measure_the_gain_on(logs: Path, tmp_path: Path) 
     assert "the gain cannot be measured" in answer.said
     assert "record the arm once more" in answer.said
     assert not (tmp_path / "out").exists()
+    words = answer.said.split()
+    options = words[words.index("--train") :]
+    assert options[::2] == ["--train", "--test"]
+    arm = load(logs / "arms.yaml", known_effects())["digger"]
+    train, test = (read(spec, arm).t for spec in options[1::2])
+    assert train[-1] < test[0]  # what it advises can be done
+    assert len(train) == pytest.approx(3 * len(test), rel=0.01)
 
 
 def test_records_with_and_without_efforts(logs: Path, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import read
 from modelgen.dataset.sources import read_columns
-from modelgen.dataset.specs import Spec, check_separate, parse, split
+from modelgen.dataset.specs import Spec, check_separate, last_quarter_out, parse, split
 from modelgen.dataset.spectra import described, spectra_svg
 from modelgen.dataset.streaming import Stream
 
@@ -26,6 +26,7 @@ __all__ = [
     "described",
     "drives_of",
     "gather",
+    "last_quarter_out",
     "parse",
     "prepare",
     "preset",

@@ -118,6 +118,14 @@ def _advice(texts: Sequence[str]) -> str:
     )
 
 
+def last_quarter_out(record: Record) -> str:
+    """Options by which a record serves for both."""
+    spec, t = parse(record.name), record.t
+    begin, end = (f"{x:g}" if math.isfinite(x) else "" for x in (spec.begin, spec.end))
+    at = f"{t[0] + 0.75 * (t[-1] - t[0]):.4g}"
+    return f"--train {spec.path}@{begin}:{at} --test {spec.path}@{at}:{end}"
+
+
 def split(record: Record, parts: int = 2) -> list[Record]:
     """A record in consecutive blocks of equal length, named after their times. Raises InputError."""
     edges = [round(len(record.t) * k / parts) for k in range(parts + 1)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from modelgen.dataset import Record, Settings, check_separate, read, split
+from modelgen.dataset import Record, Settings, check_separate, last_quarter_out, read, split
 from modelgen.dataset.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.answer import Progress, answered
@@ -51,7 +51,7 @@ def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path |
     if not test:
         raise InputError(
             "found no test record: the gain cannot be measured on what was fitted; record the arm once more, "
-            f"or hold its last quarter out: --train {train[0]}@:T --test {train[0]}@T:, T in seconds"
+            f"or hold its last quarter out: {last_quarter_out(read(train[0], arm, mapping))}"
         )
     check_separate(train, test)
     if len(test) != 1:
