@@ -71,5 +71,5 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
     ],
 )
 def test_what_nobody_overlooks(effect: str, name: str, value: float, seen: bool) -> None:
-    """A tilt of 80 degrees, a quarter of a length, 90 kg on an arm of 20; not a quarter turn of an encoder."""
+    """A tilt of 80 degrees, a quarter of a length, 90 kg on an arm of 20, no quarter turn of an encoder."""
     assert obvious(Candidate(effect, 1), {name: value}, ARM) is seen
