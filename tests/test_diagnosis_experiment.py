@@ -157,9 +157,9 @@ def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: 
     members = [hypothesis(t) for t in found]
     p = problem(planned.arm, planned.settings(round(PERIOD / planned.step)))
     rng = default_rng(3)
-    assert planned.coarsest == 6
+    assert planned.coarse.every == 6
     for z in (feasible(p, rng, MARGIN) for _ in range(5)):
-        every, sixth = (worth(planned, judge, members, p, z, n) for n in (1, planned.coarsest))
+        every, sixth = (worth(s, judge, members, p, z) for s in (planned, planned.coarse))
         assert sixth == pytest.approx(every, rel=0.15)
 
 

@@ -114,7 +114,7 @@ def _advice(texts: Sequence[str]) -> str:
     file = parse(texts[0]).path if texts else Path("LOG")
     return (
         "one file can serve for both in parts that do not overlap, the last quarter held out, say: "
-        f"--train {file}@:T --test {file}@T:, T in seconds"
+        f"{_parts(file, at='T')}, T in seconds"
     )
 
 
@@ -122,8 +122,11 @@ def last_quarter_out(record: Record) -> str:
     """Options by which a record serves for both."""
     spec, t = parse(record.name), record.t
     begin, end = (f"{x:g}" if math.isfinite(x) else "" for x in (spec.begin, spec.end))
-    at = f"{t[0] + 0.75 * (t[-1] - t[0]):.4g}"
-    return f"--train {spec.path}@{begin}:{at} --test {spec.path}@{at}:{end}"
+    return _parts(spec.path, begin, f"{t[0] + 0.75 * (t[-1] - t[0]):.6g}", end)
+
+
+def _parts(file: Path, begin: str = "", at: str = "", end: str = "") -> str:
+    return f"--train {file}@{begin}:{at} --test {file}@{at}:{end}"
 
 
 def split(record: Record, parts: int = 2) -> list[Record]:

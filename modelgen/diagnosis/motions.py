@@ -29,6 +29,8 @@ class Stage:
 
     arm: with a limit wherever the description has none, and without effects that have states. prepared: the
     training records. base: base parameters (p,) of `model`. assumed: limits that were taken from the records.
+    every: sampling periods of the records between two samples of a motion; where there are several it must
+    be slow, and its positions are not filtered.
     """
 
     arm: Arm
@@ -37,21 +39,23 @@ class Stage:
     prepared: Sequence[Prepared]
     base: Array
     assumed: tuple[str, ...]
+    every: int = 1
 
     @property
     def step(self) -> float:
         """Sampling period [s]."""
         return self.prepared[0].record.step
 
-    def times(self, count: int, every: int = 1) -> Array:
-        """Of so many samples (N,) [s]. every: sampling periods between them."""
-        return np.asarray(every * self.step * np.arange(count), dtype=np.float64)
+    def times(self, count: int) -> Array:
+        """Of so many samples (N,) of a motion [s]."""
+        return np.asarray(self.every * self.step * np.arange(count), dtype=np.float64)
 
     @property
-    def coarsest(self) -> int:
-        """Most sampling periods between samples of a slow motion from which the same rows follow."""
+    def coarse(self) -> Stage:
+        """With as few samples as the same rows of a slow motion follow from."""
         factor = self.prepared[0].settings.factor
-        return next(factor // rest for rest in range(min(FEWEST, factor), factor + 1) if factor % rest == 0)
+        rest = next(k for k in range(min(FEWEST, factor), factor + 1) if factor % k == 0)
+        return replace(self, every=factor // rest)
 
     def settings(self, period: int | None, seed: int = 0) -> Settings:
         """Of the excitation. period: samples in that of the training records."""
@@ -60,22 +64,18 @@ class Stage:
         samples = round(float(np.clip(length, SHORTEST, LONGEST)) * rate)
         return Settings(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
 
-    def rows(self, q: Array, parameters: Array | None = None, every: int = 1) -> Rows | None:
-        """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged.
-
-        every: sampling periods of the records between two of its samples. Where there are several the motion
-        must be slow, and its positions are not filtered.
-        """
+    def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
+        """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged."""
         first = self.prepared[0]
         settings = first.settings
-        if every > 1:
-            settings = replace(settings, factor=settings.factor // every, position_cutoff=0.0)
+        if self.every > 1:
+            settings = replace(settings, factor=settings.factor // self.every, position_cutoff=0.0)
         motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.prober.arm))])
         if not np.isfinite(motor).all():
             return None
         nothing = np.zeros(q.shape)
         record = Record(
-            "next", self.times(len(q), every), q, motor, nothing, nothing + 1.0,
+            "next", self.times(len(q)), q, motor, nothing, nothing + 1.0,
             motor_side=first.record.motor_side, arm=first.record.arm,
         )  # fmt: skip
         try:
@@ -87,15 +87,12 @@ class Stage:
         base = self.base if parameters is None else parameters
         return rows_of(self.prober, self.model, prepared, base)
 
-    def overload(self, q: Array, dq: Array, ddq: Array, every: int = 1) -> float:
-        """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one.
-
-        every: sampling periods between its samples.
-        """
+    def overload(self, q: Array, dq: Array, ddq: Array) -> float:
+        """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
         limits = [b for b in bounds(self.arm, Settings())[0] if b.signal in ("input", "effort")]
         if not limits:
             return 0.0
-        given = self.prober.inputs(Motion(self.times(len(q), every), q, dq, ddq), self.base)
+        given = self.prober.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)
         drives, most = drives_of(self.prober.arm), 0.0
         for b in limits:
             x = given[:, b.coordinate]

@@ -68,10 +68,10 @@ def propose(
 
     effects = [h.candidate.effect for h in (*members, *judge.before)]
     fast = any(e in FAST or CATALOGUE[e].states for e in effects) or stage.model.states
-    every = 1 if fast else stage.coarsest
+    seen = stage if fast else stage.coarse
 
     def value(z: Array) -> float:
-        return worth(stage, judge, members, p, z, every)
+        return worth(seen, judge, members, p, z)
 
     def told(k: int) -> None:
         if progress is not None:
@@ -113,17 +113,12 @@ def evolved(
     return best, most
 
 
-def worth(
-    stage: Stage, judge: Judge, members: Sequence[Hypothesis], p: Problem, z: Array, every: int = 1
-) -> float:
-    """The least evidence of one period over all pairs; minus infinity where an effort would be too large.
-
-    every: sampling periods between the samples that are looked at.
-    """
-    q, dq, ddq = positions(p, z, 1, every)
-    if stage.overload(q, dq, ddq, every) > 1:
+def worth(stage: Stage, judge: Judge, members: Sequence[Hypothesis], p: Problem, z: Array) -> float:
+    """The least evidence of one period over all pairs; minus infinity where an effort would be too large."""
+    q, dq, ddq = positions(p, z, 1, stage.every)
+    if stage.overload(q, dq, ddq) > 1:
         return -np.inf
-    rows = stage.rows(q, every=every)
+    rows = stage.rows(q)
     return -np.inf if rows is None else float(judge.evidence(members, [rows], wide=False).min())
 
 
