@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -73,3 +74,25 @@ def test_each_job_that_starts_here_is_told() -> None:
     told: list[int] = []
     forked(lambda k: k, 9, Where(1), told.append)
     assert told == list(range(9))
+
+
+THREADS = """
+import numpy.linalg
+from threadpoolctl import threadpool_info
+from modelgen.jobs import Where, forked
+
+def most(_):
+    return max(library["num_threads"] for library in threadpool_info())
+
+print(most(0), *forked(most, 4, Where(2)), most(0))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.cpu_count() == 1, reason="nothing has several threads")
+def test_linear_algebra_in_forks_keeps_to_one_thread_and_has_its_own_again_after() -> None:
+    environment = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    environment["OPENBLAS_NUM_THREADS"] = environment["MKL_NUM_THREADS"] = "2"
+    told = subprocess.check_output([sys.executable, "-c", THREADS], text=True, env=environment)
+    before, *during, after = (int(text) for text in told.split())
+    assert during == [1] * 4
+    assert before == after > 1

@@ -35,7 +35,7 @@ from modelgen.diagnosis.selection import Selection, threshold
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.errors import InputError
 from modelgen.functions import build_model
-from modelgen.jobs import HERE, Where
+from modelgen.jobs import HERE, Where, one_thread
 from modelgen.probing import Prober, places
 
 CUTOFF = 18.0  # Hz, of effort and regressor where the rate allows it
@@ -78,6 +78,7 @@ def settings_for(found: Sequence[Record], cutoff: float | None) -> Settings:
     return settings_of_swings(found[:-1], chosen)
 
 
+@one_thread()
 def diagnose(
     arm: Arm,
     found: Sequence[Record],

@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
 from modelgen.jobs.local import ignore_interrupt
+from modelgen.jobs.threads import one_thread
 from modelgen.jobs.where import Where
 
 T = TypeVar("T")
@@ -27,11 +28,21 @@ def forked(
 
     Whoever is free takes the next one. Jobs must not depend on another one. What a fork did not answer,
     because it was killed say, is done here. told: called with the number of every job that starts here.
+    Linear algebra has one thread in each.
     Where there are no forks, or these are not safe (macOS, Windows), all is done here.
     """
     forks = where.count(count) - 1 if sys.platform == "linux" and count <= MOST else 0
     if forks < 1:
         return [_told(job, k, told) for k in range(count)]
+    with one_thread():
+        found = _together(job, count, forks, told)
+    return [found[k] if k in found else _told(job, k, told) for k in range(count)]
+
+
+def _together(
+    job: Callable[[int], T], count: int, forks: int, told: Callable[[int], None] | None
+) -> dict[int, T]:
+    """Answers of this process and of that many forks."""
     numbers, end = os.pipe()
     os.write(end, b"".join(k.to_bytes(BYTES, "big") for k in range(count)))
     os.close(end)
@@ -50,7 +61,7 @@ def forked(
             answers.close()
             process.kill()
             process.join()
-    return [found[k] if k in found else _told(job, k, told) for k in range(count)]
+    return found
 
 
 def _started(job: Callable[[int], Any], numbers: int) -> tuple[Any, Connection]:

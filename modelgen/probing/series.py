@@ -103,10 +103,11 @@ class Series:
         whole = self._head(given_for(self.heads.function, motion, parameters), len(motion.t))
         if not self.lags:
             return whole
-        ends = replace(motion, **{name: getattr(motion, name)[self._ends(motion)] for name in _TABLES})
+        places = np.tile(self._ends(motion), len(SPANS))
+        ends = replace(motion, **{name: getattr(motion, name)[places] for name in _TABLES})
         given = given_for(self.heads.function, ends, parameters)
-        before = [self._head({**given, "dt": np.full((2, 1), dt)}, 2) for dt in SPANS]
-        return np.concatenate([*before, whole])
+        spans = np.repeat(SPANS, 2)[:, None]
+        return np.concatenate([self._head({**given, "dt": spans}, len(spans)), whole])
 
     def _ends(self, motion: Motion) -> list[int]:
         return [0, min(max(1, round(BEGINNING / motion.step)), len(motion.t) - 1)]
