@@ -16,7 +16,7 @@ from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
 from modelgen.generation.folders import check_output
 from modelgen.jobs import Where
-from modelgen.report.diagnosis import unnamed
+from modelgen.report.diagnosis import sketches, unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.sketches import Pen
 from modelgen.report.writing import write
@@ -61,6 +61,7 @@ def run(
                 experiment=experiment,
                 effects=wanted,
                 where=Where(jobs),
+                known=lambda found: pen.give(sketches(found)),
             )
             bar.update(task, description="writing", completed=0, total=None)
             write(result, file, out, pen=pen)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import product
 
 import numpy as np
@@ -40,6 +39,7 @@ SINGULAR = 1e-10
 LEAST = 1e-300
 
 Judged = tuple[Trial, Judgement]
+_Begun = tuple[Values, float, Array]  # values, what they leave, parameters beside them
 
 
 def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
@@ -47,7 +47,8 @@ def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> Non
     for cause in causes:
         if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
-            cause.trial = _Beside(rows, others, cause.trial, prober).best([]) or cause.trial
+            place = _Beside(rows, others, cause.trial, prober)
+            cause.trial = place.best([place.begun(cause.trial.values)]) or cause.trial
 
 
 def refined(
@@ -70,26 +71,29 @@ def refined(
     while left and left[0].candidate.effect in COMPLIANT:
         joint = left[0].candidate.joint
         there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
-        job = partial(_better, there, others, system, rows, prober)
-        better = [t for t in forked(job, len(there), where) if t is not None]
-        if better:
-            return [t for t in better if sensible(t, prober.arm)]
+        better = _better(there, [_Beside(rows, others, t, prober) for t in there], where)
+        gains = [beside(t, system) for t in better]
+        found = [replace(t, gain=gain) for t, gain in zip(better, gains, strict=True) if gain]
+        if found:
+            return [t for t in found if sensible(t, prober.arm)]
         left = [t for t in left if t.candidate.effect not in COMPLIANT or t.candidate.joint != joint]
     return []
 
 
-def _better(
-    trials: Sequence[Trial],
-    others: Sequence[Trial],
-    system: System,
-    rows: Sequence[Rows],
-    prober: Prober,
-    k: int,
-) -> Trial | None:
-    """Trial k with its best values; None where a rigid joint leaves less."""
-    better = _Beside(rows, others, trials[k], prober).best(_starts(trials[k]))
-    gain = better and beside(better, system)
-    return replace(better, gain=gain) if better and gain else None
+def _better(trials: Sequence[Trial], places: Sequence[_Beside], where: Where) -> list[Trial]:
+    """Those of the trials that leave less than a rigid joint, with their best values."""
+    begins = [(k, values) for k, trial in enumerate(trials) for values in (trial.values, *_starts(trial))]
+
+    def begun(number: int) -> _Begun:
+        k, values = begins[number]
+        return places[k].begun(values)
+
+    all_begun = forked(begun, len(begins), where)
+
+    def best(k: int) -> Trial | None:
+        return places[k].best([b for (of, _), b in zip(begins, all_begun, strict=True) if of == k])
+
+    return [t for t in forked(best, len(trials), where) if t is not None]
 
 
 def member(first: Judged, eligible: Sequence[Judged]) -> Judged:
@@ -142,20 +146,19 @@ class _Beside:
         self.rigid = self.inverse @ self.right
         self.least = self._left(self.right - self.left @ self.rigid)  # by a rigid joint
 
-    def best(self, starts: Sequence[Values]) -> Trial | None:
+    def begun(self, values: Values) -> _Begun:
+        """The parameters settled beside values at which a search may begin."""
+        return values, *self.at(values, self.rigid, FIRST if values is self.trial.values else SETTLING)
+
+    def best(self, begun: Sequence[_Begun]) -> Trial | None:
         """The trial with the values that leave least, and its columns at the parameters that go with them.
         None where a rigid joint leaves less.
 
-        starts: values to begin at besides its own. Where all of them leave more than a rigid joint does, a
-        search only leads back to that, and is left out.
+        begun: where the search may begin, its own values and others. Where all of several leave more than a
+        rigid joint does, a search only leads back to that, and is left out.
         """
-        values = self.trial.values
-        least, near = self.at(values, self.rigid, FIRST)
-        for start in starts:
-            left, beside = self.at(start, self.rigid, SETTLING)
-            if left < least:
-                least, values, near = left, start, beside
-        if starts and least > self.least:
+        values, least, near = min(begun, key=lambda b: b[1])
+        if len(begun) > 1 and least > self.least:
             return None
         names = sorted(values)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from modelgen.dataset import Record, Settings, check_separate, last_quarter_out, read, split
@@ -89,12 +90,14 @@ def diagnose(
     experiment: bool = True,
     effects: Sequence[Place] = (),
     where: Where = HERE,
+    known: Callable[[Diagnosis], None] | None = None,
 ) -> Diagnosis:
     """What the arm's model gets wrong in the records, of which the last is looked at for the errors alone.
 
     experiment: whether to look for what would separate causes that stand for each other. effects: to be asked
     for alone, with a joint from 1 or at any place; all of the catalogue where there are none. where:
-    processes among which the candidates are shared; the answer is the same.
+    processes among which the candidates are shared; the answer is the same. known: told what is found before
+    that experiment is looked for.
     Raises InputError where the records cannot answer.
     """
     free = found[0].input is None
@@ -121,20 +124,13 @@ def diagnose(
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
     selection = valued(stiffened(answer.selection, rows, prober))
     named = _named(selection, answer.equal, prober)
-    following = None
-    if experiment and verdict == "named":
-        plan = None if free else stage(arm, model, prober, train, base)
-        shortest = min((p for p in lengths if p is not None), default=None)
-        following = next_experiment(
-            named, selection.causes, plan, selection.system, shortest, progress, where
-        )
     before = fitted(arm, model, rows)
     after = extended(arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)
     pair = residuals(last, before, selection, after, prober, base)
     described = replay(before, last)
     played = described, replay(after, last) if selection.causes else described
-    return Diagnosis(
+    result = Diagnosis(
         arm,
         verdict,
         answer.reason,
@@ -147,7 +143,7 @@ def diagnose(
         before,
         after,
         base_estimates(after.model, after.rows, after.theta, made.periods),
-        following,
+        None,
         last,
         pair,
         selection,
@@ -168,6 +164,15 @@ def diagnose(
         },
         Positions(answer.share, answer.noisy),
     )
+    if known is not None:
+        known(result)
+    if not experiment or verdict != "named":
+        return result
+    plan = None if free else stage(arm, model, prober, train, base)
+    shortest = min((p for p in lengths if p is not None), default=None)
+    causes = selection.causes
+    following = next_experiment(named, causes, plan, selection.system, shortest, progress, where)
+    return replace(result, next_experiment=following)
 
 
 def _named(selection: Selection, equal: Sequence[Sequence[Candidate]], prober: Prober) -> tuple[Named, ...]:

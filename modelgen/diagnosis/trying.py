@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, Candidate, at_links
 from modelgen.diagnosis.court import Columns, Court
 from modelgen.diagnosis.trials import Trial
 from modelgen.jobs import Where, forked
@@ -22,10 +22,11 @@ def tried(
     """
     groups: dict[object, list[int]] = {}
     for k, candidate in enumerate(pool):
-        # play is tried where an elastic joint was
-        key = candidate.joint if candidate.effect in COMPLIANT else candidate.place
-        groups.setdefault(key, []).append(k)
-    jobs = list(groups.values())
+        # behind a link's own position play is tried where an elastic joint was
+        both = candidate.effect in COMPLIANT and at_links(candidate.joint, court.rows)
+        groups.setdefault(candidate.joint if both else candidate.place, []).append(k)
+    # what takes longest first: no processor waits for it at the end
+    jobs = sorted(groups.values(), key=lambda places: pool[places[0]].effect not in COMPLIANT)
 
     def job(number: int) -> tuple[list[Trial | None], Columns]:
         before = set(court.renewed)
@@ -34,7 +35,7 @@ def tried(
 
     def told(number: int) -> None:
         if report is not None:
-            report(jobs[number][0], len(pool))
+            report(sum(map(len, jobs[:number])), len(pool))
 
     result: list[Trial | None] = [None] * len(pool)
     for places, (found, columns) in zip(jobs, forked(job, len(jobs), where, told), strict=True):

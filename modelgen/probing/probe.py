@@ -29,7 +29,7 @@ from modelgen.probing.programs import (
     loads_of,
 )
 from modelgen.probing.series import Series
-from modelgen.probing.variations import Variations
+from modelgen.probing.variations import Changed, Variations
 
 Values = Mapping[str, float]
 
@@ -50,7 +50,8 @@ class Prober:
         self.base = grouping(arm)
         self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
         self._made: dict[object, NumpyFunction] = {}
-        self._arms: dict[object, tuple[NumpyFunction, Equations]] = {}
+        self._arms: dict[object, Equations] = {}
+        self._changes: dict[object, Changed] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
         self._series: dict[Equations, Series] = {}
         self._memory: dict[tuple[object, int, bytes], tuple[Motion, Array]] = {}
@@ -76,7 +77,9 @@ class Prober:
         """Inputs of the arm as described, (N, n), for its base parameters."""
         if led_by(self.arm, motion):
             return self._rigid.inputs(motion, parameters) + self.link_side.led(motion, parameters)
-        return self._inputs_of("described", self.arm, motion, parameters)
+        return self._kept(
+            "own", motion, parameters, lambda: self._along("own", self._own, motion, parameters)
+        )
 
     @cached_property
     def _rigid(self) -> Prober:
@@ -170,18 +173,17 @@ class Prober:
         if effect == "time_delay":
             return added(motion.t, self.inputs(motion, parameters), values["delay"], joint)
         if effect == "drive_gain_error" and joint is not None and self._proportional:
-            described(with_effect(self.arm, effect, joint, values))  # where the arm admits it
+            self._changed(effect, joint, values)  # where the arm admits it
             inputs = self.inputs(motion, parameters)
             return np.asarray(inputs * (1 / (1 + values["error"]) - 1) * (np.arange(self.n) == joint - 1))
         if changes_description(effect) or effect == "torque_constant_saturation":
-            key = (effect, joint, tuple(sorted(values.items())))
-            other = with_effect(self.arm, effect, joint, values)
+            changed = self._changed(effect, joint, values)
             read = joint is not None and motion.motor_side and motion.motor_side[joint - 1]
             if effect == "lever_geometry" and joint is not None and read:
-                seen = reread(motion, described(self.arm), described(other), joint)
-                return self._inputs_of(key, other, seen, parameters) - self.inputs(motion, parameters)
-            found = self._inputs_of(key, other, motion, parameters) - self.inputs(motion, parameters)
-            turned = np.subtract(described(other).gravity, self._own.arm.gravity)
+                seen = reread(motion, described(self.arm), changed.arm, joint)
+                return self._inputs_of(changed, seen, parameters) - self.inputs(motion, parameters)
+            found = self._inputs_of(changed, motion, parameters) - self.inputs(motion, parameters)
+            turned = np.subtract(changed.arm.gravity, self._own.arm.gravity)
             return found + self._hidden_weight(motion, turned) if turned.any() else found
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
@@ -232,22 +234,30 @@ class Prober:
     def _varied(self) -> Variations:
         return Variations(described(self.arm), self.base)
 
-    def _inputs_of(self, key: object, arm: Arm, motion: Motion, parameters: Array) -> Array:
-        if key != "described" and not self._own.state_names():
-            geometry = self._varied.values(described(arm))
-            if geometry is not None:
-                call = self._varied.call
-                return np.asarray(call(**given_for(call.function, motion, parameters, geometry=geometry)))
-        if key not in self._arms:
-            made = Equations(slid(described(arm)), lazy=True)
-            self._arms[key] = NumpyFunction(inputs_of(made, self.base)), made
-        call, e = self._arms[key]
-        if key != "described":
-            return self._along(call, e, motion, parameters)
-        return self._kept(key, motion, parameters, lambda: self._along(call, e, motion, parameters))
+    def _changed(self, effect: str, joint: int | None, values: Values) -> Changed:
+        """The arm with an effect besides, as it is described then; the last ones are remembered."""
+        key = effect, joint, tuple(sorted(values.items()))
+        if key not in self._changes:
+            if len(self._changes) >= REMEMBERED:
+                del self._changes[next(iter(self._changes))]
+            arm = described(with_effect(self.arm, effect, joint, values))
+            geometry = None if self._own.state_names() else self._varied.values(arm)
+            self._changes[key] = Changed(key, arm, geometry)
+        return self._changes[key]
 
-    def _along(self, call: NumpyFunction, e: Equations, motion: Motion, parameters: Array) -> Array:
+    def _inputs_of(self, changed: Changed, motion: Motion, parameters: Array) -> Array:
+        if changed.geometry is not None:
+            call = self._varied.call
+            return np.asarray(call(**given_for(call.function, motion, parameters, geometry=changed.geometry)))
+        if changed.key not in self._arms:
+            self._arms[changed.key] = Equations(slid(changed.arm), lazy=True)
+        return self._along(changed.key, self._arms[changed.key], motion, parameters)
+
+    def _along(self, key: object, e: Equations, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
+        if ("inputs", key) not in self._made:
+            self._made["inputs", key] = NumpyFunction(inputs_of(e, self.base))
+        call = self._made["inputs", key]
         states = self._states(e, motion, (), parameters) if e.state_names() else None
         return np.asarray(call(**given_for(call.function, motion, parameters, states=states)))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,17 @@ from modelgen.description.objects import Arm, Joint, LeveredDrive, Scalar, geome
 from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array
 from modelgen.probing.programs import inputs_of
+
+
+@dataclass(frozen=True)
+class Changed:
+    """An arm as its effects on the description make it. key: of what was changed, with its values; geometry:
+    of `Variations`, None where that is not all that it takes.
+    """
+
+    key: object
+    arm: Arm
+    geometry: Array | None
 
 
 class Variations:

@@ -86,11 +86,12 @@ class Pen:
             self._pool.shutdown(wait=True, cancel_futures=True)
 
     def give(self, sketches: Mapping[str, Sketch]) -> None:
-        """Sketches to draw, by name."""
-        self._sketches.update(sketches)
+        """Sketches to draw, by name; not again those whose name it was given before."""
+        new = {name: sketch for name, sketch in sketches.items() if name not in self._sketches}
+        self._sketches.update(new)
         if self._pool is not None:
             with suppress(BrokenProcessPool):
-                for name, sketch in sketches.items():
+                for name, sketch in new.items():
                     self._drawn[name] = self._pool.submit(sketch.drawn)
 
     def fetch(self, name: str) -> str:
