@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -64,24 +65,32 @@ class Problem:
     def sampled(self, function: ca.Function, z: Array, t: Array) -> tuple[Array, ...]:
         """The outputs of a function of one sample, (N, rows, columns), at times t (N,)."""
         mapped = _mapped(function, len(t))
-        outputs = mapped.call([ca.DM(part.T) for part in self.series(z, t)])
-        found = []
-        for k, value in enumerate(outputs):
-            rows, columns = function.size_out(k)
-            found.append(value.full().reshape(rows, len(t), columns).transpose(1, 0, 2))
-        return tuple(found)
+        made: tuple[Any, Any] = mapped.buffer()  # matrices of CasADi are copied number by number
+        buffer, evaluate = made
+        given = [np.ascontiguousarray(part) for part in self.series(z, t)]
+        for k, part in enumerate(given):
+            buffer.set_arg(k, part.data)
+        sizes = [function.size_out(k) for k in range(function.n_out())]
+        found = [np.empty((len(t), columns, rows)) for rows, columns in sizes]
+        for k, values in enumerate(found):
+            buffer.set_res(k, values.data)
+        evaluate()
+        return tuple(values.transpose(0, 2, 1) for values in found)
 
     def observation(self, z: Array, t: Array) -> tuple[Array, float]:
         """The observation matrix (n N, p) and the largest magnitude of a constraint; infinite for NaN."""
         regressor, limits = self.sampled(self.exact, z, t)
         size = regressor.shape[1]
         largest = float(np.abs(limits).max()) if np.isfinite(limits).all() else float("inf")
-        return regressor.transpose(0, 2, 1).reshape(-1, size), largest
+        # columns that lie together in memory are summed up pairwise
+        return np.asfortranarray(regressor.transpose(0, 2, 1).reshape(-1, size)), largest
 
 
 @lru_cache(maxsize=16)
 def _mapped(function: ca.Function, count: int) -> ca.Function:
-    return function.map(count)
+    """For so many samples side by side, with dense outputs."""
+    given = [ca.MX.sym(name, function.size1_in(name), count) for name in function.name_in()]
+    return ca.Function("mapped", given, [ca.densify(x) for x in function.map(count).call(given)])
 
 
 def problem(arm: Arm, settings: Settings) -> Problem:
