@@ -33,6 +33,7 @@ WORSE = 0.01  # of the squares of all joints: by less, a cause that must help ma
 DELAY = "time_delay"
 PLACED = "position_dependent_friction"  # a law of the position, which says nothing of places beyond the fit's
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
+DRAWN = 1.5  # times what a draw of errors of the positions could feign, those that are there may by chance
 # What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
 FEIGNABLE = (*COMPLIANT, DELAY, LATER)
 REVERSING = ("presliding", "stribeck_friction")  # show where a delay shows most
@@ -89,7 +90,7 @@ class Gates:
         unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
         where a measured gain has that of all parameters of a part. A share of it must be measured, or the
         parts must agree on the cause as far as each can tell: what they contradict is no cause. What errors
-        of the positions could feign must be exceeded by the gain where the rest is fitted anew, unless the
+        of the positions could feign the gain where the rest is fitted anew must well exceed, unless the
         estimate by instruments is not zero. By that gain must pass what such errors look like most;
         everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
         cause; joints where errors of the positions could feign what counts; and causes at a joint of another,
@@ -110,7 +111,7 @@ class Gates:
             could = np.zeros(len(places))
         doubtful = not self.system.noise_known or trial.candidate.effect in FEIGNABLE
         strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
-        anew = strict & (refitted >= np.maximum(least, could))
+        anew = strict & (refitted >= np.maximum(least, DRAWN * could))
         if strict.all() and not anew.any():
             shut = "gain" if (refitted < least).all() else "positions"
             return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
