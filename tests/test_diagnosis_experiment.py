@@ -16,14 +16,14 @@ from numpy.random import default_rng
 from modelgen.dataset import Record, choose, drives_of, prepare, read
 from modelgen.description import Arm, load
 from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.candidates import candidates
+from modelgen.diagnosis.candidates import Candidate, candidates
 from modelgen.diagnosis.court import Court
 from modelgen.diagnosis.experiments import Experiment
 from modelgen.diagnosis.motions import Stage, stage
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.proposal import MARGIN, Proposal, propose, worth
 from modelgen.diagnosis.run import settings_for
-from modelgen.diagnosis.separation import Judge, hypothesis
+from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.effects import known_effects
@@ -151,9 +151,15 @@ def test_the_plant_on_the_proposed_trajectory_tells_apart_what_its_record_did_no
         assert beyond(trials, truth) > CONVINCING
 
 
-def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: Path) -> None:
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: Path, beside: bool) -> None:
+    """Also beside a law that changes within fewer samples."""
     case = SETS["offset"]
     found, planned, judge = judged(Scene(case.pair, case.magnitudes, tmp_path), case.true)
+    if beside:
+        law = Candidate("stribeck_friction", 1, {"exponent": 1.0})
+        there = Hypothesis(law, {"velocity": 5.0}, np.array([1.0]), ())
+        judge = Judge(judge.system, judge.prober, judge.base, [there])
     members = [hypothesis(t) for t in found]
     p = problem(planned.arm, planned.settings(round(PERIOD / planned.step)))
     rng = default_rng(3)

@@ -66,9 +66,10 @@ def propose(
     runs = [as_run(stage, p, k) for k in range(len(stage.prepared))]
     starts = [z for z in runs if z is not None] + [scaled(z, factor) for z in drawn for factor in SCALES]
 
+    asked = any(h.candidate.effect in FAST for h in members)
     effects = [h.candidate.effect for h in (*members, *judge.before)]
-    fast = any(e in FAST or CATALOGUE[e].states for e in effects) or stage.model.states
-    seen = stage if fast else stage.coarse
+    stepped = any(CATALOGUE[e].states for e in effects) or bool(stage.model.states)
+    seen = stage if asked or stepped else stage.coarse
 
     def value(z: Array) -> float:
         return worth(seen, judge, members, p, z)

@@ -29,7 +29,7 @@ from modelgen.probing.programs import (
     loads_of,
 )
 from modelgen.probing.series import Series
-from modelgen.probing.variations import Changed, Variations
+from modelgen.probing.variations import Changed, Changes, Variations
 
 Values = Mapping[str, float]
 
@@ -51,7 +51,6 @@ class Prober:
         self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
         self._made: dict[object, NumpyFunction] = {}
         self._arms: dict[object, Equations] = {}
-        self._changes: dict[object, Changed] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
         self._series: dict[Equations, Series] = {}
         self._memory: dict[tuple[object, int, bytes], tuple[Motion, Array]] = {}
@@ -234,16 +233,10 @@ class Prober:
     def _varied(self) -> Variations:
         return Variations(described(self.arm), self.base)
 
-    def _changed(self, effect: str, joint: int | None, values: Values) -> Changed:
-        """The arm with an effect besides, as it is described then; the last ones are remembered."""
-        key = effect, joint, tuple(sorted(values.items()))
-        if key not in self._changes:
-            if len(self._changes) >= REMEMBERED:
-                del self._changes[next(iter(self._changes))]
-            arm = described(with_effect(self.arm, effect, joint, values))
-            geometry = None if self._own.state_names() else self._varied.values(arm)
-            self._changes[key] = Changed(key, arm, geometry)
-        return self._changes[key]
+    @cached_property
+    def _changed(self) -> Changes:
+        """The arm with an effect on its description besides."""
+        return Changes(self.arm, None if self._own.state_names() else self._varied)
 
     def _inputs_of(self, changed: Changed, motion: Motion, parameters: Array) -> Array:
         if changed.geometry is not None:

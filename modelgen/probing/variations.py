@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,9 +13,13 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters import Grouping
 from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm, Joint, LeveredDrive, Scalar, geometry_symbol
+from modelgen.effects import described
 from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array
+from modelgen.probing.places import with_effect
 from modelgen.probing.programs import inputs_of
+
+REMEMBERED = 40  # changes
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,28 @@ class Variations:
         """`geometry` for another description of the arm; None where more than these values differs."""
         varied, values = _with_symbols(other)
         return np.array(values) if _form(varied) == self._alike else None
+
+
+class Changes:
+    """One arm with an effect besides, as it is described then; the last ones are remembered.
+
+    varied: of that arm, None where its own effects have states.
+    """
+
+    def __init__(self, arm: Arm, varied: Variations | None) -> None:
+        self._arm, self._varied = arm, varied
+        self._known: dict[object, Changed] = {}
+
+    def __call__(self, effect: str, joint: int | None, values: Mapping[str, float]) -> Changed:
+        """Of the effect at coordinate number `joint`. Raises InputError where it admits no such values."""
+        key = effect, joint, tuple(sorted(values.items()))
+        if key not in self._known:
+            if len(self._known) >= REMEMBERED:
+                del self._known[next(iter(self._known))]
+            arm = described(with_effect(self._arm, effect, joint, values))
+            geometry = None if self._varied is None else self._varied.values(arm)
+            self._known[key] = Changed(key, arm, geometry)
+        return self._known[key]
 
 
 def _form(arm: Arm) -> Arm:
