@@ -87,3 +87,13 @@ def test_plain_columns_are_those_of_numpy() -> None:
     assert d is not None
     found = plain_columns(5).filtered([table], **vars(d))
     assert found == pytest.approx(d._filtered(table), abs=1e-12 * np.abs(table).max())
+
+
+def test_a_column_is_the_same_whichever_are_filtered_with_it() -> None:
+    rng = np.random.default_rng(2)
+    table = rng.normal(size=(3000, 11)).cumsum(axis=0)
+    d = decimation(3000, np.arange(200, 2800, 13), 30.0, RATE, 4)
+    assert d is not None
+    together = d(table)
+    for count in range(1, 11):
+        assert np.array_equal(d(table[:, :count]), together[:, :count])

@@ -59,7 +59,7 @@ def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
     axes[0, 0].legend(loc="upper right")
     axes[0, 1].set_xlabel("time [s]")
     before = set(multiprocessing.active_children())
-    with Pen(beside=True) as pen:
+    with Pen(hands=2) as pen:
         for process in set(multiprocessing.active_children()) - before if ended else ():
             process.kill()
         pen.give({"sine": sketch})
@@ -91,7 +91,7 @@ def test_every_axis_has_its_unit(found: Diagnosis) -> None:
 
 def test_an_error_leaves_no_process_behind() -> None:
     before = set(multiprocessing.active_children())
-    with pytest.raises(ValueError, match="bad input"), Pen(beside=True):
+    with pytest.raises(ValueError, match="bad input"), Pen(hands=2):
         raise ValueError("bad input")
     assert not set(multiprocessing.active_children()) - before
 

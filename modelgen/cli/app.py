@@ -122,24 +122,28 @@ def diagnose(
     as_json: given.Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
-    from modelgen.cli.diagnosing import run
     from modelgen.cli.selecting import one
+    from modelgen.report.sketches import Pen
 
     file, found = one(arms, arm)
-    run(
-        Path(file),
-        found,
-        train,
-        test or [],
-        out,
-        mapping=mapping,
-        cutoff=cutoff,
-        period=period,
-        effects=effect or [],
-        experiment=not no_experiment,
-        jobs=jobs,
-        as_json=as_json,
-    )
+    with Pen(hands=1 if jobs == 1 else 2) as pen:  # it gets ready while the rest is loaded
+        from modelgen.cli.diagnosing import run
+
+        run(
+            Path(file),
+            found,
+            train,
+            test or [],
+            out,
+            mapping=mapping,
+            cutoff=cutoff,
+            period=period,
+            effects=effect or [],
+            experiment=not no_experiment,
+            jobs=jobs,
+            as_json=as_json,
+            pen=pen,
+        )
 
 
 app.command()(simulate)

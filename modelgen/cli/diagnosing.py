@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from pathlib import Path
 
 import typer
@@ -16,7 +17,7 @@ from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
 from modelgen.generation.folders import check_output
 from modelgen.jobs import Where
-from modelgen.report.diagnosis import sketches, unnamed
+from modelgen.report.diagnosis import harms, sketches, unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.sketches import Pen
 from modelgen.report.writing import write
@@ -36,8 +37,9 @@ def run(
     experiment: bool,
     jobs: int | None,
     as_json: bool,
+    pen: Pen,
 ) -> None:
-    """Diagnose and write everything into `out`. Raises InputError."""
+    """Diagnose and write everything into `out`. pen: draws the pictures. Raises InputError."""
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out}: found a file, expected a folder")
     check_output(out, [])
@@ -51,20 +53,19 @@ def run(
         def progress(text: str, done: int, total: int) -> None:
             bar.update(task, description=text, completed=done, total=total)
 
-        with Pen(beside=True) as pen:
-            result = diagnose(
-                arm,
-                found,
-                cutoff=cutoff,
-                period=period,
-                progress=progress,
-                experiment=experiment,
-                effects=wanted,
-                where=Where(jobs),
-                known=lambda found: pen.give(sketches(found)),
-            )
-            bar.update(task, description="writing", completed=0, total=None)
-            write(result, file, out, pen=pen)
+        result = diagnose(
+            arm,
+            found,
+            cutoff=cutoff,
+            period=period,
+            progress=progress,
+            experiment=experiment,
+            effects=wanted,
+            where=Where(jobs),
+            known=lambda found: pen.give(sketches(found)),
+        )
+        bar.update(task, description="writing", completed=0, total=None)
+        write(result, file, out, pen=pen)
     if as_json:
         print_json(to_json(result))
         return
@@ -98,10 +99,20 @@ def _print(d: Diagnosis, out: Path) -> None:
         place = "arm" if c.joint is None else str(c.joint)
         rivals = ", ".join(f"{e} {j or 'arm'}" for e, j, _ in c.ambiguous_with)
         same = ", ".join(f"{e} {j or 'arm'}" for e, j in c.aliases)
-        rows.append([c.effect, place, values, f"{c.delta_bic:.1f}", f"{c.cross_gain:.1f}", rivals, same])
+        gains = f"{c.cross_gain:.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:.1f}"
+        rows.append([c.effect, place, values, f"{c.delta_bic:.1f}", *gains, rivals, same])
     if rows:
-        headings = ("cause", "joint", "parameters", "delta BIC", "gain %", "or perhaps", "the same as")
-        print_table("", dict.fromkeys(headings, "left"), rows)
+        headings = (
+            "cause",
+            "joint",
+            "parameters",
+            "delta BIC",
+            "gain %",
+            "on test %",
+            "or perhaps",
+            "the same as",
+        )
+        print_table("", dict.fromkeys(headings, "left"), rows, names=("cause",))
     table = []
     for j in range(len(d.errors.before)):
         e = d.errors
@@ -109,6 +120,8 @@ def _print(d: Diagnosis, out: Path) -> None:
         table.append([str(j + 1), f"{e.before[j]:.4g}", f"{e.after[j]:.4g}", f"{e.gain[j]:.1f}", interval])
     title = f"error on the test record [{d.errors.unit}]"
     print_table(title, dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right"), table)
+    for said in harms(d):
+        typer.echo(said)
     if d.next_experiment is not None:
         typer.echo(f"next: {followed(d.next_experiment)}")
     typer.echo(f"report: {out / 'report.html'}")

@@ -26,7 +26,7 @@ from modelgen.dataset.filters import low_pass, reach
 from modelgen.dataset.objects import Array
 
 Complex = NDArray[np.complex128]
-WIDTH = 8  # columns that compiled C takes together
+WIDTHS = (2, 4, 8)  # columns that compiled C takes together, the same sums in each
 FEWEST = 4  # decimation from which this is worth it
 NOTHING = 1e-18  # weights below this part of the largest are left out
 
@@ -63,12 +63,14 @@ class Decimation:
             return self._filtered(columns)
 
     def _compiled(self, columns: Array) -> Array:
-        plain, table = plain_columns(WIDTH), np.ascontiguousarray(columns.T, dtype=np.float64)
+        table = np.ascontiguousarray(columns.T, dtype=np.float64)
         result = np.empty((self.steps + 1, len(table)))
-        for k in range(0, len(table), WIDTH):
-            part = table[k : k + WIDTH]
-            spare = [part[-1:].T] * (WIDTH - len(part))  # fills up what is compiled
-            result[:, k : k + WIDTH] = plain.filtered([part.T, *spare], **vars(self))[:, : len(part)]
+        for k in range(0, len(table), WIDTHS[-1]):
+            part = table[k : k + WIDTHS[-1]]
+            width = next(w for w in WIDTHS if w >= len(part))
+            spare = [part[-1:].T] * (width - len(part))  # fills up what is compiled
+            found = plain_columns(width).filtered([part.T, *spare], **vars(self))
+            result[:, k : k + width] = found[:, : len(part)]
         return result
 
     def _filtered(self, columns: Array) -> Array:

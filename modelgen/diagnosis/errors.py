@@ -20,7 +20,7 @@ SEED = 1989
 def errors(rows: Rows, before: Array, after: Array, unit: str) -> Errors:
     """From residuals (M, n) in `unit`; rows that do not move do not count."""
     n = before.shape[1]
-    found = [_compared(before[rows.moving[:, j], j], after[rows.moving[:, j], j]) for j in range(n)]
+    found = [compared(before[rows.moving[:, j], j], after[rows.moving[:, j], j]) for j in range(n)]
     return Errors(unit, *np.array(found).T)
 
 
@@ -32,12 +32,12 @@ def motion_errors(record: Record, before: Windows | None, after: Windows | None)
     unit = ", ".join(dict.fromkeys("m" if j.type == "prismatic" else "rad" for j in joints)) or "rad"
     if before is not None and after is not None and before.simulated.shape == after.simulated.shape:
         old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
-        found = np.array([_compared(old[:, j], new[:, j]) for j in range(n)])
+        found = np.array([compared(old[:, j], new[:, j]) for j in range(n)])
     return Errors(unit, *found.T)
 
 
-def _compared(before: Array, after: Array) -> tuple[float, ...]:
-    """RMSE before and after, gain in percent and its interval, from errors of one joint in order of time."""
+def compared(before: Array, after: Array) -> tuple[float, ...]:
+    """RMSE before and after, gain in percent and its interval, from errors (M,) in order of time."""
     if len(before) < BLOCKS:
         return (np.nan,) * 5
     random = np.random.default_rng(SEED)

@@ -33,10 +33,22 @@ class Estimate:
 
 
 @dataclass(frozen=True)
+class Share:
+    """What leaving a cause out costs on the test record, percent of the RMSE; low, high: 95 % interval. Below
+    zero where it does harm there. Not a number where that is not known.
+    """
+
+    gain: float = float("nan")
+    low: float = float("nan")
+    high: float = float("nan")
+
+
+@dataclass(frozen=True)
 class Named:
     """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
     how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
     expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.
+    share: of the gain on the test record.
     """
 
     effect: str
@@ -47,6 +59,7 @@ class Named:
     expected_gain: float
     aliases: tuple[tuple[str, int | None], ...] = ()
     ambiguous_with: tuple[tuple[str, int | None, float], ...] = ()
+    share: Share = Share()
 
 
 @dataclass(frozen=True)
@@ -188,6 +201,8 @@ def _cause(c: Named) -> dict[str, Any]:
             "cross_gain_percent": rounded(c.cross_gain),
             "expected_gain_percent": rounded(c.expected_gain),
         },
+        "test_gain_percent": rounded(c.share.gain),
+        "test_gain_interval_percent": [rounded(c.share.low), rounded(c.share.high)],
         "aliases": [{"effect": effect, "joint": joint} for effect, joint in c.aliases],
         "ambiguous_with": [
             {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}

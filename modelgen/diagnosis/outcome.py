@@ -15,6 +15,7 @@ from modelgen.diagnosis.rows import Array, Rows, rows_of
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.settling import misfit, settled
 from modelgen.diagnosis.system import weighted_fit
+from modelgen.diagnosis.trials import Trial
 from modelgen.effects import described
 from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
@@ -133,18 +134,22 @@ def residuals(
     if not selection.causes:
         return old, old
     if any(c.trial.candidate.effect == LATER for c in selection.causes):
-        table = [test.columns]
-        for cause in selection.causes:
-            # a payload that came between the records stays
-            taken = {**cause.trial.values, **cause.trial.around}
-            found = columns(cause.trial.candidate, taken, [test, test], prober, base)
-            assert found is not None
-            table.append(found[1])
+        found = [columns_of(cause.trial, test, prober, base) for cause in selection.causes]
+        table = [test.columns, *found]
         left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
         return old, left * test.gain
     seen = _seen_by(test.prepared, after.arm)
     rows = rows_of(Prober(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
     return old, (rows.effort - rows.columns @ after.theta) * test.gain
+
+
+def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array:
+    """Columns (M, n, k) of a cause on another record than those it was fitted to. base: of `prober`'s arm."""
+    # a payload that came between the records stays
+    records = [test, test] if trial.candidate.effect == LATER else [test]
+    found = columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
+    assert found is not None
+    return found[-1]
 
 
 def unit_of_efforts(test: Prepared) -> str:

@@ -44,22 +44,24 @@ class Rows:
 
     def filtered(self, columns: Array) -> Array:
         """(N, n, k) at full rate through the parallel filter: (M, n, k). What is zero stays so."""
-        n, count = columns.shape[1:]
-        result = np.zeros((len(self.effort), n, count))
-        for j in range(n):
-            used = columns[:, j].any(axis=0)
-            if used.any():
-                result[:, j, used] = self.equation(j, columns[:, j, used])
+        result = np.zeros((len(self.effort), *columns.shape[1:]))
+        used = columns.any(axis=0)
+        if used.any():
+            result[:, used] = self._through(columns[:, used], np.nonzero(used)[0])
         return result
 
     def equation(self, j: int, columns: Array) -> Array:
-        """Columns (N, k) of the equation of joint j at full rate through the parallel filter: (M, k).
+        """Columns (N, k) of the equation of joint j at full rate through the parallel filter: (M, k)."""
+        return self._through(columns, np.full(columns.shape[1], j))
+
+    def _through(self, columns: Array, joints: NDArray[np.intp]) -> Array:
+        """Columns (N, k) of the equations of these joints (k,) through the parallel filter: (M, k).
 
         Without what they have while the joint rests: dry friction is undetermined there, and what the filter
         carries of it to the rows beside would look like a law of friction.
         """
         with np.errstate(over="ignore", invalid="ignore"):  # states of a law that does not hold here
-            return self.prepared.parallel(columns * self.prepared.awake[:, [j]])
+            return self.prepared.parallel(columns * self.prepared.awake[:, joints])
 
 
 def motion_of(prepared: Prepared) -> Motion:

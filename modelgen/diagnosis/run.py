@@ -33,6 +33,7 @@ from modelgen.diagnosis.objects import Diagnosis, Named, Positions
 from modelgen.diagnosis.outcome import extended, fitted, replay, residuals, unit_of_efforts
 from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.selection import Selection, threshold
+from modelgen.diagnosis.shares import shares
 from modelgen.diagnosis.stiffness import stiffened
 from modelgen.errors import InputError
 from modelgen.functions import build_model
@@ -128,6 +129,9 @@ def diagnose(
     after = extended(arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)
     pair = residuals(last, before, selection, after, prober, base)
+    if selection.causes and not free:
+        gained = shares(selection, last, prober, base)
+        named = tuple(replace(cause, share=share) for cause, share in zip(named, gained, strict=True))
     described = replay(before, last)
     played = described, replay(after, last) if selection.causes else described
     result = Diagnosis(

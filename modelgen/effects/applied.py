@@ -211,7 +211,7 @@ def _on_link(effect: LinkEffect, link: int, values: Values) -> list[Part]:
     for k, point in enumerate(effect.points(values), 1):
         x = point_variables(f"_{link + 1}_{k}")
         moment = effect.moment(x, values)
-        forces = (*effect.force(x, values), *([] if moment.is_zero_matrix else moment))
+        forces = (*effect.force(x, values), *(moment if any(m != 0 for m in moment) else []))
         parts.append(Part("point", link, x, forces, point))
     return parts
 

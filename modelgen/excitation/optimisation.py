@@ -29,11 +29,12 @@ _OPTIONS = {
 class Optimiser:
     """The nonlinear programme of a problem, built once and started as often as wanted.
 
+    smooth: of the same arm and settings.
     The objective and the constraints have exact first derivatives; the Hessian is that of limited-memory
     BFGS.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, smooth: ca.Function) -> None:
         self.problem = problem
         t = problem.grid()
         n, size = len(problem.middle), problem.basis.size
@@ -42,7 +43,7 @@ class Optimiser:
         x, dx, ddx = (ca.mtimes(ca.DM(m), rows) for m in problem.basis.signals(t))
         unit = ca.repmat(ca.DM(problem.amplitude).T, len(t), 1)
         middle = ca.repmat(ca.DM(problem.middle).T, len(t), 1)
-        sampled = problem.smooth.map(len(t))
+        sampled = smooth.map(len(t))
         w, limits = sampled((middle + unit * x).T, (unit * dx).T, (unit * ddx).T)
         scale = self._scale(t)
         w = ca.mtimes(ca.diag(ca.DM(1 / scale)), w)

@@ -30,15 +30,14 @@ SIGNALS = ("q", "dq", "ddq", "qm", "dqm", "ddqm", "input", "effort")
 class Problem:
     """What the optimiser and the random search need; it can be sent to other processes.
 
-    smooth, exact: (x, dx, ddx) of one sample to (regressor^T (p, n), constraints); in `smooth` the signs of
-    dry friction are smoothed. Constraints are scaled to lie in [-1, 1]. motion: (x, dx, ddx) to all of
-    SIGNALS. middle, half: (n,) ranges of the coordinates that the series is written in; amplitude: (n,)
-    their unit in the coefficients. names: of the base parameters. constraints: what each limits.
+    exact: (x, dx, ddx) of one sample to (regressor^T (p, n), constraints), which are scaled to lie in
+    [-1, 1]. motion: (x, dx, ddx) to all of SIGNALS. middle, half: (n,) ranges of the coordinates that the
+    series is written in; amplitude: (n,) their unit in the coefficients. names: of the base parameters.
+    constraints: what each limits.
     """
 
     settings: Settings
     basis: Basis
-    smooth: ca.Function
     exact: ca.Function
     motion: ca.Function
     middle: Array
@@ -103,7 +102,6 @@ def problem(arm: Arm, settings: Settings) -> Problem:
     limits, remarks = bounds(arm, settings)
     middle, half = ranges(arm, limits, settings.coordinates)
     exact = _functions(arm, limits, settings)
-    smooth = _functions(_smoothed(arm, speeds(arm, limits, "motor")), limits, settings)
     series = basis(settings.period, settings.harmonics, settings.rest)
     if not exact.nominal:
         kept = [b for b in limits if b.signal in ("input", "effort")]
@@ -114,7 +112,6 @@ def problem(arm: Arm, settings: Settings) -> Problem:
     return Problem(
         settings,
         series,
-        smooth.sample,
         exact.sample,
         exact.motion,
         middle,
@@ -124,6 +121,12 @@ def problem(arm: Arm, settings: Settings) -> Problem:
         exact.constraints,
         tuple(remarks),
     )
+
+
+def smooth(arm: Arm, settings: Settings) -> ca.Function:
+    """As `exact` of the arm's problem, with the signs of dry friction smoothed: what has derivatives."""
+    limits, _ = bounds(arm, settings)
+    return _functions(_smoothed(arm, speeds(arm, limits, "motor")), limits, settings).sample
 
 
 @dataclass(frozen=True)

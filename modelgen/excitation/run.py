@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.excitation.optimisation import Optimiser, merit
-from modelgen.excitation.problem import SIGNALS, Problem, problem
+from modelgen.excitation.problem import SIGNALS, Problem, problem, smooth
 from modelgen.excitation.random_motion import feasible
 from modelgen.excitation.settings import Array, Settings
 from modelgen.excitation.spectrum import condition
@@ -51,7 +52,8 @@ def excite(arm: Arm, settings: Settings, progress: Progress | None = None) -> Ex
     found: list[Array | None] = [None] * settings.starts
     where = Where(settings.processes, settings.dask)
     # One job per start, so that progress is seen; a worker keeps the programme that it has built.
-    starts = [(p, k) for k in range(settings.starts)]
+    eased = smooth(arm, settings)
+    starts = [(p, eased, k) for k in range(settings.starts)]
     for done, (k, z) in enumerate(run(_one, starts, where), 1):
         found[k] = z
         if progress:
@@ -86,10 +88,10 @@ def random_conditions(p: Problem, count: int, seed: int) -> Array:
 _kept: list[tuple[tuple[str | bytes | Settings, ...], Optimiser]] = []
 
 
-def _one(start: tuple[Problem, int]) -> Array | None:
-    p, k = start
+def _one(start: tuple[Problem, ca.Function, int]) -> Array | None:
+    p, eased, k = start
     # Of another arm the names may be the same: the programme itself is compared.
-    key = (p.settings, p.smooth.serialize(), p.middle.tobytes(), p.amplitude.tobytes())
+    key = (p.settings, eased.serialize(), p.middle.tobytes(), p.amplitude.tobytes())
     if not _kept or _kept[0][0] != key:
-        _kept[:] = [(key, Optimiser(p))]
+        _kept[:] = [(key, Optimiser(p, eased))]
     return _kept[0][1].start(k)

@@ -58,6 +58,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         sentence=_sentence(d),
         reason=d.reason,
         causes=[_cause(d, k) for k in range(len(d.causes))],
+        harms=harms(d),
         fit=_fit(d),
         errors=_errors(d),
         unit=d.errors.unit,
@@ -128,6 +129,23 @@ _REFUSED = {
 _SHOWN = 12  # candidates of a turn
 
 
+def harms(d: Diagnosis) -> list[str]:
+    """What to know of causes that make the test record worse."""
+    return [
+        f"With {c.effect} at {_place(c.joint)} the error on the test record is {-c.share.gain:.1f} % larger "
+        f"({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that record."
+        f"{_ORIGINS.get(c.effect, '')}"
+        for c in d.causes
+        if c.share.high < 0.0
+    ]
+
+
+# What the values of a cause depend on besides the arm.
+_ORIGINS = {
+    "torque_ripple": " Its phase does only where both logs count positions from the same zero.",
+}
+
+
 def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
     """Heading and rows of every turn that had candidates."""
     headings = ["Candidates", *["Candidates, with what was taken before"] * len(d.selection.turns)]
@@ -169,6 +187,8 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
         "delta_bic": f"{c.delta_bic:.1f}",
         "gain": f"{c.cross_gain:.1f}",
         "expected": f"{c.expected_gain:.1f}",
+        "share": "" if np.isnan(c.share.gain) else f"{c.share.gain:.1f}",
+        "interval": f"{c.share.low:.1f} to {c.share.high:.1f}",
         "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
         "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
         "experiment": CATALOGUE[c.effect].experiment,

@@ -58,21 +58,22 @@ class _Axes:
 
 
 class Pen:
-    """Draws sketches: in a process of its own where there is a processor for it, else when they are fetched.
+    """Draws sketches: in processes of its own where there are processors for it, else when they are fetched.
 
-    beside: whether to start that process; it loads what it needs at once, before the first sketch comes.
+    hands: how many such processes to start; they load what they need at once, before the first sketch comes.
     """
 
-    def __init__(self, beside: bool = False) -> None:
+    def __init__(self, hands: int = 0) -> None:
         self._sketches: dict[str, Sketch] = {}
         self._drawn: dict[str, Future[str]] = {}
         self._pool: ProcessPoolExecutor | None = None
-        if beside and Where().count(2) > 1:
+        if hands and Where().count(2) > 1:
             # a fork would inherit the locks of this process's threads
             context = multiprocessing.get_context("spawn")
             with suppress(OSError, NotImplementedError):  # no process to be had: as without one
-                pool = ProcessPoolExecutor(1, mp_context=context, initializer=ignore_interrupt)
-                pool.submit(Sketch(1, 1, (1.0, 1.0)).drawn)
+                pool = ProcessPoolExecutor(hands, mp_context=context, initializer=ignore_interrupt)
+                for _ in range(hands):
+                    pool.submit(Sketch(1, 1, (1.0, 1.0)).drawn)
                 self._pool = pool
 
     def __enter__(self) -> Pen:

@@ -1,0 +1,47 @@
+"""What each of the causes takes away on the test record, against a model that is fitted without it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.diagnosis.errors import compared
+from modelgen.diagnosis.forms import with_causes
+from modelgen.diagnosis.objects import Share
+from modelgen.diagnosis.outcome import columns_of
+from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.system import weighted_fit
+from modelgen.probing import Prober
+
+
+def shares(selection: Selection, test: Rows, prober: Prober, base: Array) -> list[Share]:
+    """Of every cause, over the joints where it acts, each in units of what all causes leave there.
+
+    The model is fitted to the training records, with all causes and with all but this one; values that were
+    searched for stay. base: of `prober`'s arm.
+    """
+    rows, trials = selection.system.rows, [cause.trial for cause in selection.causes]
+    there = [columns_of(trial, test, prober, base) for trial in trials]
+
+    def left(kept: Sequence[int]) -> Array:
+        theta = weighted_fit(rows, with_causes(rows, [trials[k] for k in kept]))
+        return test.effort - np.concatenate([test.columns, *(there[k] for k in kept)], axis=2) @ theta
+
+    every, found = range(len(trials)), []
+    with_all = left(every)
+    for k in every:
+        without = left([i for i in every if i != k])
+        pairs = [
+            (without[m, j], with_all[m, j])
+            for j in trials[k].candidate.joints(test.moving.shape[1])
+            if (m := test.moving[:, j]).any()
+        ]
+        units = [max(float(np.sqrt(np.mean(after**2))), 1e-300) for _, after in pairs]
+        before, after = (
+            np.concatenate([np.zeros(0), *(pair[i] / unit for pair, unit in zip(pairs, units, strict=True))])
+            for i in range(2)
+        )
+        found.append(Share(*compared(before, after)[2:]))
+    return found
