@@ -10,7 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from modelgen.diagnosis.lack_of_fit import place
-from modelgen.diagnosis.objects import Diagnosis
+from modelgen.diagnosis.objects import Diagnosis, Named
 from modelgen.diagnosis.ranking import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
 from modelgen.effects import CATALOGUE
 from modelgen.report.drawing import effort, inline, left_over, replayed, residuals
@@ -187,13 +187,23 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
         "delta_bic": f"{c.delta_bic:.1f}",
         "gain": f"{c.cross_gain:.1f}",
         "expected": f"{c.expected_gain:.1f}",
-        "share": "" if np.isnan(c.share.gain) else f"{c.share.gain:.1f}",
-        "interval": f"{c.share.low:.1f} to {c.share.high:.1f}",
+        "share": _share(c),
         "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
         "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
         "experiment": CATALOGUE[c.effect].experiment,
         "reference": CATALOGUE[c.effect].reference,
     }
+
+
+def _share(c: Named) -> str:
+    """What the cause does to the error on the test record; empty where that is not known."""
+    s = c.share
+    if np.isnan(s.gain):
+        return ""
+    size, low, high, word = (
+        (s.gain, s.low, s.high, "less") if s.gain >= 0 else (-s.gain, -s.high, -s.low, "more")
+    )
+    return f"{size:.1f} % {word} error on the test record than without it ({low:.1f} to {high:.1f} %)"
 
 
 def _fit(d: Diagnosis) -> str:
