@@ -23,6 +23,7 @@ from modelgen.effects import CATALOGUE
 from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array, Motion
 from modelgen.probing.programs import at_motors
+from modelgen.probing.recent import Recent
 
 CUTOFF = 0.04  # of the rate, where no cut-off is given
 STEADY = 1 / 6  # of the cut-off: what of T a rigid drive would transmit through gap and impact
@@ -94,7 +95,7 @@ class LinkSide:
     ) -> None:
         self._drives = NumpyFunction(at_motors(e, base))
         self._links, self._gain, self._lever, self._arm = links, gain, lever, e.arm
-        self._known: dict[object, tuple[Motion, Array]] = {}
+        self._recent: Recent[Array] = Recent(KEPT * len(e.arm.coordinates))
 
     def added(self, joint: int, motion: Motion, values: dict[str, float], parameters: Array) -> Array:
         """What an elastic joint, or with `play` a gap, adds to the inputs, (N, n). joint: from 1.
@@ -171,14 +172,9 @@ class LinkSide:
         part (`steady`); effort that moves links and drive (`all`), and its slow part; inertia of the drive,
         as effort per acceleration of the joint; `lever`, the drive's ratio over that in the middle.
         """
-        at = joint, id(motion), np.asarray(parameters).tobytes()
-        if at not in self._known:
-            if len(self._known) >= KEPT * motion.q.shape[1]:
-                del self._known[next(iter(self._known))]
-            # the motion is kept: its place in memory is the key
-            self._known[at] = motion, self._made(joint, motion, parameters)
+        made = self._recent.along(joint, motion, parameters, lambda: self._made(joint, motion, parameters))
         names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia", "lever")
-        return dict(zip(names, self._known[at][1], strict=True))
+        return dict(zip(names, made, strict=True))
 
     def _made(self, joint: int, motion: Motion, parameters: Array) -> Array:
         j = joint - 1

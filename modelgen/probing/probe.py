@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cached_property, partial
 
 import numpy as np
@@ -28,6 +28,7 @@ from modelgen.probing.programs import (
     links_and_effect,
     loads_of,
 )
+from modelgen.probing.recent import Recent
 from modelgen.probing.series import Series
 from modelgen.probing.variations import Changed, Changes, Variations
 
@@ -53,7 +54,7 @@ class Prober:
         self._arms: dict[object, Equations] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
         self._series: dict[Equations, Series] = {}
-        self._memory: dict[tuple[object, int, bytes], tuple[Motion, Array]] = {}
+        self._recent: Recent[Array] = Recent(REMEMBERED)
 
     @cached_property
     def n(self) -> int:
@@ -76,7 +77,7 @@ class Prober:
         """Inputs of the arm as described, (N, n), for its base parameters."""
         if led_by(self.arm, motion):
             return self._rigid.inputs(motion, parameters) + self.link_side.led(motion, parameters)
-        return self._kept(
+        return self._recent.along(
             "own", motion, parameters, lambda: self._along("own", self._own, motion, parameters)
         )
 
@@ -201,11 +202,11 @@ class Prober:
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
         given = self.arm, self.base, joint, motion, parameters, self._bare, self.link_side.drives
-        return self._kept(("carried", joint), motion, parameters, lambda: carried(*given))
+        return self._recent.along(("carried", joint), motion, parameters, lambda: carried(*given))
 
     def _links(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the links alone."""
-        return self._kept("links", motion, parameters, lambda: self._bare(motion, parameters))
+        return self._recent.along("links", motion, parameters, lambda: self._bare(motion, parameters))
 
     @cached_property
     def _bare(self) -> Links:
@@ -226,7 +227,7 @@ class Prober:
         """Inputs (N, n) that hold in a further gravity (3,) what the base parameters do not contain."""
         none = np.zeros(0)
         return np.tensordot(
-            gravity, self._kept("weight", motion, none, lambda: self._weight.columns(motion)), 1
+            gravity, self._recent.along("weight", motion, none, lambda: self._weight.columns(motion)), 1
         )
 
     @cached_property
@@ -284,7 +285,7 @@ class Prober:
             def inputs() -> Array:
                 return np.asarray(made(**given_for(made.function, motion, parameters)))
 
-            loads = self._kept("loads", motion, parameters, inputs)
+            loads = self._recent.along("loads", motion, parameters, inputs)
         states = self._states(e, motion, free, parameters) if e.state_names() else None
         return np.asarray(
             call(**given_for(function, motion, parameters, free=free, loads=loads, states=states))
@@ -305,16 +306,6 @@ class Prober:
         if e not in self._series:
             self._series[e] = Series(e, self.base)
         series = self._series[e]
-        head = self._kept((e, "head"), motion, parameters, lambda: series.head(motion, parameters))
+        head = self._recent.along((e, "head"), motion, parameters, lambda: series.head(motion, parameters))
         found = series(head, free, motion)
         return lagging(found, e, motion, motion)  # a measured link is where it is
-
-    def _kept(self, what: object, motion: Motion, parameters: Array, make: Callable[[], Array]) -> Array:
-        """What `make` gives, made once for a motion and parameters; the last few are remembered."""
-        at = (what, id(motion), np.asarray(parameters).tobytes())
-        if at not in self._memory:
-            if len(self._memory) >= REMEMBERED:
-                del self._memory[next(iter(self._memory))]
-            # the motion is kept: its place in memory is the key
-            self._memory[at] = motion, make()
-        return self._memory[at][1]

@@ -18,6 +18,7 @@ from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array
 from modelgen.probing.places import with_effect
 from modelgen.probing.programs import inputs_of
+from modelgen.probing.recent import Recent
 
 REMEMBERED = 40  # changes
 
@@ -59,18 +60,16 @@ class Changes:
 
     def __init__(self, arm: Arm, varied: Variations | None) -> None:
         self._arm, self._varied = arm, varied
-        self._known: dict[object, Changed] = {}
+        self._recent: Recent[Changed] = Recent(REMEMBERED)
 
     def __call__(self, effect: str, joint: int | None, values: Mapping[str, float]) -> Changed:
         """Of the effect at coordinate number `joint`. Raises InputError where it admits no such values."""
         key = effect, joint, tuple(sorted(values.items()))
-        if key not in self._known:
-            if len(self._known) >= REMEMBERED:
-                del self._known[next(iter(self._known))]
-            arm = described(with_effect(self._arm, effect, joint, values))
-            geometry = None if self._varied is None else self._varied.values(arm)
-            self._known[key] = Changed(key, arm, geometry)
-        return self._known[key]
+        return self._recent(key, lambda: self._made(key, effect, joint, values))
+
+    def _made(self, key: object, effect: str, joint: int | None, values: Mapping[str, float]) -> Changed:
+        arm = described(with_effect(self._arm, effect, joint, values))
+        return Changed(key, arm, None if self._varied is None else self._varied.values(arm))
 
 
 def _form(arm: Arm) -> Arm:
