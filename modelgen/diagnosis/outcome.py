@@ -134,8 +134,11 @@ def residuals(
     if not selection.causes:
         return old, old
     if any(c.trial.candidate.effect == LATER for c in selection.causes):
-        found = [columns_of(cause.trial, test, prober, base) for cause in selection.causes]
-        table = [test.columns, *found]
+        table = [test.columns]
+        for cause in selection.causes:
+            found = columns_of(cause.trial, test, prober, base)
+            assert found is not None
+            table.append(found)
         left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
         return old, left * test.gain
     seen = _seen_by(test.prepared, after.arm)
@@ -143,13 +146,14 @@ def residuals(
     return old, (rows.effort - rows.columns @ after.theta) * test.gain
 
 
-def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array:
-    """Columns (M, n, k) of a cause on another record than those it was fitted to. base: of `prober`'s arm."""
+def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array | None:
+    """Columns (M, n, k) of a cause on another record than those it was fitted to; None where it cannot stand
+    there. base: of `prober`'s arm.
+    """
     # a payload that came between the records stays
     records = [test, test] if trial.candidate.effect == LATER else [test]
     found = columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
-    assert found is not None
-    return found[-1]
+    return None if found is None else found[-1]
 
 
 def unit_of_efforts(test: Prepared) -> str:

@@ -20,10 +20,13 @@ def shares(selection: Selection, test: Rows, prober: Prober, base: Array) -> lis
     """Of every cause, over the joints where it acts, each in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. base: of `prober`'s arm.
+    searched for stay. Not a number where one of them cannot stand on the test record. base: of `prober`'s arm.
     """
     rows, trials = selection.system.rows, [cause.trial for cause in selection.causes]
-    there = [columns_of(trial, test, prober, base) for trial in trials]
+    made = [columns_of(trial, test, prober, base) for trial in trials]
+    there = [table for table in made if table is not None and np.isfinite(table).all()]
+    if len(there) < len(trials):
+        return [Share()] * len(trials)
 
     def left(kept: Sequence[int]) -> Array:
         theta = weighted_fit(rows, with_causes(rows, [trials[k] for k in kept]))
