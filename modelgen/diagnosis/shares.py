@@ -20,7 +20,7 @@ def shares(selection: Selection, test: Rows, prober: Prober, base: Array) -> lis
     """Of every cause, over the joints where it acts, each in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. Not a number where one of them cannot stand on the test record. base: of `prober`'s arm.
+    searched for stay. Not a number where one of them cannot stand on that record. base: of `prober`'s arm.
     """
     rows, trials = selection.system.rows, [cause.trial for cause in selection.causes]
     made = [columns_of(trial, test, prober, base) for trial in trials]
