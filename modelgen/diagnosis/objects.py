@@ -146,6 +146,15 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             "gain_interval_percent": [
                 [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
             ],
+            "by_cause": [
+                {
+                    "effect": c.effect,
+                    "joint": c.joint,
+                    "gain_percent": rounded(c.share.gain),
+                    "gain_interval_percent": [rounded(c.share.low), rounded(c.share.high)],
+                }
+                for c in d.causes
+            ],
         },
         "simulation": {
             name: {"f_gof": [], "mae": [], "rmse": []}
@@ -201,8 +210,6 @@ def _cause(c: Named) -> dict[str, Any]:
             "cross_gain_percent": rounded(c.cross_gain),
             "expected_gain_percent": rounded(c.expected_gain),
         },
-        "test_gain_percent": rounded(c.share.gain),
-        "test_gain_interval_percent": [rounded(c.share.low), rounded(c.share.high)],
         "aliases": [{"effect": effect, "joint": joint} for effect, joint in c.aliases],
         "ambiguous_with": [
             {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}
