@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from modelgen.backends.c.dialect import arrays
+from modelgen.backends.exact import CONTEXT, exact_values
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import render, wrapped_code
@@ -42,7 +44,9 @@ def self_test(model: Model, provenance: Provenance) -> str:
             flat = np.concatenate(parts)
             if np.isfinite(flat).all():
                 condition = _condition(evaluated, f, values)
-                checks.append(_check(model.arm.name, f, names, flat, condition, len(checks) + 1))
+                given = {a.name: value for a, value in zip(f.arguments, values, strict=True)}
+                expected = exact_values(f, given)
+                checks.append(_check(model.arm.name, f, names, expected, condition, len(checks) + 1))
     declared = [
         wrapped_code(f"static const {arm}_real_t {name}[] = {{{_listed(value)}}};", "", "    ")
         for name, value in inputs.items()
@@ -60,11 +64,11 @@ def self_test(model: Model, provenance: Provenance) -> str:
 
 
 def _check(
-    arm: str, f: Function, names: Sequence[str], expected: Array, condition: float, number: int
+    arm: str, f: Function, names: Sequence[str], expected: Sequence[Any], condition: float, number: int
 ) -> str:
     """The call of a function and the comparison of its result."""
-    weighted = expected * (1 + np.arange(expected.size) % 7)
-    magnitude = float(np.abs(weighted).sum())
+    weighted = [x * (1 + k % 7) for k, x in enumerate(expected)]
+    total, magnitude = float(sum(weighted)), float(sum(map(abs, weighted)))
     single, double = (
         max(tolerance, 50 * eps * condition) * max(magnitude, _LEAST) for eps, tolerance in TOLERANCE
     )
@@ -73,8 +77,8 @@ def _check(
         outputs.append(f"out + {offset}" if offset else "out")
         offset += size
     call = f"status = {arm}_{f.name}({', '.join([*names, *outputs])});"
-    numbers = f"C({float(weighted.sum())!r}), C({magnitude!r})"
-    test = f"if (!agrees(status, {expected.size}, {numbers}, either(C({single:.3g}), C({double:.3g})))) {{"
+    numbers = f"C({total!r}), C({magnitude!r})"
+    test = f"if (!agrees(status, {len(expected)}, {numbers}, either(C({single:.3g}), C({double:.3g})))) {{"
     lines = [wrapped_code(call, "    ", "        "), wrapped_code(test, "    ", "        ")]
     return "\n".join([*lines, f"        return {number};", "    }"])
 
@@ -103,7 +107,8 @@ def _input(model: Model, f: Function, a: Argument, state: int) -> tuple[str, Arr
     name = f"{a.name}_{state}"
     if a.name in ("sin_q", "cos_q"):
         q = _span(model, "q", a.size, state)
-        return name, np.sin(q) if a.name == "sin_q" else np.cos(q)
+        function = CONTEXT.sin if a.name == "sin_q" else CONTEXT.cos
+        return name, np.array([float(function(x)) for x in q])
     return name, _span(model, a.name, a.size, state)
 
 

@@ -77,7 +77,7 @@ int main(void)
         return 1;
     }
     status = gravity_arm_inverse_dynamics(q_1, dq_1, ddq_1, parameters, out);
-    if (!agrees(status, 2, C(8.902278715116054), C(8.902278715116054), either(C(0.00089), C(8.9e-11)))) {
+    if (!agrees(status, 2, C(8.902278715116053), C(8.902278715116053), either(C(0.00089), C(8.9e-11)))) {
         return 2;
     }
     status = gravity_arm_inverse_dynamics(q_2, dq_2, ddq_2, parameters, out);
@@ -89,7 +89,7 @@ int main(void)
         return 4;
     }
     status = gravity_arm_gravity(q_1, parameters, out);
-    if (!agrees(status, 2, C(8.656346586902341), C(8.656346586902341), either(C(0.000866), C(8.66e-11)))) {
+    if (!agrees(status, 2, C(8.656346586902343), C(8.656346586902343), either(C(0.000866), C(8.66e-11)))) {
         return 5;
     }
     status = gravity_arm_gravity(q_2, parameters, out);
@@ -101,7 +101,7 @@ int main(void)
         return 7;
     }
     status = gravity_arm_bias(q_1, dq_1, parameters, out);
-    if (!agrees(status, 2, C(8.622781422677228), C(8.622781422677228), either(C(0.000862), C(8.62e-11)))) {
+    if (!agrees(status, 2, C(8.62278142267723), C(8.62278142267723), either(C(0.000862), C(8.62e-11)))) {
         return 8;
     }
     status = gravity_arm_bias(q_2, dq_2, parameters, out);
@@ -113,7 +113,7 @@ int main(void)
         return 10;
     }
     status = gravity_arm_mass_matrix(q_1, parameters, out);
-    if (!agrees(status, 4, C(0.7999913358042348), C(0.7999913358042348), either(C(8e-05), C(8e-12)))) {
+    if (!agrees(status, 4, C(0.7999913358042349), C(0.7999913358042349), either(C(8e-05), C(8e-12)))) {
         return 11;
     }
     status = gravity_arm_mass_matrix(q_2, parameters, out);
@@ -121,7 +121,7 @@ int main(void)
         return 12;
     }
     status = gravity_arm_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 2, C(2.4364679128174203), C(31.939498735293455), either(C(0.0122), C(3.19e-10)))) {
+    if (!agrees(status, 2, C(2.436467912817436), C(31.939498735293434), either(C(0.0122), C(3.19e-10)))) {
         return 13;
     }
     status = gravity_arm_forward_dynamics(q_1, dq_1, input_1, parameters, out);
@@ -129,15 +129,15 @@ int main(void)
         return 14;
     }
     status = gravity_arm_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 2, C(35.14140528993761), C(77.29377466958508), either(C(0.0264), C(7.73e-10)))) {
+    if (!agrees(status, 2, C(35.141405289937644), C(77.2937746695851), either(C(0.0264), C(7.73e-10)))) {
         return 15;
     }
     status = gravity_arm_energy(q_0, dq_0, parameters, out, out + 1);
-    if (!agrees(status, 2, C(-0.884671030914875), C(1.3344126735557207), either(C(0.000133), C(1.33e-11)))) {
+    if (!agrees(status, 2, C(-0.8846710309148749), C(1.3344126735557205), either(C(0.000133), C(1.33e-11)))) {
         return 16;
     }
     status = gravity_arm_energy(q_1, dq_1, parameters, out, out + 1);
-    if (!agrees(status, 2, C(-22.518406696029267), C(22.5716674788882), either(C(0.00226), C(2.26e-10)))) {
+    if (!agrees(status, 2, C(-22.51840669602927), C(22.5716674788882), either(C(0.00226), C(2.26e-10)))) {
         return 17;
     }
     status = gravity_arm_energy(q_2, dq_2, parameters, out, out + 1);
@@ -145,19 +145,19 @@ int main(void)
         return 18;
     }
     status = gravity_arm_regressor(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 20, C(-129.7780131554406), C(129.7780131554406), either(C(0.013), C(1.3e-09)))) {
+    if (!agrees(status, 20, C(-129.77801315544062), C(129.77801315544062), either(C(0.013), C(1.3e-09)))) {
         return 19;
     }
     status = gravity_arm_regressor(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 20, C(114.7878728632038), C(117.57831597377756), either(C(0.0118), C(1.18e-09)))) {
+    if (!agrees(status, 20, C(114.78787286320382), C(117.57831597377758), either(C(0.0118), C(1.18e-09)))) {
         return 20;
     }
     status = gravity_arm_regressor(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 20, C(66.56306735254746), C(138.0686095268658), either(C(0.0138), C(1.38e-09)))) {
+    if (!agrees(status, 20, C(66.56306735254745), C(138.0686095268658), either(C(0.0138), C(1.38e-09)))) {
         return 21;
     }
     status = gravity_arm_regressor_standard(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 48, C(-249.85113259329017), C(249.85113259329017), either(C(0.025), C(2.5e-09)))) {
+    if (!agrees(status, 48, C(-249.8511325932902), C(249.8511325932902), either(C(0.025), C(2.5e-09)))) {
         return 22;
     }
     status = gravity_arm_regressor_standard(q_1, dq_1, ddq_1, out);
@@ -173,11 +173,11 @@ int main(void)
         return 25;
     }
     status = gravity_arm_regressor_packed(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 13, C(129.27642618503916), C(132.06686929561295), either(C(0.0132), C(1.32e-09)))) {
+    if (!agrees(status, 13, C(129.27642618503916), C(132.06686929561292), either(C(0.0132), C(1.32e-09)))) {
         return 26;
     }
     status = gravity_arm_regressor_packed(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 13, C(97.32102630210093), C(158.82656847641928), either(C(0.0159), C(1.59e-09)))) {
+    if (!agrees(status, 13, C(97.32102630210093), C(158.82656847641925), either(C(0.0159), C(1.59e-09)))) {
         return 27;
     }
     status = gravity_arm_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
@@ -185,15 +185,15 @@ int main(void)
         return 28;
     }
     status = gravity_arm_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
-    if (!agrees(status, 20, C(106.69958397893652), C(112.19958397893652), either(C(0.0112), C(1.12e-09)))) {
+    if (!agrees(status, 20, C(106.69958397893653), C(112.19958397893653), either(C(0.0112), C(1.12e-09)))) {
         return 29;
     }
     status = gravity_arm_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
-    if (!agrees(status, 20, C(75.69740815830183), C(135.70295033262016), either(C(0.0136), C(1.36e-09)))) {
+    if (!agrees(status, 20, C(75.69740815830181), C(135.70295033262016), either(C(0.0136), C(1.36e-09)))) {
         return 30;
     }
     status = gravity_arm_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
-    if (!agrees(status, 2, C(-20.11746548642216), C(20.11746548642216), either(C(0.00201), C(2.01e-10)))) {
+    if (!agrees(status, 2, C(-20.117465486422162), C(20.117465486422162), either(C(0.00201), C(2.01e-10)))) {
         return 31;
     }
     status = gravity_arm_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
@@ -209,11 +209,11 @@ int main(void)
         return 34;
     }
     status = gravity_arm_gravity_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 2, C(8.656346586902341), C(8.656346586902341), either(C(0.000866), C(8.66e-11)))) {
+    if (!agrees(status, 2, C(8.656346586902343), C(8.656346586902343), either(C(0.000866), C(8.66e-11)))) {
         return 35;
     }
     status = gravity_arm_gravity_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 2, C(18.520009519918258), C(18.520009519918258), either(C(0.00185), C(1.85e-10)))) {
+    if (!agrees(status, 2, C(18.520009519918254), C(18.520009519918254), either(C(0.00185), C(1.85e-10)))) {
         return 36;
     }
     status = gravity_arm_bias_standard(q_0, dq_0, standard_parameters, out);
@@ -221,7 +221,7 @@ int main(void)
         return 37;
     }
     status = gravity_arm_bias_standard(q_1, dq_1, standard_parameters, out);
-    if (!agrees(status, 2, C(8.622781422677228), C(8.622781422677228), either(C(0.000862), C(8.62e-11)))) {
+    if (!agrees(status, 2, C(8.62278142267723), C(8.62278142267723), either(C(0.000862), C(8.62e-11)))) {
         return 38;
     }
     status = gravity_arm_bias_standard(q_2, dq_2, standard_parameters, out);
@@ -229,19 +229,19 @@ int main(void)
         return 39;
     }
     status = gravity_arm_mass_matrix_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 4, C(1.9642819031847103), C(1.9642819031847103), either(C(0.000196), C(1.96e-11)))) {
+    if (!agrees(status, 4, C(1.96428190318471), C(1.96428190318471), either(C(0.000196), C(1.96e-11)))) {
         return 40;
     }
     status = gravity_arm_mass_matrix_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 4, C(0.7999913361162347), C(0.7999913361162347), either(C(8e-05), C(8e-12)))) {
+    if (!agrees(status, 4, C(0.7999913361162349), C(0.7999913361162349), either(C(8e-05), C(8e-12)))) {
         return 41;
     }
     status = gravity_arm_mass_matrix_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 4, C(1.9275283299756478), C(1.9275283299756478), either(C(0.000193), C(1.93e-11)))) {
+    if (!agrees(status, 4, C(1.9275283299756476), C(1.9275283299756476), either(C(0.000193), C(1.93e-11)))) {
         return 42;
     }
     status = gravity_arm_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 2, C(2.4364680245922123), C(31.939498587748798), either(C(0.0122), C(3.19e-10)))) {
+    if (!agrees(status, 2, C(2.4364680245921284), C(31.939498587748904), either(C(0.0122), C(3.19e-10)))) {
         return 43;
     }
     status = gravity_arm_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
@@ -249,15 +249,15 @@ int main(void)
         return 44;
     }
     status = gravity_arm_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 2, C(35.1414051686684), C(77.2937745080751), either(C(0.0264), C(7.73e-10)))) {
+    if (!agrees(status, 2, C(35.14140516866847), C(77.29377450807519), either(C(0.0264), C(7.73e-10)))) {
         return 45;
     }
     status = gravity_arm_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(-0.8846710308411407), C(1.3344126736294553), either(C(0.000133), C(1.33e-11)))) {
+    if (!agrees(status, 2, C(-0.8846710308411407), C(1.334412673629455), either(C(0.000133), C(1.33e-11)))) {
         return 46;
     }
     status = gravity_arm_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(-22.51840669602378), C(22.57166747889368), either(C(0.00226), C(2.26e-10)))) {
+    if (!agrees(status, 2, C(-22.51840669602378), C(22.571667478893684), either(C(0.00226), C(2.26e-10)))) {
         return 47;
     }
     status = gravity_arm_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
@@ -265,11 +265,11 @@ int main(void)
         return 48;
     }
     status = gravity_arm_forward_kinematics(q_0, out);
-    if (!agrees(status, 32, C(6.444399800279928), C(36.82410497648485), either(C(0.00368), C(3.68e-10)))) {
+    if (!agrees(status, 32, C(6.4443998002799265), C(36.824104976484854), either(C(0.00368), C(3.68e-10)))) {
         return 49;
     }
     status = gravity_arm_forward_kinematics(q_1, out);
-    if (!agrees(status, 32, C(30.002259456992675), C(38.48091828336602), either(C(0.00385), C(3.85e-10)))) {
+    if (!agrees(status, 32, C(30.00225945699268), C(38.48091828336602), either(C(0.00385), C(3.85e-10)))) {
         return 50;
     }
     status = gravity_arm_forward_kinematics(q_2, out);
@@ -285,7 +285,7 @@ int main(void)
         return 53;
     }
     status = gravity_arm_jacobian(q_2, out);
-    if (!agrees(status, 12, C(8.002265436019716), C(9.997734563980284), either(C(0.001), C(1e-10)))) {
+    if (!agrees(status, 12, C(8.002265436019718), C(9.997734563980282), either(C(0.001), C(1e-10)))) {
         return 54;
     }
     status = gravity_arm_motor_from_joint(q_0, dq_0, ddq_0, out, out + 2, out + 4);

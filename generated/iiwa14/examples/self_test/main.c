@@ -112,11 +112,11 @@ int main(void)
 {
     int status;
     status = iiwa14_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
-    if (!agrees(status, 7, C(-261.5513768122274), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
+    if (!agrees(status, 7, C(-261.55137681222726), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
         return 1;
     }
     status = iiwa14_inverse_dynamics(q_1, dq_1, ddq_1, parameters, out);
-    if (!agrees(status, 7, C(-163.3205518034363), C(377.4481887253331), either(C(0.0377), C(3.77e-09)))) {
+    if (!agrees(status, 7, C(-163.3205518034363), C(377.44818872533307), either(C(0.0377), C(3.77e-09)))) {
         return 2;
     }
     status = iiwa14_inverse_dynamics(q_2, dq_2, ddq_2, parameters, out);
@@ -124,59 +124,59 @@ int main(void)
         return 3;
     }
     status = iiwa14_gravity(q_0, parameters, out);
-    if (!agrees(status, 7, C(5.173901841572088), C(10.045868429948186), either(C(0.001), C(1e-10)))) {
+    if (!agrees(status, 7, C(5.1739018415720865), C(10.045868429948184), either(C(0.001), C(1e-10)))) {
         return 4;
     }
     status = iiwa14_gravity(q_1, parameters, out);
-    if (!agrees(status, 7, C(-17.243218039714453), C(17.323661531802053), either(C(0.00173), C(1.73e-10)))) {
+    if (!agrees(status, 7, C(-17.243218039714456), C(17.323661531802056), either(C(0.00173), C(1.73e-10)))) {
         return 5;
     }
     status = iiwa14_gravity(q_2, parameters, out);
-    if (!agrees(status, 7, C(0.7184209225247917), C(12.45794354962733), either(C(0.00125), C(1.25e-10)))) {
+    if (!agrees(status, 7, C(0.7184209225247914), C(12.457943549627329), either(C(0.00125), C(1.25e-10)))) {
         return 6;
     }
     status = iiwa14_bias(q_0, dq_0, parameters, out);
-    if (!agrees(status, 7, C(-260.3223225865617), C(594.2446624634356), either(C(0.0594), C(5.94e-09)))) {
+    if (!agrees(status, 7, C(-260.32232258656165), C(594.2446624634356), either(C(0.0594), C(5.94e-09)))) {
         return 7;
     }
     status = iiwa14_bias(q_1, dq_1, parameters, out);
-    if (!agrees(status, 7, C(-165.0573640020328), C(374.4582529687485), either(C(0.0374), C(3.74e-09)))) {
+    if (!agrees(status, 7, C(-165.05736400203278), C(374.4582529687485), either(C(0.0374), C(3.74e-09)))) {
         return 8;
     }
     status = iiwa14_bias(q_2, dq_2, parameters, out);
-    if (!agrees(status, 7, C(365.956753322174), C(514.7921772814971), either(C(0.0515), C(5.15e-09)))) {
+    if (!agrees(status, 7, C(365.95675332217394), C(514.792177281497), either(C(0.0515), C(5.15e-09)))) {
         return 9;
     }
     status = iiwa14_mass_matrix(q_0, parameters, out);
-    if (!agrees(status, 49, C(70.88309549341909), C(96.07801399727803), either(C(0.00961), C(9.61e-10)))) {
+    if (!agrees(status, 49, C(70.8830954934191), C(96.07801399727803), either(C(0.00961), C(9.61e-10)))) {
         return 10;
     }
     status = iiwa14_mass_matrix(q_1, parameters, out);
-    if (!agrees(status, 49, C(122.4479878655762), C(126.33637061220955), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 49, C(122.44798786557618), C(126.33637061220956), either(C(0.0126), C(1.26e-09)))) {
         return 11;
     }
     status = iiwa14_mass_matrix(q_2, parameters, out);
-    if (!agrees(status, 49, C(82.81820936085741), C(103.31787691928399), either(C(0.0103), C(1.03e-09)))) {
+    if (!agrees(status, 49, C(82.81820936085741), C(103.31787691928398), either(C(0.0103), C(1.03e-09)))) {
         return 12;
     }
     status = iiwa14_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 7, C(887.5469423983104), C(1994.4153295568544), either(C(0.199), C(1.99e-08)))) {
+    if (!agrees(status, 7, C(887.5469423983102), C(1994.4153295568542), either(C(0.199), C(1.99e-08)))) {
         return 13;
     }
     status = iiwa14_forward_dynamics(q_1, dq_1, input_1, parameters, out);
-    if (!agrees(status, 7, C(420.8553306218604), C(1719.857269846157), either(C(0.172), C(1.72e-08)))) {
+    if (!agrees(status, 7, C(420.8553306218603), C(1719.8572698461571), either(C(0.172), C(1.72e-08)))) {
         return 14;
     }
     status = iiwa14_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 7, C(-1129.0116330262833), C(2060.4785210455557), either(C(0.206), C(2.06e-08)))) {
+    if (!agrees(status, 7, C(-1129.0116330262833), C(2060.478521045555), either(C(0.206), C(2.06e-08)))) {
         return 15;
     }
     status = iiwa14_energy(q_0, dq_0, parameters, out, out + 1);
-    if (!agrees(status, 2, C(61.42470455470463), C(61.42470455470463), either(C(0.00614), C(6.14e-10)))) {
+    if (!agrees(status, 2, C(61.42470455470464), C(61.42470455470464), either(C(0.00614), C(6.14e-10)))) {
         return 16;
     }
     status = iiwa14_energy(q_1, dq_1, parameters, out, out + 1);
-    if (!agrees(status, 2, C(13.771957181196798), C(13.771957181196798), either(C(0.00138), C(1.38e-10)))) {
+    if (!agrees(status, 2, C(13.7719571811968), C(13.7719571811968), either(C(0.00138), C(1.38e-10)))) {
         return 17;
     }
     status = iiwa14_energy(q_2, dq_2, parameters, out, out + 1);
@@ -188,15 +188,15 @@ int main(void)
         return 19;
     }
     status = iiwa14_regressor(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 434, C(-13795.820295659934), C(35599.38968276692), either(C(3.56), C(3.56e-07)))) {
+    if (!agrees(status, 434, C(-13795.820295659936), C(35599.38968276692), either(C(3.56), C(3.56e-07)))) {
         return 20;
     }
     status = iiwa14_regressor(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 434, C(48496.348157866596), C(64237.989375036675), either(C(6.42), C(6.42e-07)))) {
+    if (!agrees(status, 434, C(48496.34815786659), C(64237.989375036675), either(C(6.42), C(6.42e-07)))) {
         return 21;
     }
     status = iiwa14_regressor_standard(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 637, C(-29432.749668333374), C(67886.12630876937), either(C(6.79), C(6.79e-07)))) {
+    if (!agrees(status, 637, C(-29432.74966833338), C(67886.12630876937), either(C(6.79), C(6.79e-07)))) {
         return 22;
     }
     status = iiwa14_regressor_standard(q_1, dq_1, ddq_1, out);
@@ -204,27 +204,27 @@ int main(void)
         return 23;
     }
     status = iiwa14_regressor_standard(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 637, C(28298.63700857031), C(69497.04663037427), either(C(6.95), C(6.95e-07)))) {
+    if (!agrees(status, 637, C(28298.637008570306), C(69497.04663037427), either(C(6.95), C(6.95e-07)))) {
         return 24;
     }
     status = iiwa14_regressor_packed(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 207, C(-16270.150089810806), C(57523.08299186303), either(C(5.75), C(5.75e-07)))) {
+    if (!agrees(status, 207, C(-16270.150089810806), C(57523.082991863026), either(C(5.75), C(5.75e-07)))) {
         return 25;
     }
     status = iiwa14_regressor_packed(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 207, C(-8911.595864116578), C(38066.17052958388), either(C(3.81), C(3.81e-07)))) {
+    if (!agrees(status, 207, C(-8911.595864116578), C(38066.170529583884), either(C(3.81), C(3.81e-07)))) {
         return 26;
     }
     status = iiwa14_regressor_packed(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 207, C(20561.060854775387), C(57039.40450508345), either(C(5.7), C(5.7e-07)))) {
+    if (!agrees(status, 207, C(20561.060854775384), C(57039.40450508345), either(C(5.7), C(5.7e-07)))) {
         return 27;
     }
     status = iiwa14_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
-    if (!agrees(status, 434, C(-8491.333008061461), C(69835.80593512456), either(C(6.98), C(6.98e-07)))) {
+    if (!agrees(status, 434, C(-8491.33300806146), C(69835.80593512456), either(C(6.98), C(6.98e-07)))) {
         return 28;
     }
     status = iiwa14_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
-    if (!agrees(status, 434, C(-7968.857475744304), C(35680.07064949534), either(C(3.57), C(3.57e-07)))) {
+    if (!agrees(status, 434, C(-7968.857475744302), C(35680.070649495334), either(C(3.57), C(3.57e-07)))) {
         return 29;
     }
     status = iiwa14_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
@@ -232,11 +232,11 @@ int main(void)
         return 30;
     }
     status = iiwa14_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
-    if (!agrees(status, 7, C(-261.5513768122274), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
+    if (!agrees(status, 7, C(-261.55137681222726), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
         return 31;
     }
     status = iiwa14_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
-    if (!agrees(status, 7, C(-163.3205518034363), C(377.4481887253331), either(C(0.0377), C(3.77e-09)))) {
+    if (!agrees(status, 7, C(-163.3205518034363), C(377.44818872533307), either(C(0.0377), C(3.77e-09)))) {
         return 32;
     }
     status = iiwa14_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
@@ -248,31 +248,31 @@ int main(void)
         return 34;
     }
     status = iiwa14_gravity_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 7, C(-17.243218039714453), C(17.323661531802053), either(C(0.00173), C(1.73e-10)))) {
+    if (!agrees(status, 7, C(-17.243218039714456), C(17.323661531802056), either(C(0.00173), C(1.73e-10)))) {
         return 35;
     }
     status = iiwa14_gravity_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 7, C(0.7184209225247926), C(12.45794354962733), either(C(0.00125), C(1.25e-10)))) {
+    if (!agrees(status, 7, C(0.7184209225247913), C(12.457943549627329), either(C(0.00125), C(1.25e-10)))) {
         return 36;
     }
     status = iiwa14_bias_standard(q_0, dq_0, standard_parameters, out);
-    if (!agrees(status, 7, C(-260.3223225865617), C(594.2446624634356), either(C(0.0594), C(5.94e-09)))) {
+    if (!agrees(status, 7, C(-260.32232258656165), C(594.2446624634356), either(C(0.0594), C(5.94e-09)))) {
         return 37;
     }
     status = iiwa14_bias_standard(q_1, dq_1, standard_parameters, out);
-    if (!agrees(status, 7, C(-165.0573640020328), C(374.4582529687485), either(C(0.0374), C(3.74e-09)))) {
+    if (!agrees(status, 7, C(-165.05736400203278), C(374.4582529687485), either(C(0.0374), C(3.74e-09)))) {
         return 38;
     }
     status = iiwa14_bias_standard(q_2, dq_2, standard_parameters, out);
-    if (!agrees(status, 7, C(365.956753322174), C(514.7921772814971), either(C(0.0515), C(5.15e-09)))) {
+    if (!agrees(status, 7, C(365.95675332217394), C(514.792177281497), either(C(0.0515), C(5.15e-09)))) {
         return 39;
     }
     status = iiwa14_mass_matrix_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 49, C(70.88309549341909), C(96.07801399727803), either(C(0.00961), C(9.61e-10)))) {
+    if (!agrees(status, 49, C(70.8830954934191), C(96.07801399727803), either(C(0.00961), C(9.61e-10)))) {
         return 40;
     }
     status = iiwa14_mass_matrix_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 49, C(122.4479878655762), C(126.33637061220956), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 49, C(122.44798786557618), C(126.33637061220956), either(C(0.0126), C(1.26e-09)))) {
         return 41;
     }
     status = iiwa14_mass_matrix_standard(q_2, standard_parameters, out);
@@ -280,7 +280,7 @@ int main(void)
         return 42;
     }
     status = iiwa14_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 7, C(887.5469423983104), C(1994.4153295568544), either(C(0.199), C(1.99e-08)))) {
+    if (!agrees(status, 7, C(887.5469423983102), C(1994.4153295568542), either(C(0.199), C(1.99e-08)))) {
         return 43;
     }
     status = iiwa14_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
@@ -288,11 +288,11 @@ int main(void)
         return 44;
     }
     status = iiwa14_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 7, C(-1129.0116330262833), C(2060.4785210455557), either(C(0.206), C(2.06e-08)))) {
+    if (!agrees(status, 7, C(-1129.0116330262833), C(2060.478521045555), either(C(0.206), C(2.06e-08)))) {
         return 45;
     }
     status = iiwa14_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(157.1703045547046), C(157.1703045547046), either(C(0.0157), C(1.57e-09)))) {
+    if (!agrees(status, 2, C(157.17030455470464), C(157.17030455470464), either(C(0.0157), C(1.57e-09)))) {
         return 46;
     }
     status = iiwa14_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
@@ -300,11 +300,11 @@ int main(void)
         return 47;
     }
     status = iiwa14_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(120.4440890593978), C(120.4440890593978), either(C(0.012), C(1.2e-09)))) {
+    if (!agrees(status, 2, C(120.44408905939778), C(120.44408905939778), either(C(0.012), C(1.2e-09)))) {
         return 48;
     }
     status = iiwa14_forward_kinematics(q_0, out);
-    if (!agrees(status, 112, C(18.792585801567146), C(165.83231791706993), either(C(0.0166), C(1.66e-09)))) {
+    if (!agrees(status, 112, C(18.79258580156715), C(165.83231791706993), either(C(0.0166), C(1.66e-09)))) {
         return 49;
     }
     status = iiwa14_forward_kinematics(q_1, out);
@@ -312,23 +312,23 @@ int main(void)
         return 50;
     }
     status = iiwa14_forward_kinematics(q_2, out);
-    if (!agrees(status, 112, C(72.37249644546856), C(175.02414852791102), either(C(0.0175), C(1.75e-09)))) {
+    if (!agrees(status, 112, C(72.37249644546854), C(175.02414852791102), either(C(0.0175), C(1.75e-09)))) {
         return 51;
     }
     status = iiwa14_jacobian(q_0, out);
-    if (!agrees(status, 42, C(-13.703925281011042), C(49.44251465967632), either(C(0.00494), C(4.94e-10)))) {
+    if (!agrees(status, 42, C(-13.703925281011044), C(49.44251465967632), either(C(0.00494), C(4.94e-10)))) {
         return 52;
     }
     status = iiwa14_jacobian(q_1, out);
-    if (!agrees(status, 42, C(27.66722841002791), C(45.27424745081351), either(C(0.00453), C(4.53e-10)))) {
+    if (!agrees(status, 42, C(27.667228410027906), C(45.27424745081352), either(C(0.00453), C(4.53e-10)))) {
         return 53;
     }
     status = iiwa14_jacobian(q_2, out);
-    if (!agrees(status, 42, C(19.88159735672119), C(51.953229293755555), either(C(0.0052), C(5.2e-10)))) {
+    if (!agrees(status, 42, C(19.881597356721187), C(51.953229293755555), either(C(0.0052), C(5.2e-10)))) {
         return 54;
     }
     status = iiwa14_motor_from_joint(q_0, dq_0, ddq_0, out, out + 7, out + 14);
-    if (!agrees(status, 21, C(541.8174000000006), C(11535.0722), either(C(1.15), C(1.15e-07)))) {
+    if (!agrees(status, 21, C(541.8174000000001), C(11535.0722), either(C(1.15), C(1.15e-07)))) {
         return 55;
     }
     status = iiwa14_motor_from_joint(q_1, dq_1, ddq_1, out, out + 7, out + 14);
@@ -336,19 +336,19 @@ int main(void)
         return 56;
     }
     status = iiwa14_motor_from_joint(q_2, dq_2, ddq_2, out, out + 7, out + 14);
-    if (!agrees(status, 21, C(5135.975799999999), C(10221.3778), either(C(1.02), C(1.02e-07)))) {
+    if (!agrees(status, 21, C(5135.9758), C(10221.3778), either(C(1.02), C(1.02e-07)))) {
         return 57;
     }
     status = iiwa14_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 7, out + 14);
-    if (!agrees(status, 21, C(-0.0011718749999999924), C(0.286328125), either(C(2.86e-05), C(2.86e-12)))) {
+    if (!agrees(status, 21, C(-0.0011718750000000004), C(0.286328125), either(C(2.86e-05), C(2.86e-12)))) {
         return 58;
     }
     status = iiwa14_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 7, out + 14);
-    if (!agrees(status, 21, C(0.01992187499999999), C(0.291015625), either(C(2.91e-05), C(2.91e-12)))) {
+    if (!agrees(status, 21, C(0.019921875), C(0.291015625), either(C(2.91e-05), C(2.91e-12)))) {
         return 59;
     }
     status = iiwa14_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 7, out + 14);
-    if (!agrees(status, 21, C(-0.058984375), C(0.30429687499999997), either(C(3.04e-05), C(3.04e-12)))) {
+    if (!agrees(status, 21, C(-0.058984375000000006), C(0.304296875), either(C(3.04e-05), C(3.04e-12)))) {
         return 60;
     }
     status = iiwa14_drive_gain(q_0, out);

@@ -88,27 +88,27 @@ int main(void)
 {
     int status;
     status = puma560_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
-    if (!agrees(status, 6, C(-31.43450051212045), C(127.89214759885196), either(C(0.0128), C(1.28e-09)))) {
+    if (!agrees(status, 6, C(-31.434500512120454), C(127.89214759885195), either(C(0.0128), C(1.28e-09)))) {
         return 1;
     }
     status = puma560_inverse_dynamics(q_1, dq_1, ddq_1, parameters, out);
-    if (!agrees(status, 6, C(4.898894568618886), C(146.40979319938526), either(C(0.0146), C(1.46e-09)))) {
+    if (!agrees(status, 6, C(4.898894568618881), C(146.40979319938526), either(C(0.0146), C(1.46e-09)))) {
         return 2;
     }
     status = puma560_inverse_dynamics(q_2, dq_2, ddq_2, parameters, out);
-    if (!agrees(status, 6, C(43.2719711118403), C(126.3911562065143), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 6, C(43.2719711118403), C(126.39115620651428), either(C(0.0126), C(1.26e-09)))) {
         return 3;
     }
     status = puma560_gravity(q_0, parameters, out);
-    if (!agrees(status, 6, C(-1.9208983156111397), C(5.421352890797773), either(C(0.000542), C(5.42e-11)))) {
+    if (!agrees(status, 6, C(-1.9208983156111403), C(5.421352890797773), either(C(0.000542), C(5.42e-11)))) {
         return 4;
     }
     status = puma560_gravity(q_1, parameters, out);
-    if (!agrees(status, 6, C(-2.129836244407004), C(4.988426071412102), either(C(0.000499), C(4.99e-11)))) {
+    if (!agrees(status, 6, C(-2.1298362444070045), C(4.988426071412102), either(C(0.000499), C(4.99e-11)))) {
         return 5;
     }
     status = puma560_gravity(q_2, parameters, out);
-    if (!agrees(status, 6, C(0.42727512040385385), C(9.420164865706802), either(C(0.000942), C(9.42e-11)))) {
+    if (!agrees(status, 6, C(0.4272751204038534), C(9.420164865706804), either(C(0.000942), C(9.42e-11)))) {
         return 6;
     }
     status = puma560_bias(q_0, dq_0, parameters, out);
@@ -116,39 +116,39 @@ int main(void)
         return 7;
     }
     status = puma560_bias(q_1, dq_1, parameters, out);
-    if (!agrees(status, 6, C(4.557400664773837), C(145.2170537210913), either(C(0.0145), C(1.45e-09)))) {
+    if (!agrees(status, 6, C(4.557400664773835), C(145.2170537210913), either(C(0.0145), C(1.45e-09)))) {
         return 8;
     }
     status = puma560_bias(q_2, dq_2, parameters, out);
-    if (!agrees(status, 6, C(43.63159021752306), C(126.12112465438992), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 6, C(43.63159021752307), C(126.12112465438992), either(C(0.0126), C(1.26e-09)))) {
         return 9;
     }
     status = puma560_mass_matrix(q_0, parameters, out);
-    if (!agrees(status, 36, C(13.485910544979278), C(18.843222413286604), either(C(0.00188), C(1.88e-10)))) {
+    if (!agrees(status, 36, C(13.48591054497928), C(18.843222413286604), either(C(0.00188), C(1.88e-10)))) {
         return 10;
     }
     status = puma560_mass_matrix(q_1, parameters, out);
-    if (!agrees(status, 36, C(29.13576765722889), C(32.138591626110276), either(C(0.00321), C(3.21e-10)))) {
+    if (!agrees(status, 36, C(29.135767657228893), C(32.138591626110276), either(C(0.00321), C(3.21e-10)))) {
         return 11;
     }
     status = puma560_mass_matrix(q_2, parameters, out);
-    if (!agrees(status, 36, C(6.543369596756134), C(18.55558849210208), either(C(0.00186), C(1.86e-10)))) {
+    if (!agrees(status, 36, C(6.543369596756133), C(18.555588492102082), either(C(0.00186), C(1.86e-10)))) {
         return 12;
     }
     status = puma560_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 6, C(66.56912749809516), C(991.7364937700686), either(C(0.0992), C(9.92e-09)))) {
+    if (!agrees(status, 6, C(66.56912749809503), C(991.7364937700686), either(C(0.0992), C(9.92e-09)))) {
         return 13;
     }
     status = puma560_forward_dynamics(q_1, dq_1, input_1, parameters, out);
-    if (!agrees(status, 6, C(167.0665933930572), C(1504.2661464063922), either(C(0.15), C(1.5e-08)))) {
+    if (!agrees(status, 6, C(167.0665933930573), C(1504.2661464063922), either(C(0.15), C(1.5e-08)))) {
         return 14;
     }
     status = puma560_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 6, C(-203.85731899840115), C(916.2086137218389), either(C(0.0916), C(9.16e-09)))) {
+    if (!agrees(status, 6, C(-203.85731899840124), C(916.208613721839), either(C(0.0916), C(9.16e-09)))) {
         return 15;
     }
     status = puma560_energy(q_0, dq_0, parameters, out, out + 1);
-    if (!agrees(status, 2, C(15.798879451315102), C(15.798879451315102), either(C(0.00158), C(1.58e-10)))) {
+    if (!agrees(status, 2, C(15.798879451315093), C(15.798879451315093), either(C(0.00158), C(1.58e-10)))) {
         return 16;
     }
     status = puma560_energy(q_1, dq_1, parameters, out, out + 1);
@@ -156,43 +156,43 @@ int main(void)
         return 17;
     }
     status = puma560_energy(q_2, dq_2, parameters, out, out + 1);
-    if (!agrees(status, 2, C(-1.1224430951178972), C(3.6769543691365962), either(C(0.000368), C(3.68e-11)))) {
+    if (!agrees(status, 2, C(-1.1224430951178923), C(3.676954369136591), either(C(0.000368), C(3.68e-11)))) {
         return 18;
     }
     status = puma560_regressor(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 312, C(-7203.628290710323), C(14989.971728166833), either(C(1.5), C(1.5e-07)))) {
+    if (!agrees(status, 312, C(-7203.628290710322), C(14989.971728166833), either(C(1.5), C(1.5e-07)))) {
         return 19;
     }
     status = puma560_regressor(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 312, C(7870.997502164248), C(16181.327503903733), either(C(1.62), C(1.62e-07)))) {
+    if (!agrees(status, 312, C(7870.9975021642485), C(16181.327503903734), either(C(1.62), C(1.62e-07)))) {
         return 20;
     }
     status = puma560_regressor(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 312, C(-4786.4868829569405), C(17840.551019543145), either(C(1.78), C(1.78e-07)))) {
+    if (!agrees(status, 312, C(-4786.48688295694), C(17840.551019543145), either(C(1.78), C(1.78e-07)))) {
         return 21;
     }
     status = puma560_regressor_standard(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 468, C(-1159.0133427631342), C(16925.569898463335), either(C(1.69), C(1.69e-07)))) {
+    if (!agrees(status, 468, C(-1159.013342763135), C(16925.569898463335), either(C(1.69), C(1.69e-07)))) {
         return 22;
     }
     status = puma560_regressor_standard(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 468, C(3716.84762682186), C(19105.31832615127), either(C(1.91), C(1.91e-07)))) {
+    if (!agrees(status, 468, C(3716.8476268218596), C(19105.31832615127), either(C(1.91), C(1.91e-07)))) {
         return 23;
     }
     status = puma560_regressor_standard(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 468, C(-1244.1200682188176), C(19151.753466984534), either(C(1.92), C(1.92e-07)))) {
+    if (!agrees(status, 468, C(-1244.120068218817), C(19151.753466984534), either(C(1.92), C(1.92e-07)))) {
         return 24;
     }
     status = puma560_regressor_packed(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 155, C(-5330.315444045185), C(15200.993215523617), either(C(1.52), C(1.52e-07)))) {
+    if (!agrees(status, 155, C(-5330.315444045186), C(15200.993215523617), either(C(1.52), C(1.52e-07)))) {
         return 25;
     }
     status = puma560_regressor_packed(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 155, C(3584.8928108503305), C(14831.022193680301), either(C(1.48), C(1.48e-07)))) {
+    if (!agrees(status, 155, C(3584.8928108503314), C(14831.022193680305), either(C(1.48), C(1.48e-07)))) {
         return 26;
     }
     status = puma560_regressor_packed(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 155, C(4320.689184272097), C(16969.36801011277), either(C(1.7), C(1.7e-07)))) {
+    if (!agrees(status, 155, C(4320.689184272096), C(16969.36801011277), either(C(1.7), C(1.7e-07)))) {
         return 27;
     }
     status = puma560_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
@@ -200,27 +200,27 @@ int main(void)
         return 28;
     }
     status = puma560_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
-    if (!agrees(status, 312, C(1189.8515798215558), C(16963.56120436242), either(C(1.7), C(1.7e-07)))) {
+    if (!agrees(status, 312, C(1189.8515798215542), C(16963.56120436242), either(C(1.7), C(1.7e-07)))) {
         return 29;
     }
     status = puma560_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
-    if (!agrees(status, 312, C(-1190.3863325937252), C(16423.801972670117), either(C(1.64), C(1.64e-07)))) {
+    if (!agrees(status, 312, C(-1190.3863325937257), C(16423.801972670117), either(C(1.64), C(1.64e-07)))) {
         return 30;
     }
     status = puma560_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
-    if (!agrees(status, 6, C(-31.434500511939063), C(127.89214759903334), either(C(0.0128), C(1.28e-09)))) {
+    if (!agrees(status, 6, C(-31.434500511939067), C(127.89214759903334), either(C(0.0128), C(1.28e-09)))) {
         return 31;
     }
     status = puma560_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
-    if (!agrees(status, 6, C(4.898894568714141), C(146.40979319966806), either(C(0.0146), C(1.46e-09)))) {
+    if (!agrees(status, 6, C(4.8988945687141445), C(146.4097931996681), either(C(0.0146), C(1.46e-09)))) {
         return 32;
     }
     status = puma560_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
-    if (!agrees(status, 6, C(43.271971112046295), C(126.3911562067959), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 6, C(43.271971112046295), C(126.39115620679588), either(C(0.0126), C(1.26e-09)))) {
         return 33;
     }
     status = puma560_gravity_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 6, C(-1.9208983156111383), C(5.42135289079777), either(C(0.000542), C(5.42e-11)))) {
+    if (!agrees(status, 6, C(-1.9208983156111399), C(5.421352890797772), either(C(0.000542), C(5.42e-11)))) {
         return 34;
     }
     status = puma560_gravity_standard(q_1, standard_parameters, out);
@@ -228,19 +228,19 @@ int main(void)
         return 35;
     }
     status = puma560_gravity_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 6, C(0.4272751204038552), C(9.420164865706804), either(C(0.000942), C(9.42e-11)))) {
+    if (!agrees(status, 6, C(0.4272751204038536), C(9.420164865706804), either(C(0.000942), C(9.42e-11)))) {
         return 36;
     }
     status = puma560_bias_standard(q_0, dq_0, standard_parameters, out);
-    if (!agrees(status, 6, C(-31.12376101944841), C(126.65796372313491), either(C(0.0127), C(1.27e-09)))) {
+    if (!agrees(status, 6, C(-31.123761019448406), C(126.65796372313491), either(C(0.0127), C(1.27e-09)))) {
         return 37;
     }
     status = puma560_bias_standard(q_1, dq_1, standard_parameters, out);
-    if (!agrees(status, 6, C(4.557400664773837), C(145.2170537210913), either(C(0.0145), C(1.45e-09)))) {
+    if (!agrees(status, 6, C(4.557400664773835), C(145.2170537210913), either(C(0.0145), C(1.45e-09)))) {
         return 38;
     }
     status = puma560_bias_standard(q_2, dq_2, standard_parameters, out);
-    if (!agrees(status, 6, C(43.63159021752306), C(126.12112465438992), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 6, C(43.63159021752307), C(126.12112465438992), either(C(0.0126), C(1.26e-09)))) {
         return 39;
     }
     status = puma560_mass_matrix_standard(q_0, standard_parameters, out);
@@ -248,7 +248,7 @@ int main(void)
         return 40;
     }
     status = puma560_mass_matrix_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 36, C(29.13576766404989), C(32.13859163293127), either(C(0.00321), C(3.21e-10)))) {
+    if (!agrees(status, 36, C(29.135767664049894), C(32.13859163293128), either(C(0.00321), C(3.21e-10)))) {
         return 41;
     }
     status = puma560_mass_matrix_standard(q_2, standard_parameters, out);
@@ -256,43 +256,43 @@ int main(void)
         return 42;
     }
     status = puma560_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 6, C(66.56912758967741), C(991.736493535009), either(C(0.0992), C(9.92e-09)))) {
+    if (!agrees(status, 6, C(66.56912758967734), C(991.7364935350088), either(C(0.0992), C(9.92e-09)))) {
         return 43;
     }
     status = puma560_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
-    if (!agrees(status, 6, C(167.06659337731833), C(1504.266146096365), either(C(0.15), C(1.5e-08)))) {
+    if (!agrees(status, 6, C(167.06659337731864), C(1504.266146096365), either(C(0.15), C(1.5e-08)))) {
         return 44;
     }
     status = puma560_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 6, C(-203.85731928810398), C(916.2086137529452), either(C(0.0916), C(9.16e-09)))) {
+    if (!agrees(status, 6, C(-203.857319288104), C(916.2086137529452), either(C(0.0916), C(9.16e-09)))) {
         return 45;
     }
     status = puma560_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(12.659679452341155), C(12.659679452341155), either(C(0.00127), C(1.27e-10)))) {
+    if (!agrees(status, 2, C(12.659679452341152), C(12.659679452341152), either(C(0.00127), C(1.27e-10)))) {
         return 46;
     }
     status = puma560_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(-57.01409223184434), C(59.72583969306691), either(C(0.00597), C(5.97e-10)))) {
+    if (!agrees(status, 2, C(-57.01409223184435), C(59.725839693066916), either(C(0.00597), C(5.97e-10)))) {
         return 47;
     }
     status = puma560_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(-4.261643093096946), C(6.8161543711575385), either(C(0.000682), C(6.82e-11)))) {
+    if (!agrees(status, 2, C(-4.261643093096943), C(6.816154371157536), either(C(0.000682), C(6.82e-11)))) {
         return 48;
     }
     status = puma560_forward_kinematics(q_0, out);
-    if (!agrees(status, 96, C(23.74568341269849), C(143.842329310038), either(C(0.0144), C(1.44e-09)))) {
+    if (!agrees(status, 96, C(23.745683412698483), C(143.842329310038), either(C(0.0144), C(1.44e-09)))) {
         return 49;
     }
     status = puma560_forward_kinematics(q_1, out);
-    if (!agrees(status, 96, C(28.968101557557052), C(126.67352775319759), either(C(0.0127), C(1.27e-09)))) {
+    if (!agrees(status, 96, C(28.968101557557056), C(126.6735277531976), either(C(0.0127), C(1.27e-09)))) {
         return 50;
     }
     status = puma560_forward_kinematics(q_2, out);
-    if (!agrees(status, 96, C(3.385919409219923), C(134.66529749679916), either(C(0.0135), C(1.35e-09)))) {
+    if (!agrees(status, 96, C(3.3859194092199236), C(134.66529749679916), either(C(0.0135), C(1.35e-09)))) {
         return 51;
     }
     status = puma560_jacobian(q_0, out);
-    if (!agrees(status, 36, C(17.93627801454489), C(43.91000146802718), either(C(0.00439), C(4.39e-10)))) {
+    if (!agrees(status, 36, C(17.93627801454489), C(43.91000146802719), either(C(0.00439), C(4.39e-10)))) {
         return 52;
     }
     status = puma560_jacobian(q_1, out);
@@ -300,46 +300,46 @@ int main(void)
         return 53;
     }
     status = puma560_jacobian(q_2, out);
-    if (!agrees(status, 36, C(-10.536569359342835), C(35.549930153491296), either(C(0.00355), C(3.55e-10)))) {
+    if (!agrees(status, 36, C(-10.536569359342835), C(35.5499301534913), either(C(0.00355), C(3.55e-10)))) {
         return 54;
     }
     status = puma560_motor_from_joint(q_0, dq_0, ddq_0, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-338.466128624), C(3757.8422579700004), either(C(0.376), C(3.76e-08)))) {
+    if (!agrees(status, 18, C(-338.46612862399985), C(3757.84225797), either(C(0.376), C(3.76e-08)))) {
         return 55;
     }
     status = puma560_motor_from_joint(q_1, dq_1, ddq_1, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-602.9800778440006), C(4161.521890102001), either(C(0.416), C(4.16e-08)))) {
+    if (!agrees(status, 18, C(-602.9800778440002), C(4161.521890102), either(C(0.416), C(4.16e-08)))) {
         return 56;
     }
     status = puma560_motor_from_joint(q_2, dq_2, ddq_2, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(23.953608255000162), C(3964.643695957), either(C(0.396), C(3.96e-08)))) {
+    if (!agrees(status, 18, C(23.95360825500011), C(3964.643695957), either(C(0.396), C(3.96e-08)))) {
         return 57;
     }
     status = puma560_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(0.09321612736115333), C(0.4138747344909168), either(C(4.14e-05), C(4.14e-12))))
+    if (!agrees(status, 18, C(0.09321612736115333), C(0.4138747344909167), either(C(4.14e-05), C(4.14e-12))))
         {
         return 58;
     }
     status = puma560_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-0.09791479486092228), C(0.4964788525355602), either(C(4.96e-05), C(4.96e-12))))
-        {
+    if (!agrees(status, 18, C(-0.09791479486092228), C(0.49647885253556023), either(C(4.96e-05),
+        C(4.96e-12)))) {
         return 59;
     }
     status = puma560_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(0.03365549738419277), C(0.4265816131264704), either(C(4.27e-05), C(4.27e-12))))
+    if (!agrees(status, 18, C(0.03365549738419277), C(0.42658161312647036), either(C(4.27e-05), C(4.27e-12))))
         {
         return 60;
     }
     status = puma560_drive_gain(q_0, out);
-    if (!agrees(status, 6, C(76.80836200000002), C(179.72416200000004), either(C(0.018), C(1.8e-09)))) {
+    if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
         return 61;
     }
     status = puma560_drive_gain(q_1, out);
-    if (!agrees(status, 6, C(76.80836200000002), C(179.72416200000004), either(C(0.018), C(1.8e-09)))) {
+    if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
         return 62;
     }
     status = puma560_drive_gain(q_2, out);
-    if (!agrees(status, 6, C(76.80836200000002), C(179.72416200000004), either(C(0.018), C(1.8e-09)))) {
+    if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
         return 63;
     }
     return 0;

@@ -82,11 +82,11 @@ int main(void)
 {
     int status;
     status = rx90_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
-    if (!agrees(status, 6, C(-4.602217662277937), C(35.62980928722309), either(C(0.00356), C(3.56e-10)))) {
+    if (!agrees(status, 6, C(-4.602217662277935), C(35.62980928722309), either(C(0.00356), C(3.56e-10)))) {
         return 1;
     }
     status = rx90_inverse_dynamics(q_1, dq_1, ddq_1, parameters, out);
-    if (!agrees(status, 6, C(6.9080405802974205), C(41.617332311593444), either(C(0.00416), C(4.16e-10)))) {
+    if (!agrees(status, 6, C(6.908040580297423), C(41.61733231159344), either(C(0.00416), C(4.16e-10)))) {
         return 2;
     }
     status = rx90_inverse_dynamics(q_2, dq_2, ddq_2, parameters, out);
@@ -94,31 +94,31 @@ int main(void)
         return 3;
     }
     status = rx90_gravity(q_0, parameters, out);
-    if (!agrees(status, 6, C(1.2627447311433437), C(5.283436858697933), either(C(0.000528), C(5.28e-11)))) {
+    if (!agrees(status, 6, C(1.2627447311433437), C(5.283436858697932), either(C(0.000528), C(5.28e-11)))) {
         return 4;
     }
     status = rx90_gravity(q_1, parameters, out);
-    if (!agrees(status, 6, C(0.8129169346507427), C(1.3000967596018544), either(C(0.00013), C(1.3e-11)))) {
+    if (!agrees(status, 6, C(0.8129169346507426), C(1.300096759601854), either(C(0.00013), C(1.3e-11)))) {
         return 5;
     }
     status = rx90_gravity(q_2, parameters, out);
-    if (!agrees(status, 6, C(4.358927085775197), C(7.360873079276058), either(C(0.000736), C(7.36e-11)))) {
+    if (!agrees(status, 6, C(4.358927085775198), C(7.360873079276059), either(C(0.000736), C(7.36e-11)))) {
         return 6;
     }
     status = rx90_bias(q_0, dq_0, parameters, out);
-    if (!agrees(status, 6, C(-4.5300198290152665), C(35.32550781820898), either(C(0.00353), C(3.53e-10)))) {
+    if (!agrees(status, 6, C(-4.5300198290152665), C(35.325507818208976), either(C(0.00353), C(3.53e-10)))) {
         return 7;
     }
     status = rx90_bias(q_1, dq_1, parameters, out);
-    if (!agrees(status, 6, C(6.179739833700808), C(41.07650288895702), either(C(0.00411), C(4.11e-10)))) {
+    if (!agrees(status, 6, C(6.179739833700808), C(41.076502888957016), either(C(0.00411), C(4.11e-10)))) {
         return 8;
     }
     status = rx90_bias(q_2, dq_2, parameters, out);
-    if (!agrees(status, 6, C(9.88556653707452), C(35.57972354852961), either(C(0.00356), C(3.56e-10)))) {
+    if (!agrees(status, 6, C(9.885566537074522), C(35.5797235485296), either(C(0.00356), C(3.56e-10)))) {
         return 9;
     }
     status = rx90_mass_matrix(q_0, parameters, out);
-    if (!agrees(status, 36, C(8.330673597526667), C(11.693010445920123), either(C(0.00117), C(1.17e-10)))) {
+    if (!agrees(status, 36, C(8.330673597526669), C(11.693010445920123), either(C(0.00117), C(1.17e-10)))) {
         return 10;
     }
     status = rx90_mass_matrix(q_1, parameters, out);
@@ -126,75 +126,75 @@ int main(void)
         return 11;
     }
     status = rx90_mass_matrix(q_2, parameters, out);
-    if (!agrees(status, 36, C(10.406126230546047), C(24.815708508312532), either(C(0.00248), C(2.48e-10)))) {
+    if (!agrees(status, 36, C(10.406126230546052), C(24.81570850831254), either(C(0.00248), C(2.48e-10)))) {
         return 12;
     }
     status = rx90_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 6, C(-104.80607866120351), C(881.9520419986521), either(C(0.0925), C(8.82e-09)))) {
+    if (!agrees(status, 6, C(-104.80607866120361), C(881.9520419986521), either(C(0.0925), C(8.82e-09)))) {
         return 13;
     }
     status = rx90_forward_dynamics(q_1, dq_1, input_1, parameters, out);
-    if (!agrees(status, 6, C(67.853220573883), C(1422.5561705079062), either(C(0.416), C(1.42e-08)))) {
+    if (!agrees(status, 6, C(67.85322057388312), C(1422.5561705079062), either(C(0.416), C(1.42e-08)))) {
         return 14;
     }
     status = rx90_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 6, C(-347.76234592873715), C(902.7897228547853), either(C(0.124), C(9.03e-09)))) {
+    if (!agrees(status, 6, C(-347.762345928737), C(902.7897228547849), either(C(0.124), C(9.03e-09)))) {
         return 15;
     }
     status = rx90_energy(q_0, dq_0, parameters, out, out + 1);
-    if (!agrees(status, 2, C(8.68329592220748), C(8.68329592220748), either(C(0.000868), C(8.68e-11)))) {
+    if (!agrees(status, 2, C(8.683295922207478), C(8.683295922207478), either(C(0.000868), C(8.68e-11)))) {
         return 16;
     }
     status = rx90_energy(q_1, dq_1, parameters, out, out + 1);
-    if (!agrees(status, 2, C(126.26883783276764), C(126.26883783276764), either(C(0.0126), C(1.26e-09)))) {
+    if (!agrees(status, 2, C(126.26883783276763), C(126.26883783276763), either(C(0.0126), C(1.26e-09)))) {
         return 17;
     }
     status = rx90_energy(q_2, dq_2, parameters, out, out + 1);
-    if (!agrees(status, 2, C(-24.977274306310484), C(27.86963422052557), either(C(0.00279), C(2.79e-10)))) {
+    if (!agrees(status, 2, C(-24.977274306310463), C(27.869634220525548), either(C(0.00279), C(2.79e-10)))) {
         return 18;
     }
     status = rx90_regressor(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 312, C(318.14930366681824), C(5816.381537899893), either(C(0.582), C(5.82e-08)))) {
+    if (!agrees(status, 312, C(318.1493036668181), C(5816.381537899893), either(C(0.582), C(5.82e-08)))) {
         return 19;
     }
     status = rx90_regressor(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 312, C(1418.7425114302796), C(6533.915966424833), either(C(0.653), C(6.53e-08)))) {
+    if (!agrees(status, 312, C(1418.7425114302798), C(6533.915966424833), either(C(0.653), C(6.53e-08)))) {
         return 20;
     }
     status = rx90_regressor(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 312, C(-717.6741695119971), C(6349.111736543289), either(C(0.635), C(6.35e-08)))) {
+    if (!agrees(status, 312, C(-717.6741695119972), C(6349.11173654329), either(C(0.635), C(6.35e-08)))) {
         return 21;
     }
     status = rx90_regressor_standard(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 468, C(-2125.6204734780495), C(6701.384469710911), either(C(0.67), C(6.7e-08)))) {
+    if (!agrees(status, 468, C(-2125.62047347805), C(6701.384469710912), either(C(0.67), C(6.7e-08)))) {
         return 22;
     }
     status = rx90_regressor_standard(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 468, C(2538.4691765135594), C(7074.872317004043), either(C(0.707), C(7.07e-08)))) {
+    if (!agrees(status, 468, C(2538.46917651356), C(7074.872317004043), either(C(0.707), C(7.07e-08)))) {
         return 23;
     }
     status = rx90_regressor_standard(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 468, C(-4100.487047645533), C(8052.400948903833), either(C(0.805), C(8.05e-08)))) {
+    if (!agrees(status, 468, C(-4100.487047645533), C(8052.400948903832), either(C(0.805), C(8.05e-08)))) {
         return 24;
     }
     status = rx90_regressor_packed(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 155, C(-1010.4248877049943), C(6368.273021302401), either(C(0.637), C(6.37e-08)))) {
+    if (!agrees(status, 155, C(-1010.4248877049944), C(6368.2730213024015), either(C(0.637), C(6.37e-08)))) {
         return 25;
     }
     status = rx90_regressor_packed(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 155, C(382.8119352268494), C(5167.265092776932), either(C(0.517), C(5.17e-08)))) {
+    if (!agrees(status, 155, C(382.81193522684924), C(5167.265092776933), either(C(0.517), C(5.17e-08)))) {
         return 26;
     }
     status = rx90_regressor_packed(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 155, C(-423.2468351684229), C(6869.367408878287), either(C(0.687), C(6.87e-08)))) {
+    if (!agrees(status, 155, C(-423.24683516842225), C(6869.367408878287), either(C(0.687), C(6.87e-08)))) {
         return 27;
     }
     status = rx90_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
-    if (!agrees(status, 312, C(1740.5300814296602), C(6327.383376182012), either(C(0.633), C(6.33e-08)))) {
+    if (!agrees(status, 312, C(1740.5300814296606), C(6327.383376182013), either(C(0.633), C(6.33e-08)))) {
         return 28;
     }
     status = rx90_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
-    if (!agrees(status, 312, C(332.4317128273485), C(6331.551759642884), either(C(0.633), C(6.33e-08)))) {
+    if (!agrees(status, 312, C(332.43171282734846), C(6331.5517596428845), either(C(0.633), C(6.33e-08)))) {
         return 29;
     }
     status = rx90_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
@@ -206,7 +206,7 @@ int main(void)
         return 31;
     }
     status = rx90_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
-    if (!agrees(status, 6, C(6.9080405802974205), C(41.617332311593444), either(C(0.00416), C(4.16e-10)))) {
+    if (!agrees(status, 6, C(6.908040580297423), C(41.61733231159344), either(C(0.00416), C(4.16e-10)))) {
         return 32;
     }
     status = rx90_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
@@ -214,15 +214,15 @@ int main(void)
         return 33;
     }
     status = rx90_gravity_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 6, C(1.2627447311433433), C(5.283436858697934), either(C(0.000528), C(5.28e-11)))) {
+    if (!agrees(status, 6, C(1.262744731143344), C(5.283436858697932), either(C(0.000528), C(5.28e-11)))) {
         return 34;
     }
     status = rx90_gravity_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 6, C(0.8129169346507426), C(1.300096759601854), either(C(0.00013), C(1.3e-11)))) {
+    if (!agrees(status, 6, C(0.8129169346507427), C(1.300096759601854), either(C(0.00013), C(1.3e-11)))) {
         return 35;
     }
     status = rx90_gravity_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 6, C(4.358927085775197), C(7.360873079276058), either(C(0.000736), C(7.36e-11)))) {
+    if (!agrees(status, 6, C(4.358927085775198), C(7.360873079276059), either(C(0.000736), C(7.36e-11)))) {
         return 36;
     }
     status = rx90_bias_standard(q_0, dq_0, standard_parameters, out);
@@ -230,15 +230,15 @@ int main(void)
         return 37;
     }
     status = rx90_bias_standard(q_1, dq_1, standard_parameters, out);
-    if (!agrees(status, 6, C(6.179739833700808), C(41.07650288895702), either(C(0.00411), C(4.11e-10)))) {
+    if (!agrees(status, 6, C(6.179739833700808), C(41.076502888957016), either(C(0.00411), C(4.11e-10)))) {
         return 38;
     }
     status = rx90_bias_standard(q_2, dq_2, standard_parameters, out);
-    if (!agrees(status, 6, C(9.88556653707452), C(35.57972354852961), either(C(0.00356), C(3.56e-10)))) {
+    if (!agrees(status, 6, C(9.885566537074522), C(35.5797235485296), either(C(0.00356), C(3.56e-10)))) {
         return 39;
     }
     status = rx90_mass_matrix_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 36, C(8.330673597526669), C(11.693010445920123), either(C(0.00117), C(1.17e-10)))) {
+    if (!agrees(status, 36, C(8.33067359752667), C(11.693010445920125), either(C(0.00117), C(1.17e-10)))) {
         return 40;
     }
     status = rx90_mass_matrix_standard(q_1, standard_parameters, out);
@@ -246,35 +246,35 @@ int main(void)
         return 41;
     }
     status = rx90_mass_matrix_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 36, C(10.40612623054605), C(24.81570850831254), either(C(0.00248), C(2.48e-10)))) {
+    if (!agrees(status, 36, C(10.406126230546054), C(24.81570850831254), either(C(0.00248), C(2.48e-10)))) {
         return 42;
     }
     status = rx90_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 6, C(-104.80607866120351), C(881.952041998652), either(C(0.0925), C(8.82e-09)))) {
+    if (!agrees(status, 6, C(-104.8060786612036), C(881.9520419986521), either(C(0.0925), C(8.82e-09)))) {
         return 43;
     }
     status = rx90_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
-    if (!agrees(status, 6, C(67.853220573883), C(1422.5561705079062), either(C(0.416), C(1.42e-08)))) {
+    if (!agrees(status, 6, C(67.85322057388309), C(1422.5561705079062), either(C(0.416), C(1.42e-08)))) {
         return 44;
     }
     status = rx90_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 6, C(-347.76234592873715), C(902.7897228547852), either(C(0.124), C(9.03e-09)))) {
+    if (!agrees(status, 6, C(-347.762345928737), C(902.7897228547849), either(C(0.124), C(9.03e-09)))) {
         return 45;
     }
     status = rx90_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(5.544095922207476), C(5.544095922207476), either(C(0.000554), C(5.54e-11)))) {
+    if (!agrees(status, 2, C(5.544095922207474), C(5.544095922207474), either(C(0.000554), C(5.54e-11)))) {
         return 46;
     }
     status = rx90_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(123.12963783276763), C(123.12963783276763), either(C(0.0123), C(1.23e-09)))) {
+    if (!agrees(status, 2, C(123.12963783276764), C(123.12963783276764), either(C(0.0123), C(1.23e-09)))) {
         return 47;
     }
     status = rx90_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(-28.116474306310476), C(31.00883422052556), either(C(0.0031), C(3.1e-10)))) {
+    if (!agrees(status, 2, C(-28.11647430631047), C(31.008834220525557), either(C(0.0031), C(3.1e-10)))) {
         return 48;
     }
     status = rx90_forward_kinematics(q_0, out);
-    if (!agrees(status, 96, C(39.70682368757977), C(143.81099053342507), either(C(0.0144), C(1.44e-09)))) {
+    if (!agrees(status, 96, C(39.706823687579764), C(143.81099053342504), either(C(0.0144), C(1.44e-09)))) {
         return 49;
     }
     status = rx90_forward_kinematics(q_1, out);
@@ -282,11 +282,11 @@ int main(void)
         return 50;
     }
     status = rx90_forward_kinematics(q_2, out);
-    if (!agrees(status, 96, C(54.54657890609042), C(138.50404625220028), either(C(0.0139), C(1.39e-09)))) {
+    if (!agrees(status, 96, C(54.54657890609042), C(138.5040462522003), either(C(0.0139), C(1.39e-09)))) {
         return 51;
     }
     status = rx90_jacobian(q_0, out);
-    if (!agrees(status, 36, C(16.22074977650833), C(40.55915799457345), either(C(0.00406), C(4.06e-10)))) {
+    if (!agrees(status, 36, C(16.22074977650833), C(40.559157994573454), either(C(0.00406), C(4.06e-10)))) {
         return 52;
     }
     status = rx90_jacobian(q_1, out);
@@ -294,27 +294,27 @@ int main(void)
         return 53;
     }
     status = rx90_jacobian(q_2, out);
-    if (!agrees(status, 36, C(31.051714324242596), C(40.87273826629832), either(C(0.00409), C(4.09e-10)))) {
+    if (!agrees(status, 36, C(31.051714324242596), C(40.87273826629833), either(C(0.00409), C(4.09e-10)))) {
         return 54;
     }
     status = rx90_motor_from_joint(q_0, dq_0, ddq_0, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-1434.8199), C(3331.7870999999996), either(C(0.333), C(3.33e-08)))) {
+    if (!agrees(status, 18, C(-1434.8199), C(3331.7871), either(C(0.333), C(3.33e-08)))) {
         return 55;
     }
     status = rx90_motor_from_joint(q_1, dq_1, ddq_1, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(412.69090000000006), C(3584.9521), either(C(0.358), C(3.58e-08)))) {
+    if (!agrees(status, 18, C(412.6909), C(3584.9521), either(C(0.358), C(3.58e-08)))) {
         return 56;
     }
     status = rx90_motor_from_joint(q_2, dq_2, ddq_2, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-454.5058999999999), C(3519.4731), either(C(0.352), C(3.52e-08)))) {
+    if (!agrees(status, 18, C(-454.50590000000005), C(3519.4731), either(C(0.352), C(3.52e-08)))) {
         return 57;
     }
     status = rx90_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(0.2554166666666666), C(0.5904166666666666), either(C(5.9e-05), C(5.9e-12)))) {
+    if (!agrees(status, 18, C(0.2554166666666667), C(0.5904166666666667), either(C(5.9e-05), C(5.9e-12)))) {
         return 58;
     }
     status = rx90_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 6, out + 12);
-    if (!agrees(status, 18, C(-0.07708333333333331), C(0.6645833333333333), either(C(6.65e-05), C(6.65e-12))))
+    if (!agrees(status, 18, C(-0.07708333333333332), C(0.6645833333333333), either(C(6.65e-05), C(6.65e-12))))
         {
         return 59;
     }

@@ -84,35 +84,35 @@ int main(void)
         return 2;
     }
     status = yaw3pitch_inverse_dynamics(q_2, dq_2, ddq_2, parameters, out);
-    if (!agrees(status, 4, C(104.84788023830907), C(110.6839437739807), either(C(0.0111), C(1.11e-09)))) {
+    if (!agrees(status, 4, C(104.84788023830909), C(110.68394377398072), either(C(0.0111), C(1.11e-09)))) {
         return 3;
     }
     status = yaw3pitch_gravity(q_0, parameters, out);
-    if (!agrees(status, 4, C(145.80692987696972), C(145.80692987696972), either(C(0.0146), C(1.46e-09)))) {
+    if (!agrees(status, 4, C(145.8069298769697), C(145.8069298769697), either(C(0.0146), C(1.46e-09)))) {
         return 4;
     }
     status = yaw3pitch_gravity(q_1, parameters, out);
-    if (!agrees(status, 4, C(108.4299054527026), C(108.4299054527026), either(C(0.0108), C(1.08e-09)))) {
+    if (!agrees(status, 4, C(108.42990545270263), C(108.42990545270263), either(C(0.0108), C(1.08e-09)))) {
         return 5;
     }
     status = yaw3pitch_gravity(q_2, parameters, out);
-    if (!agrees(status, 4, C(111.5995394591245), C(116.16138657703614), either(C(0.0116), C(1.16e-09)))) {
+    if (!agrees(status, 4, C(111.5995394591245), C(116.16138657703615), either(C(0.0116), C(1.16e-09)))) {
         return 6;
     }
     status = yaw3pitch_bias(q_0, dq_0, parameters, out);
-    if (!agrees(status, 4, C(146.64313737675687), C(146.64313737675687), either(C(0.0147), C(1.47e-09)))) {
+    if (!agrees(status, 4, C(146.6431373767569), C(146.6431373767569), either(C(0.0147), C(1.47e-09)))) {
         return 7;
     }
     status = yaw3pitch_bias(q_1, dq_1, parameters, out);
-    if (!agrees(status, 4, C(103.18397943703692), C(104.55855046949904), either(C(0.0105), C(1.05e-09)))) {
+    if (!agrees(status, 4, C(103.18397943703695), C(104.55855046949907), either(C(0.0105), C(1.05e-09)))) {
         return 8;
     }
     status = yaw3pitch_bias(q_2, dq_2, parameters, out);
-    if (!agrees(status, 4, C(107.79951061657023), C(110.15300257569207), either(C(0.011), C(1.1e-09)))) {
+    if (!agrees(status, 4, C(107.79951061657023), C(110.15300257569208), either(C(0.011), C(1.1e-09)))) {
         return 9;
     }
     status = yaw3pitch_mass_matrix(q_0, parameters, out);
-    if (!agrees(status, 16, C(70.47191594053338), C(71.19382465652868), either(C(0.00712), C(7.12e-10)))) {
+    if (!agrees(status, 16, C(70.47191594053339), C(71.19382465652869), either(C(0.00712), C(7.12e-10)))) {
         return 10;
     }
     status = yaw3pitch_mass_matrix(q_1, parameters, out);
@@ -120,19 +120,19 @@ int main(void)
         return 11;
     }
     status = yaw3pitch_mass_matrix(q_2, parameters, out);
-    if (!agrees(status, 16, C(54.258905561958784), C(62.64647980553598), either(C(0.00626), C(6.26e-10)))) {
+    if (!agrees(status, 16, C(54.25890556195878), C(62.646479805535975), either(C(0.00626), C(6.26e-10)))) {
         return 12;
     }
     status = yaw3pitch_forward_dynamics(q_0, dq_0, input_0, parameters, out);
-    if (!agrees(status, 4, C(32.71107007214121), C(77.52511486707925), either(C(0.0899), C(7.75e-10)))) {
+    if (!agrees(status, 4, C(32.71107007214112), C(77.52511486707914), either(C(0.0899), C(7.75e-10)))) {
         return 13;
     }
     status = yaw3pitch_forward_dynamics(q_1, dq_1, input_1, parameters, out);
-    if (!agrees(status, 4, C(124.86627273536146), C(233.35576019608465), either(C(0.401), C(2.33e-09)))) {
+    if (!agrees(status, 4, C(124.86627273536148), C(233.35576019608467), either(C(0.401), C(2.33e-09)))) {
         return 14;
     }
     status = yaw3pitch_forward_dynamics(q_2, dq_2, input_2, parameters, out);
-    if (!agrees(status, 4, C(-206.77153638424682), C(206.77153638424682), either(C(0.189), C(2.07e-09)))) {
+    if (!agrees(status, 4, C(-206.77153638424684), C(206.77153638424684), either(C(0.189), C(2.07e-09)))) {
         return 15;
     }
     status = yaw3pitch_energy(q_0, dq_0, parameters, out, out + 1);
@@ -140,31 +140,31 @@ int main(void)
         return 16;
     }
     status = yaw3pitch_energy(q_1, dq_1, parameters, out, out + 1);
-    if (!agrees(status, 2, C(72.37037889816739), C(72.37037889816739), either(C(0.00724), C(7.24e-10)))) {
+    if (!agrees(status, 2, C(72.3703788981674), C(72.3703788981674), either(C(0.00724), C(7.24e-10)))) {
         return 17;
     }
     status = yaw3pitch_energy(q_2, dq_2, parameters, out, out + 1);
-    if (!agrees(status, 2, C(-55.39708452155007), C(59.478244099219154), either(C(0.00595), C(5.95e-10)))) {
+    if (!agrees(status, 2, C(-55.39708452155006), C(59.47824409921915), either(C(0.00595), C(5.95e-10)))) {
         return 18;
     }
     status = yaw3pitch_regressor(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 88, C(124.19869610568975), C(233.207339627381), either(C(0.0233), C(2.33e-09)))) {
+    if (!agrees(status, 88, C(124.19869610568976), C(233.207339627381), either(C(0.0233), C(2.33e-09)))) {
         return 19;
     }
     status = yaw3pitch_regressor(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 88, C(132.85117575048577), C(181.68069372345803), either(C(0.0182), C(1.82e-09)))) {
+    if (!agrees(status, 88, C(132.85117575048582), C(181.68069372345806), either(C(0.0182), C(1.82e-09)))) {
         return 20;
     }
     status = yaw3pitch_regressor(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 88, C(7.64947032562497), C(276.2355683180408), either(C(0.0276), C(2.76e-09)))) {
+    if (!agrees(status, 88, C(7.649470325624971), C(276.2355683180408), either(C(0.0276), C(2.76e-09)))) {
         return 21;
     }
     status = yaw3pitch_regressor_standard(q_0, dq_0, ddq_0, out);
-    if (!agrees(status, 160, C(246.5803946062735), C(420.18103625034905), either(C(0.042), C(4.2e-09)))) {
+    if (!agrees(status, 160, C(246.5803946062735), C(420.181036250349), either(C(0.042), C(4.2e-09)))) {
         return 22;
     }
     status = yaw3pitch_regressor_standard(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 160, C(306.9492480725364), C(366.4387403240242), either(C(0.0366), C(3.66e-09)))) {
+    if (!agrees(status, 160, C(306.9492480725365), C(366.43874032402425), either(C(0.0366), C(3.66e-09)))) {
         return 23;
     }
     status = yaw3pitch_regressor_standard(q_2, dq_2, ddq_2, out);
@@ -176,11 +176,11 @@ int main(void)
         return 25;
     }
     status = yaw3pitch_regressor_packed(q_1, dq_1, ddq_1, out);
-    if (!agrees(status, 64, C(398.6941124119675), C(427.179504655076), either(C(0.0427), C(4.27e-09)))) {
+    if (!agrees(status, 64, C(398.69411241196764), C(427.1795046550761), either(C(0.0427), C(4.27e-09)))) {
         return 26;
     }
     status = yaw3pitch_regressor_packed(q_2, dq_2, ddq_2, out);
-    if (!agrees(status, 64, C(225.05102172592902), C(389.7388442190446), either(C(0.039), C(3.9e-09)))) {
+    if (!agrees(status, 64, C(225.05102172592905), C(389.73884421904467), either(C(0.039), C(3.9e-09)))) {
         return 27;
     }
     status = yaw3pitch_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
@@ -188,23 +188,23 @@ int main(void)
         return 28;
     }
     status = yaw3pitch_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
-    if (!agrees(status, 88, C(61.324897325592), C(185.04902936442042), either(C(0.0185), C(1.85e-09)))) {
+    if (!agrees(status, 88, C(61.324897325592), C(185.04902936442045), either(C(0.0185), C(1.85e-09)))) {
         return 29;
     }
     status = yaw3pitch_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
-    if (!agrees(status, 88, C(12.30877525839769), C(251.05258245942886), either(C(0.0251), C(2.51e-09)))) {
+    if (!agrees(status, 88, C(12.308775258397691), C(251.05258245942883), either(C(0.0251), C(2.51e-09)))) {
         return 30;
     }
     status = yaw3pitch_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
-    if (!agrees(status, 4, C(148.91069414889742), C(154.3308360694816), either(C(0.0154), C(1.54e-09)))) {
+    if (!agrees(status, 4, C(148.91069414889745), C(154.33083606948165), either(C(0.0154), C(1.54e-09)))) {
         return 31;
     }
     status = yaw3pitch_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
-    if (!agrees(status, 4, C(116.9451092069556), C(116.9451092069556), either(C(0.0117), C(1.17e-09)))) {
+    if (!agrees(status, 4, C(116.94510920695566), C(116.94510920695566), either(C(0.0117), C(1.17e-09)))) {
         return 32;
     }
     status = yaw3pitch_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
-    if (!agrees(status, 4, C(104.84788023830907), C(110.6839437739807), either(C(0.0111), C(1.11e-09)))) {
+    if (!agrees(status, 4, C(104.84788023830907), C(110.68394377398072), either(C(0.0111), C(1.11e-09)))) {
         return 33;
     }
     status = yaw3pitch_gravity_standard(q_0, standard_parameters, out);
@@ -212,11 +212,11 @@ int main(void)
         return 34;
     }
     status = yaw3pitch_gravity_standard(q_1, standard_parameters, out);
-    if (!agrees(status, 4, C(108.42990545270258), C(108.42990545270258), either(C(0.0108), C(1.08e-09)))) {
+    if (!agrees(status, 4, C(108.42990545270261), C(108.42990545270261), either(C(0.0108), C(1.08e-09)))) {
         return 35;
     }
     status = yaw3pitch_gravity_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 4, C(111.5995394591245), C(116.16138657703614), either(C(0.0116), C(1.16e-09)))) {
+    if (!agrees(status, 4, C(111.5995394591245), C(116.16138657703615), either(C(0.0116), C(1.16e-09)))) {
         return 36;
     }
     status = yaw3pitch_bias_standard(q_0, dq_0, standard_parameters, out);
@@ -224,15 +224,15 @@ int main(void)
         return 37;
     }
     status = yaw3pitch_bias_standard(q_1, dq_1, standard_parameters, out);
-    if (!agrees(status, 4, C(103.18397943703692), C(104.55855046949901), either(C(0.0105), C(1.05e-09)))) {
+    if (!agrees(status, 4, C(103.18397943703695), C(104.55855046949905), either(C(0.0105), C(1.05e-09)))) {
         return 38;
     }
     status = yaw3pitch_bias_standard(q_2, dq_2, standard_parameters, out);
-    if (!agrees(status, 4, C(107.7995106165702), C(110.15300257569204), either(C(0.011), C(1.1e-09)))) {
+    if (!agrees(status, 4, C(107.79951061657023), C(110.15300257569208), either(C(0.011), C(1.1e-09)))) {
         return 39;
     }
     status = yaw3pitch_mass_matrix_standard(q_0, standard_parameters, out);
-    if (!agrees(status, 16, C(70.47191594053338), C(71.19382465652868), either(C(0.00712), C(7.12e-10)))) {
+    if (!agrees(status, 16, C(70.47191594053339), C(71.19382465652869), either(C(0.00712), C(7.12e-10)))) {
         return 40;
     }
     status = yaw3pitch_mass_matrix_standard(q_1, standard_parameters, out);
@@ -240,23 +240,23 @@ int main(void)
         return 41;
     }
     status = yaw3pitch_mass_matrix_standard(q_2, standard_parameters, out);
-    if (!agrees(status, 16, C(54.25890556195877), C(62.646479805535975), either(C(0.00626), C(6.26e-10)))) {
+    if (!agrees(status, 16, C(54.25890556195877), C(62.64647980553597), either(C(0.00626), C(6.26e-10)))) {
         return 42;
     }
     status = yaw3pitch_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
-    if (!agrees(status, 4, C(32.71107007214121), C(77.52511486707925), either(C(0.0899), C(7.75e-10)))) {
+    if (!agrees(status, 4, C(32.71107007214113), C(77.52511486707915), either(C(0.0899), C(7.75e-10)))) {
         return 43;
     }
     status = yaw3pitch_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
-    if (!agrees(status, 4, C(124.86627273536129), C(233.35576019608442), either(C(0.401), C(2.33e-09)))) {
+    if (!agrees(status, 4, C(124.86627273536152), C(233.35576019608473), either(C(0.401), C(2.33e-09)))) {
         return 44;
     }
     status = yaw3pitch_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
-    if (!agrees(status, 4, C(-206.77153638424682), C(206.77153638424682), either(C(0.189), C(2.07e-09)))) {
+    if (!agrees(status, 4, C(-206.77153638424684), C(206.77153638424684), either(C(0.189), C(2.07e-09)))) {
         return 45;
     }
     status = yaw3pitch_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(61.18229950259406), C(61.18229950259406), either(C(0.00612), C(6.12e-10)))) {
+    if (!agrees(status, 2, C(61.182299502594056), C(61.182299502594056), either(C(0.00612), C(6.12e-10)))) {
         return 46;
     }
     status = yaw3pitch_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
@@ -264,27 +264,27 @@ int main(void)
         return 47;
     }
     status = yaw3pitch_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
-    if (!agrees(status, 2, C(12.095715478449932), C(12.095715478449932), either(C(0.00121), C(1.21e-10)))) {
+    if (!agrees(status, 2, C(12.095715478449941), C(12.095715478449941), either(C(0.00121), C(1.21e-10)))) {
         return 48;
     }
     status = yaw3pitch_forward_kinematics(q_0, out);
-    if (!agrees(status, 64, C(-9.041577147346358), C(95.01106524809715), either(C(0.0095), C(9.5e-10)))) {
+    if (!agrees(status, 64, C(-9.041577147346361), C(95.01106524809715), either(C(0.0095), C(9.5e-10)))) {
         return 49;
     }
     status = yaw3pitch_forward_kinematics(q_1, out);
-    if (!agrees(status, 64, C(55.21430221700065), C(87.80559821538205), either(C(0.00878), C(8.78e-10)))) {
+    if (!agrees(status, 64, C(55.21430221700066), C(87.80559821538205), either(C(0.00878), C(8.78e-10)))) {
         return 50;
     }
     status = yaw3pitch_forward_kinematics(q_2, out);
-    if (!agrees(status, 64, C(54.2177490412804), C(99.58560600267501), either(C(0.00996), C(9.96e-10)))) {
+    if (!agrees(status, 64, C(54.2177490412804), C(99.58560600267502), either(C(0.00996), C(9.96e-10)))) {
         return 51;
     }
     status = yaw3pitch_jacobian(q_0, out);
-    if (!agrees(status, 24, C(8.096694019255693), C(28.86844565136188), either(C(0.00289), C(2.89e-10)))) {
+    if (!agrees(status, 24, C(8.096694019255695), C(28.86844565136188), either(C(0.00289), C(2.89e-10)))) {
         return 52;
     }
     status = yaw3pitch_jacobian(q_1, out);
-    if (!agrees(status, 24, C(1.3050008895629546), C(35.602581904021115), either(C(0.00356), C(3.56e-10)))) {
+    if (!agrees(status, 24, C(1.3050008895629577), C(35.602581904021115), either(C(0.00356), C(3.56e-10)))) {
         return 53;
     }
     status = yaw3pitch_jacobian(q_2, out);
