@@ -33,18 +33,16 @@ def self_test(model: Model, provenance: Provenance) -> str:
     evaluated = {f.name: NumpyFunction(f) for f in model.functions}
     for f in model.functions:
         for state in range(STATES):
-            names, values = [], []
+            names, given = [], {}
             for a in f.arguments:
-                name, value = _input(model, f, a, state)
-                inputs.setdefault(name, value)
+                name, given[a.name] = _input(model, f, a, state)
+                inputs.setdefault(name, given[a.name])
                 names.append(name)
-                values.append(value)
-            result = evaluated[f.name](*values)
+            result = evaluated[f.name](**given)
             parts = [np.ravel(part) for part in (result if isinstance(result, tuple) else (result,))]
             flat = np.concatenate(parts)
             if np.isfinite(flat).all():
-                condition = _condition(evaluated, f, values)
-                given = {a.name: value for a, value in zip(f.arguments, values, strict=True)}
+                condition = _condition(evaluated, f, given)
                 expected = exact_values(f, given)
                 checks.append(_check(model.arm.name, f, names, expected, condition, len(checks) + 1))
     declared = [
@@ -83,12 +81,11 @@ def _check(
     return "\n".join([*lines, f"        return {number};", "    }"])
 
 
-def _condition(evaluated: Mapping[str, NumpyFunction], f: Function, values: list[Array]) -> float:
+def _condition(evaluated: Mapping[str, NumpyFunction], f: Function, given: Mapping[str, Array]) -> float:
     """Condition number of the mass matrix that a forward dynamics solves with, 0 elsewhere."""
     if not f.name.startswith("forward_dynamics"):
         return 0.0
     mass = evaluated[f.name.replace("forward_dynamics", "mass_matrix")]
-    given = {a.name: value for a, value in zip(f.arguments, values, strict=True)}
     matrix = mass(*(given[a.name] for a in mass.function.arguments))
     return float(np.linalg.cond(np.reshape(matrix, (len(matrix), -1))))
 

@@ -12,7 +12,7 @@ from modelgen.diagnosis.objects import Share
 from modelgen.diagnosis.outcome import columns_of
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
-from modelgen.diagnosis.system import weighted_fit
+from modelgen.diagnosis.system import rmse, weighted_fit
 from modelgen.probing import Prober
 
 
@@ -28,23 +28,20 @@ def shares(selection: Selection, test: Rows, prober: Prober, base: Array) -> lis
     if len(there) < len(trials):
         return [Share()] * len(trials)
 
-    def left(kept: Sequence[int]) -> Array:
+    def left(kept: Sequence[int]) -> tuple[Array, Array]:
+        """Residuals (M, n) of the model with these causes, and their RMSE by joint (n,)."""
         theta = weighted_fit(rows, with_causes(rows, [trials[k] for k in kept]))
-        return test.effort - np.concatenate([test.columns, *(there[k] for k in kept)], axis=2) @ theta
+        table = np.concatenate([test.columns, *(there[k] for k in kept)], axis=2)
+        return test.effort - table @ theta, rmse([test], [table], theta)
 
     every, found = range(len(trials)), []
-    with_all = left(every)
+    with_all, sizes = left(every)
+    sizes = np.maximum(sizes, 1e-300)
     for k in every:
-        without = left([i for i in every if i != k])
-        pairs = [
-            (without[m, j], with_all[m, j])
-            for j in trials[k].candidate.joints(test.moving.shape[1])
-            if (m := test.moving[:, j]).any()
-        ]
-        units = [max(float(np.sqrt(np.mean(after**2))), 1e-300) for _, after in pairs]
+        without, _ = left([i for i in every if i != k])
+        places = trials[k].candidate.joints(len(sizes))
         before, after = (
-            np.concatenate([np.zeros(0), *(pair[i] / unit for pair, unit in zip(pairs, units, strict=True))])
-            for i in range(2)
+            np.concatenate([e[test.moving[:, j], j] / sizes[j] for j in places]) for e in (without, with_all)
         )
         found.append(Share(*compared(before, after)[2:]))
     return found

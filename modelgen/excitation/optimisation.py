@@ -29,9 +29,8 @@ _OPTIONS = {
 class Optimiser:
     """The nonlinear programme of a problem, built once and started as often as wanted.
 
-    smooth: of the same arm and settings.
     The objective and the constraints have exact first derivatives; the Hessian is that of limited-memory
-    BFGS.
+    BFGS. smooth: what they are made of, of the same arm and settings.
     """
 
     def __init__(self, problem: Problem, smooth: ca.Function) -> None:
