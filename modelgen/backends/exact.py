@@ -12,19 +12,27 @@ import numpy as np
 from mpmath import MPContext
 from numpy.typing import NDArray
 
-from modelgen.functions.objects import Function
+from modelgen.functions.objects import SMALLEST_PIVOT, STATUS_PIVOT, Function
 from modelgen.graph import Term
 
 DIGITS = 40
 CONTEXT = MPContext()
 CONTEXT.dps = DIGITS
 
+
+def _divided(x: Any, y: Any) -> Any:
+    """x / y as IEEE 754 has it: what divides by zero may be one of two values of which the other is taken."""
+    if y:
+        return x / y
+    return CONTEXT.sign(x) * CONTEXT.inf if x else CONTEXT.nan
+
+
 _CALLS: Mapping[str, Callable[..., Any]] = {
     "neg": lambda x: -x,
     "add": lambda x, y: x + y,
     "sub": lambda x, y: x - y,
     "mul": lambda x, y: x * y,
-    "div": lambda x, y: x / y,
+    "div": _divided,
     "abs": abs,
     "pow": lambda x, y: x**y,
     "min": min,
@@ -50,8 +58,9 @@ _CALLS: Mapping[str, Callable[..., Any]] = {
 }
 
 
-def exact_values(function: Function, given: Mapping[str, NDArray[np.float64]]) -> list[Any]:
-    """All elements of the outputs, one output after the other, as numbers of CONTEXT.
+def exact_values(function: Function, given: Mapping[str, NDArray[np.float64]]) -> list[Any] | None:
+    """All elements of the outputs, one output after the other, as numbers of CONTEXT; None where the function
+    gives none, since a guard fails.
 
     given: inputs by name, (m,) each. For states in which every value is finite.
     """
@@ -70,6 +79,10 @@ def exact_values(function: Function, given: Mapping[str, NDArray[np.float64]]) -
         return _CALLS[kind](*map(value, rest))
 
     for statement in function.program.statements:
-        known[statement.target] = value(statement.term)
+        found = value(statement.term)
+        least = SMALLEST_PIVOT if statement.target == ("guard", STATUS_PIVOT) else 0.0
+        if isinstance(statement.target, tuple) and statement.target[0] == "guard" and not found > least:
+            return None
+        known[statement.target] = found
     zero = CONTEXT.mpf(0)
     return [known.get((o.name, i), zero) for o in function.outputs for i in range(o.size)]

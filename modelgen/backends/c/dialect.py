@@ -9,7 +9,7 @@ from decimal import Decimal
 from modelgen.backends.c.pairs import Pair
 from modelgen.backends.elements import Element
 from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
-from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
+from modelgen.functions.objects import SMALLEST_PIVOT, STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
@@ -17,8 +17,6 @@ _TEMPORARY = re.compile(r"t[0-9]+")
 
 # Normal numbers of IEEE 754 single precision: every constant must be one, or zero.
 _SMALLEST, _LARGEST = 1.1754943508222875e-38, 3.4028234663852886e38
-# Least pivot of a mass matrix [kg m^2, kg]: its reciprocal is bounded, which a proof can use.
-SMALLEST_PIVOT = 1e-9
 # Largest magnitude of an output where these are checked.
 OUTPUT_LIMIT = 1e15
 
