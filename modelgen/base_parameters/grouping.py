@@ -16,6 +16,7 @@ from modelgen.base_parameters.analytic import (
     tidy,
 )
 from modelgen.base_parameters.closed_form import Factors, closed_forms
+from modelgen.base_parameters.drives import contained
 from modelgen.base_parameters.objects import BaseParameter, Grouping
 from modelgen.base_parameters.oracle import rank, regressor_values
 from modelgen.base_parameters.printing import printed
@@ -120,7 +121,7 @@ def _grouping(
         names = [(standard[k].name, factor) for k, factor in ordered]
         name = standard[base].name + ("R" if len(ordered) > 1 else "") + suffix
         result.append(BaseParameter(name, standard[base].unit, tuple(ordered), printed(names)))
-    return Grouping(tuple(result), tuple(without))
+    return Grouping(tuple(result), tuple(without), contained(equations, result))
 
 
 def base_values(grouping: Grouping, standard: Sequence[float], symbols: dict[str, float]) -> list[float]:

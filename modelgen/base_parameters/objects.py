@@ -28,8 +28,27 @@ class BaseParameter:
 
 
 @dataclass(frozen=True)
+class Contained:
+    """A drive's inertia in a base parameter of its link's.
+
+    joint: index into `arm.joints`. standard: index of the drive's inertia; representative: of the base
+    parameter, in which a unit of it counts `factor` times. nominal: the description's value, None where it
+    gives none.
+    """
+
+    joint: int
+    standard: int
+    representative: int
+    factor: Scalar
+    nominal: float | None
+
+
+@dataclass(frozen=True)
 class Grouping:
-    """The base parameters, and the standard parameters that have no effect at all on the input."""
+    """The base parameters, the standard parameters that have no effect at all on the input, and the drives'
+    inertia that base parameters of links contain.
+    """
 
     base: tuple[BaseParameter, ...]
     without_effect: tuple[int, ...]
+    drives: tuple[Contained, ...] = ()

@@ -17,7 +17,7 @@ from modelgen.diagnosis.run import diagnose, records
 from modelgen.errors import InputError
 from modelgen.generation.folders import check_output
 from modelgen.jobs import Where
-from modelgen.report.diagnosis import harms, sketches, unnamed
+from modelgen.report.diagnosis import assumptions, harms, sketches, unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.sketches import Pen
 from modelgen.report.writing import write
@@ -120,7 +120,7 @@ def _print(d: Diagnosis, out: Path) -> None:
         table.append([str(j + 1), f"{e.before[j]:.4g}", f"{e.after[j]:.4g}", f"{e.gain[j]:.1f}", interval])
     title = f"error on the test record [{d.errors.unit}]"
     print_table(title, dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right"), table)
-    for said in harms(d):
+    for said in (*harms(d), *assumptions(d)):
         typer.echo(said)
     if d.next_experiment is not None:
         typer.echo(f"next: {followed(d.next_experiment)}")

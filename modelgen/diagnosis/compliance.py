@@ -47,8 +47,18 @@ def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> Non
     for cause in causes:
         if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
-            place = _Beside(rows, others, cause.trial, prober)
-            cause.trial = place.best([place.begun(cause.trial.values)]) or cause.trial
+            found = best_beside(cause.trial, [cause.trial.values], others, rows, prober)
+            cause.trial = found or cause.trial
+
+
+def best_beside(
+    trial: Trial, starts: Sequence[Values], others: Sequence[Trial], rows: Sequence[Rows], prober: Prober
+) -> Trial | None:
+    """An elastic joint or a gap with its best values beside others, whose columns stay; None where a rigid
+    joint leaves less. starts: where the search may begin.
+    """
+    place = _Beside(rows, others, trial, prober)
+    return place.best([place.begun(values) for values in starts])
 
 
 def refined(

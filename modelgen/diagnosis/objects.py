@@ -88,7 +88,8 @@ class Positions:
 class Diagnosis:
     """Everything that was found. likeness: what the causes leave is most like; before, after: the arm as
     described and the arm with the causes, fitted to the training records; simulation: of the test record with
-    either; test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts.
+    either; test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts;
+    inertias: of drives before elastic joints and play by coordinate (from 1), as `drives.inertias` has them.
     """
 
     arm: Arm
@@ -109,6 +110,7 @@ class Diagnosis:
     selection: Selection
     settings: Mapping[str, Any] = field(default_factory=dict)
     positions: Positions | None = None
+    inertias: Mapping[int, Estimate] = field(default_factory=dict)
 
 
 def to_json(d: Diagnosis) -> dict[str, Any]:
@@ -162,6 +164,9 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             else {"f_gof": numbers(scores.f_gof), "mae": numbers(scores.mae), "rmse": numbers(scores.rmse)}
             for name, scores in zip(("before", "after"), d.simulation, strict=True)
         },
+        "drive_inertias": [
+            {"joint": number, "value": rounded(e.value), "unit": e.unit} for number, e in d.inertias.items()
+        ],
         "next_experiment": experiment_json(d.next_experiment),
         "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
         "positions": None if d.positions is None else _positions(d.positions),

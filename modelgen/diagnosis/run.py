@@ -23,6 +23,7 @@ from modelgen.diagnosis.candidates import (
 )
 from modelgen.diagnosis.checks import check_efforts, check_one_arm
 from modelgen.diagnosis.deviations import valued
+from modelgen.diagnosis.drives import inertias, refound, with_inertias
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
@@ -123,10 +124,15 @@ def diagnose(
     train, test = made.prepared[:-1], made.prepared[-1]
     baseline = rows[0].baseline
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
-    selection = valued(stiffened(answer.selection, rows, prober))
+    apart, selection = inertias(model, base, answer.selection.causes), answer.selection
+    if apart:
+        split = Prober(with_inertias(arm, apart))
+        anew = refound(selection, apart, rows, split)
+        apart, prober, selection = (apart, split, anew) if anew else ({}, prober, selection)
+    selection = valued(stiffened(selection, rows, prober))
     named = _named(selection, answer.equal, prober)
     before = fitted(arm, model, rows)
-    after = extended(arm, before, selection, train)
+    after = extended(prober.arm, before, selection, train)
     last = rows_of(prober, model, test, before.theta, baseline)
     pair = residuals(last, before, selection, after, prober, base)
     if selection.causes and not free:
@@ -167,6 +173,7 @@ def diagnose(
             "practical_gain_percent": round(practical(PRACTICAL, made.narrowed), 3),
         },
         Positions(answer.share, answer.noisy),
+        apart,
     )
     if known is not None:
         known(result)

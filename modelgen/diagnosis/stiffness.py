@@ -15,7 +15,6 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.diagnosis.candidates import ELASTIC, columns
-from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
@@ -47,7 +46,7 @@ def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Sel
         fitted = weighted_fit(rows, with_causes(rows, trials))
         shares = [_share(trials, k, fitted[own:]) for k in elastic]
         if max(abs(share - 1.0) for share in shares) < CLOSE:
-            return _with(selection, causes, trials, rows)
+            return with_trials(selection, trials, rows)
         for k, share in zip(elastic, shares, strict=True):
             softer = math.sqrt(min(max(share, LEAST), MOST))
             values = {**trials[k].values, "stiffness": trials[k].values["stiffness"] / softer}
@@ -61,10 +60,8 @@ def _share(trials: Sequence[Trial], which: int, values: Array) -> float:
     return float(values[sum(t.columns[0].shape[2] for t in trials[:which])])
 
 
-def _with(
-    selection: Selection, causes: Sequence[Cause], trials: Sequence[Trial], rows: Sequence[Rows]
-) -> Selection:
+def with_trials(selection: Selection, trials: Sequence[Trial], rows: Sequence[Rows]) -> Selection:
+    """The selection with other values of its causes."""
     system = System(rows, with_causes(rows, trials), selection.system.periods)
-    return replace(
-        selection, causes=[replace(c, trial=t) for c, t in zip(causes, trials, strict=True)], system=system
-    )
+    causes = [replace(c, trial=t) for c, t in zip(selection.causes, trials, strict=True)]
+    return replace(selection, causes=causes, system=system)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from modelgen.base_parameters.drives import INERTIA
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.probing import with_effect
@@ -36,16 +38,24 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
-def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
-    """The arm's part of its description file with the causes added; comments and order stay."""
+def extended_yaml(
+    file: Path, arm: Arm, causes: Sequence[Found], inertias: Mapping[int, float] = MappingProxyType({})
+) -> str:
+    """The arm's part of its description file with the causes added; comments and order stay.
+
+    inertias: nominal ones of drives by number of the coordinate, where their joints list `drive_inertia`.
+    """
     whole, entry = _read(file, arm)
+    for number, value in inertias.items():
+        index = arm.coordinates[number - 1]
+        present = [use.name for use in arm.joints[index].effects]
+        listed = _listed(entry["joints"][index], present)
+        listed[present.index(INERTIA)] = _with_values(INERTIA, {"inertia": value})
     for effect, joint, values in causes:
         added: Any = effect
         given = admitted(effect, values)
         if given:
-            added = CommentedMap({effect: CommentedMap(given)})
-            added[effect].fa.set_flow_style()
-            added.fa.set_flow_style()
+            added = _with_values(effect, given)
         if joint is None:
             _listed(entry, []).append(added)
         else:
@@ -53,6 +63,14 @@ def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
             present = [use.name for use in arm.joints[index].effects]
             _listed(entry["joints"][index], present).append(added)
     return _written(whole, arm, entry)
+
+
+def _with_values(effect: str, values: Mapping[str, float]) -> CommentedMap:
+    """An entry of a list of effects, on one line."""
+    entry = CommentedMap({effect: CommentedMap(values)})
+    entry[effect].fa.set_flow_style()
+    entry.fa.set_flow_style()
+    return entry
 
 
 def with_torque_constants(file: Path, arm: Arm, values: Mapping[int, float]) -> str:

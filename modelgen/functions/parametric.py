@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from modelgen.base_parameters import Grouping
 from modelgen.errors import InputError
 from modelgen.functions.arguments import input_units, joint_units
 from modelgen.functions.assembly import Assembly, vector
 from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.nominal import factor_value
 from modelgen.functions.objects import STATUS_PIVOT, Function, Output
 from modelgen.graph import Expr
 from modelgen.model.equations import Equations
@@ -19,12 +20,17 @@ def standard_values(equations: Equations) -> list[Expr]:
     return [equations.graph.input("parameters", k) for k in range(len(equations.standard))]
 
 
-def base_values(equations: Equations, grouping: Grouping, first: int = 0) -> list[Expr]:
-    """Base parameters as inputs from element `first` on, each in its representative's place."""
+def base_values(
+    equations: Equations, grouping: Grouping, first: int = 0, apart: Collection[int] | None = None
+) -> list[Expr]:
+    """Base parameters as inputs from element `first` on, each in its representative's place.
+
+    apart: as in `drives_apart`.
+    """
     values = [equations.graph.zero] * len(equations.standard)
     for k, base in enumerate(grouping.base):
         values[base.representative] = equations.graph.input("parameters", first + k)
-    return values
+    return drives_apart(equations, grouping, values, apart)
 
 
 def folded_values(equations: Equations, grouping: Grouping, given: Mapping[str, float]) -> list[Expr]:
@@ -32,7 +38,27 @@ def folded_values(equations: Equations, grouping: Grouping, given: Mapping[str, 
     values = [equations.graph.zero] * len(equations.standard)
     for base in grouping.base:
         values[base.representative] = equations.graph.const(given[base.name])
-    return values
+    return drives_apart(equations, grouping, values)
+
+
+def drives_apart(
+    equations: Equations, grouping: Grouping, values: Sequence[Expr], joints: Collection[int] | None = None
+) -> list[Expr]:
+    """The standard vector with the nominal inertia of drives in its own place, of the elastic joints or of
+    `joints` (indices into `arm.joints`).
+
+    values: with base parameters in their representatives' places, those of the links contain it.
+    """
+    result, graph = list(values), equations.graph
+    elastic = {effect.joint for effect in equations.effects if effect.elastic}
+    for drive in grouping.drives:
+        if drive.joint not in (elastic if joints is None else joints) or drive.nominal is None:
+            continue
+        if drive.standard < len(result):
+            result[drive.standard] = result[drive.standard] + graph.const(drive.nominal)
+        amount = drive.nominal * factor_value(drive.factor, equations.arm.symbols)
+        result[drive.representative] = result[drive.representative] - graph.const(amount)
+    return result
 
 
 def parametric_functions(

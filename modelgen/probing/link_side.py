@@ -22,7 +22,7 @@ from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.model.equations import Equations
 from modelgen.probing.motion import Array, Motion
-from modelgen.probing.programs import at_motors
+from modelgen.probing.programs import at_motors, links_alone
 from modelgen.probing.recent import Recent
 
 CUTOFF = 0.04  # of the rate, where no cut-off is given
@@ -94,7 +94,8 @@ class LinkSide:
         lever: Callable[[int, Array], Array],
     ) -> None:
         self._drives = NumpyFunction(at_motors(e, base))
-        self._links, self._gain, self._lever, self._arm = links, gain, lever, e.arm
+        self._e, self._base, self._arm = e, base, e.arm
+        self._links, self._gain, self._lever = links, gain, lever
         self._recent: Recent[Array] = Recent(KEPT * len(e.arm.coordinates))
 
     def added(self, joint: int, motion: Motion, values: dict[str, float], parameters: Array) -> Array:
@@ -182,8 +183,9 @@ class LinkSide:
         ddq = motion.ddq.copy()
         ddq[:, j] += 1.0
         faster = replace(motion, ddq=ddq)
-        here = self._links(motion, parameters)[:, j] * gain
-        heavy = np.abs(self._links(faster, parameters)[:, j] * gain - here)
+        links = links_alone(self._base, self._e, joint, parameters)
+        here = self._links(motion, links)[:, j] * gain
+        heavy = np.abs(self._links(faster, links)[:, j] * gain - here)
         told = (self.drives(faster, parameters) - self.drives(motion, parameters))[:, j] * gain
         inertia = np.where(told > TOLD * heavy, told, GUESS * heavy)
         together = here + told * motion.ddq[:, j]

@@ -25,6 +25,7 @@ from modelgen.probing.programs import (
     columns_of,
     grouping,
     inputs_of,
+    links_alone,
     links_and_effect,
     loads_of,
 )
@@ -197,12 +198,16 @@ class Prober:
         call = self._made[e, "added"]
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
-        return self._run(call, e, call.function, motion, values, parameters) - self._links(motion, parameters)
+        found = self._run(call, e, call.function, motion, values, parameters)
+        return found - self._links(motion, links_alone(self.base, self._own, joint, parameters))
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
-        given = self.arm, self.base, joint, motion, parameters, self._bare, self.link_side.drives
-        return self._recent.along(("carried", joint), motion, parameters, lambda: carried(*given))
+        alone = links_alone(self.base, self._own, joint, parameters)
+        given = self.arm, self.base, joint, motion, alone, self._bare, self.link_side.drives
+        return self._recent.along(
+            ("carried", joint), motion, parameters, lambda: parameters + (carried(*given) - alone)
+        )
 
     def _links(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the links alone."""

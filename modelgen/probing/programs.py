@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from modelgen.base_parameters import Grouping, group
 from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm
 from modelgen.effects import described
 from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.nominal import factor_value
 from modelgen.functions.objects import Argument, Function, Output
-from modelgen.functions.parametric import base_values
+from modelgen.functions.parametric import base_values, drives_apart
 from modelgen.graph import Expr, cut, lower
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
@@ -56,7 +60,8 @@ def loads_of(arm: Arm, base: Grouping) -> Function:
 
 def at_motors(e: Equations, base: Grouping) -> Function:
     """What the effects at the motors add to the inputs, with the base parameters of `e`'s own arm."""
-    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), base_values(e, base))
+    values = base_values(e, base, apart=e.arm.coordinates)
+    forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), values)
     return bare("at_motors", e, len(base.base), forces.at_motors())
 
 
@@ -94,4 +99,19 @@ def _values(e: Equations, base: Grouping) -> list[Expr]:
     for k, parameter in enumerate(base.base):
         if parameter.representative < links:
             values[parameter.representative] = e.graph.input("parameters", k)
-    return values
+    return drives_apart(e, base, values)[:links] + values[links:]
+
+
+def links_alone(
+    base: Grouping, e: Equations, joint: int | None, parameters: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The parameters (p,) without the nominal inertia of the drive at coordinate `joint` (from 1) that those
+    of links contain. e: of the arm.
+    """
+    alone = np.asarray(parameters, dtype=float).copy()
+    index = None if joint is None else e.arm.coordinates[joint - 1]
+    for drive in base.drives:
+        if drive.joint == index and drive.nominal is not None:
+            place = [b.representative for b in base.base].index(drive.representative)
+            alone[place] -= drive.nominal * factor_value(drive.factor, e.arm.symbols)
+    return alone

@@ -9,6 +9,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.lack_of_fit import place
 from modelgen.diagnosis.objects import Diagnosis, Named
 from modelgen.diagnosis.ranking import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
@@ -59,6 +60,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         reason=d.reason,
         causes=[_cause(d, k) for k in range(len(d.causes))],
         harms=harms(d),
+        assumptions=assumptions(d),
         fit=_fit(d),
         errors=_errors(d),
         unit=d.errors.unit,
@@ -138,6 +140,25 @@ def harms(d: Diagnosis) -> list[str]:
         for c in d.causes
         if c.share.high < 0.0
     ]
+
+
+def assumptions(d: Diagnosis) -> list[str]:
+    """What was taken from the description, since no record tells it, and what would have to be."""
+    taken = [
+        f"The drive's inertia at {_place(number)} is taken as {e.value:.3g} {e.unit}, what was identified "
+        "of drive and link together beyond the link's nominal inertials: stiffness and play are found with "
+        "it. A value under drive_inertia in the description is taken instead."
+        for number, e in d.inertias.items()
+    ]
+    places = {index: number for number, index in enumerate(d.arm.coordinates, 1)}
+    compliant = {c.joint for c in d.causes if c.effect in COMPLIANT}
+    unknown = [
+        f"The drive's inertia at {_place(places[x.joint])} is not told from the link's: the extended model "
+        "cannot be simulated, nor its forward dynamics used, until the description gives drive_inertia a value."
+        for x in d.after.model.grouping.drives
+        if x.nominal is None and places[x.joint] in compliant
+    ]
+    return taken + unknown
 
 
 # What the values of a cause depend on besides the arm.

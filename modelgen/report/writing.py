@@ -33,7 +33,8 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
-        extended = extended_yaml(file, d.arm, causes)
+        inertias = {number: e.value for number, e in d.inertias.items()}
+        extended = extended_yaml(file, d.arm, causes, inertias)
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
         if code:
             values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}

@@ -1,0 +1,34 @@
+"""Inertia of drives that base parameters contain together with their links'.
+
+No motion of a rigid arm tells the inertia of a first joint's drive from that of its link: the grouping adds
+them. An elastic joint moves one against the other, so that its equations need both: the description's
+nominal value of `drive_inertia` then says what is the drive's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from modelgen.base_parameters.objects import BaseParameter, Contained
+from modelgen.model.equations import Equations
+
+INERTIA = "drive_inertia"
+
+
+def contained(equations: Equations, base: Sequence[BaseParameter]) -> tuple[Contained, ...]:
+    """All of the arm's."""
+    index: Mapping[str, int] = {p.name: k for k, p in enumerate(equations.standard)}
+    result = []
+    for effect in equations.effects:
+        if effect.effect.name != INERTIA or effect.joint is None:
+            continue
+        ((parameter, symbol),) = effect.parameters
+        own = index[symbol.name]
+        nominal = effect.nominal.get(parameter.name)
+        result += [
+            Contained(effect.joint, own, b.representative, factor, nominal)
+            for b in base
+            for k, factor in b.terms
+            if k == own != b.representative
+        ]
+    return tuple(result)
