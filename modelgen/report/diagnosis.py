@@ -154,7 +154,8 @@ def assumptions(d: Diagnosis) -> list[str]:
     compliant = {c.joint for c in d.causes if c.effect in COMPLIANT}
     unknown = [
         f"The drive's inertia at {_place(places[x.joint])} is not told from the link's: the extended model "
-        "cannot be simulated, nor its forward dynamics used, until the description gives drive_inertia a value."
+        "cannot be simulated, nor its forward dynamics used, until the description gives "
+        "drive_inertia a value."
         for x in d.after.model.grouping.drives
         if x.nominal is None and places[x.joint] in compliant
     ]
