@@ -39,7 +39,7 @@ def test_base_parameters_move_an_elastic_joint_as_standard_ones_do(
     (contained,) = (d for d in model.grouping.drives if d.joint == index)
     random = np.random.default_rng(4)
     standard = standard_vector(model, random)
-    standard[contained.standard] = INERTIA
+    standard[[p.name for p in model.standard].index(contained.name)] = INERTIA
     base = base_matrix(model) @ standard
     n = len(arm.coordinates)
     known = {

@@ -12,7 +12,7 @@ import numpy as np
 from mpmath import MPContext
 from numpy.typing import NDArray
 
-from modelgen.functions.objects import SMALLEST_PIVOT, STATUS_PIVOT, Function
+from modelgen.functions.objects import Function, least_guarded
 from modelgen.graph import Term
 
 DIGITS = 40
@@ -80,9 +80,9 @@ def exact_values(function: Function, given: Mapping[str, NDArray[np.float64]]) -
 
     for statement in function.program.statements:
         found = value(statement.term)
-        least = SMALLEST_PIVOT if statement.target == ("guard", STATUS_PIVOT) else 0.0
-        if isinstance(statement.target, tuple) and statement.target[0] == "guard" and not found > least:
-            return None
+        match statement.target:
+            case ("guard", status) if not found > least_guarded(status):
+                return None
         known[statement.target] = found
     zero = CONTEXT.mpf(0)
     return [known.get((o.name, i), zero) for o in function.outputs for i in range(o.size)]

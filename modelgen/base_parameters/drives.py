@@ -7,7 +7,7 @@ nominal value of `drive_inertia` then says what is the drive's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from modelgen.base_parameters.objects import BaseParameter, Contained
 from modelgen.model.equations import Equations
@@ -17,18 +17,16 @@ INERTIA = "drive_inertia"
 
 def contained(equations: Equations, base: Sequence[BaseParameter]) -> tuple[Contained, ...]:
     """All of the arm's."""
-    index: Mapping[str, int] = {p.name: k for k, p in enumerate(equations.standard)}
     result = []
     for effect in equations.effects:
         if effect.effect.name != INERTIA or effect.joint is None:
             continue
         ((parameter, symbol),) = effect.parameters
-        own = index[symbol.name]
         nominal = effect.nominal.get(parameter.name)
         result += [
-            Contained(effect.joint, own, b.representative, factor, nominal)
-            for b in base
+            Contained(effect.joint, symbol.name, place, factor, nominal)
+            for place, b in enumerate(base)
             for k, factor in b.terms
-            if k == own != b.representative
+            if equations.standard[k].name == symbol.name and k != b.representative
         ]
     return tuple(result)

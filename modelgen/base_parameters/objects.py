@@ -31,14 +31,14 @@ class BaseParameter:
 class Contained:
     """A drive's inertia in a base parameter of its link's.
 
-    joint: index into `arm.joints`. standard: index of the drive's inertia; representative: of the base
-    parameter, in which a unit of it counts `factor` times. nominal: the description's value, None where it
-    gives none.
+    joint: index into `arm.joints`. name: of the drive's inertia among the standard parameters; base: index of
+    the base parameter, in which a unit of it counts `factor` times. nominal: the description's value, None
+    where it gives none.
     """
 
     joint: int
-    standard: int
-    representative: int
+    name: str
+    base: int
     factor: Scalar
     nominal: float | None
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 
 from modelgen.base_parameters.drives import INERTIA
-from modelgen.description import Arm, EffectUse
+from modelgen.description import Arm
 from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.compliance import best_beside
@@ -21,6 +20,7 @@ from modelgen.diagnosis.rows import Array, Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.stiffness import with_trials
 from modelgen.errors import InputError
+from modelgen.extension import Found, extended_arm
 from modelgen.functions import Model
 from modelgen.functions.nominal import factor_value, nominal_links
 from modelgen.probing import Prober
@@ -41,38 +41,42 @@ def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Es
     except InputError:
         return {}
     compliant = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
-    places = {index: number for number, index in enumerate(model.arm.coordinates, 1)}
+    symbols, units = model.arm.symbols, {p.name: p.unit for p in model.standard}
     found = {}
     for drive in model.grouping.drives:
-        number = places[drive.joint]
+        number = model.arm.coordinates.index(drive.joint) + 1
         if number not in compliant or drive.nominal is not None:
             continue
-        of = next(k for k, b in enumerate(model.grouping.base) if b.representative == drive.representative)
-        terms = [(k, f) for k, f in model.grouping.base[of].terms if k != drive.standard]
-        names = [model.standard[k].name for k, _ in terms]
-        if not all(name in known for name in names):
+        terms = {model.standard[k].name: factor for k, factor in model.grouping.base[drive.base].terms}
+        factor = factor_value(terms.pop(drive.name), symbols)
+        if not terms.keys() <= known.keys():
             continue
-        factors = [factor_value(f, model.arm.symbols) for _, f in terms]
-        links = sum(known[name] * f for name, f in zip(names, factors, strict=True))
-        whole = float(base[of])
+        links = sum(known[name] * factor_value(f, symbols) for name, f in terms.items())
+        whole = float(base[drive.base])
         if LEAST * whole < links < (1.0 - LEAST) * whole:
-            factor = factor_value(drive.factor, model.arm.symbols)
             value = float(f"{(whole - links) / factor:.9g}")
-            found[number] = Estimate(value, math.nan, model.standard[drive.standard].unit)
+            found[number] = Estimate(value, math.nan, units[drive.name])
     return found
 
 
-def with_inertias(arm: Arm, values: Mapping[int, Estimate]) -> Arm:
-    """The arm with nominal inertia of its drives by coordinate (from 1)."""
-    joints = list(arm.joints)
-    for number, value in values.items():
-        index = arm.coordinates[number - 1]
-        uses = tuple(
-            EffectUse(INERTIA, {"inertia": value.value}, u.where) if u.name == INERTIA else u
-            for u in joints[index].effects
-        )
-        joints[index] = replace(joints[index], effects=uses)
-    return replace(arm, joints=tuple(joints))
+def described_by(values: Mapping[int, Estimate]) -> list[Found]:
+    """Inertia of drives by coordinate (from 1) as what a description is extended by."""
+    return [(INERTIA, number, {"inertia": e.value}) for number, e in values.items()]
+
+
+def told_apart(
+    arm: Arm, model: Model, selection: Selection, base: Array, rows: Sequence[Rows], prober: Prober
+) -> tuple[dict[int, Estimate], Selection, Prober]:
+    """`inertias`, and with them the selection and the prober of the arm that has them; all as they were, and
+    none, where compliant joints do no better with them than rigid ones.
+    """
+    values = inertias(model, base, selection.causes)
+    if values:
+        split = Prober(extended_arm(arm, described_by(values)))
+        found = refound(selection, values, rows, split)
+        if found is not None:
+            return values, found, split
+    return {}, selection, prober
 
 
 def refound(

@@ -23,7 +23,7 @@ from modelgen.diagnosis.candidates import (
 )
 from modelgen.diagnosis.checks import check_efforts, check_one_arm
 from modelgen.diagnosis.deviations import valued
-from modelgen.diagnosis.drives import inertias, refound, with_inertias
+from modelgen.diagnosis.drives import told_apart
 from modelgen.diagnosis.errors import errors, motion_errors
 from modelgen.diagnosis.estimates import base_estimates, cause_estimates
 from modelgen.diagnosis.experiments import next_experiment
@@ -124,11 +124,7 @@ def diagnose(
     train, test = made.prepared[:-1], made.prepared[-1]
     baseline = rows[0].baseline
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
-    apart, selection = inertias(model, base, answer.selection.causes), answer.selection
-    if apart:
-        split = Prober(with_inertias(arm, apart))
-        anew = refound(selection, apart, rows, split)
-        apart, prober, selection = (apart, split, anew) if anew else ({}, prober, selection)
+    apart, selection, prober = told_apart(arm, model, answer.selection, base, rows, prober)
     selection = valued(stiffened(selection, rows, prober))
     named = _named(selection, answer.equal, prober)
     before = fitted(arm, model, rows)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from modelgen.base_parameters.drives import INERTIA
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.probing import with_effect
@@ -21,7 +19,7 @@ Found = tuple[str, int | None, Mapping[str, float]]
 
 
 def extended_arm(arm: Arm, causes: Sequence[Found]) -> Arm:
-    """The arm with the causes' effects."""
+    """The arm with the causes' effects; values of those that it has are replaced."""
     for effect, joint, values in causes:
         arm = with_effect(arm, effect, joint, admitted(effect, values))
     return arm
@@ -38,39 +36,31 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
-def extended_yaml(
-    file: Path, arm: Arm, causes: Sequence[Found], inertias: Mapping[int, float] = MappingProxyType({})
-) -> str:
-    """The arm's part of its description file with the causes added; comments and order stay.
+def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
+    """The arm's part of its description file with the causes' effects; comments and order stay.
 
-    inertias: nominal ones of drives by number of the coordinate, where their joints list `drive_inertia`.
+    Where an effect stands there already, its values are replaced.
     """
     whole, entry = _read(file, arm)
-    for number, value in inertias.items():
-        index = arm.coordinates[number - 1]
-        present = [use.name for use in arm.joints[index].effects]
-        listed = _listed(entry["joints"][index], present)
-        listed[present.index(INERTIA)] = _with_values(INERTIA, {"inertia": value})
     for effect, joint, values in causes:
         added: Any = effect
         given = admitted(effect, values)
         if given:
-            added = _with_values(effect, given)
+            added = CommentedMap({effect: CommentedMap(given)})
+            added[effect].fa.set_flow_style()
+            added.fa.set_flow_style()
         if joint is None:
-            _listed(entry, []).append(added)
+            owner, uses = entry, arm.effects
         else:
             index = arm.coordinates[joint - 1]
-            present = [use.name for use in arm.joints[index].effects]
-            _listed(entry["joints"][index], present).append(added)
+            owner, uses = entry["joints"][index], arm.joints[index].effects
+        present = [use.name for use in uses]
+        listed = _listed(owner, present)
+        if effect in present:
+            listed[present.index(effect)] = added
+        else:
+            listed.append(added)
     return _written(whole, arm, entry)
-
-
-def _with_values(effect: str, values: Mapping[str, float]) -> CommentedMap:
-    """An entry of a list of effects, on one line."""
-    entry = CommentedMap({effect: CommentedMap(values)})
-    entry[effect].fa.set_flow_style()
-    entry.fa.set_flow_style()
-    return entry
 
 
 def with_torque_constants(file: Path, arm: Arm, values: Mapping[int, float]) -> str:

@@ -17,6 +17,11 @@ SMALLEST_PIVOT = 1e-9
 STATUS_INPUT = 4  # an input is not finite or beyond its bound
 
 
+def least_guarded(status: int) -> float:
+    """What a guarded value must be above for a function to go on."""
+    return SMALLEST_PIVOT if status == STATUS_PIVOT else 0.0
+
+
 @dataclass(frozen=True)
 class Argument:
     """An input vector. `bound` is the largest magnitude of an element that is accepted."""

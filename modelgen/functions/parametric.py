@@ -50,14 +50,18 @@ def drives_apart(
     values: with base parameters in their representatives' places, those of the links contain it.
     """
     result, graph = list(values), equations.graph
-    elastic = {effect.joint for effect in equations.effects if effect.elastic}
+    index = {parameter.name: k for k, parameter in enumerate(equations.standard)}
+    if joints is None:
+        joints = {effect.joint for effect in equations.effects if effect.elastic and effect.joint is not None}
     for drive in grouping.drives:
-        if drive.joint not in (elastic if joints is None else joints) or drive.nominal is None:
+        if drive.joint not in joints or drive.nominal is None:
             continue
-        if drive.standard < len(result):
-            result[drive.standard] = result[drive.standard] + graph.const(drive.nominal)
+        if drive.name in index:  # not in equations of another effect alone
+            own = index[drive.name]
+            result[own] = result[own] + graph.const(drive.nominal)
+        of = grouping.base[drive.base].representative
         amount = drive.nominal * factor_value(drive.factor, equations.arm.symbols)
-        result[drive.representative] = result[drive.representative] - graph.const(amount)
+        result[of] = result[of] - graph.const(amount)
     return result
 
 

@@ -94,7 +94,7 @@ class LinkSide:
         lever: Callable[[int, Array], Array],
     ) -> None:
         self._drives = NumpyFunction(at_motors(e, base))
-        self._e, self._base, self._arm = e, base, e.arm
+        self._arm, self._base = e.arm, base
         self._links, self._gain, self._lever = links, gain, lever
         self._recent: Recent[Array] = Recent(KEPT * len(e.arm.coordinates))
 
@@ -183,7 +183,7 @@ class LinkSide:
         ddq = motion.ddq.copy()
         ddq[:, j] += 1.0
         faster = replace(motion, ddq=ddq)
-        links = links_alone(self._base, self._e, joint, parameters)
+        links = links_alone(self._arm, self._base, joint, parameters)
         here = self._links(motion, links)[:, j] * gain
         heavy = np.abs(self._links(faster, links)[:, j] * gain - here)
         told = (self.drives(faster, parameters) - self.drives(motion, parameters))[:, j] * gain

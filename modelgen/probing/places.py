@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from modelgen.description.objects import Arm, EffectUse, LeveredDrive, NoDrive
@@ -71,11 +71,17 @@ def with_effect(arm: Arm, name: str, joint: int | None, values: Mapping[str, flo
     """
     use = EffectUse(name, dict(values))
     if joint is None:
-        return replace(arm, effects=(*(u for u in arm.effects if u.name != name), use))
+        return replace(arm, effects=_with(arm.effects, use))
     index = arm.coordinates[joint - 1]
     old = arm.joints[index]
-    new = replace(old, effects=(*(u for u in old.effects if u.name != name), use))
+    new = replace(old, effects=_with(old.effects, use))
     return replace(arm, joints=tuple(new if i == index else j for i, j in enumerate(arm.joints)))
+
+
+def _with(uses: Sequence[EffectUse], use: EffectUse) -> tuple[EffectUse, ...]:
+    if all(u.name != use.name for u in uses):
+        return (*uses, use)
+    return tuple(use if u.name == use.name else u for u in uses)
 
 
 def changes_description(name: str) -> bool:

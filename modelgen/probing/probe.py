@@ -199,11 +199,11 @@ class Prober:
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
-        return found - self._links(motion, links_alone(self.base, self._own, joint, parameters))
+        return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
-        alone = links_alone(self.base, self._own, joint, parameters)
+        alone = links_alone(self.arm, self.base, joint, parameters)
         given = self.arm, self.base, joint, motion, alone, self._bare, self.link_side.drives
         return self._recent.along(
             ("carried", joint), motion, parameters, lambda: parameters + (carried(*given) - alone)

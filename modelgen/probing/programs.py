@@ -99,19 +99,18 @@ def _values(e: Equations, base: Grouping) -> list[Expr]:
     for k, parameter in enumerate(base.base):
         if parameter.representative < links:
             values[parameter.representative] = e.graph.input("parameters", k)
-    return drives_apart(e, base, values)[:links] + values[links:]
+    return drives_apart(e, base, values)
 
 
 def links_alone(
-    base: Grouping, e: Equations, joint: int | None, parameters: NDArray[np.float64]
+    arm: Arm, base: Grouping, joint: int | None, parameters: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """The parameters (p,) without the nominal inertia of the drive at coordinate `joint` (from 1) that those
-    of links contain. e: of the arm.
+    of links contain.
     """
     alone = np.asarray(parameters, dtype=float).copy()
-    index = None if joint is None else e.arm.coordinates[joint - 1]
+    index = None if joint is None else arm.coordinates[joint - 1]
     for drive in base.drives:
         if drive.joint == index and drive.nominal is not None:
-            place = [b.representative for b in base.base].index(drive.representative)
-            alone[place] -= drive.nominal * factor_value(drive.factor, e.arm.symbols)
+            alone[drive.base] -= drive.nominal * factor_value(drive.factor, arm.symbols)
     return alone

@@ -150,14 +150,13 @@ def assumptions(d: Diagnosis) -> list[str]:
         "it. A value under drive_inertia in the description is taken instead."
         for number, e in d.inertias.items()
     ]
-    places = {index: number for number, index in enumerate(d.arm.coordinates, 1)}
     compliant = {c.joint for c in d.causes if c.effect in COMPLIANT}
     unknown = [
-        f"The drive's inertia at {_place(places[x.joint])} is not told from the link's: the extended model "
+        f"The drive's inertia at {_place(number)} is not told from the link's: the extended model "
         "cannot be simulated, nor its forward dynamics used, until the description gives "
         "drive_inertia a value."
-        for x in d.after.model.grouping.drives
-        if x.nominal is None and places[x.joint] in compliant
+        for drive in d.after.model.grouping.drives
+        if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
     return taken + unknown
 

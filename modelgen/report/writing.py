@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from modelgen.description import load
+from modelgen.diagnosis.drives import described_by
 from modelgen.diagnosis.objects import Diagnosis, to_json
 from modelgen.effects import known_effects
 from modelgen.errors import InputError
@@ -33,8 +34,7 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
-        inertias = {number: e.value for number, e in d.inertias.items()}
-        extended = extended_yaml(file, d.arm, causes, inertias)
+        extended = extended_yaml(file, d.arm, [*described_by(d.inertias), *causes])
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
         if code:
             values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}

@@ -9,7 +9,7 @@ from decimal import Decimal
 from modelgen.backends.c.pairs import Pair
 from modelgen.backends.elements import Element
 from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
-from modelgen.functions.objects import SMALLEST_PIVOT, STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function
+from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function, least_guarded
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
@@ -140,8 +140,9 @@ class CDialect:
 
     def guard(self, status: int, text: str) -> str:
         """Zeros and a status; the comparison is false for what is not a number."""
-        least = SMALLEST_PIVOT if status == STATUS_PIVOT else 0.0
-        return self.leave(f"!({text} > {self.constant(least)})", f"{self.macro}_STATUS_{STATUS[status]}")
+        return self.leave(
+            f"!({text} > {self.constant(least_guarded(status))})", f"{self.macro}_STATUS_{STATUS[status]}"
+        )
 
     def leave(self, condition: str, status: str) -> str:
         """Write zeros and return."""
