@@ -81,3 +81,20 @@ def test_stiffness_of_a_first_joint_is_that_of_its_spring(encoder: str, tmp_path
     program = (file.parent / "generated" / case.name / "examples" / "self_test" / "main.c").read_text()
     assert f"{case.name}_forward_dynamics_identified(" in program
     assert len(answer["simulation"]["after"]["rmse"]) == 2
+
+
+def test_play_of_a_first_joint_behind_its_links_own_position(tmp_path: Path) -> None:
+    """Found without a stiffness. With the inertia of drive and link together it is six times too wide, and
+    the model that has it predicts no better than one without.
+    """
+    magnitude = 0.24637446999324616
+    case = Case("direct3", 2786900864, (Hidden("backlash", 1, 1.3, magnitude),), "joint")
+    seal(make(case, tmp_path / "case"), tmp_path / "case.sealed")
+    answer, _ = diagnose(tmp_path / "case", case.name)
+    (cause,) = answer["causes"]
+    assert (cause["effect"], cause["joint"]) == ("backlash", 1)
+    assert answer["drive_inertias"]
+    truth = 0.004 * magnitude  # rad, as the plant has it
+    assert truth < cause["parameters"]["play"]["value"] < 4.0 * truth
+    assert answer["error"]["gain_percent"][0] > 5.0
+    assert len(answer["simulation"]["after"]["rmse"]) == 3

@@ -92,8 +92,9 @@ def refound(
     for k, trial in enumerate(trials):
         if trial.candidate.effect in COMPLIANT and trial.candidate.joint in numbers:
             others = [t for t in trials if t is not trial]
-            softer = [{**trial.values, "stiffness": f * trial.values["stiffness"]} for f in SOFTER]
-            starts = [trial.values, *softer] if "stiffness" in trial.values else [trial.values]
+            starts = [trial.values]
+            if "stiffness" in trial.values:  # which a gap behind a link's own position has not
+                starts += [{**trial.values, "stiffness": f * trial.values["stiffness"]} for f in SOFTER]
             found = best_beside(trial, starts, others, rows, prober)
             if found is None:
                 return None

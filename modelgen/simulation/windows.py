@@ -1,13 +1,16 @@
 """A record simulated in many short windows at once, each from its measured state with the measured inputs.
 
 Short windows (multiple shooting; Bock 1983) keep an arm without a controller comparable with its log. Fixed
-steps of the record's period for all windows together: `modelgen.simulation.replay` steps as finely as one
-simulation asks for, and takes that long.
+steps for all windows together: `modelgen.simulation.replay` steps as finely as one simulation asks for, and
+takes that long.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +21,8 @@ from modelgen.functions import Model
 from modelgen.simulation.metrics import Scores, scores
 
 Array = NDArray[np.float64]
+
+FINE = 5e-4  # s, longest step where effects have states: a drive before an elastic joint is light
 
 
 @dataclass(frozen=True)
@@ -34,8 +39,9 @@ def simulated_windows(
 ) -> Windows | None:
     """Windows of `length` samples that begin at the samples `starts` (W,); None where nothing stays finite.
 
-    By the midpoint rule, all windows at once. parameters: base parameters (p,). states: of the effects at
-    every sample of the record (N, s), as the measured motion has brought them there.
+    By the midpoint rule, all windows at once, states of effects half a step ahead of the motion (leapfrog).
+    parameters: base parameters (p,). states: at every sample of the record (N, s), as the measured motion has
+    brought them there.
     """
     with np.errstate(invalid="ignore", over="ignore"):  # of those that leave their bounds
         path = _path(model, parameters, states, prepared, starts, length)
@@ -52,36 +58,51 @@ def _path(
     model: Model, parameters: Array, states: Array | None, p: Prepared, starts: Array, length: int
 ) -> Array:
     """Positions (W, length, n)."""
-    step = p.record.step
     made = {
         f.name: NumpyFunction(f) for f in model.functions if f.name in ("forward_dynamics", "effects_step")
     }
     forward, stepped = made["forward_dynamics"], made.get("effects_step")
+    substeps = 1 if stepped is None else math.ceil(p.record.step / FINE - 1e-9)
+    step = p.record.step / substeps
     q, dq = p.q[starts].copy(), p.dq[starts].copy()
     state = np.zeros((len(starts), max(1, len(model.states)))) if states is None else states[starts]
     inputs = np.zeros(p.q.shape) if p.input is None else p.input
-    ddq = np.zeros(q.shape)
     path = np.empty((len(starts), length, q.shape[1]))
 
-    def given(call: NumpyFunction, q: Array, dq: Array, k: int) -> dict[str, Array]:
-        known = {
-            "q": q,
-            "dq": dq,
-            "ddq": ddq,
-            "input": inputs[starts + k],
-            "parameters": parameters,
-            "time": p.time[starts + k][:, None],
-            "state": state,
-            "dt": np.full((len(starts), 1), step),
-        }
-        return {a.name: known[a.name] for a in call.function.arguments}
+    def called(call: NumpyFunction, k: int, q: Array, dq: Array, **more: Array) -> Array:
+        known = {"q": q, "dq": dq, "input": inputs[starts + k], "parameters": parameters, "state": state}
+        known |= {"time": p.time[starts + k][:, None], **more}
+        return np.asarray(call(**{a.name: known[a.name] for a in call.function.arguments}))
 
+    def onward(k: int, q: Array, dq: Array, ddq: Array, span: float) -> Array:
+        if stepped is None:
+            return state
+        return called(stepped, k, q, dq, ddq=ddq, dt=np.full((len(starts), 1), span))
+
+    state = onward(0, q, dq, called(forward, 0, q, dq), step / 2)
     for k in range(length):
         path[:, k] = q
-        ddq = np.asarray(forward(**given(forward, q, dq, k)))
-        half = dq + step / 2 * ddq
-        middle = np.asarray(forward(**given(forward, q + step / 2 * dq, half, k)))
-        if stepped is not None:
-            state = np.asarray(stepped(**given(stepped, q, dq, k)))
-        q, dq = q + step * half, dq + step * middle
+        for _ in range(substeps):
+            half = dq + step / 2 * called(forward, k, q, dq)
+            middle = called(forward, k, q + step / 2 * dq, half)
+            q = q + step * half
+            dq, ddq = _held(dq, middle, partial(called, forward, k, q), step)
+            state = onward(k, q, dq, ddq, step)
     return path
+
+
+def _held(dq: Array, ddq: Array, accelerations: Callable[[Array], Array], step: float) -> tuple[Array, Array]:
+    """Velocities after a step of the accelerations `ddq`, and the accelerations there, (W, n); both zero
+    where dry friction holds a joint.
+
+    It does where a joint that was at rest, or has turned, is driven back by the friction of its new
+    direction. Its friction then lies between those of the two directions, and what the others feel of it.
+    """
+    moved = dq + step * ddq
+    after = accelerations(moved)
+    stuck = (moved * dq <= 0.0) & (after * moved < 0.0)
+    change = np.where(stuck, after - ddq, 1.0)
+    share = np.where(stuck, -moved / (step * change), 0.0).max(axis=1, keepdims=True)
+    between = ddq + share * (after - ddq)
+    moved = np.where(share > 0.0, dq + step * between, moved)
+    return np.where(stuck, 0.0, moved), np.where(stuck, 0.0, np.where(share > 0.0, between, after))
