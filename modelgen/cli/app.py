@@ -126,7 +126,7 @@ def diagnose(
     from modelgen.report.sketches import Pen
 
     file, found = one(arms, arm)
-    with Pen(hands=1 if jobs == 1 else 2) as pen:  # it gets ready while the rest is loaded
+    with Pen(hands=0 if jobs == 1 else 2) as pen:  # it gets ready while the rest is loaded
         from modelgen.cli.diagnosing import run
 
         run(
