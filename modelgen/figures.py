@@ -44,5 +44,6 @@ def svg(made: Figure) -> str:
 
     out = io.StringIO()
     with rc_context(_STYLE):
+        made.draw_without_rendering()  # the layout knows the ticks of a drawing before: labels stay inside
         made.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()) + "\n"
