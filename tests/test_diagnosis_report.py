@@ -71,6 +71,22 @@ def test_pictures_drawn_by_another_process_are_the_same(ended: bool) -> None:
     assert drawn == svg(made)
 
 
+def test_labels_stand_inside_their_picture() -> None:
+    """Here the layout moves the ticks closer, and their longer labels would push the axis's out."""
+    sketch = Sketch(2, 2, (9.0, 3.8))
+    axes = sketch.axes()
+    for j, span in enumerate([(-3.7, 2.9), (-1.5, 0.95)]):
+        axes[j, 0].plot((0.0, 10.0), span)
+        axes[j, 0].set_ylabel(f"joint {j + 1} [A]")
+        axes[j, 1].plot((0.0, 1.0), (0.0, 0.1))
+        axes[j, 1].set_ylabel("left over [A]")
+    for axis in axes[1]:
+        axis.set_xlabel("time [s]")
+    places = re.findall(r' x="([\d.-]+)"[^>]*>joint \d', sketch.drawn())
+    assert len(places) == 2
+    assert min(map(float, places)) > 9.0  # the height of its letters; it stands upright
+
+
 def test_every_axis_has_its_unit(found: Diagnosis) -> None:
     """Also where joints differ: a carriage before a turning joint, a motor that knows increments alone."""
     first, *others = found.arm.joints
