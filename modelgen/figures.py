@@ -44,6 +44,8 @@ def svg(made: Figure) -> str:
 
     out = io.StringIO()
     with rc_context(_STYLE):
-        made.draw_without_rendering()  # the layout knows the ticks of a drawing before: labels stay inside
+        layout = made.get_layout_engine()
+        if layout is not None:
+            layout.execute(made)  # twice, with that of the drawing: the first one may move the ticks
         made.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()) + "\n"

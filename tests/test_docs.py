@@ -8,7 +8,6 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 
-
 pytestmark = pytest.mark.xdist_group("site")
 
 

@@ -14,6 +14,8 @@ RATE, LENGTH = 500.0, 125
 DRY = EffectUse("coulomb_friction", {"magnitude": 1.5})
 VISCOUS = EffectUse("viscous_friction", {"coefficient": 0.4})
 DRIVE = EffectUse("drive_inertia", {"inertia": 0.02})
+ELASTIC = EffectUse("joint_flexibility", {"stiffness": 300.0, "damping": 0.5})
+PLAY = EffectUse("backlash", {"play": 0.01, "stiffness": 3000.0, "damping": 5.0})
 ROD = Inertial(1.5, (0.2, 0.0, 0.0), (0.001, 0.0, 0.0, 0.03, 0.0, 0.03))
 SECOND = Joint("elbow", "revolute", d=0.4, antecedent=0, effects=(DRIVE, DRY, VISCOUS))
 
@@ -22,10 +24,6 @@ def _arm(*effects: EffectUse) -> Arm:
     """Two rods that swing about level axes. effects: at the first joint, beside friction."""
     first = Joint("shoulder", "revolute", effects=(DRIVE, DRY, VISCOUS, *effects))
     return Arm("two", (first, SECOND), (ROD, ROD), gravity=(9.81, 0.0, 0.0))
-
-
-ELASTIC = EffectUse("joint_flexibility", {"stiffness": 300.0, "damping": 0.5})
-PLAY = EffectUse("backlash", {"play": 0.01, "stiffness": 3000.0, "damping": 5.0})
 
 
 @pytest.mark.parametrize("effects", [(), (ELASTIC,), (PLAY,)], ids=["rigid", "elastic", "play"])
