@@ -36,6 +36,7 @@ EFFECTS: tuple[tuple[str, int | None, dict[str, float]], ...] = (
     ("presliding", 1, {"distance": 1.0}),
     ("joint_flexibility", 1, {"stiffness": 50.0, "damping": 2.0}),
     ("stribeck_friction", 2, {"velocity": 0.5, "exponent": 0.7}),
+    ("load_dependent_friction", 2, {"rise": 0.004}),
     # Float holds a motor's position of 1e5 increments to 6e-3 of one: few waves over the stroke, so that
     # 1e-4 can be asked of a ripple.
     ("torque_ripple", 2, {"harmonic": 2.0, "revolution": 20000.0}),

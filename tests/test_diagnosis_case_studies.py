@@ -1,6 +1,6 @@
 """Measured logs of others through the command, at the split and cut-off of docs/case-studies.md.
 
-Skipped where the logs are absent. The TX40's run takes minutes and is not repeated here.
+Skipped where the logs are absent.
 """
 
 from __future__ import annotations
@@ -69,3 +69,19 @@ def test_double_pendulum_lacks_nothing(tmp_path: Path) -> None:
     found = diagnosis(tmp_path, "dfki", "double_pendulum", runs[:6], runs[6], "--cutoff", "6")
     assert found["causes"] == []
     assert found["verdict"] in ("nothing_missing", "cannot_tell")
+
+
+def test_tx40_lacks_its_coupling_and_friction_by_load_and_by_a_power_of_the_speed(tmp_path: Path) -> None:
+    parts = [f"tx40/tx40_motor.csv@{part}" for part in ("0:3", "3:6", "6:7.4")]
+    more = "--cutoff", "20", "--no-experiment"
+    found = diagnosis(
+        tmp_path, "tx40_uncoupled", "tx40_uncoupled", parts[:2], parts[2], *more, mapping="tx40"
+    )
+    causes = {(c["effect"], c["joint"]): c["parameters"] for c in found["causes"]}
+    coupling = causes["transmission_coupling", 6]  # published 0.616 and 1.95
+    assert coupling["viscous"]["value"] == pytest.approx(0.616, abs=3 * coupling["viscous"]["std"])
+    assert coupling["dry"]["value"] == pytest.approx(1.95, abs=3 * coupling["dry"]["std"])
+    assert {("nonlinear_viscous_friction", 1), ("nonlinear_viscous_friction", 2)} <= causes.keys()
+    assert "rise" in causes["load_dependent_friction", 3]  # by the weight alone it has too little evidence
+    # half of what friction and rotors leave there on a part of the log that took part in nothing
+    assert found["error"]["after"][2] < 0.5 * found["error"]["before"][2]

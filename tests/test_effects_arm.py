@@ -84,6 +84,27 @@ def test_the_load_is_the_weight_of_the_links_at_the_motor() -> None:
     agree(emitted("forward_dynamics", q, dq, given, base), ddq)
 
 
+def test_with_a_rise_the_load_is_all_that_moves_the_links() -> None:
+    rise = 0.01
+    emitted = build(with_joint(PLANAR, 1, EffectUse("load_dependent_friction", {"rise": rise})), Options())
+    bare = build(PLANAR, Options())
+    assert emitted.model.states == ("load_dependent_friction_load_2",)
+    q, dq, ddq = states(emitted.arm, 9)
+    theta = links_vector(emitted)
+    theta[-1] = 0.15
+    base = emitted.base(theta)
+    effort = bare("inverse_dynamics_standard", q, dq, ddq, theta[:20])[:, 1:]
+    carried = 0.04 * effort
+    half = emitted("effects_step", q, dq, [rise * math.log(2.0)], base, 0 * carried, ddq=ddq)
+    agree(half, carried / 2)
+    load = emitted("effects_step", q, dq, [60 * rise], base, half, ddq=ddq)
+    agree(load, carried)
+    given = emitted("inverse_dynamics", q, dq, ddq, base, state=load)
+    friction = 0.15 * np.abs(effort) * np.sign(dq[:, 1:])
+    agree(given[:, 1:], effort + friction)
+    agree(emitted("forward_dynamics", q, dq, given, base, state=load), ddq)
+
+
 def test_a_drive_warms_by_its_own_motion() -> None:
     """Heat of a drive that speeds up and turns back, by an integrator; at heat 1 no excess is left."""
     time, speed = 12.0, 100.0

@@ -74,7 +74,8 @@ def _span(
     c: Candidate, values: Values, prober: Prober, motion: Motion, base: Array, q: Array
 ) -> Array | None:
     """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
-    if c.effect in COMPLIANT or c.effect in (LATER, "time_delay", "presliding", PERIODIC):
+    ordered = c.effect in COMPLIANT or "rise" in c.fixed  # have states, which follow one another
+    if ordered or c.effect in (LATER, "time_delay", "presliding", PERIODIC):
         return None
     try:
         if c.effect in STEPS:

@@ -107,7 +107,7 @@ def stage(arm: Arm, model: Model, prober: Prober, prepared: Sequence[Prepared], 
     joints, assumed = list(arm.joints), []
     for n, i in enumerate(arm.coordinates):
         own = joints[i].limits
-        effects = tuple(u for u in joints[i].effects if not CATALOGUE[u.name].states)
+        effects = tuple(u for u in joints[i].effects if not CATALOGUE[u.name].held(u.values))
         q = np.concatenate([p.q[p.rows, n] for p in prepared])
         missing = {
             "position": None if own.position else (float(q.min()), float(q.max())),
@@ -117,7 +117,7 @@ def stage(arm: Arm, model: Model, prober: Prober, prepared: Sequence[Prepared], 
         given = {name: value for name, value in missing.items() if not getattr(own, name) and value}
         assumed += [f"{name} of joint {n + 1}" for name in given]
         joints[i] = replace(joints[i], limits=replace(own, **given), effects=effects)  # type: ignore[arg-type]
-    kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].states)
+    kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].held(u.values))
     return Stage(
         replace(arm, joints=tuple(joints), effects=kept), model, prober, prepared, base, tuple(assumed)
     )

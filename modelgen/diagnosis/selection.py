@@ -38,7 +38,7 @@ RATHER = 15.0  # delta BIC that it takes to name it rather than another one that
 FORM = 0.03  # of its evidence, between play and elasticity: a real gear has the form of neither
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
-MOST = 4  # causes, or one for each joint where there are more
+MOST = 4  # causes, or two for each joint where these are more
 
 Report = Callable[[str, int, int], None]
 
@@ -85,7 +85,7 @@ def select(
     known: Columns = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
     turns: Turns = []
-    for turn in range(max(MOST, rows[0].effort.shape[1])):
+    for turn in range(max(MOST, 2 * rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
         court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)

@@ -180,7 +180,7 @@ def _applied(
     else:
         assert isinstance(effect, Effect)
         assert joint is not None
-        x = joint_variables(number, effect.name, effect.states, of_joint(arm, arm.joints[joint]))
+        x = joint_variables(number, effect.name, effect.held(values), of_joint(arm, arm.joints[joint]))
         try:
             parts = (Part(effect.place, joint, x, (effect.law(x, values),)),)
             beside = effect.beside(x, values)

@@ -81,6 +81,11 @@ class Definition(ABC):
         return {name: value for name, value in given.items() if name in names}
 
     @classmethod
+    def held(cls, p: Mapping[str, sp.Expr | float]) -> tuple[str, ...]:
+        """Of `states`, those that it has with these values of its parameters; all for most."""
+        return cls.states
+
+    @classmethod
     def accepted(cls) -> tuple[Parameter, ...]:
         """The parameters that a description may set."""
         return (*cls.linear, *cls.nonlinear)

@@ -46,17 +46,41 @@ class LoadDependentFriction(Effect):
 
     name = "load_dependent_friction"
     seen_over = "position"
-    text = "dry friction in proportion to the weight that the transmission carries"
+    text = "dry friction in proportion to the load that the transmission carries"
     reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
     linear = (Parameter("coefficient", "1", "friction per load", "FL"),)
-    nonlinear = (SMOOTHING,)
+    nonlinear = (
+        SMOOTHING,
+        Parameter(
+            "rise",
+            "s",
+            "time in which the load follows the force that moves the links; 0: it is their weight alone",
+            default=0.0,
+            bounds=(0.0, 1.0),
+        ),
+    )
+    states = ("load",)
     confused_with = ("position_dependent_friction", "drive_gain_error")
     experiment = "the same path with two payloads"
     shown = at(coefficient=0.15)
 
+    @classmethod
+    def held(cls, p: Mapping[str, sp.Expr | float]) -> tuple[str, ...]:
+        """The weight follows from where the arm is."""
+        return cls.states if p.get("rise", 0.0) != 0 else ()
+
     def law(self, x: Variables, p: Values) -> sp.Expr:
-        """FL |load| sign(v), the load that of gravity alone."""
-        return p["coefficient"] * sp.Abs(x.load) * direction(x.velocity, p["smoothing"])
+        """FL |load| sign(v), the load the links' weight, with a rise all that moves them."""
+        load = x.state.get("load", x.load)
+        return p["coefficient"] * sp.Abs(load) * direction(x.velocity, p["smoothing"])
+
+    def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
+        """Exact solution of rise dload/dt = force - load at a constant force that moves the links.
+
+        Without a rise the friction would depend on the acceleration that it changes.
+        """
+        load = x.state.get("load")
+        return {} if load is None else {"load": x.carried + (load - x.carried) * sp.exp(-dt / p["rise"])}
 
 
 class PositionDependentFriction(Effect):

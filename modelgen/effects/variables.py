@@ -18,7 +18,8 @@ class Variables:
 
     position, velocity, acceleration: of the coordinate that the effect belongs to. square: its velocity
     times that of the reference motion, velocity^2 where there is none. q: the joint's coordinate. load:
-    force at the motor coordinate that the links' weight takes. transmitted: effort that moves the links
+    force at the motor coordinate that the links' weight takes; carried: all that moves the links, where the
+    parameters are known: in steps. transmitted: effort that moves the links
     as if they were rigid with their drives [N m, N]; inertia: of the links about the joint [kg m^2, kg].
     gravity: [m/s^2] in the axes of the joint's frame before it turns. time [s]; state: the effect's own.
     transmission: the joint's drive, over its symbol `q`.
@@ -30,6 +31,7 @@ class Variables:
     square: sp.Symbol
     q: sp.Symbol
     load: sp.Symbol
+    carried: sp.Symbol
     transmitted: sp.Symbol
     inertia: sp.Symbol
     gravity: Triple
@@ -104,6 +106,7 @@ def joint_variables(number: str, effect: str, states: tuple[str, ...], drive: Tr
         square=symbol("square"),
         q=symbol("q"),
         load=symbol("load"),
+        carried=symbol("carried"),
         transmitted=symbol("transmitted"),
         inertia=symbol("inertia"),
         gravity=(symbol("gravity_x"), symbol("gravity_y"), symbol("gravity_z")),

@@ -148,11 +148,18 @@ class Ports:
         if isinstance(x, InputVariables):
             return {x.input: lambda: self.graph.input("input", n)}
 
+        def at_motor(effort: Expr) -> Expr:
+            drive = self.e.drives[n]
+            return effort * (drive.inverse_gain * drive.transmission.torque_constant)
+
         def load() -> Expr:
-            weight, drive = self.around.weight(n), self.e.drives[n]
-            if weight is None:
-                return self.graph.input("load", n)
-            return weight * (drive.inverse_gain * drive.transmission.torque_constant)
+            weight = self.around.weight(n)
+            return self.graph.input("load", n) if weight is None else at_motor(weight)
+
+        def carried() -> Expr:
+            effort = self.around.transmitted(n)
+            assert effort is not None, "steps know the parameters"
+            return at_motor(effort)
 
         def gravity(axis: int) -> Lazy:
             return lambda: turn_z(self.e.frames[part.joint].theta, self._motions[part.joint].gravity)[axis]
@@ -160,6 +167,7 @@ class Ports:
         return {
             x.q: lambda: self.graph.input("q", n),
             x.load: load,
+            x.carried: carried,
             x.time: lambda: self.graph.input("time", 0),
             **{symbol: gravity(axis) for axis, symbol in enumerate(x.gravity)},
         }

@@ -37,7 +37,7 @@ Values = Mapping[str, float]
 
 REMEMBERED = 40  # results that do not depend on an effect's own values
 # Not free: they choose the form of the law, or where it acts.
-_FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay")
+_FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay", "rise")
 
 
 class Prober:
@@ -72,7 +72,8 @@ class Prober:
 
     def needs_load(self, effect: str, joint: int | None, values: Values) -> bool:
         """Whether its columns depend on the arm's base parameters."""
-        return any(e.depends_on("load") for e in self._of_effect(effect, joint, values).effects)
+        effects = self._of_effect(effect, joint, values).effects
+        return any(e.depends_on(name) for e in effects for name in ("load", "carried"))
 
     def inputs(self, motion: Motion, parameters: Array) -> Array:
         """Inputs of the arm as described, (N, n), for its base parameters."""

@@ -95,7 +95,9 @@ def _section(effect: type[Definition]) -> str:
     where = {"joint": "a joint", "arm": "the whole arm", "either": "a joint's link or the whole arm"}
     lines += ["", f"- Stands at {where[effect.scope]}; coordinate of the {effect.side}."]
     if effect.states:
-        lines.append(f"- States: {', '.join(effect.states)}.")
+        lines.append(
+            f"- States: {', '.join(effect.states)}{'' if effect.held({}) else ', not with the defaults'}."
+        )
     lines.append(f"- Confused with: {', '.join(effect.confused_with)}.")
     lines += [f"- Told apart by: {effect.experiment}.", f"- {effect.reference}.", ""]
     return "\n".join(lines)

@@ -29,12 +29,16 @@ SMALL = 1e-3  # magnitude
 
 @dataclass(frozen=True)
 class Hidden:
-    """One hidden effect. joint counts from 1. strength: wanted; magnitude: known from before, or None."""
+    """One hidden effect. joint counts from 1. strength: wanted; magnitude: known from before, or None.
+
+    carried: see Site.
+    """
 
     effect: str
     joint: int
     strength: float
     magnitude: float | None = None
+    carried: bool = False
 
 
 @dataclass(frozen=True)
@@ -149,7 +153,8 @@ class Bench:
             hidden = case.hidden[place]
             if EFFECTS[hidden.effect].later and k == 0:
                 continue
-            site = Site(self.arm, hidden.joint - 1, self.scales, _random(case, 3, place))
+            random = _random(case, 3, place)
+            site = Site(self.arm, hidden.joint - 1, self.scales, random, hidden.carried)
             EFFECTS[hidden.effect].put(plant, site, magnitude)
         plant = trajectories.carry_over(self.paths[k], plant)
         steps = self._substeps(names)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from dataclasses import replace
 
 import numpy as np
 from numpy.random import default_rng
@@ -57,15 +58,15 @@ def draw(
         # Counts of a motor that are off by some are a wrong length of the lever: only an encoder at the
         # joint can have an offset of its own.
         side = "joint" if "encoder_offset" in effects and encoder == "motor" else encoder
-        hidden = tuple(Hidden(e, j, strength) for e, j in zip(effects, joints, strict=True))
+        carried = seed % 2 == 1  # in one case out of two
+        hidden = tuple(Hidden(e, j, strength, carried=carried) for e, j in zip(effects, joints, strict=True))
         case = Case(name, seed + 1000 * attempt, hidden, side)
         bench = Bench(case)
         floor = bench.errors({})
         tuned = [bench.tune(place, floor) for place in range(len(hidden))]
         if all(abs(reached - strength) < 0.25 * (strength - 1.0) for _, reached in tuned):
             known = tuple(
-                Hidden(item.effect, item.joint, strength, magnitude)
-                for item, (magnitude, _) in zip(hidden, tuned, strict=True)
+                replace(item, magnitude=magnitude) for item, (magnitude, _) in zip(hidden, tuned, strict=True)
             )
             return Case(name, case.seed, known, side, train=train)
     raise PlantError(f"{' and '.join(effects)} reach {strength:g} on none of the arms drawn with seed {seed}")

@@ -34,7 +34,7 @@ double joint_from_motor(const Plant *p, int j, double x)
     return p->offset[j] + p->rev[j] * acos(c);
 }
 
-/* Bounds of the dry force against motion at speed v, in both directions; `load` is the static load. */
+/* Bounds of the dry force against motion at speed v, in both directions; `load` is what it carries. */
 void dry_bounds(const Plant *p, int j, double q, double v, double load, double heat, double *plus, double *minus)
 {
     const double s = fabs(v);

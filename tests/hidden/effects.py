@@ -31,12 +31,16 @@ class Scales:
 
 @dataclass(frozen=True)
 class Site:
-    """Where an effect is put in: arm, joint (from 0), scales, and what its shape is drawn from."""
+    """Where an effect is put in: arm, joint (from 0), scales, and what its shape is drawn from.
+
+    carried: friction under load is by all that moves the links, else by their weight.
+    """
 
     arm: Arm
     joint: int
     scales: Scales
     random: Generator
+    carried: bool = False
 
 
 Put = Callable[[Plant, Site, float], None]
@@ -72,6 +76,7 @@ def _stribeck(p: Plant, s: Site, m: float) -> None:
 
 def _load(p: Plant, s: Site, m: float) -> None:
     p["load_friction"][s.joint] = 0.1 * m
+    p["load_carried"][s.joint] = float(s.carried)
 
 
 def _power(p: Plant, s: Site, m: float) -> None:

@@ -28,6 +28,7 @@ typedef struct {
     double dry_asymmetry[JOINTS], viscous_asymmetry[JOINTS];
     double stribeck[JOINTS], stribeck_speed[JOINTS], stribeck_exponent[JOINTS];
     double load_friction[JOINTS];
+    double load_carried[JOINTS]; /* 1: by all that moves the links, 0: by their weight */
     double power_friction[JOINTS], power_speed[JOINTS], power_exponent[JOINTS];
     double wave_friction[JOINTS], wave_phase[JOINTS];
     double warm_up[JOINTS], warm_time[JOINTS], warm_power[JOINTS];

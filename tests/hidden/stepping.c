@@ -103,6 +103,14 @@ static double gravity_load(const Plant *p, const Frames *f, int j)
     return load;
 }
 
+/* Effort that moved the links over the step before, their weight included. */
+static double carried_load(const Plant *p, const State *s, double h, double M[JOINTS][JOINTS], const double *bias, int j)
+{
+    double load = bias[j];
+    for (int k = 0; k < p->n; ++k) load += M[j][k] * (s->v[k] - s->before[k]) / h;
+    return load;
+}
+
 static int advance(const Plant *p, State *s, double t, double h, const double *current, double sag)
 {
     const int n = p->n, dofs = s->dofs;
@@ -135,7 +143,9 @@ static int advance(const Plant *p, State *s, double t, double h, const double *c
         drive(p, j, q[j], &x, &slope, &bend);
         const int own = s->own[j];
         const double speed = own < 0 ? slope * v[j] : v[own], shaft = own < 0 ? x : q[own];
-        const double load = p->load_friction[j] > 0.0 ? gravity_load(p, &f, j) / slope : 0.0;
+        double load = 0.0;
+        if (p->load_friction[j] > 0.0)
+            load = (p->load_carried[j] > 0.5 ? carried_load(p, s, h, M, bias, j) : gravity_load(p, &f, j)) / slope;
         double push = motor_force(p, j, current[j], sag) - viscous_force(p, j, speed, s->heat[j])
                       - presliding(p, j, speed, h, s->bristles[j]) - ripple_force(p, j, shaft, t);
         dry_bounds(p, j, q[j], speed, load, s->heat[j], &plus, &minus);
