@@ -147,6 +147,22 @@ def test_rest_is_gated_and_reversals_are_not(tmp_path: Path) -> None:
     assert p.moving[:, 1].mean() > 0.9
 
 
+def test_a_reversal_is_no_rest_however_wide_the_band(tmp_path: Path) -> None:
+    """A triangle of speed that turns round at 0.8 m/s^2, and one that stands for 10 ms where it turns."""
+    t = times(1.6, 1000.0)
+
+    def moving(dwell: float) -> np.ndarray:
+        away = (t - 0.8) - np.clip(t - 0.8, -dwell / 2, dwell / 2)
+        table = {"t": t, "q1": 0.05 - 0.4 * away**2, "tau1": np.sin(t)}
+        p = prepare(
+            read(write_csv(tmp_path / "a.csv", table), AXIS), Settings(cutoff=77.0, rest_gate=1.25e-3)
+        )
+        return p.moving[np.abs(p.t - 0.8) < 0.012, 0]
+
+    assert moving(0.0).all()
+    assert not moving(0.01).any()
+
+
 def test_samples_are_awake_but_for_rests_of_a_moment(tmp_path: Path) -> None:
     t = times(30.0, 500.0)
     stuck = np.zeros(len(t), dtype=bool)

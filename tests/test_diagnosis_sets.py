@@ -11,9 +11,10 @@ from hidden.running import diagnose
 
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.selection import RATHER, lesser_rivals, needed_behind
+from modelgen.diagnosis.selection import RATHER, lesser_rivals, needed_behind, no_power
 from modelgen.diagnosis.stack import Gain
 from modelgen.diagnosis.trials import Trial
+from modelgen.effects import CATALOGUE
 
 
 def test_coarse_positions_do_not_tell_a_lever_from_a_torque_constant(tmp_path: Path) -> None:
@@ -53,6 +54,29 @@ def test_what_is_too_faint_to_be_named_where_the_best_has_little_more() -> None:
 
     assert rivals(tried("actuator_mass", 12.0)) == [("lever_geometry", 7.0)]
     assert rivals(tried("actuator_mass", 40.0)) == []  # too far ahead
+
+
+def test_a_power_of_the_speed_at_the_end_of_its_range_gives_way_to_friction_near_rest() -> None:
+    """|v|^0.3 is dry friction that is lower near rest, not one that grows with the speed."""
+    effect = "nonlinear_viscous_friction"
+    searched = tuple(p for p in CATALOGUE[effect].nonlinear if p.name == "exponent")
+    passed = Judgement(9.0, 9.0, "")
+
+    def gives_way(exponent: float, beside: Trial) -> bool:
+        trial = replace(
+            tried(effect, 1654.0),
+            candidate=Candidate(effect, 1, searched=searched),
+            values={"exponent": exponent},
+        )
+        pair = trial, passed
+        return no_power(pair, [pair, (beside, passed)])
+
+    assert gives_way(0.3, tried("presliding", 1052.0))
+    assert gives_way(0.301, tried("stribeck_friction", 20.0))
+    assert not gives_way(0.35, tried("presliding", 1052.0))
+    assert not gives_way(0.3, tried("spring", 1052.0))
+    other = replace(tried("presliding", 1052.0), candidate=Candidate("presliding", 2))
+    assert not gives_way(0.3, other)
 
 
 def test_play_and_elasticity_are_told_apart_by_more_of_more_evidence() -> None:

@@ -25,6 +25,7 @@ DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the p
 SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
 GATE = 0.01  # of the joint's speed (99 % quantile)
 STILL = 5  # readings: a joint that has no more rests, be it shaken under its brake
+REVERSAL = 5e-3  # s, at most, below the gates: passing through them is no rest, whatever the cut-off
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         raise InputError(f"{first.name}: found {len(gates)} rest gates, expected one or {first.n}")
     time = settings.rest_time
     if time is None:
-        time = 0.25 / cutoff if cutoff else 3 * first.step
+        time = max(0.25 / cutoff, REVERSAL) if cutoff else 3 * first.step
     return Chosen(
         cutoff=cutoff,
         order=settings.order,

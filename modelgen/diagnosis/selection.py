@@ -38,6 +38,9 @@ RATHER = 15.0  # delta BIC that it takes to name it rather than another one that
 FORM = 0.03  # of its evidence, between play and elasticity: a real gear has the form of neither
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
+POWER = "nonlinear_viscous_friction"
+NEAR_REST = ("presliding", "stribeck_friction")  # what friction does near rest
+END = 1.05  # times the least exponent that is searched
 MOST = 4  # causes, or two for each joint where these are more
 
 Report = Callable[[str, int, int], None]
@@ -105,10 +108,10 @@ def select(
                     judged = replace(judged, refused="positions")
             weighed.append((t, judged))
         passed = [pair for pair in weighed if not pair[1].refused]
-        eligible = [pair for pair in passed if not at_one_joint(pair, passed)]
+        lesser_of = {id(t): why for t, by in passed if (why := _given_way((t, by), passed))}
+        eligible = [pair for pair in passed if id(pair[0]) not in lesser_of]
         for t, judged in weighed:
-            less = not judged.refused and all(t is not other for other, _ in eligible)
-            ranking.append(ranked(t, judged, "one joint" if less else judged.refused))
+            ranking.append(ranked(t, judged, lesser_of.get(id(t), judged.refused)))
         if not eligible:
             turns.append(best_of_each(ranking, None))
             break
@@ -220,6 +223,25 @@ def at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Ju
         for t, other in others
         if t.candidate.joint is not None
     )
+
+
+def no_power(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
+    """Whether a power of the speed is at the least exponent that is searched, where it is dry friction that
+    is lower near rest, and what friction does near rest is there by a law of its own.
+    """
+    c, values = pair[0].candidate, pair[0].values
+    if c.effect != POWER or "exponent" not in values:
+        return False
+    (least,) = (p.grid[0] for p in c.searched if p.name == "exponent")
+    there = any(t.candidate.effect in NEAR_REST and t.candidate.joint == c.joint for t, _ in others)
+    return values["exponent"] < END * least and there
+
+
+def _given_way(pair: tuple[Trial, Judgement], passed: Sequence[tuple[Trial, Judgement]]) -> str:
+    """Why what passed every gate is not what is there; empty for most."""
+    if at_one_joint(pair, passed):
+        return "one joint"
+    return "near rest" if no_power(pair, passed) else ""
 
 
 def correlated(system: System) -> bool:

@@ -123,6 +123,7 @@ _REFUSED = {
     "positions": "gains no more than errors of the positions could feign",
     "other joints": "makes other joints worse",
     "one joint": "does more at one joint alone",
+    "near rest": "its exponent is the least that is searched: friction near rest, for which there is a law",
     EXCHANGED: "taken, then exchanged: another one explains more with all values found anew",
     SUPERFLUOUS: "taken, then superfluous beside the others",
     STANDS_IN: "taken, then taken back: it stands in for something that the catalogue lacks",
