@@ -14,10 +14,11 @@ from scipy.linalg import subspace_angles
 
 from modelgen.base_parameters.oracle import random_states
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, PERIODIC, Candidate, Values, of_part
+from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Values, of_part
 from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS, sensitivities
 from modelgen.diagnosis.stack import orthonormal
+from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.model.equations import Equations
@@ -74,8 +75,7 @@ def _span(
     c: Candidate, values: Values, prober: Prober, motion: Motion, base: Array, q: Array
 ) -> Array | None:
     """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
-    ordered = c.effect in COMPLIANT or "rise" in c.fixed  # have states, which follow one another
-    if ordered or c.effect in (LATER, "time_delay", "presliding", PERIODIC):
+    if CATALOGUE[c.effect].held(c.fixed) or c.effect in (LATER, PERIODIC):  # states follow one another
         return None
     try:
         if c.effect in STEPS:

@@ -54,6 +54,7 @@ WARMING = "friction_warm_up"
 DRIVEN = ("drive_gain_error", "torque_constant_saturation", "time_delay", WARMING, *COMPLIANT)
 STRIBECK = (1.0, 2.0)  # exponents: Bo and Pavelescu 1982; Armstrong-Helouvry 1991
 LATER = "payload_change"
+POWER = "nonlinear_viscous_friction"
 LOADED, RISE = "load_dependent_friction", 2e-3  # s: long before what a band of some ten Hz shows
 CURVED = (*STEPS, LATER)  # columns are taken about values
 BEGUN = 1.0  # s, begin of a part of a log that counts as its beginning
@@ -204,7 +205,7 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
         return [{"exponent": exponent} for exponent in STRIBECK]
     if name == LOADED:
         return [{}, {"rise": RISE}]
-    if name == "nonlinear_viscous_friction":
+    if name == POWER:
         return [{"scale": scale("speed", name, joint, rows, prober)}]
     if name == WARMING:
         return [{"speed": scale("speed", name, joint, rows, prober)}]

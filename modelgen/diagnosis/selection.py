@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import COMPLIANT, Candidate
+from modelgen.diagnosis.candidates import COMPLIANT, POWER, Candidate
 from modelgen.diagnosis.causes import Cause, eliminated, measured
 from modelgen.diagnosis.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.converging import converge
@@ -38,7 +38,6 @@ RATHER = 15.0  # delta BIC that it takes to name it rather than another one that
 FORM = 0.03  # of its evidence, between play and elasticity: a real gear has the form of neither
 STAYS = 0.5  # of its evidence: a rival that keeps that beside the causes explains something else
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
-POWER = "nonlinear_viscous_friction"
 NEAR_REST = ("presliding", "stribeck_friction")  # what friction does near rest
 END = 1.05  # times the least exponent that is searched
 MOST = 4  # causes, or two for each joint where these are more
@@ -108,10 +107,11 @@ def select(
                     judged = replace(judged, refused="positions")
             weighed.append((t, judged))
         passed = [pair for pair in weighed if not pair[1].refused]
-        lesser_of = {id(t): why for t, by in passed if (why := _given_way((t, by), passed))}
-        eligible = [pair for pair in passed if id(pair[0]) not in lesser_of]
-        for t, judged in weighed:
-            ranking.append(ranked(t, judged, lesser_of.get(id(t), judged.refused)))
+        weighed = [
+            (t, by if by.refused else replace(by, refused=_given_way((t, by), passed))) for t, by in weighed
+        ]
+        eligible = [pair for pair in weighed if not pair[1].refused]
+        ranking += [ranked(t, judged, judged.refused) for t, judged in weighed]
         if not eligible:
             turns.append(best_of_each(ranking, None))
             break
