@@ -15,10 +15,11 @@ from modelgen.diagnosis.baseline import estimated
 from modelgen.diagnosis.candidates import Candidate, candidates, columns
 from modelgen.diagnosis.court import Court, bracket
 from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.run import records, settings_for
 from modelgen.diagnosis.system import System, weighted_fit
 from modelgen.functions import build_model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 

@@ -8,9 +8,10 @@ from numpy.random import Generator, default_rng
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause, covariance, eliminated
 from modelgen.diagnosis.gates import with_causes
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 
 LONG = 1500
 

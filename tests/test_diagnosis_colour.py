@@ -12,8 +12,9 @@ from scipy.signal import lfilter
 from scipy.stats import chi2
 
 from modelgen.diagnosis.colour import LAGS, Colour, correlations
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
+from modelgen.numeric import Array
 
 PERIOD, PERIODS = 500, 3
 LONG = PERIOD * PERIODS

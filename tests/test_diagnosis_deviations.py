@@ -7,8 +7,9 @@ from scipy.optimize import curve_fit
 from scipy.signal import lfilter
 
 from modelgen.diagnosis.deviations import covariance_of
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
+from modelgen.numeric import Array
 
 PERIOD, PERIODS, DRAWS = 500, 3, 60
 TIME = np.arange(PERIOD * PERIODS) * (2 * np.pi / PERIOD)

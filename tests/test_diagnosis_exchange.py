@@ -13,9 +13,10 @@ from modelgen.diagnosis.baseline import Baseline
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause, measured, together
 from modelgen.diagnosis.exchange import exchanged
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 

@@ -10,10 +10,11 @@ from scipy.optimize import lsq_linear
 
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.gates import Gates, Judgement
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import not_negative
 from modelgen.diagnosis.system import System, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 
 LONG, UNKNOWNS = 300, 6
 

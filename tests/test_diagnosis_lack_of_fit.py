@@ -12,11 +12,12 @@ from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.gates import Judgement
 from modelgen.diagnosis.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.standing import doubtful
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 
 PERIOD, PERIODS = 480, 3
 BUMP = slice(210, 240)  # a sixteenth of the period

@@ -8,11 +8,11 @@ from arms_support import base_vector, standard_vector
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.run import diagnose
 from modelgen.diagnosis.sensitivities import payload, sensitivities
 from modelgen.effects import CATALOGUE
 from modelgen.functions import build_model
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 RATIO, CONSTANT, GRAVITY = 80.0, 0.05, 9.81

@@ -14,12 +14,13 @@ from scipy.stats import multivariate_normal
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.outdone import outdone
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import STAYS, Selection, left_to
 from modelgen.diagnosis.shapes import Shape, functions, worth
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.diagnosis.whitening import ORDER, Whitener
+from modelgen.numeric import Array
 
 PERIOD, PERIODS = 200, 3
 

@@ -9,11 +9,12 @@ from numpy.random import default_rng
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.baseline import Baseline, estimated
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import RATHER
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.told import Told, told
 from modelgen.functions import Model, build_model, grouped
+from modelgen.numeric import Array
 
 LINKS = (
     Inertial(12.0, (0.21, 0.01, 0.0), (0.05, 0.0, 0.01, 0.3, 0.0, 0.31)),

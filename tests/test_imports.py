@@ -12,6 +12,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "modelgen"
 ORDER = (
     "__init__",
     "errors",
+    "numeric",
     "resources",
     "jobs",
     "figures",

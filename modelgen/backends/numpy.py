@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from modelgen.functions.objects import Function
 from modelgen.graph import Program, Term
-
-Array: TypeAlias = NDArray[np.float64]
+from modelgen.numeric import Array
 
 _CHUNK = 4096  # samples at a time: the live values then stay in the processor's cache
 

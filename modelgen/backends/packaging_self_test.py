@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from modelgen.backends.c.dialect import arrays
 from modelgen.backends.exact import CONTEXT, exact_values
@@ -16,13 +15,12 @@ from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import render, wrapped_code
 from modelgen.description.objects import LeveredDrive
 from modelgen.functions.objects import Argument, Function, Model
+from modelgen.numeric import Array
 
 STATES = 3
 # Relative to the sum of the magnitudes; a solution of linear equations is allowed its condition too.
 TOLERANCE = ((float(np.finfo(np.float32).eps), 1e-4), (float(np.finfo(np.float64).eps), 1e-11))  # eps, bound
 _LEAST = 1e-6  # magnitude below which the differences are compared with it instead
-
-Array = NDArray[np.float64]
 
 
 def self_test(model: Model, provenance: Provenance) -> str:

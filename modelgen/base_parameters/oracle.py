@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.graph import Expr
-from modelgen.graph.evaluate import Array, evaluate
+from modelgen.graph.evaluate import evaluate
 from modelgen.model.equations import Equations
+from modelgen.numeric import Array
 
 SEED = 20180521
 DEPENDENT = 1e-9  # part of a column, of unit length, that others leave over when it depends on them

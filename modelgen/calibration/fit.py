@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from modelgen.calibration.lever import NAMES, UNITS, Array, Lever
+from modelgen.calibration.lever import NAMES, UNITS, Lever
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 LEAST_SAMPLES = 20
 _ROUNDS = 8  # of fit and residual variance

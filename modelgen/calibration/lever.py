@@ -9,12 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.description import Arm, LeveredDrive, Scalar, geometry_symbol
 from modelgen.errors import InputError
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 NAMES = ("l1", "l2", "qp_min", "qp_max", "offset")
 UNITS = ("m", "m", "m", "m", "rad")

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
@@ -21,13 +20,12 @@ from modelgen.dataset import read_columns
 from modelgen.description import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
+from modelgen.numeric import Array
 from modelgen.simulation import Plant, Reference, Trajectory, plant, simulate
 from modelgen.simulation.animation import animation
 from modelgen.simulation.control import Control, controller
 from modelgen.simulation.simulate import check_length
 from modelgen.simulation.values import by_joint, locks, numbers
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from modelgen.compiled.lanes import LANES, plain_text, text_of
 from modelgen.compiled.library import shared_library
 from modelgen.functions.objects import Function
+from modelgen.numeric import Array, Complex
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 LARGEST = 1e5  # rad, up to which sine and cosine are exact
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.compiled.library import compiler, shared_library
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 LANES = 8
 SECTIONS = 8  # at most
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset.messages import columns_of, number_at
-from modelgen.dataset.objects import Array
 from modelgen.dataset.specs import unreadable
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 PEEK = 2000  # messages that the topics' columns are taken from
 LOG_TIME = "log_time"

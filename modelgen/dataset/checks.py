@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset.drives import Drive
-from modelgen.dataset.objects import Array
 from modelgen.description import Arm, LeveredDrive, NoDrive
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.transmission import of_joint
 
 SHORTEST = 20  # samples

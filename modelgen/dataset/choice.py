@@ -11,8 +11,9 @@ import numpy as np
 from scipy import signal
 
 from modelgen.dataset.filters import differences, low_pass
-from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.objects import Record
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 NOISE = 1e-3  # of the accelerations' power may be noise of the positions, below the cut-off
 CONTENT = 0.9  # of the speeds' power make up the bandwidth of the motion

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset.objects import Array
 from modelgen.dataset.specs import unreadable
 from modelgen.description.document import one_line
 from modelgen.errors import InputError, Location
+from modelgen.numeric import Array
 
 
 class CsvReader:

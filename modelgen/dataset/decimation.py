@@ -18,14 +18,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
 from modelgen.compiled import compiler, plain_columns
 from modelgen.dataset.filters import low_pass, reach
-from modelgen.dataset.objects import Array
+from modelgen.numeric import Array, Complex
 
-Complex = NDArray[np.complex128]
 WIDTHS = (2, 4, 8)  # columns that compiled C takes together, the same sums in each
 FEWEST = 4  # decimation from which this is worth it
 NOTHING = 1e-18  # weights below this part of the largest are left out

@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from modelgen.dataset.objects import Array
 from modelgen.description import Arm, geometry_symbol
+from modelgen.numeric import Array
 from modelgen.transmission import Transmission, of_joint
 
 Curve = Callable[[Array], Array]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 
 from modelgen import compiled
-from modelgen.dataset.objects import Array
+from modelgen.numeric import Array
 
 # Central differences by half-width: weights of x[i+k] - x[i-k] for the first derivative, of
 # x[i+k] - 2 x[i] + x[i-k] for the second (Fornberg, 1988).

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.dataset.objects import Array
+from modelgen.numeric import Array
 
 MAX_LENGTH = 200
 MAX_DEPTH = 32

@@ -12,11 +12,11 @@ from modelgen.dataset.drives import Drive
 from modelgen.dataset.formula import Formula, FormulaError, formula
 from modelgen.dataset.mapping import Foreign, listed
 from modelgen.dataset.mapping_schema import ColumnModel, JointModel
-from modelgen.dataset.objects import Array
 from modelgen.dataset.tables import Reader
 from modelgen.description import Arm
 from modelgen.description.document import Steps
 from modelgen.description.messages import describe, suggest
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from pydantic import ValidationError
 
 from modelgen.dataset import units
 from modelgen.dataset.mapping_schema import Document
-from modelgen.dataset.objects import Array
 from modelgen.description.document import Node, Steps, parse, read_text
 from modelgen.description.expressions import ExpressionError, evaluate
 from modelgen.description.messages import describe, first_mistake, mistake, suggest
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 HOLDS = ("following", "previous", "instant")
 

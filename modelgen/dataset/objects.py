@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from modelgen.description import Arm
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)

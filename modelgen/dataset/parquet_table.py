@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset.objects import Array
 from modelgen.dataset.specs import unreadable
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 
 class ParquetReader:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from modelgen.dataset.choice import Chosen
 from modelgen.dataset.objects import Record
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 REPEATS = 2e-3  # of the positions' power may differ from one period to the next
 LOOSE = 0.05  # the same where the period is given: someone knows that it repeats
 SHORTEST = 4  # samples

@@ -15,9 +15,10 @@ from modelgen.dataset.choice import Chosen, Settings, choose
 from modelgen.dataset.decimation import Decimation, decimation, kept
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.filters import advanced, differences, low_pass
-from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.objects import Record
 from modelgen.dataset.rest import moving_samples, samples_away_from_rest
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 FEWEST_ROWS = 10
 COLUMNS = 32  # filtered together

@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset import checks
-from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.objects import Record
 from modelgen.dataset.resampling import held_resampled, smooth_resampled
 from modelgen.dataset.sources import BLOCK, Source, open_source
 from modelgen.dataset.timing import Axis, survey
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 SLOW = 0.5  # s between samples: hardly a log of a motion
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from modelgen.dataset.objects import Array
+from modelgen.numeric import Array
 
 REACH = 64  # stamps: a cubic spline forgets a value at 0.27 per stamp
 

@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from modelgen.dataset.choice import Chosen
 from modelgen.dataset.decimation import kept
-from modelgen.dataset.objects import Array
+from modelgen.numeric import Array
 
 SHARE = 0.02  # of the filter's weight that may lie on samples at rest
 MOMENT = 0.05  # of a period of the cut-off: a rest so short leaves nothing in what the filter lets pass

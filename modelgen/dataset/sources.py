@@ -12,12 +12,12 @@ from modelgen.dataset.bags import BagReader
 from modelgen.dataset.drives import Drive, drives_of
 from modelgen.dataset.mapped import MappedReader
 from modelgen.dataset.mapping import listed, load_mapping
-from modelgen.dataset.objects import Array
 from modelgen.dataset.signals import Signals, find_signals
 from modelgen.dataset.specs import Spec, parse
 from modelgen.dataset.tables import Reader, open_table
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 BLOCK = 65_536  # rows read at a time
 

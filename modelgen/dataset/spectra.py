@@ -8,9 +8,9 @@ import numpy as np
 from scipy import signal
 
 from modelgen.dataset.filters import low_pass
-from modelgen.dataset.objects import Array
 from modelgen.dataset.processing import Prepared
 from modelgen.figures import COLOURS, figure, svg
+from modelgen.numeric import Array
 
 RAW, FILTERED = "#9aa5b1", COLOURS[0]
 POINTS = 300  # of a curve, at most: the picture stays small

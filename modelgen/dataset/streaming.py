@@ -13,13 +13,14 @@ import numpy as np
 from modelgen.dataset import checks
 from modelgen.dataset.choice import Chosen, Settings, choose
 from modelgen.dataset.filters import reach
-from modelgen.dataset.objects import Array, Record
+from modelgen.dataset.objects import Record
 from modelgen.dataset.processing import Prepared, prepare
 from modelgen.dataset.reading import record_of
 from modelgen.dataset.resampling import REACH
 from modelgen.dataset.sources import open_source
 from modelgen.dataset.timing import Axis, Survey
 from modelgen.description import Arm
+from modelgen.numeric import Array
 
 # What the filters' memory may hold of samples outside of a block. Second derivatives magnify what is
 # left in the positions by the square of their cut-off over the motion's frequency.

@@ -8,10 +8,10 @@ from typing import Protocol
 
 from modelgen.dataset.bags import BagReader
 from modelgen.dataset.csv_table import CsvReader
-from modelgen.dataset.objects import Array
 from modelgen.dataset.parquet_table import ParquetReader
 from modelgen.dataset.specs import unreadable
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 BAGS = (".bag", ".db3", ".mcap")
 

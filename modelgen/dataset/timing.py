@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.dataset.objects import Array
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 JITTER = 0.02  # of the period; below it the stamps are taken as uniform
 UNEVEN = 0.5  # of the period; above it splines ring

@@ -16,8 +16,9 @@ from scipy.linalg import lstsq
 from scipy.stats import chi2
 
 from modelgen.dataset.periods import noise_of
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import stacked, weighted_fit, weights_of
+from modelgen.numeric import Array
 
 DRAWS = 64
 SEED = 20010601

@@ -15,13 +15,13 @@ from scipy.linalg import subspace_angles
 from modelgen.base_parameters.oracle import random_states
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Values, of_part
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS, sensitivities
 from modelgen.diagnosis.stack import orthonormal
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.model.equations import Equations
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 EQUAL = 1e-6  # rad, principal angle

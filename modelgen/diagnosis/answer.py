@@ -17,13 +17,13 @@ from modelgen.diagnosis.indistinct import indistinct
 from modelgen.diagnosis.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.outdone import Likeness, outdone
 from modelgen.diagnosis.positions import feigned, harmless
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.selection import Selection, select
 from modelgen.diagnosis.shapes import shapes
 from modelgen.diagnosis.system import mean_squares
 from modelgen.diagnosis.verdict import verdict_of
 from modelgen.functions import Model
 from modelgen.jobs import HERE, Where
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 Progress = Callable[[str, int, int], None]

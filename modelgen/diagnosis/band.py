@@ -22,9 +22,10 @@ from modelgen.diagnosis.free import away_from_rest
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.positions import feigned, with_errors
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import rmse, weighted_fit
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 OVER_MOTION = 10.0  # narrow cut-off over the bandwidth of the motion

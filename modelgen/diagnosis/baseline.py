@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.diagnosis.told import Told, told
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.functions.nominal import factor_value, nominal_links
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,12 @@ import numpy as np
 from modelgen.dataset import drives_of
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.proposal import Proposal
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.separation import Hypothesis, Judge
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds, ranges, speeds
 from modelgen.excitation.settings import Settings
 from modelgen.functions.nominal import about_origin, grouped
+from modelgen.numeric import Array
 
 DURATION = 30.0  # s of a motion
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9)  # of the speed limit

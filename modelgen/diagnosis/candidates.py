@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset import drives_of, parse
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.sensitivities import STEPS, payload, sensitivities
 from modelgen.effects import CATALOGUE, Parameter
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.probing import Prober, places
 
 Values = Mapping[str, float]

@@ -9,9 +9,10 @@ import numpy as np
 
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import Gates
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial, beside
+from modelgen.numeric import Array
 
 CONTRADICTION = 3.0  # standard deviations below zero, of what cannot be negative
 

@@ -10,13 +10,14 @@ import numpy as np
 from modelgen.dataset import Prepared, drives_of
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, columns, scale
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import orthonormal
 from modelgen.diagnosis.system import moving_share, rmse, stacked, weighted_fit
 from modelgen.diagnosis.whitening import ORDER
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 WORST = 1e3  # condition number, columns of unit norm, up to which the motion counts as an excitation

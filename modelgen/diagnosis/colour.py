@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from modelgen.dataset.periods import noise_of
-from modelgen.diagnosis.rows import Array
+from modelgen.numeric import Array
 
 LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats

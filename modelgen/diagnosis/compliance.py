@@ -21,10 +21,11 @@ from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.court import ahead
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System, stacked, weighted_fit, weights_of
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.jobs import HERE, Where, forked
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 # A gap has minima of its own at other widths, and what was found beside a rigid arm's parameters may be far

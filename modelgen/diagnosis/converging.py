@@ -17,10 +17,11 @@ from modelgen.diagnosis.candidates import COMPLIANT, CURVED, columns, unchanging
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.plausible import doubt
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.settling import misfit
 from modelgen.diagnosis.system import weighted_fit
 from modelgen.diagnosis.trials import Trial, named
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 TURNS = 10

@@ -13,9 +13,10 @@ import numpy as np
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import CURVED, PERIODIC, Candidate, Values
 from modelgen.diagnosis.plausible import doubt
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import WHOLLY, Trial, named
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval

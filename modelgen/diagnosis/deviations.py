@@ -17,10 +17,11 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, columns
 from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 STEP = 0.01  # of a value, over which slopes are taken

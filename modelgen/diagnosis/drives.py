@@ -16,13 +16,14 @@ from modelgen.diagnosis.candidates import COMPLIANT
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.compliance import best_beside
 from modelgen.diagnosis.objects import Estimate
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.stiffness import with_trials
 from modelgen.errors import InputError
 from modelgen.extension import Found, extended_arm
 from modelgen.functions import Model
 from modelgen.functions.nominal import factor_value, nominal_links
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 SOFTER = (0.5, 0.2, 0.08)  # times the stiffness that was found with the inertia of drive and links together

@@ -13,8 +13,8 @@ import numpy as np
 from scipy import special
 
 from modelgen.diagnosis.instruments import Pairs
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.system import System
+from modelgen.numeric import Array
 
 SIGNIFICANCE = 1e-4
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from modelgen.dataset import Record
 from modelgen.diagnosis.objects import Errors
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
+from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows
 
 DRAWS = 400

@@ -9,12 +9,13 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis.deviations import covariance_of, deviations
 from modelgen.diagnosis.objects import Estimate
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE
 from modelgen.functions import Model
 from modelgen.model.parameters import unit_of
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 from modelgen.transmission import of_joint
 

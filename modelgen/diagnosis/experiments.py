@@ -14,12 +14,12 @@ from modelgen.diagnosis.candidates import LATER, WARMING
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.motions import Stage
 from modelgen.diagnosis.proposal import PERIODS, Progress, Proposal, propose
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.selection import RATHER
 from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE
 from modelgen.jobs import HERE, Where
+from modelgen.numeric import Array
 
 if TYPE_CHECKING:
     from modelgen.diagnosis.objects import Named

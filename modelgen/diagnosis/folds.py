@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import moving_rows, rmse, weighted_fit
+from modelgen.numeric import Array
 
 FEW = 4  # records that are tried one by one
 

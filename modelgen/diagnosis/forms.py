@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.diagnosis.candidates import COMPLIANT, WARMING
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System, mean_squares, rmse, weighted_fit
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 
 FORM = 0.05  # of the power that causes explain at a joint: less is what a law's form leaves
 SWINGS = 0.1  # the same of elastic joints and play, simulated beside an arm that had taken over some of it

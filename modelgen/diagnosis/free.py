@@ -10,8 +10,8 @@ from scipy.ndimage import binary_dilation
 
 from modelgen.dataset import Prepared, Record, Settings, choose, prepare
 from modelgen.dataset.rest import long_runs
-from modelgen.diagnosis.rows import Array
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 NOISY = 3.0  # standard deviations of the speed's noise that are rest yet
 WIDEST = 0.4  # of the rate, cut-off of the positions

@@ -17,9 +17,10 @@ from modelgen.diagnosis.folds import Split, folds, left_unseen
 from modelgen.diagnosis.forms import EXACT, FLUID, Forms, with_causes
 from modelgen.diagnosis.instruments import Pairs
 from modelgen.diagnosis.positions import feigned, repeating_errors
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System, moving_rows, rmse, stacked, weighted_fit
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 
 PRACTICAL = 1.5  # percent of the RMSE on rows that the fit has not seen
 # Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.

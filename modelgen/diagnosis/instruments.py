@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import other_period
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
+from modelgen.numeric import Array
 
 FEWEST = 10  # equations for an unknown
 

@@ -20,8 +20,9 @@ from scipy import special
 
 from modelgen.dataset.periods import folded
 from modelgen.diagnosis.null_distribution import NULLS
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System, independent
+from modelgen.numeric import Array
 
 SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
 CLEAN = 1.0 - 0.01 / 2.0  # share of the nulls that stay below the threshold of either kind

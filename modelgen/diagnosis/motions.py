@@ -9,13 +9,14 @@ import numpy as np
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
 from modelgen.description import Arm
-from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.whitening import ORDER
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds
 from modelgen.excitation.settings import Settings
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 HARMONICS = 5

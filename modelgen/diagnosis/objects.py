@@ -16,8 +16,9 @@ from modelgen.diagnosis.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.outcome import Fitted
 from modelgen.diagnosis.outdone import Likeness
 from modelgen.diagnosis.ranking import Ranked
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
+from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows
 
 VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")

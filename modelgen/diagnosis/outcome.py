@@ -11,7 +11,7 @@ from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
 from modelgen.diagnosis.baseline import Baseline, estimated, held
 from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns
-from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.settling import misfit, settled
 from modelgen.diagnosis.system import weighted_fit
@@ -19,6 +19,7 @@ from modelgen.diagnosis.trials import Trial
 from modelgen.effects import described
 from modelgen.extension import extended_arm
 from modelgen.functions import Model, build_model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 from modelgen.simulation.windows import Windows, simulated_windows
 

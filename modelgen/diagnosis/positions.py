@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Record, drives_of, prepare
-from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.system import moving_rows
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 STEPPED = 0.05  # of a count: how far differences may lie from whole counts

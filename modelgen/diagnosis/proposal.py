@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.diagnosis.motions import Stage
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.separation import Hypothesis, Judge
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
@@ -20,6 +20,7 @@ from modelgen.excitation.problem import SIGNALS, Problem, problem
 from modelgen.excitation.random_motion import feasible, shrunk
 from modelgen.excitation.run import Excitation, described
 from modelgen.jobs import HERE, Where, forked
+from modelgen.numeric import Array
 
 SCALES = (1.0, 0.3, 0.1)  # of the random starts: some causes show in small motions
 DRAWS = 8  # of each scale

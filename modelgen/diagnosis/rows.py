@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
-from modelgen.diagnosis.baseline import Array, Baseline, estimated
+from modelgen.diagnosis.baseline import Baseline, estimated
 from modelgen.diagnosis.slipping import of_arm
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 __all__ = ["Array", "Rows", "rows_of"]

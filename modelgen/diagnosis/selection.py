@@ -20,12 +20,13 @@ from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.gates import PRACTICAL, Gates, Judgement, instrumented
 from modelgen.diagnosis.positions import feigned, harmless, repeating_errors
 from modelgen.diagnosis.ranking import EXCHANGED, SUPERFLUOUS, Ranked, Turns, best_of_each, ranked, taken_back
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.slipping import without_rests
 from modelgen.diagnosis.system import System, mean_squares
 from modelgen.diagnosis.trials import Trial, beside, sensible
 from modelgen.diagnosis.trying import tried
 from modelgen.jobs import HERE, Where
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 EVIDENCE = 6.0  # delta BIC that it takes to name a cause (strong: Kass and Raftery 1995)

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from modelgen.diagnosis.rows import Array
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 # The step over which slopes are taken, by parameter.

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.colour import Colour
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import NOTHING, joints_of, orthonormal, weighted
 from modelgen.diagnosis.system import System
 from modelgen.diagnosis.trials import Trial
 from modelgen.diagnosis.whitening import all_usable, whitened
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 AROUND = (0.5, 0.7, 1.4, 2.0)  # of the nonlinear parameter that was found

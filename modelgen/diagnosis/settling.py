@@ -10,9 +10,10 @@ import numpy as np
 from modelgen.dataset import Prepared
 from modelgen.description import Arm
 from modelgen.diagnosis.baseline import Baseline
-from modelgen.diagnosis.rows import Array, Rows, rows_of
+from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.system import rmse, weighted_fit
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 HALVES = 10  # steps, of which half is taken each

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from modelgen.dataset import drives_of
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import Stack
 from modelgen.diagnosis.system import System
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 SHAPE = "shape"  # among the nulls

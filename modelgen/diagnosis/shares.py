@@ -10,9 +10,10 @@ from modelgen.diagnosis.errors import compared
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.objects import Share
 from modelgen.diagnosis.outcome import columns_of
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import rmse, weighted_fit
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.diagnosis.colour import Colour
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.told import FAITH, Told
+from modelgen.numeric import Array
 
 TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
 OPEN = 1e-9  # of the largest singular value: below, records say nothing

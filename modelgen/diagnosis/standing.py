@@ -15,9 +15,10 @@ import numpy as np
 
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.lack_of_fit import Test, in_parts, lack_of_fit, repeating
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, mean_squares
+from modelgen.numeric import Array
 
 LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left

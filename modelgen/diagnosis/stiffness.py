@@ -16,10 +16,11 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import ELASTIC, columns
 from modelgen.diagnosis.forms import with_causes
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.system import System, weighted_fit
 from modelgen.diagnosis.trials import Trial
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 TURNS = 16

@@ -11,9 +11,10 @@ from scipy.linalg import lstsq
 
 from modelgen.dataset.periods import noise_of
 from modelgen.diagnosis.colour import LAGS, LEAST, Colour, correlations
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import Gain, Stack, joints_of, weighted
 from modelgen.diagnosis.whitening import Whitener, all_usable, whitened, whitener
+from modelgen.numeric import Array
 
 DEARER = 1.5  # times the evidence that it takes where the colour of the noise is not known
 EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this

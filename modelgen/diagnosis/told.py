@@ -13,15 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import null_space
 
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.functions.nominal import base_matrix, nominal_links
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 OFF = 0.3  # of a link's mass, first moments and inertia
 FAITH = 4.0  # measurements that OFF is worth, at least

@@ -10,12 +10,12 @@ from modelgen.description import Arm
 from modelgen.diagnosis import candidates as of
 from modelgen.diagnosis.candidates import Candidate, Values
 from modelgen.diagnosis.plausible import elsewhere, obvious
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.stack import Gain
 from modelgen.diagnosis.system import System
 from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.probing import with_effect
 
 WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play, that is found

@@ -12,8 +12,8 @@ from modelgen.diagnosis.endogeneity import Endogeneity
 from modelgen.diagnosis.gates import PRACTICAL
 from modelgen.diagnosis.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.outdone import Likeness
-from modelgen.diagnosis.rows import Array
 from modelgen.diagnosis.selection import Selection
+from modelgen.numeric import Array
 
 
 def verdict_of(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.rows import Array
+from modelgen.numeric import Array
 
 ORDER = 12
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import null_space
 
-from modelgen.excitation.settings import Array
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import numpy as np
 from modelgen.dataset import drives_of
 from modelgen.description import Arm, NoDrive
 from modelgen.errors import InputError
-from modelgen.excitation.settings import Array, Settings
+from modelgen.excitation.settings import Settings
+from modelgen.numeric import Array
 from modelgen.transmission import of_joint
 
 

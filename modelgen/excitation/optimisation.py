@@ -9,8 +9,8 @@ import numpy as np
 
 from modelgen.excitation.problem import GRID, MARGIN, Problem
 from modelgen.excitation.random_motion import feasible, shrunk
-from modelgen.excitation.settings import Array
 from modelgen.excitation.spectrum import Criterion, condition, log_determinant
+from modelgen.numeric import Array
 
 FINE = 4 * GRID  # samples per period of the highest harmonic, where the limits are checked
 _OPTIONS = {

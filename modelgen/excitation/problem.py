@@ -16,9 +16,10 @@ from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.fourier import Basis, basis
 from modelgen.excitation.limits import Bound, bounds, ranges, speeds
-from modelgen.excitation.settings import Array, Box, Settings
+from modelgen.excitation.settings import Box, Settings
 from modelgen.functions import build_model
 from modelgen.functions.nominal import nominal_base
+from modelgen.numeric import Array
 
 GRID = 24  # samples per period of the highest harmonic, in the optimisation
 MARGIN = 0.01  # of every limit, left for what happens between the samples

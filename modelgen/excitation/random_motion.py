@@ -6,7 +6,7 @@ import numpy as np
 
 from modelgen.errors import InputError
 from modelgen.excitation.problem import Problem
-from modelgen.excitation.settings import Array
+from modelgen.numeric import Array
 
 _DRAWS = 200
 _HALVINGS = 12

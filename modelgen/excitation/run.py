@@ -13,9 +13,10 @@ from modelgen.errors import InputError
 from modelgen.excitation.optimisation import Optimiser, merit
 from modelgen.excitation.problem import SIGNALS, Problem, problem, smooth
 from modelgen.excitation.random_motion import feasible
-from modelgen.excitation.settings import Array, Settings
+from modelgen.excitation.settings import Settings
 from modelgen.excitation.spectrum import condition
 from modelgen.jobs import Where, run
+from modelgen.numeric import Array
 
 Progress = Callable[[int, int], None]
 

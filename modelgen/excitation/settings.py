@@ -5,12 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from modelgen.errors import InputError
-
-Array = NDArray[np.float64]
 
 CRITERIA = ("cond", "d_optimal")
 COORDINATES = ("motor", "joint")

@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from modelgen.excitation.settings import Array
+from modelgen.numeric import Array
 
 POWER = 8  # of the norm that stands for the largest and the smallest eigenvalue
 

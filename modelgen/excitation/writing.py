@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.dataset import drives_of
 from modelgen.excitation.pictures import picture
 from modelgen.excitation.run import Excitation
-from modelgen.excitation.settings import Array
+from modelgen.numeric import Array
 
 _TRAJECTORY = ("q", "dq", "ddq", "qm", "dqm")
 

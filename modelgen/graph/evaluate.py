@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.graph.graph import ADD, CONST, DIV, INPUT, MUL, Expr
 from modelgen.graph.lowering import reachable
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 
 def _select(condition: Array, a: Array, b: Array) -> Array:

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
+
 ORDER = 12  # of the autoregressive models
 ROUNDS = 30  # of the iteration, at most
 CHANGE = 1e-3  # of the power, at which it ends

@@ -13,14 +13,13 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.functions.nominal import about_origin, base_matrix
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 TEN = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 PRIOR = 1e-3  # weight of the prior beside the data's chi square, per link
 _BALL = (1.0, 0.1)  # kg, m: a link of which the description says nothing

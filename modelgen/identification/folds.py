@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.dataset import Chosen, Prepared, Record, prepare
 from modelgen.errors import InputError
 from modelgen.identification.objects import Identification, Validation
-from modelgen.identification.regression import Array
+from modelgen.numeric import Array
 
 SHORTEST = 1.0  # s, of what lies between two held-out parts and is of use
 

@@ -19,8 +19,9 @@ from modelgen.identification.essentials import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, Instrument, compared, of_period
 from modelgen.identification.objects import Estimate, Identification
-from modelgen.identification.regression import Array, Regression, Solution
+from modelgen.identification.regression import Regression, Solution
 from modelgen.identification.validation import regression_of, validate
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 METHODS = ("ols", "wls", "gls", "robust", "iv")

@@ -19,8 +19,8 @@ from scipy import special
 from modelgen.dataset.periods import other_period
 from modelgen.identification.autocovariance import autocovariance, autoregression, meat_of
 from modelgen.identification.regression import Regression, Solution
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 SIGNIFICANCE = 1e-3
 FEWEST = 10  # rows with a partner, per parameter
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, solve_triangular
 
 from modelgen.identification.autocovariance import sandwich
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 DEPENDENT = 1e-8  # part of a column, of unit length, that the others leave over where it depends on them
 HUBER = 1.345  # 95 % efficient for normal residuals (Huber 1981)
 ROUNDS = 20

@@ -10,7 +10,7 @@ from modelgen.compiled import RegressorColumns, compiler
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.functions import Model
-from modelgen.identification.regression import Array
+from modelgen.numeric import Array
 from modelgen.probing import Motion, Prober
 
 SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled

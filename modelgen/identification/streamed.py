@@ -22,9 +22,9 @@ from modelgen.identification.identify import concluded
 from modelgen.identification.objects import Identification
 from modelgen.identification.regression import ROUNDS, Solution, Triangle
 from modelgen.identification.rows import Rows
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
-Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Block = tuple[Array, Array, NDArray[np.bool_]]
 PART = 32  # blocks that the standard deviations are made of, at most

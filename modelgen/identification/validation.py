@@ -10,8 +10,9 @@ from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.identification.objects import Validation
-from modelgen.identification.regression import Array, Regression
+from modelgen.identification.regression import Regression
 from modelgen.identification.rows import Rows
+from modelgen.numeric import Array
 from modelgen.probing import Prober
 
 

@@ -14,7 +14,8 @@ import numpy as np
 
 from modelgen.base_parameters import Grouping
 from modelgen.description.objects import Arm
-from modelgen.probing.motion import Array, Motion
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion
 
 LEAST = 0.05  # of the inertia of links and drive: the links'
 COUNT = 400  # places along a motion where it is asked for

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.description.objects import Arm
-from modelgen.probing.motion import Array
+from modelgen.numeric import Array
 
 
 def acting(arm: Arm, t: Array, given: Array) -> Array:

@@ -20,7 +20,8 @@ from modelgen.effects import described
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.nominal import about_origin, factor_value
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array, Motion, given_for
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion, given_for
 from modelgen.probing.programs import bare
 
 NOTHING = 1e-12  # of the largest parameter

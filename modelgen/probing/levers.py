@@ -11,7 +11,8 @@ import numpy as np
 import sympy as sp
 
 from modelgen.description.objects import Arm, LeveredDrive, geometry_symbol
-from modelgen.probing.motion import Array, Motion
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion
 from modelgen.transmission import Levered, Transmission, of_joint
 
 Curve = Callable[[Array], Array]

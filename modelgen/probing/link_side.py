@@ -21,7 +21,8 @@ from modelgen.base_parameters import Grouping
 from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array, Motion
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion
 from modelgen.probing.programs import at_motors, links_alone
 from modelgen.probing.recent import Recent
 

@@ -12,7 +12,8 @@ from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm
 from modelgen.effects import described
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array, Motion, given_for
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion, given_for
 from modelgen.probing.programs import links_and_effect
 
 

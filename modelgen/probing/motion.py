@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.functions.objects import Function
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,14 @@ from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, Parameter, described
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
+from modelgen.numeric import Array
 from modelgen.probing.carried import carried
 from modelgen.probing.delays import acting, added
 from modelgen.probing.hidden_weight import HiddenWeight
 from modelgen.probing.levers import gain, leverage, reread
 from modelgen.probing.link_side import LinkSide, at_link, lagging, led_by, rigid
 from modelgen.probing.links import Links
-from modelgen.probing.motion import Array, Motion, given_for
+from modelgen.probing.motion import Motion, given_for
 from modelgen.probing.places import changes_description, with_effect
 from modelgen.probing.programs import (
     columns_of,

@@ -7,7 +7,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from modelgen.probing.motion import Array, Motion
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion
 
 T = TypeVar("T")
 

@@ -17,7 +17,8 @@ from modelgen.base_parameters import Grouping
 from modelgen.compiled import compiler, shared_library
 from modelgen.functions.objects import Function
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array, Motion, given_for
+from modelgen.numeric import Array
+from modelgen.probing.motion import Motion, given_for
 from modelgen.probing.programs import steps_of
 
 SPANS = np.geomspace(2e-4, 1.0, 13)  # s, of steps towards rest

@@ -15,7 +15,7 @@ from modelgen.base_parameters.analytic import slid
 from modelgen.description.objects import Arm, Joint, LeveredDrive, Scalar, geometry_symbol
 from modelgen.effects import described
 from modelgen.model.equations import Equations
-from modelgen.probing.motion import Array
+from modelgen.numeric import Array
 from modelgen.probing.places import with_effect
 from modelgen.probing.programs import inputs_of
 from modelgen.probing.recent import Recent

@@ -8,8 +8,9 @@ from markupsafe import Markup
 from modelgen.dataset.drives import drives_of
 from modelgen.description import NoDrive
 from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.rows import Array, Rows
+from modelgen.diagnosis.rows import Rows
 from modelgen.figures import COLOURS
+from modelgen.numeric import Array
 from modelgen.report.sketches import Sketch
 
 _WINDOWS = 12  # that the picture of the simulation shows

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
+from modelgen.numeric import Array
 from modelgen.report.drawing import inline
 from modelgen.resources import templates_folder
 
-Array = NDArray[np.float64]
 AS_DESCRIBED = "the arm as described"
 
 

@@ -8,14 +8,13 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from modelgen.backends.casadi_function import casadi_function
+from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sticking import Modes, accelerated, hold, settled
 
-Array = NDArray[np.float64]
 METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
 LEFT = -1  # the event of a coordinate that leaves its range
 BENT = -2  # that of a law that bends: play that closes or opens

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from modelgen.backends import NumpyFunction
 from modelgen.description.objects import Arm
+from modelgen.numeric import Array
 from modelgen.resources import templates_folder
 from modelgen.simulation.plant import Plant
 
-Array = NDArray[np.float64]
 _FRAMES_PER_SECOND = 30
 _MOST = 1800  # frames
 

@@ -8,15 +8,14 @@ from functools import cached_property
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from modelgen.backends.casadi_function import casadi_function
 from modelgen.description.objects import NoDrive
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

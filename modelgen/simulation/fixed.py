@@ -15,9 +15,8 @@ from modelgen.compiled import shared_library
 from modelgen.errors import InputError
 from modelgen.functions import Function
 from modelgen.graph import count_operations
+from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
-
-Array = NDArray[np.float64]
 
 # How a run may end: enumeration of driver.c.
 ENDS = {

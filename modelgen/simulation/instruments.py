@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.dataset.choice import motion_bandwidth
@@ -18,7 +17,6 @@ from modelgen.simulation.control import Reference, controller
 from modelgen.simulation.plant import plant
 from modelgen.simulation.simulate import simulate
 
-Array = NDArray[np.float64]
 OVER_MOTION = 2.5  # bandwidth of the position loop, and of a measured reference, over that of the motion
 LOOPS = 4.0  # bandwidth of the velocity loop over that of the position loop, in `cascade`
 SAMPLES = 10.0  # of the log per period of the velocity loop, at least

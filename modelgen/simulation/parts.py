@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 RATE = 250.0  # Hz, beyond which samples are left out: the steps between them are exact enough
 AFTER = 1.0  # s of rest that count
 LATEST = 0.1  # s, after which a motion that has not begun is held by a hand

@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, grouped, nominal_standard
 from modelgen.functions.nominal import payload_standard
+from modelgen.numeric import Array
 from modelgen.simulation.slip import Slip, elastic, slip
 from modelgen.transmission import STROKE_MARGIN, of_joint
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,18 +11,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.simulation.metrics import Scores
 from modelgen.simulation.parts import Guess, parts
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sensitivities import Sensitive
 from modelgen.simulation.shooting import Fit, scored
 
-Array = NDArray[np.float64]
 ROUNDS = 40
 BOUNDARY = 0.9  # of the way to a bound in one step
 HALVINGS = 8  # of a step that does not lower the cost

@@ -6,17 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.simulation.control import Control, Reference, controller
 from modelgen.simulation.metrics import Scores, scores
 from modelgen.simulation.parts import held_inputs
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.simulate import simulate
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,13 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from modelgen.backends.casadi_function import casadi_function
+from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sticking import Modes, accelerated, hold, settled
 
-Array = NDArray[np.float64]
 _EVENTS = 50  # of one step: more is no motion
 
 

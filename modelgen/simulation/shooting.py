@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.simulation.metrics import Scores, scores
 from modelgen.simulation.parts import Guess, Part
 from modelgen.simulation.sensitivities import Sensitive
 
-Array = NDArray[np.float64]
 SINGULAR = 1e7  # condition of the scaled columns, beyond which values are not told apart
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from modelgen.compiled import compiler
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.simulation.adaptive import METHODS, Adaptive
 from modelgen.simulation.control import Control
 from modelgen.simulation.fixed import ENDS, Stepper
@@ -17,7 +18,6 @@ from modelgen.simulation.plant import Plant
 from modelgen.simulation.sundials import Sundials
 from modelgen.simulation.trajectory import Trajectory
 
-Array = NDArray[np.float64]
 MOST = 2e7  # samples: all are kept in memory
 STEP = 1e-3  # s, longest fixed step
 STIFF = 2e4  # 1/s, beyond which explicit steps are too many

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from modelgen.backends import NumpyFunction
 from modelgen.base_parameters.analytic import slid
@@ -26,9 +25,8 @@ from modelgen.model.composite import solve
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates
+from modelgen.numeric import Array
 from modelgen.probing.programs import bare
-
-Array = NDArray[np.float64]
 
 _DIRECTION = sp.Symbol("direction", real=True)
 

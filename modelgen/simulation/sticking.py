@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
-Array = NDArray[np.float64]
 Modes = tuple[int, ...]  # of every contact: 1 or -1 sliding, 0 sticking
 
 

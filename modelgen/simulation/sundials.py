@@ -7,13 +7,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from modelgen.numeric import Array
 from modelgen.simulation.adaptive import LEFT, Adaptive, Phase
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sticking import Modes, hold
-
-Array = NDArray[np.float64]
 
 
 class Sundials(Adaptive):

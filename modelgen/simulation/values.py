@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.description.expressions import ExpressionError, evaluate
 from modelgen.errors import InputError
-
-Array = NDArray[np.float64]
+from modelgen.numeric import Array
 
 
 def by_joint(option: str, text: str, names: Sequence[str]) -> Array:

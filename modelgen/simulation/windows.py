@@ -13,14 +13,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.backends import NumpyFunction
 from modelgen.dataset import Prepared
 from modelgen.functions import Model
+from modelgen.numeric import Array
 from modelgen.simulation.metrics import Scores, scores
-
-Array = NDArray[np.float64]
 
 FINE = 5e-4  # s, longest step where effects have states: a drive before an elastic joint is light
 
