@@ -12,7 +12,7 @@ from hidden.cases import Case, make
 from modelgen.dataset import choose, prepare
 from modelgen.description import load
 from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.candidates import Candidate, candidates, columns
+from modelgen.diagnosis.candidates import Candidate, candidates, candidate_columns
 from modelgen.diagnosis.court import Court, bracket
 from modelgen.diagnosis.outcome import rows_twice
 from modelgen.diagnosis.rows import Rows
@@ -45,7 +45,7 @@ def test_the_base_is_found_where_it_stands(
 ) -> None:
     rows, prober, base, candidate = scene
     there = {"base_angle": math.radians(degrees)}
-    added = columns(replace(candidate, part=()), there, rows, prober, base)
+    added = candidate_columns(replace(candidate, part=()), there, rows, prober, base)
     assert added is not None
     moved = [
         replace(r, effort=r.effort + c @ np.array([0.2, 1.0, 0.0])) for r, c in zip(rows, added, strict=True)

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from scipy import signal
 
-from modelgen import compiled
+from modelgen.compiled import both_ways, central
 from modelgen.numeric import Array
 
 # Central differences by half-width: weights of x[i+k] - x[i-k] for the first derivative, of
@@ -23,7 +23,7 @@ def low_pass(columns: Array, cutoff: float, rate: float, order: int) -> Array:
         return columns.copy()
     sos, states = _sections(cutoff, rate, order)
     padding = min(len(columns) - 1, reach(cutoff, rate, order, 1e-6))
-    found = compiled.both_ways(columns, sos, states, padding)
+    found = both_ways(columns, sos, states, padding)
     if found is None:
         found = np.asarray(signal.sosfiltfilt(sos, columns, axis=0, padlen=padding), dtype=np.float64)
     return found
@@ -50,7 +50,7 @@ def differences(x: Array, step: float, half_width: int) -> tuple[Array, Array]:
     """
     count, h = len(x), half_width
     taps = [a / step for a in _FIRST[h]], [b / step**2 for b in _SECOND[h]]
-    found = compiled.central(x, *taps) if count > 2 * h else None
+    found = central(x, *taps) if count > 2 * h else None
     if found is not None:
         return found
     first, second = np.zeros_like(x), np.zeros_like(x)

@@ -207,13 +207,16 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
     if name == LOADED:
         return [{}, {"rise": RISE}]
     if name == POWER:
-        return [{"scale": scale("speed", name, joint, rows, prober)}]
+        return [{"scale": grid_unit("speed", name, joint, rows, prober)}]
     if name == WARMING:
-        return [{"speed": scale("speed", name, joint, rows, prober)}]
+        return [{"speed": grid_unit("speed", name, joint, rows, prober)}]
     if name == "backlash" and at_links(joint, rows):
         (hardest,), (relaxation,) = (SEARCHES[name][p] for p in ("stiffness", "relaxation"))
         return [
-            {"stiffness": hardest * scale("stiffness", name, joint, rows, prober), "relaxation": relaxation}
+            {
+                "stiffness": hardest * grid_unit("stiffness", name, joint, rows, prober),
+                "relaxation": relaxation,
+            }
         ]
     if name == PERIODIC:
         assert joint is not None
@@ -222,7 +225,7 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
     return [{}]
 
 
-def scale(kind: str, name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> float:
+def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> float:
     """What a grid is in units of, over all records."""
     if kind == "1":
         return 1.0
@@ -253,7 +256,7 @@ def unchanging(candidate: Candidate, prober: Prober) -> bool:
     return not prober.needs_load(candidate.effect, candidate.joint, candidate.fixed)
 
 
-def columns(
+def candidate_columns(
     candidate: Candidate, values: Values, rows: Sequence[Rows], prober: Prober, base: Array
 ) -> list[Array] | None:
     """Its columns (M, n, k) in every record for values of what is searched, or about which a column that

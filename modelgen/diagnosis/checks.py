@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared, drives_of
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, columns, scale
+from modelgen.diagnosis.candidates import LATER, PERIODIC, Candidate, Place, candidate_columns, grid_unit
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import orthonormal
 from modelgen.diagnosis.system import moving_share, rmse, stacked, weighted_fit
@@ -129,7 +129,7 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, 
     of_effects = _of_effects(model)
     for r in rows[1:]:
         pair = [rows[0], r]
-        payload = columns(Candidate(LATER, None), {}, pair, prober, base)
+        payload = candidate_columns(Candidate(LATER, None), {}, pair, prober, base)
         own = [np.zeros((len(rows[0].effort), n, len(of_effects))), r.columns[:, :, of_effects]]
         parts = [[x.columns for x in pair], own, *([] if payload is None else [payload])]
         table = [np.concatenate([part[k] for part in parts], axis=2) for k in range(2)]
@@ -228,8 +228,8 @@ def _shows(c: Candidate, rows: Sequence[Rows], prober: Prober, base: Array) -> b
         return True
     values = {}
     for p in c.searched[:1]:
-        values[p.name] = scale(p.scale, c.effect, c.joint, rows, prober) * p.grid[len(p.grid) // 2]
-    made = columns(c, values, rows, prober, base)
+        values[p.name] = grid_unit(p.scale, c.effect, c.joint, rows, prober) * p.grid[len(p.grid) // 2]
+    made = candidate_columns(c, values, rows, prober, base)
     if made is None:
         return False
     weights = _weights(rows)

@@ -16,7 +16,7 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from modelgen.diagnosis.candidates import COMPLIANT, ELASTIC, GAP, Candidate, Values, columns
+from modelgen.diagnosis.candidates import COMPLIANT, ELASTIC, GAP, Candidate, Values, candidate_columns
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.court import ahead
 from modelgen.diagnosis.forms import with_causes
@@ -213,7 +213,7 @@ class _Beside:
 
     def _columns(self, values: Values, theta: Array) -> list[Array] | None:
         base = self.rows[0].baseline.base(theta[: self.own])
-        made = columns(self.trial.candidate, values, self.rows, self.prober, base)
+        made = candidate_columns(self.trial.candidate, values, self.rows, self.prober, base)
         return None if made is None or not all(np.isfinite(c).all() for c in made) else made
 
     def _stacked(self, made: Sequence[Array]) -> Array:

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, CURVED, columns, unchanging
+from modelgen.diagnosis.candidates import COMPLIANT, CURVED, candidate_columns, unchanging
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.plausible import doubt
@@ -70,5 +70,5 @@ def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, bas
         trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named(c, values), prober.arm)
     )
     around = after.parameters if c.effect in CURVED else {}
-    found = columns(c, {**trial.values, **around}, rows, prober, base)
+    found = candidate_columns(c, {**trial.values, **around}, rows, prober, base)
     return trial if found is None else replace(after, columns=found, around=around)

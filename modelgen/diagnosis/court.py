@@ -10,8 +10,21 @@ from typing import TypeAlias
 
 import numpy as np
 
-from modelgen.diagnosis import candidates as of
-from modelgen.diagnosis.candidates import CURVED, PERIODIC, Candidate, Values
+from modelgen.diagnosis.candidates import (
+    COMPLIANT,
+    CURVED,
+    PERIODIC,
+    Candidate,
+    Values,
+    at_links,
+    candidate_columns,
+    gap_instead,
+    grid_unit,
+    of_part,
+    search_of,
+    unchanging,
+    waves,
+)
 from modelgen.diagnosis.plausible import doubt
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.system import System
@@ -85,18 +98,18 @@ class Court:
     def _trial(self, candidate: Candidate) -> Trial | None:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
-        if candidate.effect in of.COMPLIANT:
-            if of.at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
+        if candidate.effect in COMPLIANT:
+            if at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
                 return None  # what is left of one looks like the other
             found = self._compliant(candidate)
-            gap = None if found is None else of.gap_instead(candidate, self.rows, self.prober)
+            gap = None if found is None else gap_instead(candidate, self.rows, self.prober)
             # impacts of a loose link look elastic; the other way round they do not
             other = None if gap is None else self._compliant(gap)
             return None if found and other and ahead(other, found) else found
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
-        unit = of.scale(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
+        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
         if not unit > 0:
             return None
         grid = [unit * g for g in parameter.grid]
@@ -113,7 +126,7 @@ class Court:
         if around is None:
             columns = self._columns(candidate, values)
         else:
-            columns = of.columns(candidate, around, self.rows, self.prober, self.base)
+            columns = candidate_columns(candidate, around, self.rows, self.prober, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
@@ -129,15 +142,15 @@ class Court:
     def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
         given = {**candidate.fixed, **values}
         key = *candidate.place, tuple(sorted(given.items()))
-        stays = of.unchanging(candidate, self.prober)
+        stays = unchanging(candidate, self.prober)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
             every = replace(candidate, part=())
-            self.known[key] = of.columns(every, values, self.rows, self.prober, self.base)
+            self.known[key] = candidate_columns(every, values, self.rows, self.prober, self.base)
             self.renewed.add(key)
         elif not stays and key not in self.renewed:
             self.aged = True
         found = self.known[key]
-        return None if found is None else of.of_part(candidate, found)
+        return None if found is None else of_part(candidate, found)
 
     def _refined(
         self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float
@@ -151,10 +164,10 @@ class Court:
 
     def _compliant(self, candidate: Candidate) -> Trial | None:
         """A scan over the first value, then a section over each in turn."""
-        search = of.search_of(candidate, self.rows)
+        search = search_of(candidate, self.rows)
         kinds = {"play": "span", "stiffness": "stiffness"}
         units = {
-            name: of.scale(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
+            name: grid_unit(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
             for name in search
         }
         if not all(unit > 0 for unit in units.values()):
@@ -184,7 +197,7 @@ class Court:
 
     def _if_whole(self, found: Trial | None) -> Trial | None:
         """Behind a link's own position, only what is found about as large as it was simulated."""
-        if found is None or not of.at_links(found.candidate.joint, self.rows):
+        if found is None or not at_links(found.candidate.joint, self.rows):
             return found
         return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
 
@@ -223,7 +236,7 @@ class Court:
         per_harmonic = 2 * np.pi / candidate.fixed["revolution"]
         best: Trial | None = None
         step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
-        for wave in of.waves(together[0], together[1], together[2], cutoff):
+        for wave in waves(together[0], together[1], together[2], cutoff):
             harmonic = wave / per_harmonic
             if per_harmonic == 1.0:
                 # what turns with a motor repeats a whole number of times in its turn

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import COMPLIANT, columns
+from modelgen.diagnosis.candidates import COMPLIANT, candidate_columns
 from modelgen.diagnosis.causes import Cause
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
@@ -96,7 +96,7 @@ def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> 
     for name, value in trial.values.items():
         step = STEP * (abs(value) or 1.0)
         ends = [
-            columns(trial.candidate, {**trial.values, **trial.around, name: x}, rows, prober, base)
+            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, rows, prober, base)
             for x in (value - step, value + step)
         ]
         for k, part in enumerate(parts):

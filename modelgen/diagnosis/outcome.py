@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
 from modelgen.diagnosis.baseline import Baseline, estimated, held
-from modelgen.diagnosis.candidates import COMPLIANT, LATER, columns
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, candidate_columns
 from modelgen.diagnosis.rows import Rows, rows_of
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.settling import misfit, settled
@@ -153,7 +153,7 @@ def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array |
     """
     # a payload that came between the records stays
     records = [test, test] if trial.candidate.effect == LATER else [test]
-    found = columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
+    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
     return None if found is None else found[-1]
 
 

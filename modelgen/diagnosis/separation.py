@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.diagnosis import candidates as of
-from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.candidates import Candidate, candidate_columns
 from modelgen.diagnosis.colour import Colour
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.stack import NOTHING, joints_of, orthonormal, weighted
@@ -114,7 +113,7 @@ class Judge:
         """Columns (M, n, k) of every record; None where the cause cannot stand."""
         result = []
         for r, base in zip(rows, bases, strict=True):
-            found = of.columns(h.candidate, values, [r], self.prober, base)
+            found = candidate_columns(h.candidate, values, [r], self.prober, base)
             if found is None or not np.isfinite(found[0]).all():
                 return None
             result += found

@@ -24,7 +24,7 @@ LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 PLAIN = 250.0  # delta BIC; play gave 500 to 2800
 ROUGH = "backlash"
-CLEARLY = 1.5  # times the threshold in a part, where a cause falls by what is left elsewhere
+PLAINLY = 1.5  # times the threshold in a part, where a cause falls by what is left elsewhere
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
 
@@ -43,7 +43,7 @@ def doubtful(selection: Selection, rows: Sequence[Rows]) -> list[Cause]:
     parts = in_parts(system)
     worst, left = (_worst(tests, system.n) / sizes for tests in (in_parts(old), parts))
     found = any(t.found for t in parts)
-    clearly = any(t.statistic > CLEARLY * t.threshold for t in parts)
+    clearly = any(t.statistic > PLAINLY * t.threshold for t in parts)
     doubted = []
     for cause in selection.causes:
         if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates import ELASTIC, columns
+from modelgen.diagnosis.candidates import ELASTIC, candidate_columns
 from modelgen.diagnosis.forms import with_causes
 from modelgen.diagnosis.rows import Rows
 from modelgen.diagnosis.selection import Selection
@@ -40,7 +40,7 @@ def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Sel
     for _ in range(TURNS):
         base = rows[0].baseline.base(theta)
         for k in elastic:
-            found = columns(trials[k].candidate, trials[k].values, rows, prober, base)
+            found = candidate_columns(trials[k].candidate, trials[k].values, rows, prober, base)
             if found is None or not all(np.isfinite(c).all() for c in found):
                 return selection
             trials[k] = replace(trials[k], columns=found)

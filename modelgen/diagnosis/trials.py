@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from modelgen.description import Arm
-from modelgen.diagnosis import candidates as of
-from modelgen.diagnosis.candidates import Candidate, Values
+from modelgen.diagnosis.candidates import COMPLIANT, LATER, WEIGHING, Candidate, Values
 from modelgen.diagnosis.plausible import elsewhere, obvious
 from modelgen.diagnosis.sensitivities import STEPS
 from modelgen.diagnosis.stack import Gain
@@ -55,13 +54,13 @@ def named(candidate: Candidate, values: Array) -> dict[str, float]:
 
 def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
     """The effect's own parameters from those of its columns."""
-    if candidate.effect in of.COMPLIANT:
+    if candidate.effect in COMPLIANT:
         play = {"play": found["play"]} if "play" in found else {}
         return {**play, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
-    if candidate.effect == of.LATER and found.get("mass"):
+    if candidate.effect == LATER and found.get("mass"):
         mass = found["mass"]
         return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
-    if candidate.effect == of.WEIGHING:
+    if candidate.effect == WEIGHING:
         return {**found, "base_angle": math.remainder(found["base_angle"], math.tau)}
     return found
 
@@ -85,7 +84,7 @@ def sensible(trial: Trial, arm: Arm) -> bool:
             described(with_effect(arm, c.effect, c.joint, found))
         except InputError:
             return False
-    if c.effect in of.COMPLIANT:
+    if c.effect in COMPLIANT:
         return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
     limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
-    return not limited or max(limited) > 0 or c.effect == of.WEIGHING
+    return not limited or max(limited) > 0 or c.effect == WEIGHING

@@ -24,9 +24,9 @@ def described(arm: Arm) -> Arm:
                 changed = effect.changed(changed, joint, resolved(effect, use))
             except ValueError as error:
                 raise InputError(f"{use.name}: {error}", use.where) from None
-    joints = tuple(replace(joint, effects=_others(joint.effects)) for joint in changed.joints)
-    return replace(changed, joints=joints, effects=_others(arm.effects))
+    joints = tuple(replace(joint, effects=_kept(joint.effects)) for joint in changed.joints)
+    return replace(changed, joints=joints, effects=_kept(arm.effects))
 
 
-def _others(entries: Sequence[EffectUse]) -> tuple[EffectUse, ...]:
+def _kept(entries: Sequence[EffectUse]) -> tuple[EffectUse, ...]:
     return tuple(use for use in entries if not issubclass(effect_class(use), DescriptionEffect))
