@@ -108,8 +108,8 @@ def regressor_alone() -> None:
     import pinocchio as pin  # noqa: PLC0415
     from long_log import arm, links, period  # noqa: PLC0415 - needs the tests' folder
 
+    from modelgen.backends.compiled import RegressorColumns  # noqa: PLC0415
     from modelgen.backends.numpy import NumpyFunction  # noqa: PLC0415
-    from modelgen.compiled import RegressorColumns  # noqa: PLC0415
     from modelgen.functions import Options, build_model  # noqa: PLC0415
 
     own = build_model(arm(), Options(without=frozenset({"drives", "effects"})))

@@ -12,8 +12,8 @@ import sympy as sp
 
 from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
+from modelgen.evaluation import with_effect
 from modelgen.functions import Function, Model, Options, build_model
-from modelgen.probing import with_effect
 from modelgen.resources import shipped_arms
 from modelgen.transmission import of_joint
 

@@ -12,7 +12,7 @@ from modelgen.description import Arm, EffectUse, Inertial, Joint
 from modelgen.errors import InputError
 from modelgen.functions import grouped
 from modelgen.simulation import Plant, plant
-from modelgen.simulation.slip import Slip, slip
+from modelgen.simulation.friction_set import Slip, slip
 
 
 def shipped(name: str, seed: int = 1) -> Plant:

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from arms_support import ARMS, inputs, model
 
-from modelgen.backends import packaging_self_test
 from modelgen.backends.exact import exact_values
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.backends.packaging_self_test import self_test
 from modelgen.backends.provenance import Provenance
 from modelgen.description import EffectUse
 from modelgen.functions import Options, build_model
+from modelgen.packaging import self_test as packaging_self_test
+from modelgen.packaging.self_test import self_test
 
 PROVENANCE = Provenance("modelgen test", "0" * 64)
 

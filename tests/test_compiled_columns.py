@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from arms_support import ARMS, EVERY_ARM, model
 
+from modelgen.backends.compiled import RegressorColumns
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.compiled import RegressorColumns, plain_columns
-from modelgen.dataset.decimation import decimation
-from modelgen.dataset.filters import low_pass
+from modelgen.dataset.processing.decimation import decimation
+from modelgen.dataset.processing.filters import low_pass
 from modelgen.functions import Function
+from modelgen.native import plain_columns
 
 RATE = 1000.0
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from modelgen import compiled
-from modelgen.compiled import both_ways, compiler
-from modelgen.dataset.filters import differences, low_pass
+from modelgen import native as compiled
+from modelgen.dataset.processing.filters import differences, low_pass
+from modelgen.native import both_ways, compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no C compiler")
 RNG = np.random.default_rng(7)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from modelgen.dataset.decimation import decimation, kept
-from modelgen.dataset.filters import low_pass, reach
+from modelgen.dataset.processing.decimation import decimation, kept
+from modelgen.dataset.processing.filters import low_pass, reach
 
 RATE = 1000.0
 

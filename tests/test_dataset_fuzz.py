@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from test_dataset_mapping import AXIS_LOG, AXIS_MAPPING
 
 from modelgen.dataset import read
-from modelgen.dataset.formula import FormulaError, formula
+from modelgen.dataset.mapping.formula import FormulaError, formula
 from modelgen.errors import InputError
 
 QUIET = settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -11,10 +11,10 @@ import pytest
 from dataset_support import AXIS, DRIVEN, FREE, counts_of, motion, times, write_csv
 
 from modelgen.dataset import described, prepare, read
-from modelgen.dataset.formula import FormulaError, formula
-from modelgen.dataset.mapping import load_mapping
-from modelgen.dataset.mapping_schema import mapping_json_schema
-from modelgen.dataset.sources import open_source
+from modelgen.dataset.mapping.files import load_mapping
+from modelgen.dataset.mapping.formula import FormulaError, formula
+from modelgen.dataset.mapping.schema import mapping_json_schema
+from modelgen.dataset.reading.sources import open_source
 from modelgen.description.document import parse
 from modelgen.errors import InputError
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from modelgen.dataset import Record
-from modelgen.dataset.periods import period_of
+from modelgen.dataset.processing.periods import period_of
 from modelgen.errors import InputError
 
 STEP, PERIOD = 0.01, 4.0

@@ -11,7 +11,7 @@ import pytest
 from dataset_support import AXIS, DRIVEN, FREE, columns, counts_of, motion, times, write_csv
 
 from modelgen.dataset import Record, Settings, choose, described, prepare, preset, read, spectra_svg
-from modelgen.dataset.filters import advanced, differences, low_pass
+from modelgen.dataset.processing.filters import advanced, differences, low_pass
 from modelgen.errors import InputError
 
 

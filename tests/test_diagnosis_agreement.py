@@ -8,8 +8,8 @@ import pytest
 from numpy.random import default_rng
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.agreement import agreement
-from modelgen.diagnosis.rows import Rows
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.validation.agreement import agreement
 
 PERIOD, PERIODS = 250, 3
 TIME = np.arange(PERIOD * PERIODS) / PERIOD  # in periods

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from modelgen.description import load
-from modelgen.diagnosis.aliases import aliases
-from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.adequacy.distinguishable import aliases
+from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.effects import CATALOGUE, known_effects
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 SEARCHED = tuple(p for p in CATALOGUE["nonlinear_viscous_friction"].nonlinear if p.grid)
 

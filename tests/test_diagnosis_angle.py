@@ -11,16 +11,18 @@ from hidden.cases import Case, make
 
 from modelgen.dataset import choose, prepare
 from modelgen.description import load
-from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.candidates import Candidate, candidates, candidate_columns
-from modelgen.diagnosis.court import Court, bracket
-from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.run import records, settings_for
-from modelgen.diagnosis.system import System, weighted_fit
+from modelgen.diagnosis.candidates.candidate import Candidate, candidates
+from modelgen.diagnosis.candidates.columns import candidate_columns
+from modelgen.diagnosis.candidates.search import Court, bracket
+from modelgen.diagnosis.equations.band import rows_twice
+from modelgen.diagnosis.equations.least_squares import weighted_fit
+from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.pipeline import records, settings_for
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
 from modelgen.numeric import Array
-from modelgen.probing import Prober
 
 
 @pytest.fixture(scope="module")

@@ -8,14 +8,14 @@ from test_diagnosis_positions import COUNT, coarse
 from test_diagnosis_selection import ARM, three
 
 from modelgen.dataset import Record, prepare
-from modelgen.dataset.periods import period_of
-from modelgen.diagnosis.band import Equations, bands
-from modelgen.diagnosis.gates import practical
-from modelgen.diagnosis.positions import repeating_errors
-from modelgen.diagnosis.rows import rows_of
-from modelgen.diagnosis.run import diagnose, settings_for
+from modelgen.dataset.processing.periods import period_of
+from modelgen.diagnosis.equations.band import Equations, bands
+from modelgen.diagnosis.equations.position_errors import repeating_errors
+from modelgen.diagnosis.equations.rows import rows_of
+from modelgen.diagnosis.pipeline import diagnose, settings_for
+from modelgen.diagnosis.thresholds import practical
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 EXACT = three("friction_offset", 1, 0.15, seed=8)
 SEEN = [coarse(r) for r in EXACT]

@@ -5,12 +5,13 @@ import pytest
 from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause, covariance, eliminated
-from modelgen.diagnosis.gates import with_causes
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System, covariance
+from modelgen.diagnosis.selection.backward import eliminated
+from modelgen.diagnosis.selection.cause import Cause
+from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.numeric import Array
 
 LONG = 1500

@@ -11,9 +11,9 @@ from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 from scipy.stats import chi2
 
-from modelgen.diagnosis.colour import LAGS, Colour, correlations
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.system import System
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.noise import LAGS, Colour, correlations
+from modelgen.diagnosis.evidence.system import System
 from modelgen.numeric import Array
 
 PERIOD, PERIODS = 500, 3

@@ -9,11 +9,11 @@ from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
 from hidden.running import run
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.compliance import member
-from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.stack import Gain
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.selection.compliance import member
+from modelgen.diagnosis.validation.gates import Judgement
 
 GAP = 0.004  # rad in the middle of the stroke, per unit of the plant's magnitude
 

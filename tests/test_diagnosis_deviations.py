@@ -6,9 +6,9 @@ from numpy.random import Generator, default_rng
 from scipy.optimize import curve_fit
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.deviations import covariance_of
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.system import System
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.extended.uncertainty import covariance_of
 from modelgen.numeric import Array
 
 PERIOD, PERIODS, DRAWS = 500, 3, 60

@@ -7,9 +7,9 @@ from hidden.cases import Case, Hidden, make
 from hidden.recovery import reachable
 
 from modelgen.description import load
-from modelgen.diagnosis.rows import motion_of
-from modelgen.diagnosis.run import diagnose, records
-from modelgen.probing import Prober
+from modelgen.diagnosis.equations.rows import motion_of
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.evaluation import Prober
 
 SOFT = Case("levered2", 1740050650, (Hidden("joint_flexibility", 2, 1.3, 1.98645),))
 

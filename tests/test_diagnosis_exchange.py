@@ -9,15 +9,16 @@ import pytest
 from test_diagnosis_selection import ARM
 from test_diagnosis_shapes import cubic, made, offset
 
-from modelgen.diagnosis.baseline import Baseline
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause, measured, together
-from modelgen.diagnosis.exchange import exchanged
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.prior import Baseline
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.backward import measured
+from modelgen.diagnosis.selection.cause import Cause, together
+from modelgen.diagnosis.selection.exchange import exchanged
+from modelgen.evaluation import Prober
 from modelgen.numeric import Array
-from modelgen.probing import Prober
 
 
 def scene() -> tuple[list[Rows], list[int | None], Any]:

@@ -15,23 +15,23 @@ from numpy.random import default_rng
 
 from modelgen.dataset import Record, choose, drives_of, prepare, read
 from modelgen.description import Arm, load
-from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.candidates import Candidate, candidates
-from modelgen.diagnosis.court import Court
-from modelgen.diagnosis.experiments import Experiment
-from modelgen.diagnosis.motions import Stage, stage
-from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.proposal import MARGIN, Proposal, propose, worth
-from modelgen.diagnosis.run import settings_for
-from modelgen.diagnosis.separation import Hypothesis, Judge, hypothesis
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate, candidates
+from modelgen.diagnosis.candidates.search import Court
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.band import rows_twice
+from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge, hypothesis
+from modelgen.diagnosis.experiment.experiment import Experiment
+from modelgen.diagnosis.experiment.motions import Stage, stage
+from modelgen.diagnosis.experiment.trajectory import MARGIN, Proposal, propose, worth
+from modelgen.diagnosis.pipeline import settings_for
 from modelgen.effects import known_effects
+from modelgen.evaluation import Prober
 from modelgen.excitation.problem import problem
 from modelgen.excitation.random_motion import feasible
 from modelgen.excitation.writing import data
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 PERIOD = 10.0  # s
 SEED = 90210

@@ -11,8 +11,8 @@ from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
 from hidden.running import run
 
-from modelgen.diagnosis.folds import Split, folds
-from modelgen.diagnosis.rows import Rows
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.validation.cross_validation import Split, folds
 
 # A wave of friction over the joint, tried as a parabola on records that pass different parts of it.
 WAVE = Case(

@@ -13,8 +13,8 @@ from witness.free_swings import Link
 
 from modelgen.cli.app import app
 from modelgen.description import Arm, load
-from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.run import diagnose, records
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import known_effects
 
 ANGLES = (20, 30, 40)  # deg

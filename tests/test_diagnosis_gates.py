@@ -8,12 +8,13 @@ from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.gates import Gates, Judgement
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.stack import not_negative
-from modelgen.diagnosis.system import System, rmse, weighted_fit
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.likelihood import not_negative
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.validation.gates import Gates, Judgement
 from modelgen.numeric import Array
 
 LONG, UNKNOWNS = 300, 6

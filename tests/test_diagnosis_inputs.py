@@ -14,7 +14,7 @@ from modelgen.cli.app import app
 from modelgen.dataset import read
 from modelgen.description import load
 from modelgen.effects import known_effects
-from modelgen.probing import places
+from modelgen.evaluation import places
 
 
 @dataclass(frozen=True)

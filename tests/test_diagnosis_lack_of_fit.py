@@ -8,15 +8,14 @@ from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.selection import Selection
-from modelgen.diagnosis.standing import doubtful
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
+from modelgen.diagnosis.adequacy.stand_ins import doubtful
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.numeric import Array
 
 PERIOD, PERIODS = 480, 3

@@ -10,9 +10,9 @@ from hidden.judging import FOUND
 from hidden.running import run
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint, load
-from modelgen.diagnosis.run import diagnose, records
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.evaluation import Motion, Prober
 from modelgen.functions import build_model
-from modelgen.probing import Motion, Prober
 
 RATIO, CONSTANT = 100.0, 0.05
 EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "drive_inertia"))

@@ -6,8 +6,8 @@ import pytest
 from scipy import stats
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.plausible import doubt, elsewhere, obvious
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.prior_odds import doubt, elsewhere, obvious
 
 ROD = 0.42  # m, the actuator at its longest
 MASS = 0.3 * 20.0

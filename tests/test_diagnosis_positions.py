@@ -7,9 +7,9 @@ import pytest
 from test_diagnosis_selection import ARM, three
 
 from modelgen.dataset import Record
-from modelgen.diagnosis.instruments import other_period
-from modelgen.diagnosis.positions import blurred, counts, feigned, rounded
-from modelgen.diagnosis.run import diagnose
+from modelgen.dataset.processing.periods import other_period
+from modelgen.diagnosis.equations.position_errors import blurred, counts, feigned, rounded
+from modelgen.diagnosis.pipeline import diagnose
 
 COUNT = 2 * np.pi / 2**13
 

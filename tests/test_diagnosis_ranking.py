@@ -1,6 +1,12 @@
 """What the ranking says of causes that were taken and did not stay."""
 
-from modelgen.diagnosis.ranking import EXCHANGED, STANDS_IN, Ranked, best_of_each, taken_back
+from modelgen.diagnosis.selection.history import (
+    EXCHANGED,
+    STANDS_IN,
+    Ranked,
+    best_of_each,
+    taken_back,
+)
 
 SPRING, DELAY, DRY = ("spring", 1), ("time_delay", None), ("friction_offset", 1)
 

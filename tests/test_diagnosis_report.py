@@ -13,12 +13,12 @@ import pytest
 from test_diagnosis_selection import ARM, three
 
 from modelgen.description import DirectDrive
-from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.run import diagnose
+from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.result import Diagnosis
 from modelgen.figures import figure, svg
 from modelgen.report.diagnosis import report
-from modelgen.report.drawing import binned, left_over, residuals
-from modelgen.report.sketches import Pen, Sketch
+from modelgen.report.diagnosis_figures import binned, left_over, residuals
+from modelgen.report.figures import Pen, Sketch
 
 WORDS = ("stribeck_friction", "joint 2", "Error on the test record", "What these records cannot show")
 

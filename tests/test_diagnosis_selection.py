@@ -9,16 +9,16 @@ from arms_support import base_vector, standard_vector
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.objects import to_json
-from modelgen.diagnosis.run import diagnose
-from modelgen.diagnosis.selection import at_one_joint
-from modelgen.diagnosis.stack import Gain
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.result import to_json
+from modelgen.diagnosis.selection.stepwise import at_one_joint
+from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.errors import InputError
+from modelgen.evaluation import Motion, Prober, with_effect
 from modelgen.functions import build_model
-from modelgen.probing import Motion, Prober, with_effect
 
 EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "coulomb_friction", "drive_inertia"))
 ARM = Arm(

@@ -8,12 +8,12 @@ from arms_support import base_vector, standard_vector
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
-from modelgen.diagnosis.run import diagnose
-from modelgen.diagnosis.sensitivities import payload, sensitivities
+from modelgen.diagnosis.candidates.columns import payload, sensitivities
+from modelgen.diagnosis.pipeline import diagnose
 from modelgen.effects import CATALOGUE
+from modelgen.evaluation import Motion, Prober
 from modelgen.functions import build_model
 from modelgen.numeric import Array
-from modelgen.probing import Motion, Prober
 
 RATIO, CONSTANT, GRAVITY = 80.0, 0.05, 9.81
 EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "coulomb_friction", "drive_inertia"))

@@ -9,11 +9,12 @@ import numpy as np
 from hidden.cases import Case, Hidden, make
 from hidden.running import diagnose
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.gates import Judgement
-from modelgen.diagnosis.selection import RATHER, lesser_rivals, needed_behind, no_power
-from modelgen.diagnosis.stack import Gain
-from modelgen.diagnosis.trials import Trial
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.selection.stepwise import lesser_rivals, needed_behind, no_power
+from modelgen.diagnosis.thresholds import RATHER
+from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.effects import CATALOGUE
 
 

@@ -11,15 +11,16 @@ from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
-from modelgen.diagnosis.candidates import Candidate
-from modelgen.diagnosis.causes import Cause
-from modelgen.diagnosis.outdone import outdone
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.selection import STAYS, Selection, left_to
-from modelgen.diagnosis.shapes import Shape, functions, worth
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.trials import Trial
-from modelgen.diagnosis.whitening import ORDER, Whitener
+from modelgen.diagnosis.adequacy.smooth_functions import Shape, functions, worth
+from modelgen.diagnosis.adequacy.stand_ins import outdone
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.noise import Whitener
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.selection.stepwise import left_to
+from modelgen.diagnosis.thresholds import ORDER, STAYS
 from modelgen.numeric import Array
 
 PERIOD, PERIODS = 200, 3

@@ -7,8 +7,8 @@ import pytest
 from test_diagnosis_selection import ARM, record, three
 
 from modelgen.dataset import Record
-from modelgen.diagnosis.objects import to_json
-from modelgen.diagnosis.run import diagnose
+from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.result import to_json
 from modelgen.report.diagnosis import harms, report
 
 RIPPLE, OFFSET = ("torque_ripple", 1, 0.02), ("friction_offset", 2, 0.04)

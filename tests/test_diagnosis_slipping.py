@@ -11,7 +11,7 @@ from hidden.running import diagnose
 
 from modelgen.dataset import prepare, read
 from modelgen.description import load
-from modelgen.diagnosis.slipping import of_arm, turning
+from modelgen.diagnosis.equations.rows import of_arm, turning
 
 # Heavy friction of a part that turns with both joints: what its rests leave looks like a delay.
 COUPLED = Case("levered2", 1153009354, (Hidden("transmission_coupling", 1, 1.3, 0.20286240860220528),))

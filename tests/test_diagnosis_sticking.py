@@ -10,9 +10,9 @@ from hidden.running import diagnose, run
 
 from modelgen.dataset import Settings, prepare, read
 from modelgen.description import load
-from modelgen.diagnosis.rows import rows_of
+from modelgen.diagnosis.equations.rows import rows_of
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 
 @pytest.mark.parametrize(("arm", "seed"), [("levered2", 3169508213), ("levered3", 3421367267)])

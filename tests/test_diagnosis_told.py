@@ -8,11 +8,10 @@ import pytest
 from numpy.random import default_rng
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
-from modelgen.diagnosis.baseline import Baseline, estimated
-from modelgen.diagnosis.rows import Rows
-from modelgen.diagnosis.selection import RATHER
-from modelgen.diagnosis.system import System
-from modelgen.diagnosis.told import Told, told
+from modelgen.diagnosis.equations.prior import Baseline, Told, estimated, told
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.thresholds import RATHER
 from modelgen.functions import Model, build_model, grouped
 from modelgen.numeric import Array
 

@@ -10,8 +10,8 @@ from hidden.cases import Case, Hidden, make
 
 from modelgen.dataset import Record
 from modelgen.description import load
-from modelgen.diagnosis.objects import Diagnosis, to_json
-from modelgen.diagnosis.run import diagnose, records
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.diagnosis.result import Diagnosis, to_json
 
 
 def shaken(record: Record) -> Record:

@@ -4,7 +4,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from modelgen.effects import CATALOGUE
-from modelgen.report.signatures import pages
+from modelgen.report.catalogue import pages
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 

@@ -6,7 +6,7 @@ import pytest
 
 from modelgen.description import load
 from modelgen.effects import known_effects
-from modelgen.extension import extended_yaml
+from modelgen.effects.editing import extended_yaml
 
 TEXT = """schema: 1
 convention: khalil_kleinfinger

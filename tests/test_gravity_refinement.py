@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 from modelgen.cli.app import app
 from modelgen.dataset import prepare, read
+from modelgen.identification.output_error.sensitivities import Sensitive
 from modelgen.simulation import Reference, computed_torque, plant, replay, simulate
-from modelgen.simulation.sensitivities import Sensitive
 
 pytestmark = pytest.mark.xdist_group("gravity_test")
 TRUTH = replace(PUBLISHED, viscous=0.3, coulomb=0.12)

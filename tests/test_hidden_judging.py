@@ -7,10 +7,10 @@ import pytest
 from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 
-from modelgen.diagnosis.lack_of_fit import PART, WHOLE, inflation
-from modelgen.diagnosis.null_distribution import NULLS
-from modelgen.diagnosis.outdone import LIKE
-from modelgen.diagnosis.shapes import SHAPE
+from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, inflation
+from modelgen.diagnosis.adequacy.null_distribution import NULLS
+from modelgen.diagnosis.adequacy.smooth_functions import SHAPE
+from modelgen.diagnosis.adequacy.stand_ins import LIKE
 
 
 def label(*hidden: tuple[str, int]) -> Label:

@@ -14,8 +14,8 @@ from modelgen.errors import InputError
 from modelgen.functions import build_model
 from modelgen.functions.nominal import base_matrix
 from modelgen.identification import Instruments, identify, verdict
+from modelgen.identification.simulated_instruments import Tracking
 from modelgen.simulation import Reference
-from modelgen.simulation.instruments import Tracking
 
 PERIOD = 2.0  # s, short and fast: accelerations count, and their errors with them
 

@@ -1,14 +1,9 @@
-"""Data flow one way: a module of modelgen imports only what stands below it."""
-
-import ast
-from collections.abc import Iterator
-from pathlib import Path
+"""Data flows one way: a module of modelgen imports only what stands below it, and there are no circles."""
 
 import pytest
+from architecture.house import circles, file_graph, files, floors, imports, rooms
 
-PACKAGE = Path(__file__).resolve().parent.parent / "modelgen"
-
-# Lowest first. Each name is a module or a package; inside one package imports are free.
+# Lowest first. Each name is a module or a package.
 ORDER = (
     "__init__",
     "errors",
@@ -17,6 +12,7 @@ ORDER = (
     "jobs",
     "figures",
     "graph",
+    "native",
     "linkages",
     "description",
     "geometry",
@@ -26,79 +22,92 @@ ORDER = (
     "base_parameters",
     "functions",
     "backends",
+    "packaging",
     "generation",
-    "compiled",
-    "probing",
     "dataset",
+    "evaluation",
+    "regression",
     "excitation",
     "calibration",
-    "identification",
     "simulation",
-    "extension",
+    "identification",
     "diagnosis",
     "report",
     "fleet",
     "cli",
     "__main__",
 )
+# The same of the diagnosis.
+STAGES = (
+    "__init__",
+    "thresholds",
+    "equations",
+    "evidence",
+    "candidates",
+    "validation",
+    "selection",
+    "adequacy",
+    "decision",
+    "extended",
+    "experiment",
+    "result",
+    "pipeline",
+)
+ROOMS, FLOORS = 12, 10  # of the diagnosis, at most: what a reader can take in at a glance
 
 
-def layer(module: str) -> str:
-    """Top-level name under modelgen that a dotted module name belongs to."""
-    parts = module.split(".")
-    return parts[1] if len(parts) > 1 and parts[1] in ORDER else "__init__"
-
-
-def imports(source: str, module: str, *, package: bool) -> Iterator[tuple[int, str]]:
-    """Line and dotted name of everything of modelgen that the source of `module` imports, anywhere in it."""
-    for node in ast.walk(ast.parse(source)):
-        if not isinstance(node, ast.Import | ast.ImportFrom | ast.Call):
-            continue
-        found: list[str] = []
-        if isinstance(node, ast.Import):
-            found = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                above = module.split(".")
-                above = above[: len(above) - node.level + package]
-                base = ".".join([*above, base] if base else above)
-            found = [f"{base}.{alias.name}" for alias in node.names]
-        elif ast.unparse(node.func).rpartition(".")[2] in {"import_module", "__import__"}:
-            found = [str(arg.value) for arg in node.args if isinstance(arg, ast.Constant)]
-        yield from ((node.lineno, name) for name in found if name.split(".")[0] == "modelgen")
+def layer(module: str, order: tuple[str, ...] = ORDER, package: str = "modelgen") -> str:
+    """Name of the order that a dotted module name belongs to."""
+    own = module.removeprefix(package).lstrip(".").split(".")[0]
+    return own if own in order else "__init__"
 
 
 def upward(source: str, module: str, *, package: bool = False) -> list[str]:
     """One line per import that runs up, naming both sides."""
-    own = layer(module)
-    return [
-        f"{module}:{line} ({own}) imports {name} ({layer(name)}), which stands above it"
-        for line, name in imports(source, module, package=package)
-        if ORDER.index(layer(name)) > ORDER.index(own)
-    ]
-
-
-def dotted(path: Path) -> str:
-    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+    found = []
+    for order, above in ((ORDER, "modelgen"), (STAGES, "modelgen.diagnosis")):
+        if not module.startswith(above):
+            continue
+        own = layer(module, order, above)
+        found += [
+            f"{module}:{i.line} ({own}) imports {i.target}, which stands above it"
+            for i in imports(source, module, package=package)
+            if i.target.startswith(f"{above}.")
+            and order.index(layer(i.target, order, above)) > order.index(own)
+            and not (package and above != "modelgen" and module == above)
+        ]
+    return found
 
 
 def test_no_import_runs_up() -> None:
     wrong = [
         line
-        for path in sorted(PACKAGE.rglob("*.py"))
-        for line in upward(path.read_text(encoding="utf-8"), dotted(path), package=path.stem == "__init__")
+        for name, path in files().items()
+        for line in upward(path.read_text(encoding="utf-8"), name, package=path.stem == "__init__")
     ]
     assert not wrong, "\n".join(wrong)
 
 
+def test_no_files_import_each_other_in_a_circle() -> None:
+    assert circles(file_graph()) == []
+
+
+def test_the_diagnosis_is_seen_at_a_glance() -> None:
+    inside = rooms("modelgen.diagnosis", file_graph())
+    assert set(inside) == set(STAGES) - {"__init__"}
+    assert len(inside) <= ROOMS
+    assert max(floors(inside).values()) <= FLOORS
+    assert circles(inside) == []
+
+
+def test_a_circle_is_seen() -> None:
+    graph = {"a": frozenset("b"), "b": frozenset("cd"), "c": frozenset("a"), "d": frozenset()}
+    assert circles({name: frozenset(targets) for name, targets in graph.items()}) == [["a", "b", "c"]]
+    assert floors(graph) == {"a": 2, "b": 2, "c": 2, "d": 1}
+
+
 def test_every_module_has_its_place_in_the_order() -> None:
-    present = {
-        path.stem
-        for path in PACKAGE.iterdir()
-        if path.suffix == ".py" or (path.is_dir() and any(path.rglob("*.py")))
-    }
+    present = {name.split(".")[1] for name in files() if "." in name}
     unknown = sorted(present - set(ORDER))
     assert not unknown, f"give these a place in ORDER: {unknown}"
 
@@ -116,6 +125,8 @@ def test_every_module_has_its_place_in_the_order() -> None:
         ("modelgen.model", "if TYPE_CHECKING:\n    from modelgen.generation import write"),
         ("modelgen.model", "importlib.import_module('modelgen.backends.c')"),
         ("modelgen", "from modelgen.errors import InputError"),
+        ("modelgen.diagnosis.evidence.noise", "from modelgen.diagnosis.selection import stepwise"),
+        ("modelgen.diagnosis.equations.rows", "from ..pipeline import diagnose"),
     ],
 )
 def test_an_import_that_runs_up_is_seen(module: str, source: str) -> None:

@@ -10,10 +10,11 @@ from witness.arms import ARMS, Emitted, build, shipped
 from witness.compare import agree
 from witness.mechanism import states
 
-from modelgen.backends.casadi_function import casadi_function
+from modelgen.backends.casadi.function import casadi_function
 from modelgen.effects import CATALOGUE
+from modelgen.evaluation import Motion, Prober, places, with_effect
+from modelgen.evaluation import states as series
 from modelgen.functions import Options
-from modelgen.probing import Motion, Prober, places, series, with_effect
 
 VALUES = {
     "stribeck_friction": {"velocity": 4e3},

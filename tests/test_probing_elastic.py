@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from modelgen.description import Arm, load
-from modelgen.probing import Motion, Prober
-from modelgen.probing.carried import carried
+from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation.inertia_floor import carried
 
 UPRIGHT = """
 schema: 1

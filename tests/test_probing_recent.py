@@ -4,8 +4,8 @@ import pickle
 
 import numpy as np
 
-from modelgen.probing import Motion
-from modelgen.probing.recent import Recent
+from modelgen.evaluation import Motion
+from modelgen.evaluation.cache import Recent
 
 
 def test_the_last_ones_are_remembered_and_no_more() -> None:

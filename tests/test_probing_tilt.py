@@ -11,8 +11,8 @@ from witness.rigid_bodies import RigidBodies
 
 from modelgen.description import Arm
 from modelgen.effects import described
+from modelgen.evaluation import Prober, with_effect
 from modelgen.functions.nominal import grouped, nominal_links
-from modelgen.probing import Prober, with_effect
 
 TILT = {"x": 0.03, "y": -0.05}
 

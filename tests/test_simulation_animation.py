@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from simulation_support import middle, shipped
 
-from modelgen.simulation.animation import animation
+from modelgen.report.animation import animation
 
 
 @pytest.mark.parametrize("name", ["two_fingers", "screw_axis", "gravity_arm"])

@@ -10,7 +10,7 @@ from unittest import mock
 
 from modelgen.functions import dynamics
 from modelgen.functions.dynamics import Dynamics
-from modelgen.functions.search import Choice, LinkColumns, PlanSearch
+from modelgen.functions.regressor_plans import Choice, LinkColumns, PlanSearch
 from modelgen.graph import Expr, lowering
 from modelgen.graph.graph import CONST, INPUT, Graph
 from modelgen.graph.live import cost

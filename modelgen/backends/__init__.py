@@ -1,9 +1,8 @@
 """Printers of the emitted functions: C99, CasADi, and evaluation in NumPy."""
 
 from modelgen.backends.c import c_files
-from modelgen.backends.casadi import casadi_files
+from modelgen.backends.casadi.module import casadi_files
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.backends.packaging import packaging_files
 from modelgen.backends.provenance import Provenance
 
 # What is printed into every arm's folder: each gives text by path for a model and its provenance.
@@ -12,4 +11,4 @@ PRINTERS = (
     casadi_files,
 )
 
-__all__ = ["PRINTERS", "NumpyFunction", "Provenance", "c_files", "casadi_files", "packaging_files"]
+__all__ = ["PRINTERS", "NumpyFunction", "Provenance", "c_files", "casadi_files"]

@@ -7,19 +7,12 @@ from dataclasses import replace
 
 import sympy as sp
 
-from modelgen.base_parameters.analytic import (
-    Combination,
-    about_foot,
-    composed,
-    passed_on,
-    slid,
-    tidy,
-)
 from modelgen.base_parameters.closed_form import Factors, closed_forms
-from modelgen.base_parameters.drives import contained
+from modelgen.base_parameters.drive_inertia import contained
+from modelgen.base_parameters.numeric_rank import rank, regressor_values
 from modelgen.base_parameters.objects import BaseParameter, Grouping
-from modelgen.base_parameters.oracle import rank, regressor_values
 from modelgen.base_parameters.printing import printed
+from modelgen.base_parameters.rules import Combination, about_foot, composed, passed_on, slid, tidy
 from modelgen.description.objects import Arm, LeveredDrive, LinkageDrive, Scalar, geometry_symbol
 from modelgen.graph import Expr
 from modelgen.model.effect_forces import EffectForces

@@ -123,7 +123,7 @@ def diagnose(
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.cli.selecting import one
-    from modelgen.report.sketches import Pen
+    from modelgen.report.figures import Pen
 
     file, found = one(arms, arm)
     with Pen(hands=0 if jobs == 1 else 2) as pen:  # it gets ready while the rest is loaded
@@ -227,7 +227,7 @@ def effects(as_json: given.Json = False, pages: given.Pages = None) -> None:
     from modelgen.cli.catalogue import run, write_pages
 
     if pages is not None:
-        from modelgen.report.signatures import pages as made
+        from modelgen.report.catalogue import pages as made
 
         write_pages(pages, made())
     else:
@@ -246,7 +246,7 @@ def schema(of_mapping: given.OfMapping = False, of_fleet: given.OfFleet = False)
         typer.echo(json.dumps(fleet_json_schema(), indent=2))
         return
     if of_mapping:
-        from modelgen.dataset.mapping_schema import mapping_json_schema
+        from modelgen.dataset.mapping.schema import mapping_json_schema
 
         typer.echo(json.dumps(mapping_json_schema(), indent=2))
         return

@@ -12,14 +12,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from modelgen.cli.output import print_json, print_table
 from modelgen.description import Arm
-from modelgen.diagnosis.objects import Diagnosis, to_json
-from modelgen.diagnosis.run import diagnose, records
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.errors import InputError
 from modelgen.generation.folders import check_output
 from modelgen.jobs import Where
 from modelgen.report.diagnosis import assumptions, harms, sketches, unnamed
 from modelgen.report.experiment import followed
-from modelgen.report.sketches import Pen
+from modelgen.report.figures import Pen
 from modelgen.report.writing import write
 
 

@@ -14,7 +14,7 @@ import typer
 from modelgen.cli.files import write_together
 from modelgen.cli.output import print_json, print_table
 from modelgen.dataset import Chosen, Prepared, described, spectra_svg
-from modelgen.extension import with_torque_constants
+from modelgen.effects.editing import with_torque_constants
 from modelgen.identification import Identification, Validation, to_json
 from modelgen.identification.folds import Folds
 from modelgen.identification.output import errors

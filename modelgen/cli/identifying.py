@@ -25,21 +25,15 @@ from modelgen.dataset import (
     split,
 )
 from modelgen.dataset import preset as processing
-from modelgen.dataset.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification import (
-    METHODS,
-    Identification,
-    Instruments,
-    identify,
-    identify_streamed,
-)
+from modelgen.identification import METHODS, Identification, Instruments, identify, identify_streamed
 from modelgen.identification.folds import Folds, folds
+from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.without_drives import Alternative, without_drives
-from modelgen.simulation.instruments import Tracking
 from modelgen.simulation.values import numbers
 
 STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streamed

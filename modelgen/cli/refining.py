@@ -18,8 +18,8 @@ from modelgen.dataset import Settings, choose, prepare, read
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
+from modelgen.identification.output_error.refine import Refinement, refine
 from modelgen.simulation import Scores, plant
-from modelgen.simulation.refinement import Refinement, refine
 
 
 def run(

@@ -21,8 +21,8 @@ from modelgen.description import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.numeric import Array
+from modelgen.report.animation import animation
 from modelgen.simulation import Plant, Reference, Trajectory, plant, simulate
-from modelgen.simulation.animation import animation
 from modelgen.simulation.control import Control, controller
 from modelgen.simulation.simulate import check_length
 from modelgen.simulation.values import by_joint, locks, numbers

@@ -1,14 +1,14 @@
 """Measured logs: reading, checking, processing."""
 
-from modelgen.dataset.choice import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.drives import Drive, drives_of
-from modelgen.dataset.gathering import check_different, gather
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing import Prepared, prepare
-from modelgen.dataset.reading import read
-from modelgen.dataset.sources import read_columns
-from modelgen.dataset.specs import Spec, check_separate, last_quarter_out, parse, split
-from modelgen.dataset.spectra import described, spectra_svg
+from modelgen.dataset.processing.prepare import Prepared, prepare
+from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
+from modelgen.dataset.processing.spectra import described, spectra_svg
+from modelgen.dataset.reading.gathering import check_different, gather
+from modelgen.dataset.reading.read import read
+from modelgen.dataset.reading.sources import read_columns
+from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse, split
 from modelgen.dataset.streaming import Stream
 
 __all__ = [

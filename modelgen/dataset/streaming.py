@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset import checks
-from modelgen.dataset.choice import Chosen, Settings, choose
-from modelgen.dataset.filters import reach
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing import Prepared, prepare
-from modelgen.dataset.reading import record_of
-from modelgen.dataset.resampling import REACH
-from modelgen.dataset.sources import open_source
-from modelgen.dataset.timing import Axis, Survey
+from modelgen.dataset.processing.filters import reach
+from modelgen.dataset.processing.prepare import Prepared, prepare
+from modelgen.dataset.processing.resampling import REACH
+from modelgen.dataset.processing.settings import Chosen, Settings, choose
+from modelgen.dataset.processing.timing import Axis, Survey
+from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.read import record_of
+from modelgen.dataset.reading.sources import open_source
 from modelgen.description import Arm
 from modelgen.numeric import Array
 

@@ -1,6 +1,6 @@
 """Effects: each is one definition in SymPy."""
 
-from modelgen.effects.applied import TIME_STEP, AppliedEffect, Part, applied_effects, free_symbol
+from modelgen.effects.applied import TIME_STEP, AppliedEffect, Part, applied_effects, described, free_symbol
 from modelgen.effects.base import (
     BodyEffect,
     Definition,
@@ -14,7 +14,6 @@ from modelgen.effects.base import (
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE, known_effects
-from modelgen.effects.describing import described
 from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
 __all__ = [

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 import sympy as sp
@@ -238,3 +238,24 @@ def effect_class(use: EffectUse) -> type[Definition]:
 def _hint(name: str, known: Mapping[str, object]) -> str:
     close = get_close_matches(name, known, 1)
     return f", did you mean {close[0]}?" if close else ""
+
+
+def described(arm: Arm) -> Arm:
+    """The arm with its effects on the description carried out and taken off its lists.
+
+    Raises InputError for values that the arm does not admit, and as `applied_effects` does.
+    """
+    changed = arm
+    for use, joint in uses(arm):
+        effect = effect_class(use)()
+        if isinstance(effect, DescriptionEffect):
+            try:
+                changed = effect.changed(changed, joint, resolved(effect, use))
+            except ValueError as error:
+                raise InputError(f"{use.name}: {error}", use.where) from None
+    joints = tuple(replace(joint, effects=_kept(joint.effects)) for joint in changed.joints)
+    return replace(changed, joints=joints, effects=_kept(arm.effects))
+
+
+def _kept(entries: Sequence[EffectUse]) -> tuple[EffectUse, ...]:
+    return tuple(use for use in entries if not issubclass(effect_class(use), DescriptionEffect))

@@ -4,8 +4,19 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from modelgen.effects import compliance, environment, friction, friction_dry, measurement, mechanism
 from modelgen.effects.base import Definition
+from modelgen.effects.laws import (
+    compliance,
+    environment,
+    measurement,
+    mechanism,
+)
+from modelgen.effects.laws import (
+    dry_friction as friction_dry,
+)
+from modelgen.effects.laws import (
+    velocity_friction as friction,
+)
 
 MODULES = (friction, friction_dry, mechanism, compliance, environment, measurement)
 # What is printed first, in this order; others follow in the order of their modules.

@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from modelgen.backends.casadi_function import casadi_function
+from modelgen.backends.casadi.function import casadi_function
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError

@@ -10,8 +10,8 @@ from typing import Any
 
 from modelgen.description import Arm, load
 from modelgen.description.messages import suggest
-from modelgen.diagnosis.objects import Diagnosis, rounded, to_json
-from modelgen.diagnosis.run import diagnose, records
+from modelgen.diagnosis.pipeline import diagnose, records
+from modelgen.diagnosis.result import Diagnosis, rounded, to_json
 from modelgen.effects import known_effects
 from modelgen.errors import InputError
 from modelgen.fleet.store import Row, fingerprint, keep, written

@@ -9,7 +9,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.diagnosis.objects import VERDICTS
+from modelgen.diagnosis.result import VERDICTS
 from modelgen.figures import figure, svg
 from modelgen.fleet.store import Row
 from modelgen.resources import templates_folder

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from modelgen import __version__
-from modelgen.dataset.specs import parse
+from modelgen.dataset.reading.specs import parse
 from modelgen.errors import InputError
 from modelgen.fleet.units import Unit
 

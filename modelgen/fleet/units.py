@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from modelgen.dataset.specs import parse as parse_spec
+from modelgen.dataset.reading.specs import parse as parse_spec
 from modelgen.description.document import Node, Steps, parse, read_text
 from modelgen.description.expressions import ExpressionError, evaluate
 from modelgen.description.messages import describe, first_mistake, mistake

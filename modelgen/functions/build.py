@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from modelgen.base_parameters import Grouping, fluid_remarks, group
-from modelgen.base_parameters.analytic import slid
+from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm, NoDrive
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from modelgen.functions.arguments import input_units
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.objects import Function, Output, SparsityTable
-from modelgen.functions.search import Choice, LinkColumns
+from modelgen.functions.regressor_plans import Choice, LinkColumns
 from modelgen.graph import Expr
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations

@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from modelgen import __version__
-from modelgen.backends import PRINTERS, Provenance, packaging_files
+from modelgen.backends import PRINTERS, Provenance
 from modelgen.backends.c import c_symbols
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
@@ -17,6 +17,7 @@ from modelgen.functions.objects import Model
 from modelgen.generation.canonical import description_hash
 from modelgen.generation.folders import ARTEFACTS, MARK
 from modelgen.generation.sizes import size_rows
+from modelgen.packaging import packaging_files
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ def generate_arm(arm: Arm, options: Options, artefacts: Collection[str] = ()) ->
     if not artefacts:
         return made
     # Loads CasADi, which nothing else needs.
-    from modelgen.backends.casadi_artefacts import (  # noqa: PLC0415
+    from modelgen.backends.casadi.artefacts import (  # noqa: PLC0415
         PLANT,
         SERIALISED,
         plant_files,

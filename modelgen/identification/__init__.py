@@ -3,9 +3,9 @@
 from modelgen.identification.identify import METHODS, Instruments, identify
 from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.output import to_json
-from modelgen.identification.regression import Regression, Solution, Triangle
 from modelgen.identification.streamed import identify_streamed
-from modelgen.identification.words import verdict
+from modelgen.identification.summary import verdict
+from modelgen.regression.least_squares import Regression, Solution, Triangle
 
 __all__ = [
     "METHODS",

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from modelgen.description import Arm
 from modelgen.description.objects import DirectDrive, LeveredDrive
 from modelgen.errors import InputError
-from modelgen.identification.regression import Regression, Solution, Triangle
 from modelgen.numeric import Array
+from modelgen.regression.least_squares import Regression, Solution, Triangle
 
 TURNS = 30
 SETTLED = 1e-8  # relative change of the gains at which the iteration ends

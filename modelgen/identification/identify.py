@@ -8,21 +8,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.dataset.periods import period_of
+from modelgen.dataset.processing.periods import period_of
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.evaluation import Prober
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.consistent import consistent
-from modelgen.identification.essentials import essential, only, part, refit
+from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, Instrument, compared, of_period
 from modelgen.identification.objects import Estimate, Identification
-from modelgen.identification.regression import Regression, Solution
 from modelgen.identification.validation import regression_of, validate
 from modelgen.numeric import Array
-from modelgen.probing import Prober
+from modelgen.regression.least_squares import Regression, Solution
 
 METHODS = ("ols", "wls", "gls", "robust", "iv")
 INSTRUMENTS = ("auto", "period", "simulated")

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from modelgen.dataset.periods import other_period
-from modelgen.identification.autocovariance import autocovariance, autoregression, meat_of
-from modelgen.identification.regression import Regression, Solution
+from modelgen.dataset.processing.periods import other_period
 from modelgen.numeric import Array
+from modelgen.regression.autocovariance import autocovariance, autoregression, meat_of
+from modelgen.regression.least_squares import Regression, Solution
 
 SIGNIFICANCE = 1e-3
 FEWEST = 10  # rows with a partner, per parameter

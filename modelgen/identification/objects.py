@@ -9,8 +9,8 @@ from modelgen.functions import Model
 from modelgen.identification.consistent import Consistent
 from modelgen.identification.gains import Gain
 from modelgen.identification.instrumental import Comparison
-from modelgen.identification.regression import Solution
 from modelgen.numeric import Array
+from modelgen.regression.least_squares import Solution
 
 POOR = 30.0  # % of relative standard deviation from which a parameter is called poorly determined
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from modelgen.identification.instrumental import Comparison
 from modelgen.identification.objects import Identification, Validation
-from modelgen.identification.words import verdict
+from modelgen.identification.summary import verdict
 
 
 def to_json(found: Identification) -> dict[str, Any]:

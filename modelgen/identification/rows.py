@@ -6,12 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.compiled import RegressorColumns, compiler
+from modelgen.backends.compiled import RegressorColumns
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
+from modelgen.evaluation import Motion, Prober
 from modelgen.functions import Model
+from modelgen.native import compiler
 from modelgen.numeric import Array
-from modelgen.probing import Motion, Prober
 
 SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
 

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared, Stream, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.evaluation import Prober
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.autocovariance import ORDER, autoregression, meat_of
 from modelgen.identification.identify import concluded
 from modelgen.identification.objects import Identification
-from modelgen.identification.regression import ROUNDS, Solution, Triangle
 from modelgen.identification.rows import Rows
 from modelgen.numeric import Array
-from modelgen.probing import Prober
+from modelgen.regression.autocovariance import ORDER, autoregression, meat_of
+from modelgen.regression.least_squares import ROUNDS, Solution, Triangle
 
 Progress = Callable[[int, int], None]
 Block = tuple[Array, Array, NDArray[np.bool_]]

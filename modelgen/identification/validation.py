@@ -8,12 +8,12 @@ import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
+from modelgen.evaluation import Prober
 from modelgen.functions import Model
 from modelgen.identification.objects import Validation
-from modelgen.identification.regression import Regression
 from modelgen.identification.rows import Rows
 from modelgen.numeric import Array
-from modelgen.probing import Prober
+from modelgen.regression.least_squares import Regression
 
 
 def validate(

@@ -7,7 +7,14 @@ from functools import cached_property
 
 import sympy as sp
 
-from modelgen.effects import AppliedEffect, BodyVariables, InputVariables, Part, PointVariables, Variables
+from modelgen.effects import (
+    AppliedEffect,
+    BodyVariables,
+    InputVariables,
+    Part,
+    PointVariables,
+    Variables,
+)
 from modelgen.geometry.frames import turn_z
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy

@@ -9,14 +9,15 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.diagnosis.candidates import COMPLIANT
-from modelgen.diagnosis.lack_of_fit import place
-from modelgen.diagnosis.objects import Diagnosis, Named
-from modelgen.diagnosis.ranking import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
+from modelgen.diagnosis.adequacy.lack_of_fit import place
+from modelgen.diagnosis.candidates.candidate import COMPLIANT
+from modelgen.diagnosis.extended.findings import Named
+from modelgen.diagnosis.result import Diagnosis
+from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
 from modelgen.effects import CATALOGUE
-from modelgen.report.drawing import effort, inline, left_over, replayed, residuals
+from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
 from modelgen.report.experiment import described, picture
-from modelgen.report.sketches import Sketch
+from modelgen.report.figures import Sketch
 from modelgen.resources import templates_folder
 
 EFFORT, LEFT_OVER, REPLAY, NEXT = "effort", "left over", "replay", "next experiment"

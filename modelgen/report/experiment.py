@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.diagnosis.experiments import STEM, Experiment, differences
-from modelgen.diagnosis.objects import Diagnosis
-from modelgen.diagnosis.proposal import PERIODS
+from modelgen.diagnosis.experiment.experiment import STEM, Experiment, differences
+from modelgen.diagnosis.experiment.trajectory import PERIODS
+from modelgen.diagnosis.result import Diagnosis
 from modelgen.excitation.writing import set_points, trajectory
 from modelgen.figures import COLOURS
-from modelgen.report.drawing import inline
-from modelgen.report.sketches import Sketch
+from modelgen.report.diagnosis_figures import inline
+from modelgen.report.figures import Sketch
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
 

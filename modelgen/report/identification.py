@@ -14,7 +14,7 @@ from modelgen.figures import COLOURS, figure, svg
 from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
-from modelgen.report.drawing import inline
+from modelgen.report.diagnosis_figures import inline
 from modelgen.resources import templates_folder
 
 AS_DESCRIBED = "the arm as described"

@@ -7,16 +7,16 @@ import shutil
 from pathlib import Path
 
 from modelgen.description import load
-from modelgen.diagnosis.drives import described_by
-from modelgen.diagnosis.objects import Diagnosis, to_json
+from modelgen.diagnosis.extended.drive_inertia import described_by
+from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import known_effects
+from modelgen.effects.editing import extended_yaml
 from modelgen.errors import InputError
-from modelgen.extension import extended_yaml
 from modelgen.functions import Options
 from modelgen.generation import generate
 from modelgen.report.diagnosis import NEXT, pictures, report, sketches
 from modelgen.report.experiment import NAMES, plans
-from modelgen.report.sketches import Pen
+from modelgen.report.figures import Pen
 
 
 def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:

@@ -10,10 +10,10 @@ import casadi as ca
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from modelgen.backends.casadi_function import casadi_function
+from modelgen.backends.casadi.function import casadi_function
 from modelgen.numeric import Array
+from modelgen.simulation.friction_set import Modes, accelerated, hold, settled
 from modelgen.simulation.plant import Plant
-from modelgen.simulation.sticking import Modes, accelerated, hold, settled
 
 METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
 LEFT = -1  # the event of a coordinate that leaves its range

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from modelgen.backends.casadi_function import casadi_function
+from modelgen.backends.casadi.function import casadi_function
 from modelgen.description.objects import NoDrive
 from modelgen.errors import InputError
 from modelgen.numeric import Array

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.backends import Provenance, c_files
-from modelgen.compiled import shared_library
 from modelgen.errors import InputError
 from modelgen.functions import Function
 from modelgen.graph import count_operations
+from modelgen.native import shared_library
 from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
 

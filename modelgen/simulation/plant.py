@@ -13,7 +13,7 @@ from modelgen.errors import InputError
 from modelgen.functions import Model, grouped, nominal_standard
 from modelgen.functions.nominal import payload_standard
 from modelgen.numeric import Array
-from modelgen.simulation.slip import Slip, elastic, slip
+from modelgen.simulation.friction_set import Slip, elastic, slip
 from modelgen.transmission import STROKE_MARGIN, of_joint
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.dataset import Prepared
+from modelgen.dataset.processing.prepare import held_inputs
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.simulation.control import Control, Reference, controller
 from modelgen.simulation.metrics import Scores, scores
-from modelgen.simulation.parts import held_inputs
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.simulate import simulate
 

@@ -8,8 +8,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from modelgen.compiled import compiler
 from modelgen.errors import InputError
+from modelgen.native import compiler
 from modelgen.numeric import Array
 from modelgen.simulation.adaptive import METHODS, Adaptive
 from modelgen.simulation.control import Control

@@ -10,8 +10,8 @@ import numpy as np
 
 from modelgen.numeric import Array
 from modelgen.simulation.adaptive import LEFT, Adaptive, Phase
+from modelgen.simulation.friction_set import Modes, hold
 from modelgen.simulation.plant import Plant
-from modelgen.simulation.sticking import Modes, hold
 
 
 class Sundials(Adaptive):

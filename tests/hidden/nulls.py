@@ -20,17 +20,18 @@ from numpy.random import default_rng
 from hidden.blind import SMALL
 from hidden.cases import RECORDS, TEST, Case, make
 from modelgen.dataset import choose, prepare
-from modelgen.dataset.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
-from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.lack_of_fit import ratios
-from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.positions import with_errors
-from modelgen.diagnosis.run import records, settings_for
-from modelgen.diagnosis.shapes import SHAPE, shapes, worth
-from modelgen.diagnosis.system import System, weighted_fit
+from modelgen.diagnosis.adequacy.lack_of_fit import ratios
+from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, shapes, worth
+from modelgen.diagnosis.equations.band import rows_twice
+from modelgen.diagnosis.equations.least_squares import weighted_fit
+from modelgen.diagnosis.equations.position_errors import with_errors
+from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.pipeline import records, settings_for
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
 HEAD = '''\

@@ -9,14 +9,14 @@ import numpy as np
 from hidden import logs
 from hidden.cases import RECORDS, TEST, Bench, Case
 from modelgen.dataset import choose, prepare
-from modelgen.dataset.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
-from modelgen.diagnosis.baseline import estimated
-from modelgen.diagnosis.outcome import rows_twice
-from modelgen.diagnosis.run import records, settings_for
-from modelgen.diagnosis.system import weighted_fit
+from modelgen.diagnosis.equations.band import rows_twice
+from modelgen.diagnosis.equations.least_squares import weighted_fit
+from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.pipeline import records, settings_for
+from modelgen.evaluation import Prober
 from modelgen.functions import build_model
-from modelgen.probing import Prober
 
 
 def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[float]:

@@ -9,7 +9,13 @@ from decimal import Decimal
 from modelgen.backends.c.pairs import Pair
 from modelgen.backends.elements import Element
 from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
-from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, STATUS_STROKE, Function, least_guarded
+from modelgen.functions.objects import (
+    STATUS_INPUT,
+    STATUS_PIVOT,
+    STATUS_STROKE,
+    Function,
+    least_guarded,
+)
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "

@@ -1,0 +1,1 @@
+"""The CasADi module of an arm."""

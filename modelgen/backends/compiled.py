@@ -1,0 +1,87 @@
+"""TODO."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.backends.body import body
+from modelgen.backends.elements import Element
+from modelgen.functions.objects import Function
+from modelgen.native.columns import Columns
+from modelgen.native.lanes import _HEAD
+
+
+class RegressorColumns(Columns):
+    """What a function computes of its output. elements: (c,), numbers of these elements, in order."""
+
+    def __init__(self, function: Function) -> None:
+        text, elements = text_of(function)
+        super().__init__(text, len(elements))
+        self.elements = np.array(elements, dtype=np.intp)
+
+
+def text_of(function: Function) -> tuple[str, list[int]]:
+    """C of the function's first output, and which of its elements (by their number) it computes, in order.
+
+    The text defines LANES, INPUTS, COLUMNS and columns(x, out): x, the elements of the arguments one after
+    the other; out, what is computed of the output. What is beyond a domain comes as NaN, as in NumPy.
+    """
+    (output,) = function.outputs
+    targets = [s.target for s in function.program.statements]
+    computed = sorted(t[1] for t in targets if isinstance(t, tuple) and t[0] == output.name)
+    dialect = _Lanes(function, {element: k for k, element in enumerate(computed)})
+    lines = [
+        _HEAD,
+        f"enum {{ INPUTS = {sum(a.size for a in function.arguments)}, COLUMNS = {len(computed)} }};",
+        "static void columns(const lanes_t x[], lanes_t out[])",
+        "{",
+        *(f"    {line}" for line in body(function, {}, dialect)),
+        "}",
+    ]
+    return "\n".join(lines) + "\n", computed
+
+
+class _Lanes:
+    """Statements over vectors."""
+
+    def __init__(self, function: Function, places: dict[int, int]) -> None:
+        self.places = places
+        self.offsets: dict[str, int] = {}
+        count = 0
+        for argument in function.arguments:
+            self.offsets[argument.name] = count
+            count += argument.size
+
+    def constant(self, value: float) -> str:
+        """In all lanes."""
+        return f"K({float(value)!r})"
+
+    def element(self, vector: str, index: int) -> str:
+        """Of the inputs one after the other."""
+        return f"x[{self.offsets[vector] + index}]"
+
+    def temporary(self, number: int) -> str:
+        """t0, t1, ..."""
+        return f"t{number}"
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """A function of the text above."""
+        return f"m_{function}({', '.join(arguments)})"
+
+    def load(self, element: Element, source: str) -> str:
+        """Nothing: elements have no names."""
+        return ""
+
+    def let(self, number: int, text: str) -> str:
+        """A value that never changes."""
+        return f"const lanes_t t{number} = {text};"
+
+    def store(self, output: str, index: int, text: str) -> str:
+        """One column."""
+        return f"out[{self.places[index]}] = {text};"
+
+    def guard(self, status: int, text: str) -> str:
+        """None, as in NumPy."""
+        return ""

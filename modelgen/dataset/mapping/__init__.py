@@ -1,0 +1,1 @@
+"""Mapping files: names, units and scales of foreign logs."""

@@ -1,0 +1,200 @@
+"""From a record to what regressions are made of: filtered positions, derivatives, and one parallel filter.
+
+Regressor columns are evaluated at full rate from lightly filtered positions; the effort and all columns
+then pass the same low-pass filter and are decimated alike (Gautier, 1997, "Dynamic identification of
+robots with power model"; Pham, Gautier and Poignet, 2001).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.dataset.drives import drives_of
+from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.decimation import Decimation, decimation, kept
+from modelgen.dataset.processing.filters import advanced, differences, low_pass
+from modelgen.dataset.processing.rest import moving_samples, samples_away_from_rest
+from modelgen.dataset.processing.settings import Chosen, Settings, choose
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+FEWEST_ROWS = 10
+COLUMNS = 32  # filtered together
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A processed record: N samples at full rate, M after decimation and trimming, n coordinates.
+
+    time: (N,) [s]. q, dq, ddq: (N, n) joint coordinates and derivatives [rad, m, per s, per s^2], filtered.
+    motor, dmotor, ddmotor: the same in the motor coordinates [motor unit]. input: (N, n) in the contract's
+    unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
+    times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
+    rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
+    joint moves there, away from rest. awake: (N, n), whether it does so at all samples, rests of a moment
+    counted as well; at all of a free motion. settings: as used, every choice made.
+    """
+
+    record: Record
+    settings: Chosen
+    time: Array
+    q: Array
+    dq: Array
+    ddq: Array
+    motor: Array
+    dmotor: Array
+    ddmotor: Array
+    input: Array | None
+    gain: Array | None
+    effort_unit: tuple[str, ...]
+    temperature: Array | None
+    rows: np.ndarray
+    moving: np.ndarray
+    awake: np.ndarray
+
+    @property
+    def t(self) -> Array:
+        """Times of the rows (M,) [s]."""
+        return np.asarray(self.time[self.rows])
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.record.n
+
+    @property
+    def rate(self) -> float:
+        """Rows per second [Hz]."""
+        return 1.0 / (self.record.step * self.settings.factor)
+
+    @property
+    def decimation(self) -> Decimation | None:
+        """The parallel filter at the rows alone; None where all samples are filtered, or none."""
+        chosen = self.settings
+        return decimation(len(self.time), self.rows, chosen.cutoff, 1.0 / self.record.step, chosen.order)
+
+    def parallel(self, columns: Array) -> Array:
+        """Columns (N,) or (N, k) at full rate, low-passed, decimated and trimmed: (M,) or (M, k).
+
+        THE filter of effort and of every regressor column.
+        """
+        table: Array = columns.reshape(len(columns), -1)
+        result = np.empty((len(self.rows), table.shape[1]))
+        rate, chosen = 1.0 / self.record.step, self.settings
+        # Some columns at a time: what the filter takes along stays small.
+        for k in range(0, table.shape[1], COLUMNS):
+            part = table[:, k : k + COLUMNS]
+            result[:, k : k + COLUMNS] = kept(part, self.rows, chosen.cutoff, rate, chosen.order)
+        return result.reshape((len(self.rows), *columns.shape[1:]))
+
+    def picked(self, columns: Array) -> Array:
+        """Columns (N, ...) at the rows, not filtered: (M, ...)."""
+        return np.asarray(columns[self.rows])
+
+    @property
+    def effort(self) -> Array:
+        """The input through the parallel filter (M, n). Raises InputError for a free motion."""
+        if self.input is None:
+            raise InputError(f"{self.record.name}: a free motion has no effort")
+        return self.parallel(self.input)
+
+
+def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepared:
+    """The record processed by `settings`, by default by what its rate and content ask for.
+
+    Raises InputError where the record is too short for the filters, or cut-offs do not fit its rate.
+    """
+    chosen = choose(record, settings)
+    step = record.step
+    rate = 1.0 / step
+    drives = drives_of(record.arm) if record.arm is not None else ()
+    sides = record.motor_side or (False,) * record.n
+    # Quantisation is even in the coordinate that was logged: that one is filtered, the other follows.
+    logged = np.where(sides, record.motor, record.q) if any(sides) else record.q
+    q, dq, ddq = _smoothed(logged, step, chosen)
+    if drives:
+        both = zip(drives, sides, strict=True)
+        ratios = np.array([1.0 if side or d.ratio is None else d.ratio for d, side in both])
+        motor, dmotor, ddmotor = q * ratios, dq * ratios, ddq * ratios
+    else:
+        motor, dmotor, ddmotor = _smoothed(record.motor, step, chosen)
+    for k, drive in enumerate(drives):
+        if sides[k]:
+            q[:, k] = drive.joint(motor[:, k])
+            k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
+            dq[:, k] = dmotor[:, k] / k1
+            ddq[:, k] = (ddmotor[:, k] - slope * dq[:, k] ** 2) / k1
+        elif drive.ratio is None:
+            motor[:, k] = drive.motor(q[:, k])
+            k1, slope = drive.k1(q[:, k]), drive.slope(q[:, k])
+            dmotor[:, k] = k1 * dq[:, k]
+            ddmotor[:, k] = k1 * ddq[:, k] + slope * dq[:, k] ** 2
+    if not np.isfinite(q).all():
+        raise InputError(
+            f"{record.name}: filtered motor coordinates leave the lever's stroke; check the description"
+        )
+    given = None
+    if record.input is not None:
+        given = advanced(record.input, record.hold / step, record.held) if record.hold else record.input
+    rows = kept_rows(record, chosen)
+    if len(rows) < FEWEST_ROWS and record.core is None:
+        raise InputError(
+            f"{record.name}: found {len(record.t) * step:.4g} s, too short a record: with the cut-off "
+            f"{chosen.cutoff:.4g} Hz only {len(rows)} rows remain, expected at least {FEWEST_ROWS}"
+        )
+    return Prepared(
+        record=record,
+        settings=chosen,
+        time=record.t,
+        q=q,
+        dq=dq,
+        ddq=ddq,
+        motor=motor,
+        dmotor=dmotor,
+        ddmotor=ddmotor,
+        input=given,
+        gain=record.gain,
+        effort_unit=record.effort_unit,
+        temperature=record.temperature,
+        rows=rows,
+        moving=moving_samples(dq, rows, chosen, rate),
+        # a swing turns slowly, and what is known of its friction is there
+        awake=np.ones(dq.shape, dtype=bool) if given is None else samples_away_from_rest(dq, chosen, rate),
+    )
+
+
+def _smoothed(columns: Array, step: float, chosen: Chosen) -> tuple[Array, Array, Array]:
+    """Filtered columns (N, k) and their first two derivatives."""
+    cutoff = chosen.position_cutoff
+    values = (
+        low_pass(columns, cutoff, 1.0 / step, chosen.position_order) if cutoff else columns.copy(order="K")
+    )
+    return values, *differences(values, step, chosen.half_width)
+
+
+def kept_rows(record: Record, settings: Chosen) -> np.ndarray:
+    """Indices of the samples that decimation and trimming keep.
+
+    In a block of a stream they lie on the grid of the whole log.
+    """
+    trim = settings.trimmed(record.step)
+    begin, end = (trim, len(record.t) - trim) if record.core is None else record.core
+    begin += (trim - record.first - begin) % settings.factor
+    return np.arange(begin, max(begin, end), settings.factor)
+
+
+def held_inputs(p: Prepared) -> Array:
+    """Inputs (N, n) constant over the interval that follows each sample; zeros for a free motion.
+
+    Those of the log where that is how they were applied, else what they are in the interval's middle.
+    """
+    record = p.record
+    if record.input is None:
+        return np.zeros_like(p.q)
+    early = record.step / 2 - record.hold
+    if record.held or abs(early) < 1e-9 * record.step:
+        return record.input
+    t = record.t + early
+    return np.stack([np.interp(t, record.t, u) for u in record.input.T], axis=1)

@@ -1,0 +1,59 @@
+"""Samples at rest: friction is undetermined there, and what is made of them breeds false causes."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from modelgen.dataset.processing.decimation import kept
+from modelgen.dataset.processing.settings import Chosen
+from modelgen.numeric import Array
+
+SHARE = 0.02  # of the filter's weight that may lie on samples at rest
+MOMENT = 0.05  # of a period of the cut-off: a rest so short leaves nothing in what the filter lets pass
+
+
+def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
+    """Whether each joint moves at the rows (M, n), given its speeds dq (N, n).
+
+    A joint is at rest where its speed stays below its gate for longer than `settings.rest_time`; a reversal
+    passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
+    taken no more than a fiftieth of its weight from samples at rest.
+    """
+    slow = np.abs(dq) < np.array(settings.gates)
+    rest = _resting(slow, settings.rest_time * rate)
+    moving = ~slow[rows]
+    resting = np.flatnonzero(rest.any(axis=0))
+    if len(resting):
+        flags = rest[:, resting].astype(np.float64)
+        moving[:, resting] &= kept(flags, rows, settings.cutoff, rate, settings.order) < SHARE
+    return np.asarray(moving)
+
+
+def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarray:
+    """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts, for longer, so
+    near that the filters of its position blend both.
+    """
+    slow = np.abs(dq) < np.array(settings.gates)
+    moment, reach = settings.rest_time, settings.half_width
+    if settings.cutoff:
+        moment = min(moment, MOMENT / settings.cutoff)
+    if settings.position_cutoff:
+        reach += round(0.5 * rate / settings.position_cutoff)
+    long = ndimage.binary_dilation(_resting(slow, settings.rest_time * rate), np.ones((2 * reach + 1, 1)))
+    return np.asarray(~long & ~_resting(slow, moment * rate))
+
+
+def _resting(slow: np.ndarray, longest: float) -> np.ndarray:
+    """Flags (N, n) of slow samples, in runs of `longest` samples or more."""
+    return np.stack([long_runs(column, max(2, round(longest))) for column in slow.T], axis=1)
+
+
+def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:
+    """The flags (N,), without runs of True shorter than `longest`."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(np.int8), [0]))))
+    kept = np.zeros(len(flags), dtype=bool)
+    for begin, end in edges.reshape(-1, 2):
+        if end - begin >= longest:
+            kept[begin:end] = True
+    return kept

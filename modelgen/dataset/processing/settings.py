@@ -1,0 +1,211 @@
+"""Settings of the processing, and the choices that a record's rate and content ask for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy import signal
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.filters import differences, low_pass
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+NOISE = 1e-3  # of the accelerations' power may be noise of the positions, below the cut-off
+CONTENT = 0.9  # of the speeds' power make up the bandwidth of the motion
+OVER_CONTENT = 2.5  # cut-off over that bandwidth, at least
+PERIODS = 10.0  # of the cut-off in a record, at least
+SAMPLES = 25.0  # per period of the cut-off, at least
+POSITION_OVER_EFFORT = 4.5  # cut-off of the positions over the parallel one
+HIGHEST = 0.45  # of the rate: a filter above it does nothing
+DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
+SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
+GATE = 0.01  # of the joint's speed (99 % quantile)
+STILL = 5  # readings: a joint that has no more rests, be it shaken under its brake
+REVERSAL = 5e-3  # s, at most, below the gates: passing through them is no rest, whatever the cut-off
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a record is processed; None: chosen from the record.
+
+    cutoff: parallel low-pass of effort and regressor [Hz], 0: none. order: of that Butterworth filter,
+    which runs forwards and backwards. position_cutoff, position_order: light filter of the positions,
+    0 Hz: none. half_width: of the central differences, whose order is twice that. factor: decimation,
+    every factor-th sample is kept. trim: cut off at both ends [s]. rest_gate: speeds below which a
+    joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s].
+    """
+
+    cutoff: float | None = None
+    order: int = 4
+    position_cutoff: float | None = None
+    position_order: int = 4
+    half_width: int = 3
+    factor: int | None = None
+    trim: float | None = None
+    rest_gate: float | tuple[float, ...] | None = None
+    rest_time: float | None = None
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Settings with every choice made, meanings and units as there."""
+
+    cutoff: float
+    order: int
+    position_cutoff: float
+    position_order: int
+    half_width: int
+    factor: int
+    trim: float
+    gates: tuple[float, ...]
+    rest_time: float
+
+    def trimmed(self, step: float) -> int:
+        """Samples cut off at both ends, for a sampling period [s]."""
+        # A record's blocks have its period but for rounding: a half must not fall to either side.
+        return math.ceil(self.trim / step - 1e-6)
+
+
+# Leborne, Creuze, Chemori and Brignone (2018), IV-D: positions by a Butterworth filter of order 3,
+# cut-off 0.1 of the Nyquist frequency, zero phase; central differences; current as measured.
+# `paper_parallel` also filters current and regressor alike, by that filter.
+PRESETS = ("default", "paper", "paper_parallel")
+
+
+def preset(name: str, rate: float) -> Settings:
+    """Settings by name, for a record of `rate` [Hz]. Raises InputError for a name that does not exist."""
+    if name == "default":
+        return Settings()
+    if name not in PRESETS:
+        raise InputError(f"found the preset '{name}', expected one of {', '.join(PRESETS)}")
+    cutoff = 0.1 * rate / 2
+    paper = Settings(cutoff=0.0, order=3, position_cutoff=cutoff, position_order=3, half_width=1, factor=1)
+    return paper if name == "paper" else replace(paper, cutoff=cutoff)
+
+
+def choose(records: Record | Sequence[Record], settings: Settings | Chosen | None = None) -> Chosen:
+    """The settings with every choice made, the same for all of the records.
+
+    They must have one rate, to 2 %. Raises InputError where the settings do not fit them.
+    """
+    several = [records] if isinstance(records, Record) else list(records)
+    first = several[0]
+    for record in several[1:]:
+        if abs(record.step / first.step - 1.0) > SAME_RATE:
+            raise InputError(
+                f"{record.name}: found the rate {1 / record.step:.6g} Hz, {first.name} has "
+                f"{1 / first.step:.6g} Hz; `time: {{resample: ...}}` in a mapping file gives them one rate"
+            )
+    rate = 1.0 / first.step
+    if isinstance(settings, Chosen):
+        _check(first, settings.cutoff, settings.position_cutoff)
+        return settings
+    settings = settings or Settings()
+    cutoff = settings.cutoff
+    if cutoff is None:
+        cutoff = max(chosen_cutoff(record) for record in several)
+    position = settings.position_cutoff
+    if position is None:
+        position = POSITION_OVER_EFFORT * cutoff
+        position = 0.0 if position > HIGHEST * rate else position
+    _check(first, cutoff, position)
+    factor = settings.factor
+    if factor is None:
+        factor = max(1, int(rate / (DECIMATED_OVER_CUTOFF * cutoff))) if cutoff else 1
+    trim = settings.trim
+    if trim is None:
+        lowest = min((f for f in (cutoff, position) if f), default=np.inf)
+        trim = 1.5 / lowest + settings.half_width * first.step
+    gates = settings.rest_gate
+    if gates is None:
+        found = [chosen_gates(r, position, settings.position_order, settings.half_width) for r in several]
+        gates = tuple(max(column) for column in zip(*found, strict=True))
+    elif isinstance(gates, float | int):
+        gates = (float(gates),) * first.n
+    if len(gates) != first.n:
+        raise InputError(f"{first.name}: found {len(gates)} rest gates, expected one or {first.n}")
+    time = settings.rest_time
+    if time is None:
+        time = max(0.25 / cutoff, REVERSAL) if cutoff else 3 * first.step
+    return Chosen(
+        cutoff=cutoff,
+        order=settings.order,
+        position_cutoff=position,
+        position_order=settings.position_order,
+        half_width=settings.half_width,
+        factor=factor,
+        trim=trim,
+        gates=gates,
+        rest_time=time,
+    )
+
+
+def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
+    rate = 1.0 / record.step
+    for name, value in (("cut-off", cutoff), ("position cut-off", position_cutoff)):
+        if not 0.0 <= value < 0.5 * rate:
+            raise InputError(
+                f"{record.name}: found the {name} {value:g} Hz, expected one below half the rate, "
+                f"{0.5 * rate:.6g} Hz"
+            )
+
+
+def chosen_cutoff(record: Record) -> float:
+    """Parallel cut-off [Hz]: as high as the noise of the positions allows.
+
+    Noise in a regressor biases least squares. What the accelerations' spectrum holds beyond its valley, and
+    the valley's level below it, counts as noise: it makes up a thousandth of their power at most. Bounded
+    by the motion's own bandwidth, and by the record's rate and length.
+    """
+    rate = 1.0 / record.step
+    length = len(record.t) * record.step
+    found = [_frequencies(record.q[:, k], rate) for k in range(record.n)]
+    quiet = min(f for f, _ in found)
+    content = max(f for _, f in found)
+    return float(min(max(quiet, OVER_CONTENT * content, PERIODS / length), rate / SAMPLES))
+
+
+def motion_bandwidth(record: Record) -> float:
+    """Frequency [Hz] below which nine tenths of the power of every joint's speed lie, noise apart."""
+    return max(_frequencies(q, 1.0 / record.step)[1] for q in record.q.T)
+
+
+def _frequencies(q: Array, rate: float) -> tuple[float, float]:
+    """Highest cut-off [Hz] that the noise of a position q (N,) allows, and the bandwidth of the motion."""
+    speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
+    window = int(min(len(speed), max(64, 10.0 * rate)))
+    f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
+    top = 0.35 * rate  # central differences see little above
+    f, power = f[f < top], power[f < top]
+    # White noise of the position, from the upper half; its estimate scatters: twice the level is noise yet.
+    white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
+    upper = f > 0.5 * top
+    floor = 2.0 * float(np.median(power[upper] / white[upper]))
+    speeds = np.cumsum(np.maximum(power - floor * white, 0.0))
+    content = float(f[np.searchsorted(speeds, CONTENT * speeds[-1])])
+    accelerations = power * (2 * np.pi * f) ** 2
+    edges = max(content, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
+    bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
+    levels = [(float(np.mean(accelerations[b])), float(f[b][0])) for b in bands if b.any()]
+    level, valley = min(levels, default=(0.0, top))
+    noise = np.cumsum(np.where(f < valley, level, accelerations))
+    noisy = noise > NOISE * np.sum(accelerations[f < valley])
+    return float(f[np.argmax(noisy)]) if noisy.any() else top, content
+
+
+def chosen_gates(record: Record, cutoff: float, order: int, half_width: int) -> tuple[float, ...]:
+    """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds, and all of their
+    speeds where they have a few readings alone.
+
+    cutoff, order: of the positions' filter [Hz]. half_width: of the differences.
+    """
+    q = low_pass(record.q, cutoff, 1.0 / record.step, order) if cutoff else record.q
+    speed, _ = differences(q, record.step, half_width)
+    high = np.quantile(np.abs(speed), 0.99, axis=0)
+    still = [len(np.unique(q)) <= STILL for q in record.q.T]
+    return tuple(np.where(still, (1.0 + GATE) * np.abs(speed).max(axis=0), GATE * high).tolist())

@@ -1,0 +1,1 @@
+"""Log files into columns, and columns into records."""

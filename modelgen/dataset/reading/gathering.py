@@ -1,0 +1,59 @@
+"""The records of a command: training and test logs, read, checked against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.reading.read import read
+from modelgen.dataset.reading.specs import check_separate
+from modelgen.description import Arm
+from modelgen.errors import InputError
+
+RUN = 50  # samples in a row that two records may not share
+
+
+def gather(
+    train: Sequence[str], test: Sequence[str], arm: Arm, mapping: Path | str | None = None
+) -> tuple[list[Record], list[Record]]:
+    """Training and test records of `--train`, `--test`, `--mapping`.
+
+    Raises InputError as `read` and `check_separate` do, and where a test record holds samples of a training
+    record under another name.
+    """
+    check_separate(train, test)
+    training = [read(spec, arm, mapping) for spec in train]
+    testing = [read(spec, arm, mapping) for spec in test]
+    for record in testing:
+        for other in training:
+            check_different(other, record)
+    return training, testing
+
+
+def check_different(train: Record, test: Record) -> None:
+    """No fifty consecutive samples of a motion in both. Raises InputError.
+
+    Measured samples do not repeat to the last digit: such runs are copies, whatever the files are called.
+    """
+    seen = {row.tobytes() for row in _rows(train)}
+    rows = _rows(test)
+    shared = np.array([row.tobytes() in seen for row in rows], dtype=bool)
+    # At rest, quantised samples do repeat.
+    moving = np.any(np.diff(test.q, axis=0, prepend=test.q[:1]) != 0.0, axis=1)
+    counts = np.cumsum(np.concatenate([[0], shared & moving]))
+    if len(counts) > RUN and np.any(counts[RUN:] - counts[:-RUN] == RUN):
+        first = int(np.argmax(counts[RUN:] - counts[:-RUN] == RUN))
+        raise InputError(
+            f"--train {train.name} and --test {test.name} share samples: those after "
+            f"t = {test.t[first]:.6g} s "
+            "of the test record are in the training record too; a test record must be another measurement"
+        )
+
+
+def _rows(record: Record) -> np.ndarray:
+    """Samples (N, k), without their stamps: a copy may start anew."""
+    columns = [record.q] if record.input is None else [record.q, record.input]
+    return np.ascontiguousarray(np.hstack(columns))

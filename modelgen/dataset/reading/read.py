@@ -1,0 +1,152 @@
+"""From columns of a log to a Record: joint and motor coordinates, inputs, one uniform time axis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
+from modelgen.dataset.processing.timing import Axis, survey
+from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.sources import BLOCK, Source, open_source
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+SLOW = 0.5  # s between samples: hardly a log of a motion
+
+
+def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
+    """The record that `FILE` or `FILE@t0:t1` names, in the arm's coordinates.
+
+    Columns are those of docs/logs.md, or what the mapping file makes of the log's own. Raises InputError
+    for anything that is missing, doubled, not finite, out of order, constant, too short or out of range.
+    """
+    source = open_source(spec, arm, mapping)
+    blocks = list(source.blocks())
+    table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
+    checks.check_length(spec, len(table))
+    checks.check_finite(spec, table[:, 0], source.wanted, table)
+    axis = survey(spec, table[:, 0], BLOCK, source.rate, source.gap)
+    record, logged = record_of(source, arm, table, axis, axis.times())
+    checks.check_constant(spec, arm, source.signals.position, logged, "position")
+    if record.input is not None:
+        checks.check_constant(spec, arm, source.signals.effort, record.input, "effort")
+    return record
+
+
+def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> tuple[Record, Array]:
+    """The record of a table of the source's columns (N, k), and its positions as logged (M, n).
+
+    t: times of the axis that it shall have (M,) [s], all or a part. Raises InputError where positions leave
+    the arm's limits.
+    """
+    file = source.spec.text
+    signals, drives = source.signals, source.drives
+    on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
+    logged = on_axis.smooth(signals.position)
+    motor_side = tuple(name.startswith("qm") for name in signals.position)
+    q, motor = logged.copy(order="K"), logged.copy(order="K")
+    for k, drive in enumerate(drives):
+        if motor_side[k]:
+            q[:, k] = drive.joint(logged[:, k])
+        elif drive.ratio is not None:
+            motor[:, k] *= drive.ratio
+        else:
+            motor[:, k] = drive.motor(logged[:, k])
+    checks.check_jumps(file, arm, signals.position, q, t)
+    remarks = [*source.remarks, *checks.check_range(file, arm, drives, signals.position, logged, q)]
+    if axis.method != "none":
+        remarks.append(
+            f"time between samples varies by up to {axis.jitter:.2g} periods: "
+            f"resampled at {1 / axis.step:.6g} Hz"
+        )
+    if axis.step >= SLOW:
+        remarks.append(
+            f"a sample every {axis.step:.6g} s: where t is in milliseconds, a mapping file says so"
+        )
+    gain, given, hold = None, None, 0.0
+    if any(signals.effort):
+        effort, hold = on_axis.efforts(signals.effort)
+        gain = np.ones_like(effort)
+        for k, (name, drive) in enumerate(zip(signals.effort, drives, strict=True)):
+            kind = (name or "").rstrip("0123456789")
+            if kind == "tau" and drive.driven:
+                ratio = drive.ratio
+                gain[:, k] = drive.gain(q[:, k]) if ratio is None else drive.torque_constant * ratio
+            elif kind == "taum":
+                gain[:, k] = drive.torque_constant
+        given = effort / gain
+    elif any(drive.driven for drive in drives):
+        raise InputError(
+            f"{file}: found no effort, expected i<n> or tau<n>: {arm.name} is driven; "
+            "a free motion needs an arm whose moving joints have no drive"
+        )
+    record = Record(
+        name=file,
+        t=t,
+        q=q,
+        motor=motor,
+        input=given,
+        gain=gain,
+        effort_unit=effort_units(source, arm) if given is not None else (),
+        dq=None if signals.dq is None else on_axis.smooth(signals.dq),
+        ddq=None if signals.ddq is None else on_axis.smooth(signals.ddq),
+        temperature=None if signals.temperature is None else on_axis.smooth(signals.temperature),
+        motor_side=motor_side,
+        hold=hold,
+        remarks=tuple(remarks),
+        arm=arm,
+        held=source.hold in ("following", "previous"),
+    )
+    return record, logged
+
+
+def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:
+    """Unit of what the log carried, by joint: A, N m or N at the joint, or what the mapping declared."""
+    units = []
+    for i, drive, name in zip(arm.coordinates, source.drives, source.signals.effort, strict=True):
+        joint = "N" if arm.joints[i].type == "prismatic" else "N m"
+        kind = (name or "").rstrip("0123456789")
+        by_name = "A" if kind == "i" or (drive.driven and name is None) else joint
+        units.append(by_name if kind == "tau" or name is None else source.effort_units.get(name, by_name))
+    return tuple(units)
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Columns by name, moved to the uniform axis."""
+
+    source: Source
+    columns: dict[str, Array]
+    axis: Axis
+    t: Array
+
+    def smooth(self, names: Sequence[str | None], delay: float = 0.0) -> Array:
+        table = self._table(names)
+        if self.axis.method == "none":
+            return table
+        stamps = self.columns["t"] + delay
+        return smooth_resampled(stamps, table, self.t, self.axis.step, self.axis.method)
+
+    def efforts(self, names: Sequence[str | None]) -> tuple[Array, float]:
+        """Efforts on the axis, and the time by which their samples lie after the stamps."""
+        table, hold = self._table(names), self.source.hold
+        half = 0.5 * self.axis.step
+        if self.axis.method == "none":
+            later = {"following": half, "previous": -half, "instant": 0.0}
+            return table, later[hold] if isinstance(hold, str) else hold
+        if hold in ("following", "previous"):
+            if hold == "previous":  # the same staircase, each value one sample earlier
+                table = np.vstack([table[1:], table[-1:]])
+            return held_resampled(self.columns["t"], table, self.t, self.axis.step), half
+        return self.smooth(names, hold if isinstance(hold, float) else 0.0), 0.0
+
+    def _table(self, names: Sequence[str | None]) -> Array:
+        zero = np.zeros_like(self.columns["t"])
+        # Columns in order in memory: what follows goes through them one by one.
+        return np.stack([zero if name is None else self.columns[name] for name in names]).T

@@ -1,0 +1,114 @@
+"""A log that is open: its columns by the names of docs/logs.md, and how its time and efforts are meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset.drives import Drive, drives_of
+from modelgen.dataset.mapping.columns import MappedReader
+from modelgen.dataset.mapping.files import listed, load_mapping
+from modelgen.dataset.reading.bags import BagReader
+from modelgen.dataset.reading.signals import Signals, find_signals
+from modelgen.dataset.reading.specs import Spec, parse
+from modelgen.dataset.reading.tables import Reader, open_table
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+BLOCK = 65_536  # rows read at a time
+
+
+@dataclass(frozen=True)
+class Source:
+    """The part of a log that a specification names.
+
+    hold: "following", "previous", "instant", or the delay [s] of the effort's samples. rate: of the uniform
+    axis [Hz]; gap: longest time without a sample [s]; None: by default. effort_units: by column, where
+    they are not those of its name.
+    """
+
+    spec: Spec
+    reader: Reader
+    signals: Signals
+    drives: tuple[Drive, ...]
+    hold: str | float = "following"
+    rate: float | None = None
+    gap: float | None = None
+    effort_units: dict[str, str] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """Names of the columns that are read, the time first."""
+        return tuple(dict.fromkeys(self.signals.wanted))
+
+    def blocks(self, rows: int = BLOCK, *, time_alone: bool = False) -> Iterator[Array]:
+        """The wanted columns of the part in blocks of `rows`; rows without a time are kept for refusal."""
+        wanted = self.wanted[:1] if time_alone else self.wanted
+        waiting: list[Array] = []
+        for block in self.reader.blocks(wanted, rows):
+            t = block[:, 0]
+            inside = ((t >= self.spec.begin) & (t < self.spec.end)) | np.isnan(t)
+            if not waiting and len(block) == rows and inside.all():
+                yield block
+                continue
+            waiting.append(block if inside.all() else block[inside])
+            while sum(map(len, waiting)) >= rows:
+                whole = np.concatenate(waiting)
+                yield whole[:rows]
+                waiting = [whole[rows:]]
+        rest = np.concatenate(waiting) if waiting else np.empty((0, len(wanted)))
+        if len(rest):
+            yield rest
+
+
+def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Source:
+    """The log that `FILE` or `FILE@t0:t1` names, opened. Raises InputError."""
+    spec = parse(text)
+    drives = drives_of(arm)
+    if mapping is None:
+        reader = open_table(spec.path)
+        if isinstance(reader, BagReader):
+            raise InputError(
+                f"{text}: a bag needs a mapping file (--mapping) that names its columns: "
+                + listed(reader.names)
+            )
+        return Source(spec, reader, find_signals(spec.text, reader.names, arm, drives), drives)
+    foreign = load_mapping(mapping)
+    mapped = MappedReader(foreign, open_table(spec.path), arm, drives)
+    time = foreign.document.time
+    return Source(
+        spec,
+        mapped,
+        find_signals(spec.text, mapped.names, arm, drives, mapped=True),
+        drives,
+        foreign.hold,
+        foreign.positive(time.resample, ["time", "resample"]),
+        foreign.positive(time.largest_gap, ["time", "largest_gap"]),
+        mapped.effort_units,
+        tuple(mapped.remarks),
+    )
+
+
+def read_columns(text: str, names: Sequence[str]) -> dict[str, Array]:
+    """Columns of a log by their own names, each (N,), without any check but that they are there.
+
+    For logs that hold more than one arm's record does: motor counts and joint angles side by side, say.
+    Raises InputError.
+    """
+    spec = parse(text)
+    reader = open_table(spec.path)
+    wanted = tuple(dict.fromkeys(("t", *names)))
+    absent = [name for name in wanted if name not in reader.names]
+    if absent:
+        raise InputError(f"{text}: the column {absent[0]} is missing (found {', '.join(reader.names)})")
+    parts = []
+    for block in reader.blocks(wanted, BLOCK):
+        inside = (block[:, 0] >= spec.begin) & (block[:, 0] < spec.end)
+        parts.append(block[inside])
+    table = np.concatenate(parts) if parts else np.empty((0, len(wanted)))
+    return {name: table[:, k] for k, name in enumerate(wanted)}

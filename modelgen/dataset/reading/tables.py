@@ -1,0 +1,52 @@
+"""Named columns of numbers, whatever file they come from: the header, then blocks of rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Protocol
+
+from modelgen.dataset.reading.bags import BagReader
+from modelgen.dataset.reading.csv_table import CsvReader
+from modelgen.dataset.reading.parquet_table import ParquetReader
+from modelgen.dataset.reading.specs import unreadable
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+BAGS = (".bag", ".db3", ".mcap")
+
+
+class Reader(Protocol):
+    """A file with named columns."""
+
+    @property
+    def by_column(self) -> bool:
+        """Whether a column is read without the others."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns, in the file's order; doubled ones as often as they stand there."""
+
+    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+        """The wanted columns (rows at most, len(wanted)), block after block. Raises InputError."""
+
+
+def open_table(path: Path) -> Reader:
+    """The reader for a file, by its suffix; a folder is a ROS 2 bag. Raises InputError."""
+    suffix = path.suffix.lower()
+    try:
+        path.stat()
+    except (OSError, ValueError) as error:
+        raise unreadable(path, error) from None
+    if path.is_dir():
+        if not (path / "metadata.yaml").exists():
+            raise unreadable(path, IsADirectoryError())
+        return BagReader(path)
+    if suffix in BAGS:
+        return BagReader(path)
+    if suffix in (".parquet", ".pq"):
+        return ParquetReader(path)
+    if suffix in (".csv", ".txt", ".tsv", ""):
+        return CsvReader(path)
+    kinds = ".csv, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
+    raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}")

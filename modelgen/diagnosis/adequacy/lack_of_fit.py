@@ -1,0 +1,251 @@
+"""What repeats from period to period is not noise: the pure-error test of lack of fit.
+
+With k periods of the excitation, the mean residual over periods has the variance of the noise over k
+where the model is complete; what it has beyond that is deterministic (Draper and Smith 1998, 1.5;
+Swevers, Verdonck and De Schutter 2007 for periodic excitation). The test is made on the residuals as they
+are, with the degrees of freedom that their colour leaves, over all rows and over short parts of the period,
+where a contact or a hard spot shows. Whitened residuals would show errors of the encoders, which repeat with
+the motion and are large at high frequencies alone. Counts that round the same motion alike in every period
+repeat too: what they are expected to leave is no lack of fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+from scipy import special
+
+from modelgen.dataset.processing.periods import folded
+from modelgen.diagnosis.adequacy.null_distribution import NULLS
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System, independent
+from modelgen.diagnosis.thresholds import CLEAN
+from modelgen.numeric import Array
+
+SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
+PARTS = 16  # of a period, and as many halfway between them
+FEWEST = 2.0  # independent rows of a part
+WHOLE, PART = "whole", "part"
+
+
+@dataclass(frozen=True)
+class Test:
+    """Statistic and quantile of F. kind: WHOLE or PART; joint from 0.
+
+    record, begin, end: of a part, its record and its phases in rows of the period; excess: sum of
+    squares by which it repeats there, less noise [effort^2].
+    """
+
+    kind: str
+    joint: int
+    statistic: float
+    quantile: float
+    record: int = -1
+    begin: int = 0
+    end: int = 0
+    excess: float = 0.0
+
+    @property
+    def threshold(self) -> float:
+        """The quantile, with what it has above one scaled to what complete models reach."""
+        return 1.0 + inflation(self.kind) * (self.quantile - 1.0)
+
+    @property
+    def beyond(self) -> float:
+        """What the statistic has above one over what the quantile has, whatever the records' length."""
+        return (self.statistic - 1.0) / (self.quantile - 1.0)
+
+    @property
+    def found(self) -> bool:
+        """Whether something deterministic is left."""
+        return self.statistic > self.threshold
+
+
+@dataclass(frozen=True)
+class LackOfFit:
+    """statistic, threshold: of the test that comes nearest or exceeds most. by_joint: (n,), of all rows."""
+
+    worst: Test
+    by_joint: Array
+    periods: int
+
+    @property
+    def statistic(self) -> float:
+        """Of the worst test."""
+        return self.worst.statistic
+
+    @property
+    def threshold(self) -> float:
+        """Of the worst test."""
+        return self.worst.threshold
+
+    @property
+    def found(self) -> bool:
+        """Whether something deterministic is left."""
+        return self.worst.found
+
+
+@dataclass
+class _Sums:
+    """Of one joint: between and within periods, and by record the squares of the means by phase.
+
+    rounding: the sum that errors of the positions that repeat are expected to add between.
+    """
+
+    between: float = 0.0
+    rounding: float = 0.0
+    within: float = 0.0
+    free_between: float = 0.0
+    free_within: float = 0.0
+    phases: list[tuple[int, Array, Array]] = field(default_factory=list)
+
+    def add(self, record: int, table: Array, share: float, error: float) -> None:
+        """A record of one joint, one line a period; `share` of its rows are independent. error: mean square
+        of what errors of its positions leave alike in every period.
+        """
+        there = np.isfinite(table)
+        count = there.sum(axis=0)
+        full = count >= 2
+        if not full.any():
+            return
+        part, k = table[:, full], count[full]
+        mean = np.nanmean(part, axis=0)
+        squares, free = np.zeros(len(full)), np.where(full, share, 0.0)
+        squares[full] = k * mean**2
+        self.between += float(squares.sum())
+        self.rounding += error * float(k.sum())
+        self.within += float(np.nansum((part - mean) ** 2))
+        self.free_between += float(free.sum())
+        self.free_within += share * float((k - 1).sum())
+        self.phases.append((record, squares, free))
+
+    @property
+    def chance(self) -> float:
+        """What a complete model leaves between, for each independent phase."""
+        return self.within / self.free_within + self.rounding / self.free_between
+
+    def whole(self, joint: int, tests: int) -> Test:
+        """Of all rows."""
+        if self.free_within < 10 or self.within <= 0:
+            return Test(WHOLE, joint, 0.0, np.inf)
+        free = max(5.0, self.free_between)
+        statistic = (self.between / free) / self.chance
+        return Test(WHOLE, joint, statistic, self._quantile(free, tests))
+
+    def parts(self, joint: int, tests: int) -> Iterator[Test]:
+        """Of every part of every record."""
+        if self.free_within < 10 or self.within <= 0:
+            return
+        tests *= 2 * PARTS * len(self.phases)
+        for record, squares, free in self.phases:
+            for begin, end in parts(len(squares)):
+                phases = np.arange(begin, end) % len(squares)
+                count = float(free[phases].sum())
+                if count < FEWEST:
+                    continue
+                statistic = (float(squares[phases].sum()) / count) / self.chance
+                excess = float(squares[phases].sum()) * (1.0 - 1.0 / statistic) if statistic > 0 else 0.0
+                yield Test(PART, joint, statistic, self._quantile(count, tests), record, begin, end, excess)
+
+    def _quantile(self, free: float, tests: int) -> float:
+        return float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))
+
+
+def parts(rows: int) -> Iterator[tuple[int, int]]:
+    """First and last phase (exclusive, beyond the end: of the next period) of each part of `rows` phases."""
+    for half in range(2 * PARTS):
+        begin, end = (round((half + shift) / 2 * rows / PARTS) for shift in (0, 2))
+        yield begin, end
+
+
+def lack_of_fit(system: System) -> LackOfFit | None:
+    """Of the training records; None where nothing repeats."""
+    found, most = _tests(system)
+    if not any(np.isfinite(t.quantile) for t in found):
+        return None
+    worst = max(found, key=lambda t: t.statistic / t.threshold)
+    by_joint = [t.statistic for t in found if t.kind == WHOLE]
+    return LackOfFit(worst, np.array(by_joint), most)
+
+
+def in_parts(system: System) -> list[Test]:
+    """Of every part of the period of every joint and record."""
+    return [t for t in _tests(system)[0] if t.kind == PART]
+
+
+def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | None:
+    """Record, and times from and to in its first period [s], of the part that shows most; None where it is no
+    part.
+    """
+    worst = fit.worst
+    if worst.kind != PART:
+        return None
+    p = rows[worst.record].prepared
+    time = p.picked(p.time)
+    return p.record.name, float(time[worst.begin]), float(time[min(worst.end, len(time) - 1)])
+
+
+@cache
+def inflation(kind: str) -> float:
+    """Of what the nominal thresholds have above one, by kind of test: calibrated on nulls."""
+    return float(np.quantile(NULLS[kind], CLEAN))
+
+
+def ratios(system: System) -> dict[str, float]:
+    """By kind of test, how far a statistic goes beyond one at most, over how far its quantile of F does."""
+    found, _ = _tests(system)
+    return {k: max((t.beyond for t in found if t.kind == k), default=0.0) for k in (WHOLE, PART)}
+
+
+def _tests(system: System) -> tuple[list[Test], int]:
+    """All tests of all joints, and the most periods of a record."""
+    n = system.n
+    sums = [_Sums() for _ in range(n)]
+    most = 0
+    for i, r in enumerate(system.rows):
+        rows = system.periods[i]
+        if rows is None:
+            continue
+        most = max(most, -(-len(r.effort) // rows))
+        for j in range(n):
+            moving = r.moving[:, j]
+            table = folded(np.where(moving, system.residuals[i][:, j], np.nan), rows)
+            repeated = r.repeated[moving, j] if r.repeated is not None else np.zeros(0)
+            error = float((repeated**2).mean()) if len(repeated) else 0.0
+            sums[j].add(i, table, independent_rows(table), error)
+    found = [s.whole(j, n) for j, s in enumerate(sums)]
+    return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
+
+
+def repeating(system: System) -> Array:
+    """Mean square of what repeats from period to period in the residuals of each joint (n,), less noise."""
+    n = system.n
+    found = np.zeros(n)
+    for j in range(n):
+        between, within, means, scatter = 0.0, 0.0, 0, 0
+        for residual, r, rows in zip(system.residuals, system.rows, system.periods, strict=True):
+            if rows is None:
+                continue
+            table = folded(np.where(r.moving[:, j], residual[:, j], np.nan), rows)
+            count = np.isfinite(table).sum(axis=0)
+            part, k = table[:, count >= 2], count[count >= 2]
+            if not len(k):
+                continue
+            mean = np.nanmean(part, axis=0)
+            between += float((k * mean**2).sum())
+            within += float(np.nansum((part - mean) ** 2))
+            means, scatter = means + len(k), scatter + int((k - 1).sum())
+        if scatter:
+            found[j] = max(0.0, (between - means * within / scatter) / (means + scatter))
+    return found
+
+
+def independent_rows(table: Array) -> float:
+    """Share of a record's rows that count as independent, from what differs between its periods."""
+    there = np.isfinite(table)
+    values = np.where(there, table, 0.0)
+    mean = values.sum(axis=0, keepdims=True) / np.maximum(there.sum(axis=0, keepdims=True), 1)
+    return independent(np.where(there, values - mean, 0.0).ravel())

@@ -1,0 +1,159 @@
+"""What is left as a smooth function of one thing, whatever the function: no physical law stands behind it.
+
+A cause outside the catalogue may look like an effect inside. It looks more like a function of what it does
+depend on: where the arm is (a hard spot, a contact) or what its drives take (a supply that sags). The
+functions are Gaussian processes: one that bends more costs more evidence, a law that is right costs its few
+parameters only (Rasmussen and Williams 2006, 2.7 and 5.4.1; with inducing points, as in their 8.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from modelgen.dataset import drives_of
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.likelihood import Stack
+from modelgen.diagnosis.evidence.system import System
+from modelgen.evaluation import Prober
+from modelgen.numeric import Array
+
+SHAPE = "shape"  # among the nulls
+BENDS = (0.2, 0.5)  # length over which a function bends, of the range of what it depends on
+SHORT = 0.06  # the same for a single joint: a hard spot
+POINTS = 80  # at which a function is free
+SAMPLES = 4000  # among which they are chosen
+SPREAD = 1e-8  # of the kernel's largest eigenvalue: less is rounding
+SIZES = np.logspace(-3.0, 5.0, 17)  # of a function against the noise, over which its evidence is the best
+
+
+@dataclass(frozen=True)
+class Shape:
+    """text: what it is; columns: by joint (from 0) that it acts on, (M, k) of every record."""
+
+    text: str
+    columns: Mapping[int, Sequence[Array]]
+
+
+@dataclass(frozen=True)
+class Worth:
+    """evidence, slow: delta BIC in the system's fair equations and in the plain ones, in which slow functions
+    are worth too much and fast errors nothing; percent: of the RMSE of the joints that it acts on.
+    """
+
+    evidence: float
+    slow: float
+    percent: float
+
+
+def shapes(rows: Sequence[Rows], prober: Prober, base: Array) -> Iterator[Shape]:
+    """Of driven arms. base: base parameters (p,), from which the inputs follow."""
+    n = rows[0].effort.shape[1]
+    inputs = [prober.inputs(r.motion, base) for r in rows]
+    drives = drives_of(prober.arm)
+    power = []
+    for r, u in zip(rows, inputs, strict=True):
+        gains = np.column_stack([drive.gain(r.prepared.q[:, j]) for j, drive in enumerate(drives)])
+        power.append(np.abs(gains * u * r.prepared.dq).sum(axis=1, keepdims=True))
+    for j in range(n):
+        alone = functions([r.prepared.q[:, [j]] for r in rows], SHORT)
+        spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]
+        yield Shape(f"a force at joint {j + 1} that depends on its position", {j: spots})
+    for bend in BENDS:
+        free = functions([r.prepared.q for r in rows], bend)
+        for j in range(n):
+            where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]
+            yield Shape(f"a force at joint {j + 1} that depends on where the arm is", {j: where})
+        taken = functions(power, bend)
+        columns = {
+            j: [r.equation(j, u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
+            for j in range(n)
+        }
+        yield Shape("a gain of all drives that depends on the power that they take", columns)
+
+
+def functions(values: Sequence[Array], bend: float) -> list[Array]:
+    """Functions (N, k) of each record's values (N, d), whose sum with independent weights of variance 1 is a
+    process with a squared exponential kernel.
+    """
+    every = np.concatenate(values)
+    lengths = np.maximum(bend * np.ptp(every, axis=0), 1e-300)
+    points = _far_apart(every[:: max(1, len(every) // SAMPLES)] / lengths)
+    sizes, vectors = np.linalg.eigh(_kernel(points, points))
+    kept = sizes > SPREAD * sizes[-1]
+    turn = vectors[:, kept] / np.sqrt(sizes[kept])
+    return [_kernel(x / lengths, points) @ turn for x in values]
+
+
+def _kernel(a: Array, b: Array) -> Array:
+    return np.asarray(np.exp(-0.5 * cdist(a, b, "sqeuclidean")))
+
+
+def _far_apart(values: Array) -> Array:
+    """Points (POINTS, d) of values (N, d), each the farthest from those before (Gonzalez 1985)."""
+    chosen = [0]
+    distance = cdist(values, values[:1])[:, 0]
+    while len(chosen) < POINTS and distance.max() > 0:
+        chosen.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, cdist(values, values[chosen[-1:]])[:, 0])
+    return values[chosen]
+
+
+def worth(shape: Shape, system: System) -> Worth:
+    """What the shape explains beside the system's columns: its marginal likelihood, of the best of SIZES.
+
+    In the fair equations the variance of each joint's noise is at its best and its colour known: a function
+    that bends follows noise of the same colour.
+    """
+    k = next(iter(shape.columns.values()))[0].shape[1]
+    columns = [np.zeros((*r.effort.shape, k)) for r in system.rows]
+    for j, tables in shape.columns.items():
+        for whole, table in zip(columns, tables, strict=True):
+            whole[:, j] = table
+    acted = np.array([j in shape.columns for j in range(system.n)])
+    evidence, function = _likelihood(system.fair, columns, acted)
+    plain = system.plain
+    slow = evidence if plain is system.fair else _likelihood(plain, columns, acted)[0]
+    taken = plain.stacked([table @ function[:, None] for table in columns])[:, 0]
+    left = plain.by_group(plain.left - taken + plain.basis @ (plain.basis.T @ taken))[: len(acted)]
+    share = float(left[acted].sum() / max(plain.rss[acted].sum(), 1e-300))
+    return Worth(evidence, slow, 100.0 * (1.0 - float(np.sqrt(share))))
+
+
+def _likelihood(stack: Stack, columns: Sequence[Array], acted: NDArray[np.bool_]) -> tuple[float, Array]:
+    """Of the weights (k,) of the columns, each of variance 1 times the best size, and the weights there.
+
+    Over that without them; the price of the size is that of one parameter. acted: joints (n,) with columns.
+    """
+    own = stack.stacked(columns)
+    own = own - stack.basis @ (stack.basis.T @ own)
+    sizes, vectors = np.linalg.eigh(own.T @ own)
+    sizes, own = stack.share * np.maximum(sizes, 0.0), own @ vectors
+    best, function = -np.inf, np.zeros(len(vectors))
+    if not (sizes.max() > 0 and stack.rss.any()):
+        return best, function
+    places = [stack.groups == j for j in range(len(stack.weights))]
+    grams = [own[there].T @ own[there] for there in places]
+    rights = [own[there].T @ stack.left[there] for there in places]
+    used = stack.squares > 0
+    acting = np.zeros(len(places))
+    acting[: len(acted)] = acted / acted.sum()
+    for scale in SIZES / sizes.max():
+        weights = scale * stack.share / (1.0 + scale * sizes) * sum(rights)
+        left = stack.squares + [
+            weights @ gram @ weights - 2.0 * weights @ right
+            for gram, right in zip(grams, rights, strict=True)
+        ]
+        left = left + acting * float(weights @ weights) / (scale * stack.share)
+        evidence = (
+            float(stack.weights[used] @ np.log(stack.squares[used] / np.maximum(left[used], 1e-300)))
+            - float(np.log1p(scale * sizes).sum())
+            - float(np.log(stack.counts[acted].sum()))
+        )
+        if evidence > best:
+            best, function = evidence, vectors @ weights
+    return best, function

@@ -1,0 +1,1 @@
+"""Every effect, place and form that could be there besides, each fitted alone."""

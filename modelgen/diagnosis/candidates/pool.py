@@ -1,0 +1,45 @@
+"""All candidates tried at once, on all processors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from modelgen.diagnosis.candidates.candidate import COMPLIANT, Candidate, at_links
+from modelgen.diagnosis.candidates.search import Columns, Court
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.jobs import Where, forked
+
+
+def tried(
+    pool: Sequence[Candidate],
+    court: Court,
+    where: Where,
+    report: Callable[[int, int], None] | None = None,
+) -> list[Trial | None]:
+    """The best that each candidate can do, as `Court.trial`, in the order of the pool.
+
+    Candidates that share columns are one job, so that the answer does not depend on the number of processors.
+    """
+    groups: dict[object, list[int]] = {}
+    for k, candidate in enumerate(pool):
+        # behind a link's own position play is tried where an elastic joint was
+        both = candidate.effect in COMPLIANT and at_links(candidate.joint, court.rows)
+        groups.setdefault(candidate.joint if both else candidate.place, []).append(k)
+    # what takes longest first: no processor waits for it at the end
+    jobs = sorted(groups.values(), key=lambda places: pool[places[0]].effect not in COMPLIANT)
+
+    def job(number: int) -> tuple[list[Trial | None], Columns]:
+        before = set(court.renewed)
+        found = [court.trial(pool[k]) for k in jobs[number]]
+        return found, {key: court.known[key] for key in court.renewed - before}
+
+    def told(number: int) -> None:
+        if report is not None:
+            report(sum(map(len, jobs[:number])), len(pool))
+
+    result: list[Trial | None] = [None] * len(pool)
+    for places, (found, columns) in zip(jobs, forked(job, len(jobs), where, told), strict=True):
+        court.learn(columns)
+        for k, trial in zip(places, found, strict=True):
+            result[k] = trial
+    return result

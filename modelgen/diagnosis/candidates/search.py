@@ -1,0 +1,318 @@
+"""Candidates tried against one system: their values searched for, and what they then explain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from modelgen.diagnosis.candidates.candidate import (
+    COMPLIANT,
+    CURVED,
+    PERIODIC,
+    Candidate,
+    Values,
+    at_links,
+    gap_instead,
+    grid_unit,
+    search_of,
+)
+from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging
+from modelgen.diagnosis.candidates.prior_odds import doubt
+from modelgen.diagnosis.candidates.trial import WHOLLY, Trial, named
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.evaluation import Prober
+from modelgen.numeric import Array
+
+REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
+SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
+GOLDEN = (math.sqrt(5) - 1) / 2
+WHOLE = 0.02  # off a whole number of waves, of that number
+REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and others are searched
+SECTIONS = 5  # golden sections over each of several values in turn
+ROUNDS = 2  # over all values in turn
+HALVINGS = 6  # between two values of a scan
+CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
+WORTH = 4.0  # evidence below which nothing is refined
+SECANTS = 2  # times a column that follows no line is taken at the value found
+SETTLED = 1.0  # change of evidence that needs no more of it
+Columns: TypeAlias = dict[object, list[Array] | None]  # of every record, by candidate and values
+
+
+class Court:
+    """Tries candidates against one system.
+
+    known: columns for these rows, by candidate and values. They outlive a court: those that change with the
+    arm's parameters serve the next one to pass over what explains nothing, whatever the parameters are.
+    elastic: joints with an elastic joint or play among the system's causes.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        rows: Sequence[Rows],
+        prober: Prober,
+        base: Array,
+        known: Columns | None = None,
+        elastic: Collection[int | None] = (),
+    ) -> None:
+        self.system = system
+        self.known = {} if known is None else known
+        self.rows = rows
+        self.prober = prober
+        self.elastic = elastic
+        self.base = base
+        self.fresh = True  # whether columns that change are made anew
+        self.aged = False  # whether some were not
+        self.renewed: set[object] = set()  # made with the parameters of this court
+
+    def trial(self, candidate: Candidate) -> Trial | None:
+        """The best that the candidate can do; None where it adds nothing of its own."""
+        self.fresh, self.aged = False, False
+        found = self._trial(candidate)
+        if found is not None and self.aged and found.gain.delta_bic >= WORTH:
+            self.fresh = True
+            found = self._trial(candidate)
+        if found is None or found.gain.delta_bic < WORTH or candidate.effect not in CURVED:
+            return found
+        for _ in range(SECANTS):
+            before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
+            if abs(found.gain.delta_bic - before.gain.delta_bic) < SETTLED:
+                break
+        return found
+
+    def learn(self, columns: Columns) -> None:
+        """Takes columns over that this court made in another process."""
+        self.known.update(columns)
+        self.renewed |= columns.keys()
+
+    def _trial(self, candidate: Candidate) -> Trial | None:
+        if candidate.effect == PERIODIC:
+            return self._periodic(candidate)
+        if candidate.effect in COMPLIANT:
+            if at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
+                return None  # what is left of one looks like the other
+            found = self._compliant(candidate)
+            gap = None if found is None else gap_instead(candidate, self.rows, self.prober)
+            # impacts of a loose link look elastic; the other way round they do not
+            other = None if gap is None else self._compliant(gap)
+            return None if found and other and ahead(other, found) else found
+        if not candidate.searched:
+            return self._at(candidate, {}, 0.0)
+        (parameter,) = candidate.searched[:1]
+        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
+        if not unit > 0:
+            return None
+        grid = [unit * g for g in parameter.grid]
+        trials = [self._at(candidate, {parameter.name: x}, 1.0) for x in grid]
+        best = _best(trials)
+        if best is None or best.gain.delta_bic < WORTH:
+            return best
+        low, high = bracket(grid, trials.index(best), turns=parameter.turns)
+        return self._refined(candidate, parameter.name, low, high, best, 1.0)
+
+    def _at(
+        self, candidate: Candidate, values: Values, extra: float, around: Values | None = None
+    ) -> Trial | None:
+        if around is None:
+            columns = self._columns(candidate, values)
+        else:
+            columns = candidate_columns(candidate, around, self.rows, self.prober, self.base)
+        if columns is None or not all(np.isfinite(c).all() for c in columns):
+            return None
+        gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
+        if gain is None:
+            return None
+        held = np.array(candidate.positive) & (gain.values == 0.0)
+        if held.any():  # stays zero in every fit to come
+            columns = [np.where(held, 0.0, c) for c in columns]
+        charged = doubt(candidate, named(candidate, gain.values), self.prober.arm)
+        gain = replace(gain, delta_bic=gain.delta_bic - charged)
+        return Trial(candidate, dict(values), columns, gain, charged, dict(around or {}))
+
+    def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
+        given = {**candidate.fixed, **values}
+        key = *candidate.place, tuple(sorted(given.items()))
+        stays = unchanging(candidate, self.prober)
+        if key not in self.known or (self.fresh and not stays and key not in self.renewed):
+            every = replace(candidate, part=())
+            self.known[key] = candidate_columns(every, values, self.rows, self.prober, self.base)
+            self.renewed.add(key)
+        elif not stays and key not in self.renewed:
+            self.aged = True
+        found = self.known[key]
+        return None if found is None else of_part(candidate, found)
+
+    def _refined(
+        self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float
+    ) -> Trial:
+        """Golden section over the logarithm."""
+
+        def at(x: float) -> Trial | None:
+            return self._at(candidate, {**best.values, name: math.exp(x)}, extra)
+
+        return golden(at, math.log(low), math.log(high), best)
+
+    def _compliant(self, candidate: Candidate) -> Trial | None:
+        """A scan over the first value, then a section over each in turn."""
+        search = search_of(candidate, self.rows)
+        kinds = {"play": "span", "stiffness": "stiffness"}
+        units = {
+            name: grid_unit(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
+            for name in search
+        }
+        if not all(unit > 0 for unit in units.values()):
+            return None
+        extra = float(len(search))
+        start = {name: units[name] * grid[0] for name, grid in search.items()}
+        (first, grid), *_ = search.items()
+        scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in grid]
+        best = _best([self._if_whole(t) for t in scanned]) or self._between(scanned, first, extra)
+        if best is None or best.gain.delta_bic < WORTH:
+            return best
+        for turn in range(ROUNDS):
+            for name in ("relaxation", "stiffness", "play"):
+                if name not in search:
+                    continue
+                reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
+
+                def at(x: float, name: str = name, held: Trial = best) -> Trial | None:
+                    return self._whole(candidate, {**held.values, name: math.exp(x)}, extra)
+
+                middle = math.log(best.values[name])
+                best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
+        return best
+
+    def _whole(self, candidate: Candidate, values: Values, extra: float) -> Trial | None:
+        return self._if_whole(self._at(candidate, values, extra))
+
+    def _if_whole(self, found: Trial | None) -> Trial | None:
+        """Behind a link's own position, only what is found about as large as it was simulated."""
+        if found is None or not at_links(found.candidate.joint, self.rows):
+            return found
+        return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
+
+    def _between(self, scanned: Sequence[Trial | None], name: str, extra: float) -> Trial | None:
+        """Where less of what was simulated is found at one value of a scan and more at the next, one between
+        them at which all of it is. None where no neighbours are so.
+        """
+        for low, high in pairwise(t for t in scanned if t is not None):
+            if low.gain.values[0] < 1.0 < high.gain.values[0]:
+                return self._halved(low, high, name, extra)
+        return None
+
+    def _halved(self, low: Trial, high: Trial, name: str, extra: float) -> Trial | None:
+        for _ in range(HALVINGS):
+            middle = math.sqrt(low.values[name] * high.values[name])
+            found = self._at(low.candidate, {**low.values, name: middle}, extra)
+            if found is None or self._if_whole(found) is not None:
+                return found
+            if found.gain.values[0] < 1.0:
+                low = found
+            else:
+                high = found
+        return None
+
+    def _periodic(self, candidate: Candidate) -> Trial | None:
+        assert candidate.joint is not None
+        j = candidate.joint - 1
+        residual, position, speed = [], [], []
+        for r, e in zip(self.rows, self.system.residuals, strict=True):
+            m = r.moving[:, j]
+            residual.append(e[m, j])
+            position.append(r.prepared.picked(r.prepared.motor)[m, j])
+            speed.append(r.prepared.picked(r.prepared.dmotor)[m, j])
+        together = [np.concatenate(x) for x in (residual, position, speed)]
+        cutoff = self.rows[0].prepared.settings.cutoff or self.rows[0].prepared.rate / 2
+        per_harmonic = 2 * np.pi / candidate.fixed["revolution"]
+        best: Trial | None = None
+        step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
+        for wave in waves(together[0], together[1], together[2], cutoff):
+            harmonic = wave / per_harmonic
+            if per_harmonic == 1.0:
+                # what turns with a motor repeats a whole number of times in its turn
+                harmonic = max(1.0, round(harmonic))
+                if abs(harmonic - wave) > max(2 * step, WHOLE * harmonic):
+                    continue
+            found = self._at(candidate, {"harmonic": harmonic}, SEARCHED_WAVES)
+            if found is not None and found.gain.delta_bic > WORTH:
+                width = step / 2 / per_harmonic
+                found = self._refined(
+                    candidate, "harmonic", harmonic - width, harmonic + width, found, SEARCHED_WAVES
+                )
+            best = _best([best, found])
+        return best
+
+
+def ahead(one: Trial, other: Trial) -> bool:
+    """Whether one explains more than the other for certain."""
+    return one.gain.delta_bic - other.gain.delta_bic > CERTAIN
+
+
+def bracket(grid: Sequence[float], k: int, *, turns: bool) -> tuple[float, float]:
+    """Between the neighbours of the k-th value; at an end from it on, but for angles, which go round."""
+    last = len(grid) - 1
+    if turns and k == 0:
+        return grid[last], grid[1] + math.tau
+    if turns and k == last:
+        return grid[last - 1], grid[0] + math.tau
+    return grid[max(0, k - 1)], grid[min(last, k + 1)]
+
+
+def golden(
+    at: Callable[[float], Trial | None], low: float, high: float, best: Trial, sections: int = REFINEMENTS
+) -> Trial:
+    """The best trial of a golden section search on [low, high]."""
+    a, b = low, high
+    inner = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)]
+    found = [at(inner[0]), at(inner[1])]
+    for _ in range(sections):
+        scores = [-math.inf if t is None else t.gain.delta_bic for t in found]
+        best = _best([best, *found]) or best
+        if scores[0] > scores[1]:
+            b = inner[1]
+            inner = [b - GOLDEN * (b - a), inner[0]]
+            found = [at(inner[0]), found[0]]
+        else:
+            a = inner[0]
+            inner = [inner[1], a + GOLDEN * (b - a)]
+            found = [found[1], at(inner[1])]
+    return _best([best, *found]) or best
+
+
+def _best(trials: Sequence[Trial | None]) -> Trial | None:
+    there = [t for t in trials if t is not None]
+    return max(there, key=lambda t: t.gain.delta_bic) if there else None
+
+
+def waves(residual: Array, position: Array, speed: Array, cutoff: float, count: int = 4) -> list[float]:
+    """Wave numbers [rad per motor unit] at which a residual repeats with the motor's position, best first.
+
+    residual, position, speed: (M,). A periodogram over position (Lomb 1976), of waves that pass slower
+    than the cut-off [Hz] for a tenth of the rows at least.
+    """
+    if len(residual) < 20 or np.ptp(position) <= 0:
+        return []
+    span = float(np.ptp(position))
+    slow = float(np.quantile(np.abs(speed), 0.1))
+    step = np.pi / span
+    highest = 2 * np.pi * cutoff / max(slow, 1e-9 * span)
+    grid = step * np.arange(3, min(4000, max(8, int(highest / step))))
+    power = np.concatenate(
+        [
+            np.abs(np.exp(1j * np.outer(part, position)) @ residual) ** 2
+            for part in np.array_split(grid, max(1, len(grid) // 200))
+        ]
+    )
+    order: list[Any] = []
+    for k in np.argsort(power)[::-1]:
+        if all(abs(k - other) > 2 for other in order):
+            order.append(k)
+        if len(order) == count:
+            break
+    return [float(grid[k]) for k in order]

@@ -1,0 +1,89 @@
+"""A candidate with values for its parameters: what it explains, and whether the arm admits it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, STEPS, WEIGHING, Candidate, Values
+from modelgen.diagnosis.candidates.prior_odds import elsewhere, obvious
+from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.evidence.system import System
+from modelgen.effects import CATALOGUE, described
+from modelgen.errors import InputError
+from modelgen.evaluation import with_effect
+from modelgen.numeric import Array
+
+WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play, that is found
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate with values for what is searched. columns: (M, n, k) of every training record.
+
+    gain: its evidence is what is left after `doubt`, see `plausible`. around: values at which columns that
+    follow no line were taken.
+    """
+
+    candidate: Candidate
+    values: Values
+    columns: Sequence[Array]
+    gain: Gain
+    doubt: float = 0.0
+    around: Values = field(default_factory=dict)
+
+    @property
+    def odds(self) -> float:
+        """By which rivals are compared, see `plausible.elsewhere`."""
+        return self.gain.delta_bic - elsewhere(self.candidate)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All values: fixed, searched and estimated."""
+        estimated = named(self.candidate, self.gain.values)
+        return physical(self.candidate, {**self.candidate.fixed, **self.values, **estimated})
+
+
+def named(candidate: Candidate, values: Array) -> dict[str, float]:
+    """Estimated values (k,) by the parameters of their columns."""
+    return dict(zip(candidate.names, (float(v) for v in values), strict=False))
+
+
+def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
+    """The effect's own parameters from those of its columns."""
+    if candidate.effect in COMPLIANT:
+        play = {"play": found["play"]} if "play" in found else {}
+        return {**play, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
+    if candidate.effect == LATER and found.get("mass"):
+        mass = found["mass"]
+        return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
+    if candidate.effect == WEIGHING:
+        return {**found, "base_angle": math.remainder(found["base_angle"], math.tau)}
+    return found
+
+
+def beside(trial: Trial, system: System) -> Gain | None:
+    """What a candidate explains beside another system's columns, with the values it was found at."""
+    c = trial.candidate
+    return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.passing)
+
+
+def sensible(trial: Trial, arm: Arm) -> bool:
+    """Whether something is left where values may not be negative, and the arm admits them."""
+    c, found = trial.candidate, trial.parameters
+    bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
+    if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
+        return False
+    if obvious(c, found, arm):
+        return False
+    if c.effect in STEPS:
+        try:
+            described(with_effect(arm, c.effect, c.joint, found))
+        except InputError:
+            return False
+    if c.effect in COMPLIANT:
+        return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
+    limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
+    return not limited or max(limited) > 0 or c.effect == WEIGHING

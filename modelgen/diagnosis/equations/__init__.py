@@ -1,0 +1,1 @@
+"""The equations y = X b + e of all training records, as wide a band as the encoders allow."""

@@ -1,0 +1,76 @@
+"""Free motions: what of their speeds is noise, and which rows are free of the hand that holds the arm."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from modelgen.dataset import Prepared, Record, Settings, choose, prepare
+from modelgen.dataset.processing.rest import long_runs
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+NOISY = 3.0  # standard deviations of the speed's noise that are rest yet
+WIDEST = 0.4  # of the rate, cut-off of the positions
+RATIOS = (18.0, 9.0)  # of that cut-off over the parallel one, where the noise allows it
+QUIET = 2.0  # the noise's gate over that of the motion
+
+
+def settings_of_swings(records: Sequence[Record], settings: Settings) -> Settings:
+    """With gates beyond the noise: a swing begins and ends at rest, and nothing but noise moves it there.
+
+    The positions' filter rounds off the speed where friction changes sides, and so shifts its zero: it is as
+    wide as the noise allows.
+    """
+    rate = 1.0 / records[0].step
+    for ratio in RATIOS:
+        wide = replace(settings, position_cutoff=ratio * (settings.cutoff or 0.0))
+        if ratio * (settings.cutoff or 0.0) < WIDEST * rate:
+            gates, noise = choose(list(records), wide).gates, NOISY * noise_of_speeds(records, wide)
+            if all(x < QUIET * g for g, x in zip(gates, noise, strict=True)):
+                break
+    else:
+        wide = settings
+        gates, noise = choose(list(records), wide).gates, NOISY * noise_of_speeds(records, wide)
+    return replace(wide, rest_gate=tuple(max(g, float(x)) for g, x in zip(gates, noise, strict=True)))
+
+
+def noise_of_speeds(records: Sequence[Record], settings: Settings) -> Array:
+    """Standard deviation of the speeds' noise by coordinate, (n,), the largest of all records.
+
+    What lies above the parallel cut-off, which the motion of a swinging arm does not reach.
+    """
+    found = []
+    for record in records:
+        p = prepare(record, settings)
+        above = p.picked(p.dq) - p.parallel(p.dq)
+        # median: the step of an acceleration at a stop is no noise
+        found.append(1.4826 * np.median(np.abs(above), axis=0))
+    return np.asarray(np.max(found, axis=0))
+
+
+def released(record: Record, settings: Settings) -> Record:
+    """From the release to the last standstill: filters must not see the hand that held the arm before.
+
+    Raises InputError where no joint moves.
+    """
+    p = prepare(record, settings)
+    rest = np.abs(p.dq) < np.asarray(p.settings.gates)
+    moving = np.flatnonzero(~rest.all(axis=1))
+    if not len(moving):
+        raise InputError(f"{record.name}: all joints rest; expected a free motion from a release to rest")
+    return record.part(int(moving[0]), int(moving[-1]) + 1)
+
+
+def away_from_rest(p: Prepared) -> Prepared:
+    """The record without rows whose filters see a rest: before the release a hand carries the arm."""
+    step = p.record.step
+    longest, reach = max(2, round(p.settings.rest_time / step)), p.settings.trimmed(step)
+    kept = p.moving.copy()
+    for j, gate in enumerate(p.settings.gates):
+        rest = long_runs(np.abs(p.dq[:, j]) < gate, longest)
+        kept[:, j] &= ~binary_dilation(rest, iterations=reach)[p.rows]
+    return replace(p, moving=kept)

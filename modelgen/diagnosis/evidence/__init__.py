@@ -1,0 +1,1 @@
+"""What a column explains beyond the noise: whitening, likelihood ratios, instruments."""

@@ -1,0 +1,129 @@
+"""Instruments against errors of the positions: the same phase of another period.
+
+There the regressor has the same truth and other errors, so that what the errors alone correlate in one period
+is not correlated across two (Reiersoel 1945; Janot, Vandanjon and Gautier 2014 for robots).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+from scipy.linalg import lstsq
+
+from modelgen.dataset.processing.periods import other_period
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.numeric import Array
+
+FEWEST = 10  # equations for an unknown
+SIGNIFICANCE = 1e-4
+
+
+class Pairs:
+    """Columns (M, n, p) of some records and the same in other periods, rows that move in both.
+
+    own, other: (R, p), stacked record after record, joint after joint, over `sizes` of the joints.
+    """
+
+    def __init__(
+        self, rows: Sequence[Rows], columns: Sequence[Array], periods: Sequence[int | None], sizes: Array
+    ) -> None:
+        self.partners = [
+            None if p is None else other_period(len(r.effort), p) for r, p in zip(rows, periods, strict=True)
+        ]
+        self.flags: list[NDArray[np.bool_]] = []
+        own, other, right = [], [], []
+        for r, table, partner in zip(rows, columns, self.partners, strict=True):
+            there = np.zeros(r.moving.shape, dtype=bool)
+            if partner is not None:
+                there = r.moving & (partner >= 0)[:, None] & r.moving[partner]
+                shifted = table[partner]
+                for j in range(r.effort.shape[1]):
+                    own.append(table[there[:, j], j] / sizes[j])
+                    other.append(shifted[there[:, j], j] / sizes[j])
+                    right.append(r.effort[there[:, j], j] / sizes[j])
+            self.flags.append(there)
+        p = columns[0].shape[2]
+        self.own = np.concatenate(own) if own else np.zeros((0, p))
+        self.other = np.concatenate(other) if other else np.zeros((0, p))
+        self.right = np.concatenate(right) if right else np.zeros(0)
+        norms = np.linalg.norm(self.other, axis=0)
+        norms[norms == 0] = 1.0
+        self.scale = norms
+
+    @property
+    def enough(self) -> bool:
+        """Whether there are equations enough."""
+        return len(self.own) > FEWEST * self.own.shape[1]
+
+    def first_stage(self) -> Array:
+        """What the columns of the other period, over `scale`, explain of the columns: (p, p)."""
+        found = lstsq(
+            self.other / self.scale, self.own, cond=1e-10, lapack_driver="gelsy", check_finite=False
+        )[0]
+        return np.asarray(found)
+
+    def t_values(self, share: float) -> Array:
+        """Estimates over their standard deviations, (p,), of two-stage least squares; `share` of the rows are
+        independent.
+        """
+        explained = (self.other / self.scale) @ self.first_stage()
+        norms = np.linalg.norm(explained, axis=0)
+        norms[norms == 0] = 1.0
+        u, s, vt = np.linalg.svd(explained / norms, full_matrices=False)
+        kept = s > 1e-8 * s[0]
+        theta = vt[kept].T @ ((u[:, kept].T @ self.right) / s[kept])
+        left = self.right - (self.own / norms) @ theta
+        variance = float(left @ left) / len(left) / max(share, 1e-9)
+        spread = np.sqrt(variance * ((vt[kept].T / s[kept]) ** 2).sum(axis=1))
+        return np.asarray(theta / np.maximum(spread, 1e-300))
+
+
+@dataclass(frozen=True)
+class Endogeneity:
+    """statistic: likelihood ratio, chi-squared of `degrees` where positions are exact; threshold: of it.
+
+    share: percent of the whitened RMSE by joint (n,) that the errors of the regressor explain; cost: of the
+    RMSE as it is, as whitening brings out what is high in frequency.
+    """
+
+    statistic: float
+    degrees: int
+    threshold: float
+    share: Array
+    cost: Array
+
+    @property
+    def found(self) -> bool:
+        """Whether errors of the positions are seen."""
+        return self.statistic > self.threshold
+
+
+def endogeneity(system: System) -> Endogeneity | None:
+    """Of the equations with all that they contain; None where nothing repeats."""
+    pairs = Pairs(system.rows, system.columns, system.periods, system.sizes)
+    if not pairs.enough:
+        return None
+    stage = pairs.first_stage()
+    left = [
+        np.zeros(table.shape)
+        if partner is None
+        else (table - (table[partner] / pairs.scale) @ stage) * there[:, :, None]
+        for table, partner, there in zip(system.columns, pairs.partners, pairs.flags, strict=True)
+    ]
+    gain = system.white.gain(left)
+    if gain is None:
+        return Endogeneity(0.0, 0, np.inf, np.zeros(system.n), np.zeros(system.n))
+    used = system.white.counts > 0
+    ratio = gain.rss0[used] / np.maximum(gain.rss1[used], 1e-300)
+    statistic = float((system.white.counts[used] * np.log(ratio)).sum())
+    plain, share, cost = system.plain.gain(left), np.zeros(system.n), np.zeros(system.n)
+    share[used] = 100.0 * (1.0 - 1.0 / np.sqrt(ratio))
+    if plain is not None:
+        used = plain.rss0 > 0
+        cost[used] = 100.0 * (1.0 - np.sqrt(plain.rss1[used] / plain.rss0[used]))
+    return Endogeneity(statistic, gain.rank, float(special.chdtri(gain.rank, SIGNIFICANCE)), share, cost)

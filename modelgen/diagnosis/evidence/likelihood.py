@@ -1,0 +1,244 @@
+"""Equations of all records and joints in one scale, one after the other, and what columns explain of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.diagnosis.equations.least_squares import orthonormal
+from modelgen.diagnosis.equations.prior import FAITH, Told
+from modelgen.diagnosis.evidence.noise import Colour
+from modelgen.numeric import Array
+
+TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
+OPEN = 1e-9  # of the largest singular value: below, records say nothing
+NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What further columns explain. rss0, rss1: by joint, without and with; values: of the columns."""
+
+    delta_bic: float
+    values: Array
+    rss0: Array
+    rss1: Array
+    rank: int
+
+
+class Stack:
+    """What a baseline leaves of R equations, and below them of the D that the description tells of it.
+
+    matrix, right: (R, b), (R,), of the records alone; joint: (R,), from 0; counts, rss: (n,), how many of a
+    joint's equations are independent, and sums of squares of what is left of them; share: of all rows, those
+    that are independent. basis: (R + D, b), orthonormal, of the baseline; left, groups: (R + D,); weights,
+    squares: (n or n + 1,), as joint, counts and rss, but with what is told as if it were one more joint.
+
+    stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
+    p) and (M, n); said: of the first of the columns. alone: (R, b), as basis, of the records alone, None
+    where nothing is told. colour: of the noise, None where it is white or not known.
+    """
+
+    def __init__(
+        self,
+        stacked: Callable[[Sequence[Array]], Array],
+        joint: NDArray[np.intp],
+        counts: Array,
+        columns: Sequence[Array],
+        efforts: Sequence[Array],
+        said: Told | None = None,
+        colour: Colour | None = None,
+    ) -> None:
+        self.records = stacked
+        self.colour = colour
+        self.joint = joint
+        self.counts = counts
+        self.matrix = stacked(columns)
+        self.right = stacked([effort[:, :, None] for effort in efforts])[:, 0]
+        self.share = float(counts.sum() / max(1, len(joint)))
+        matrix, right, self.groups, self.weights = self.matrix, self.right, joint, counts
+        self.alone: Array | None = None
+        if said is not None and self.share > 0:
+            self.alone = orthonormal(matrix)
+            rows = np.zeros((len(said.rows), matrix.shape[1]))
+            rows[:, : said.rows.shape[1]] = said.rows
+            belief = believed(matrix, right, rows, said.right, self.share)
+            # one equation more, which nothing changes: the scatter that is expected
+            rows = np.vstack([rows, np.zeros(matrix.shape[1])]) * belief.weight
+            further = np.append(said.right, math.sqrt(belief.faith)) * belief.weight
+            matrix, right = np.vstack([matrix, rows]), np.append(right, further)
+            self.groups = np.append(joint, np.full(len(rows), len(counts)))
+            self.weights = np.append(counts, belief.count + belief.faith)
+        self.basis = orthonormal(matrix)
+        self.left = right - self.basis @ (self.basis.T @ right)
+        self.squares = self.by_group(self.left)
+        self.rss = self.squares[: len(counts)]
+
+    def stacked(self, columns: Sequence[Array]) -> Array:
+        """Columns (M, n, k) of each record, of which nothing is told: (R + D, k)."""
+        found = self.records(columns)
+        return np.vstack([found, np.zeros((len(self.groups) - len(found), found.shape[1]))])
+
+    def by_group(self, left: Array) -> Array:
+        """Sums of squares of (R + D,), as `squares`."""
+        found = np.bincount(self.groups, weights=left**2, minlength=len(self.weights))
+        return np.asarray(found, dtype=float)
+
+    def gain(
+        self,
+        columns: Sequence[Array],
+        extra: float = 0.0,
+        positive: Sequence[bool] = (),
+        *,
+        alike: bool = False,
+        passing: bool = False,
+    ) -> Gain | None:
+        """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
+
+        extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
+        negative; empty for none. alike: as if noise hid columns of all colours alike. passing: they do not
+        repeat with the periods, and their part in what differs between these is not noise.
+        """
+        return explained(self.stacked(columns), self, extra, positive, alike=alike, passing=passing)
+
+
+@dataclass(frozen=True)
+class Belief:
+    """In what is told beside some equations. weight: one over its scatter among them; count: of it, what the
+    records could contradict; faith: measurements that the scatter expected is worth.
+    """
+
+    weight: float
+    count: float
+    faith: float
+
+
+def believed(matrix: Array, right: Array, rows: Array, further: Array, share: float) -> Belief:
+    """In what is told (D, b), (D,) beside equations (R, b), (R,), of which `share` are independent.
+
+    The likeliest scatter, begun with the records alone: what contradicts them has no say. What the records
+    leave open agrees with all that is told, and says nothing about its scatter.
+    """
+    norms = np.linalg.norm(np.vstack([matrix, rows]), axis=0)
+    norms[norms == 0] = 1.0
+    q, r = np.linalg.qr(matrix / norms)
+    told, right = rows / norms, q.T @ right
+    _, s, vt = np.linalg.svd(r)
+    sizes = np.full(len(vt), OPEN * s.max(initial=1e-300))
+    sizes[: len(s)] = np.maximum(s, sizes[0])
+    # of what is told, in independent combinations, as the records alone have it
+    variances = np.linalg.svd((told @ vt.T) / sizes, compute_uv=False) ** 2 / share
+    scatter = math.inf
+    for _ in range(TURNS):
+        weight = 0.0 if math.isinf(scatter) else 1.0 / math.sqrt(scatter * share)
+        table = np.vstack([r, weight * told])
+        found = np.linalg.lstsq(table, np.append(right, weight * further), rcond=NOTHING)[0]
+        size = 1.0 if math.isinf(scatter) else scatter
+        count = float((size / (size + variances)).sum())
+        faith = max(FAITH, count)
+        before, scatter = scatter, (float(((further - told @ found) ** 2).sum()) + faith) / (count + faith)
+        if abs(scatter - before) < SETTLED * scatter:
+            break
+    return Belief(1.0 / math.sqrt(scatter * share), count, faith)
+
+
+def weighted(columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sizes: Array) -> Array:
+    """Columns (M, n, k) of each record over the sizes (n,) of its joints, stacked. moving: (M, n) of each."""
+    return np.concatenate(
+        [
+            table[flags[:, j], j] / sizes[j]
+            for table, flags in zip(columns, moving, strict=True)
+            for j in range(len(sizes))
+        ]
+    )
+
+
+def joints_of(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
+    """Joint, from 0, of each stacked row. flags: (M, n) of every record."""
+    return np.concatenate([np.full(int(f[:, j].sum()), j) for f in flags for j in range(f.shape[1])])
+
+
+def explained(
+    stacked: Array,
+    stack: Stack,
+    extra: float = 0.0,
+    positive: Sequence[bool] = (),
+    *,
+    alike: bool = False,
+    passing: bool = False,
+) -> Gain | None:
+    """What columns (R + D, k) explain of what the stack's baseline leaves.
+
+    positive: columns whose value may not be negative: it is zero where it would be. alike, passing: as of
+    `Stack.gain`.
+    """
+    basis, left, n = stack.basis, stack.left, len(stack.counts)
+    norms = np.linalg.norm(stacked, axis=0)
+    if not norms.any() or not np.isfinite(norms).all():
+        return None
+    there = norms > 0
+    unit = stacked[:, there] / norms[there]
+    apart = np.eye(unit.shape[1])
+    if stack.alone is not None:  # what the records cannot show is none, whatever is told
+        records = unit[: len(stack.alone)]
+        _, s, vt = np.linalg.svd(records - stack.alone @ (stack.alone.T @ records), full_matrices=False)
+        apart = vt[s > NOTHING]
+        unit = unit @ apart.T
+    own = unit - basis @ (basis.T @ unit)
+    u, s, vt = np.linalg.svd(own, full_matrices=False)
+    kept, vt = s > NOTHING, vt @ apart
+    if not kept.any():
+        return None
+    scores = u[:, kept].T @ left
+    found, values = vt[kept].T @ (scores / s[kept]), np.zeros(len(norms))
+    limited = np.flatnonzero(np.asarray(positive or [False] * len(norms))[there])
+    if (found[limited] < 0).any():
+        found = not_negative(s[kept, None] * vt[kept], scores, limited)
+        scores = s[kept] * (vt[kept] @ found)
+    values[there] = found / norms[there]
+    after = left - u[:, kept] @ scores
+    rss0, rss1 = stack.squares, stack.by_group(after)
+    rank = int(kept.sum())
+    used, weights = stack.weights > 0, stack.weights.copy()
+    if stack.colour is not None and not alike:
+        colour = stack.colour.of(after) if passing else stack.colour
+        weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, passing=passing)
+    drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
+    penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
+    return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
+
+
+def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour, *, passing: bool) -> float:
+    """Share of the evidence of scores (k,) along orthonormal columns (R + D, k) that noise of this colour
+    leaves: as many rows are independent as the variance of the scores says, and not more than for variances,
+    or, where what passes was a part of the noise by which those were counted, than there are.
+    """
+    count = len(stack.joint)
+    rows = np.bincount(stack.joint, minlength=len(stack.counts))
+    share = np.append(stack.counts / np.maximum(rows, 1), stack.share)[stack.groups]
+    variance = colour.variance(basis[:count]) + basis[count:].T @ basis[count:] / stack.share
+    sizes, vectors = np.linalg.eigh(variance)
+    squares = (vectors.T @ scores) ** 2
+    counted = share @ (basis @ vectors) ** 2
+    most = np.ones(len(sizes)) if passing else counted
+    known = np.minimum(most, 1.0 / np.maximum(sizes, 1e-300))
+    return float(known @ squares / max(float(counted @ squares), 1e-300))
+
+
+def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Array:
+    """Least squares (k,) with the values at places `limited` not negative: the best of all active sets."""
+    best, least = np.zeros(matrix.shape[1]), math.inf
+    for count in range(len(limited) + 1):
+        for zero in combinations(limited, count):
+            free = np.setdiff1d(np.arange(matrix.shape[1]), zero)
+            found = np.zeros(matrix.shape[1])
+            found[free] = np.linalg.lstsq(matrix[:, free], right, rcond=NOTHING)[0]
+            size = float(((right - matrix @ found) ** 2).sum())
+            if (found[limited] >= 0).all() and size < least:
+                best, least = found, size
+    return best

@@ -1,0 +1,1 @@
+"""The next experiment: what would tell rivals apart, within the arm's limits."""

@@ -1,0 +1,147 @@
+"""Simple bench tests that tell causes apart, with the evidence to be expected of each.
+
+Motions of one joint, the same trajectory with a payload, and readings of what a cause claims: a reading with
+standard deviation s of a value v is worth v^2 / s^2 against a model without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.dataset import drives_of
+from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge
+from modelgen.diagnosis.experiment.motions import Stage
+from modelgen.diagnosis.experiment.trajectory import Proposal
+from modelgen.errors import InputError
+from modelgen.excitation.limits import bounds, ranges, speeds
+from modelgen.excitation.settings import Settings
+from modelgen.functions.nominal import about_origin, grouped
+from modelgen.numeric import Array
+
+DURATION = 30.0  # s of a motion
+LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9)  # of the speed limit
+SMALL, SLOW = 0.05, 0.05  # amplitude over the range, peak speed over its limit
+PAYLOAD = 0.5  # of the last link's mass
+LOADED = ("load_dependent_friction", "position_dependent_friction", "torque_constant_saturation")
+READING = 1.0  # s of a current at rest
+# What is read, the parameters that claim it, and a reading's standard deviation in their unit.
+READINGS: Mapping[str, tuple[str, tuple[str, ...], float]] = {
+    "encoder_offset": ("the angle at an index mark or a hard stop, to 0.1 deg", ("offset",), 1.7e-3),
+    "base_tilt": ("the base with an inclinometer, to 0.1 deg", ("x", "y", "z"), 1.7e-3),
+    "lever_geometry": ("the lever's lengths, to 0.5 mm", ("l1", "l2", "length"), 5e-4),
+    "payload_change": ("what the last link carries on a balance, to 10 g", ("mass",), 0.01),
+}
+COMPLIANT = "the joint's angle to 0.1 mrad at the link, the motor held, the link pushed both ways"
+SEEN = 1e-4  # rad, of that reading
+
+
+@dataclass(frozen=True)
+class Test:
+    """text: what to do. evidence: expected delta BIC at least, None where no figure can be given."""
+
+    text: str
+    evidence: float | None
+
+
+def tests(stage: Stage, judge: Judge, members: Sequence[Hypothesis], proposal: Proposal | None) -> list[Test]:
+    """All that are worth more than nothing."""
+    found: list[Test] = []
+    joints = sorted({h.candidate.joint for h in members if h.candidate.joint is not None})
+    for joint in joints:
+        for text, q in _motions(stage, joint - 1):
+            rows = stage.rows(q)
+            if rows is not None:
+                evidence = least(judge.evidence(members, [rows]))
+                found += [] if evidence is None else [Test(text, evidence)]
+    loaded = _loaded(stage) if any(h.candidate.effect in LOADED for h in members) else None
+    if loaded is not None and proposal is not None:
+        heavier = stage.rows(proposal.q, loaded)
+        if heavier is not None:
+            both = judge.evidence(members, [proposal.rows, heavier], bases=[stage.base, loaded])
+            text = "the trajectory twice, without and with half the last link's mass as payload at its centre"
+            found.append(Test(text, least(both)))
+    return sorted(
+        (t for t in found if t.evidence is None or t.evidence > 0), key=lambda t: -(t.evidence or 0.0)
+    )
+
+
+def least(evidence: Array) -> float | None:
+    """The least over all pairs; None where one contains the other."""
+    known = evidence[np.isfinite(evidence)]
+    return float(known.min()) if len(known) else None
+
+
+def readings(
+    stage: Stage, judge: Judge, claims: Sequence[tuple[str, int | None, Mapping[str, float]]]
+) -> list[Test]:
+    """Of what causes claim: (effect, joint, values of its parameters)."""
+    found = []
+    for effect, joint, values in claims:
+        place = "" if joint is None else f"joint {joint}: "
+        if effect in READINGS:
+            text, names, spread = READINGS[effect]
+            size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in names)))
+            found.append(Test(f"{place}read {text} (the cause claims {size:.2g})", (size / spread) ** 2))
+        elif effect == "friction_offset" and joint is not None:
+            size = abs(values.get("offset", 0.0)) / drives_of(stage.arm)[joint - 1].torque_constant
+            noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.sizes[joint - 1])
+            rows = max(1.0, READING * stage.prepared[0].rate * float(judge.shares[joint - 1]))
+            text = f"{place}read the current at rest with the motor switched off, for {READING:g} s"
+            said = f"{text} (an offset of the sensor of {size:.2g}; none with asymmetric friction)"
+            found.append(Test(said, rows * float(np.log1p((size / noise) ** 2))))
+        elif effect == "backlash" and joint is not None:
+            play = values.get("play", 0.0)
+            found.append(Test(f"{place}read {COMPLIANT} (a gap of {play:.2g})", (play / SEEN) ** 2))
+    return found
+
+
+def _motions(stage: Stage, k: int) -> Iterator[tuple[str, Array]]:
+    """Text and positions (N, n) of motions of coordinate k alone, the others at their middles."""
+    try:
+        limits, _ = bounds(stage.arm, Settings())
+        middle, half = ranges(stage.arm, limits, "joint")
+        speed = float(speeds(stage.arm, limits, "joint")[k])
+    except InputError:
+        return
+    half = 0.95 * half
+    t: Array = stage.step * np.arange(round(DURATION / stage.step), dtype=np.float64)
+    amplitude = SMALL * 2 * half[k]
+    waves = {
+        "slow reversals": amplitude * np.sin(SLOW * speed / amplitude * t),
+        "a slow sweep of its whole range there and back": -half[k] * np.cos(2 * np.pi * t / DURATION),
+        "constant speeds in both directions": _staircase(t, speed, half[k]),
+    }
+    for name, wave in waves.items():
+        q = np.tile(middle, (len(t), 1))
+        q[:, k] += wave
+        yield f"joint {k + 1} alone: {name}, {DURATION:g} s", q
+
+
+def _staircase(t: Array, speed: float, half: float) -> Array:
+    """Positions (N,): each level of speed there and back, with ramps of a tenth of its time."""
+    each = t[-1] / len(LEVELS)
+    result = np.zeros(len(t))
+    step = float(t[1] - t[0])
+    for n, level in enumerate(LEVELS):
+        part = (t >= n * each) & (t < (n + 1) * each)
+        turns = max(1.0, np.ceil(level * speed * each / 2 / (2 * half)))
+        phase = (t[part] - n * each) / each * turns
+        wave = np.clip(5.0 * np.sin(2 * np.pi * phase), -1.0, 1.0)
+        result[part] = level * speed * wave
+    path = np.cumsum(result) * step
+    return np.asarray(path - (path.max() + path.min()) / 2)
+
+
+def _loaded(stage: Stage) -> Array | None:
+    """Base parameters with a payload at the last link's centre; None without its nominal inertials."""
+    arm = stage.model.arm
+    last = max(arm.coordinates)
+    link = arm.links[last]
+    if link is None:
+        return None
+    own = {f"{name}{last + 1}": PAYLOAD * value for name, value in about_origin(link).items()}
+    more = grouped(stage.model, [own.get(p.name, 0.0) for p in stage.model.standard])
+    return np.asarray(stage.base + np.array(list(more.values())))

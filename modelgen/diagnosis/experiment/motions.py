@@ -1,0 +1,128 @@
+"""Motions that could be run next, within the limits of the arm, and the equations of their logs to be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.description import Arm
+from modelgen.diagnosis.equations.rows import Rows, rows_of
+from modelgen.diagnosis.thresholds import ORDER
+from modelgen.effects import CATALOGUE
+from modelgen.errors import InputError
+from modelgen.evaluation import Motion, Prober
+from modelgen.excitation.limits import bounds
+from modelgen.excitation.settings import Settings
+from modelgen.functions import Model
+from modelgen.numeric import Array
+
+HARMONICS = 5
+FEWEST = 2  # samples of a slow motion from one row to the next
+SHORTEST, USUAL, LONGEST = 4.0, 10.0, 12.0  # s, period of a motion
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The arm with the processing of its training records.
+
+    arm: with a limit wherever the description has none, and without effects that have states. prepared: the
+    training records. base: base parameters (p,) of `model`. assumed: limits that were taken from the records.
+    every: sampling periods of the records between two samples of a motion; where there are several it must
+    be slow, and its positions are not filtered.
+    """
+
+    arm: Arm
+    model: Model
+    prober: Prober
+    prepared: Sequence[Prepared]
+    base: Array
+    assumed: tuple[str, ...]
+    every: int = 1
+
+    @property
+    def step(self) -> float:
+        """Sampling period [s]."""
+        return self.prepared[0].record.step
+
+    def times(self, count: int) -> Array:
+        """Of so many samples (N,) of a motion [s]."""
+        return np.asarray(self.every * self.step * np.arange(count), dtype=np.float64)
+
+    @property
+    def coarse(self) -> Stage:
+        """With as few samples as the same rows of a slow motion follow from."""
+        factor = self.prepared[0].settings.factor
+        rest = next(k for k in range(min(FEWEST, factor), factor + 1) if factor % k == 0)
+        return replace(self, every=factor // rest)
+
+    def settings(self, period: int | None, seed: int = 0) -> Settings:
+        """Of the excitation. period: samples in that of the training records."""
+        rate = 1.0 / self.step
+        length = USUAL if period is None else period * self.step
+        samples = round(float(np.clip(length, SHORTEST, LONGEST)) * rate)
+        return Settings(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
+
+    def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
+        """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged."""
+        first = self.prepared[0]
+        settings = first.settings
+        if self.every > 1:
+            settings = replace(settings, factor=settings.factor // self.every, position_cutoff=0.0)
+        motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.prober.arm))])
+        if not np.isfinite(motor).all():
+            return None
+        nothing = np.zeros(q.shape)
+        record = Record(
+            "next", self.times(len(q)), q, motor, nothing, nothing + 1.0,
+            motor_side=first.record.motor_side, arm=first.record.arm,
+        )  # fmt: skip
+        try:
+            prepared = prepare(record, settings)
+        except InputError:
+            return None
+        if len(prepared.rows) < 3 * ORDER:
+            return None
+        base = self.base if parameters is None else parameters
+        return rows_of(self.prober, self.model, prepared, base)
+
+    def overload(self, q: Array, dq: Array, ddq: Array) -> float:
+        """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
+        limits = [b for b in bounds(self.arm, Settings())[0] if b.signal in ("input", "effort")]
+        if not limits:
+            return 0.0
+        given = self.prober.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)
+        drives, most = drives_of(self.prober.arm), 0.0
+        for b in limits:
+            x = given[:, b.coordinate]
+            if b.signal == "effort":
+                x = x * drives[b.coordinate].gain(q[:, b.coordinate])
+            most = max(most, float(np.abs(x).max()) / b.high)
+        return most
+
+
+def stage(arm: Arm, model: Model, prober: Prober, prepared: Sequence[Prepared], base: Array) -> Stage:
+    """What motions are planned on. Where the description has no limit, what the records reached counts."""
+    joints, assumed = list(arm.joints), []
+    for n, i in enumerate(arm.coordinates):
+        own = joints[i].limits
+        effects = tuple(u for u in joints[i].effects if not CATALOGUE[u.name].held(u.values))
+        q = np.concatenate([p.q[p.rows, n] for p in prepared])
+        missing = {
+            "position": None if own.position else (float(q.min()), float(q.max())),
+            "velocity": own.velocity or _largest([p.dq[p.rows, n] for p in prepared]),
+            "acceleration": own.acceleration or _largest([p.ddq[p.rows, n] for p in prepared]),
+        }
+        given = {name: value for name, value in missing.items() if not getattr(own, name) and value}
+        assumed += [f"{name} of joint {n + 1}" for name in given]
+        joints[i] = replace(joints[i], limits=replace(own, **given), effects=effects)  # type: ignore[arg-type]
+    kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].held(u.values))
+    return Stage(
+        replace(arm, joints=tuple(joints), effects=kept), model, prober, prepared, base, tuple(assumed)
+    )
+
+
+def _largest(values: Sequence[Array]) -> float:
+    return float(np.abs(np.concatenate(values)).max())

@@ -1,0 +1,1 @@
+"""The model with the causes: refitted values, their uncertainty, errors on the test record."""

@@ -1,0 +1,102 @@
+"""Inertia of the drives before elastic joints and play, where the arm's parameters hold it with the links'.
+
+The links' share decides what a spring of some stiffness does, and no rigid model's parameter tells it. Where
+the description gives the drive none, the drive's is what was identified of both beyond the links' nominal
+inertials.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+
+from modelgen.base_parameters.drive_inertia import INERTIA
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates.candidate import COMPLIANT
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.extended.findings import Estimate
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.selection.compliance import best_beside
+from modelgen.diagnosis.selection.refit_stiffness import with_trials
+from modelgen.effects.placement import Found, extended_arm
+from modelgen.errors import InputError
+from modelgen.evaluation import Prober
+from modelgen.functions import Model
+from modelgen.functions.nominal import factor_value, nominal_links
+from modelgen.numeric import Array
+
+SOFTER = (0.5, 0.2, 0.08)  # times the stiffness that was found with the inertia of drive and links together
+LEAST = 0.05  # of the inertia of links and drive together, that is either's
+
+
+def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Estimate]:
+    """Inertia by coordinate (from 1) of drives before the compliant joints among the causes, at the motor.
+
+    base: parameters (p,). Of those alone that base parameters of links contain, and that the description
+    leaves without a value; none where links have no nominal inertials, or these leave next to nothing to the
+    drive, or to the link.
+    """
+    try:
+        known = nominal_links(model)
+    except InputError:
+        return {}
+    compliant = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
+    symbols, units = model.arm.symbols, {p.name: p.unit for p in model.standard}
+    found = {}
+    for drive in model.grouping.drives:
+        number = model.arm.coordinates.index(drive.joint) + 1
+        if number not in compliant or drive.nominal is not None:
+            continue
+        terms = {model.standard[k].name: factor for k, factor in model.grouping.base[drive.base].terms}
+        factor = factor_value(terms.pop(drive.name), symbols)
+        if not terms.keys() <= known.keys():
+            continue
+        links = sum(known[name] * factor_value(f, symbols) for name, f in terms.items())
+        whole = float(base[drive.base])
+        if LEAST * whole < links < (1.0 - LEAST) * whole:
+            value = float(f"{(whole - links) / factor:.9g}")
+            found[number] = Estimate(value, math.nan, units[drive.name])
+    return found
+
+
+def described_by(values: Mapping[int, Estimate]) -> list[Found]:
+    """Inertia of drives by coordinate (from 1) as what a description is extended by."""
+    return [(INERTIA, number, {"inertia": e.value}) for number, e in values.items()]
+
+
+def told_apart(
+    arm: Arm, model: Model, selection: Selection, base: Array, rows: Sequence[Rows], prober: Prober
+) -> tuple[dict[int, Estimate], Selection, Prober]:
+    """`inertias`, and with them the selection and the prober of the arm that has them; all as they were, and
+    none, where compliant joints do no better with them than rigid ones.
+    """
+    values = inertias(model, base, selection.causes)
+    if values:
+        split = Prober(extended_arm(arm, described_by(values)))
+        found = refound(selection, values, rows, split)
+        if found is not None:
+            return values, found, split
+    return {}, selection, prober
+
+
+def refound(
+    selection: Selection, numbers: Collection[int], rows: Sequence[Rows], prober: Prober
+) -> Selection | None:
+    """The selection with the values of the compliant joints `numbers` that are best on the arm of `prober`;
+    None where rigid ones are better there.
+
+    The search begins at what was found, and at softer ones: slowly, a joint does the same with half the
+    links' inertia and a quarter of its stiffness.
+    """
+    trials = [c.trial for c in selection.causes]
+    for k, trial in enumerate(trials):
+        if trial.candidate.effect in COMPLIANT and trial.candidate.joint in numbers:
+            others = [t for t in trials if t is not trial]
+            starts = [trial.values]
+            if "stiffness" in trial.values:  # which a gap behind a link's own position has not
+                starts += [{**trial.values, "stiffness": f * trial.values["stiffness"]} for f in SOFTER]
+            found = best_beside(trial, starts, others, rows, prober)
+            if found is None:
+                return None
+            trials[k] = found
+    return with_trials(selection, trials, rows)

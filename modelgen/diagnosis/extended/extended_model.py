@@ -1,0 +1,205 @@
+"""The model as described and the extended one, fitted, and what either leaves of the test record."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.dataset import Prepared, prepare
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER
+from modelgen.diagnosis.candidates.columns import candidate_columns
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.band import rows_twice
+from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
+from modelgen.diagnosis.equations.prior import Baseline, estimated, held
+from modelgen.diagnosis.equations.rows import Rows, rows_of
+from modelgen.diagnosis.selection.cause import Selection
+from modelgen.effects import described
+from modelgen.effects.placement import extended_arm
+from modelgen.evaluation import Prober
+from modelgen.functions import Model, build_model
+from modelgen.numeric import Array
+from modelgen.simulation.windows import Windows, simulated_windows
+
+WINDOW = 0.25  # s
+MOST = 250  # windows
+HALVES = 10  # steps, of which half is taken each
+WHOLES = 6  # steps by the slopes
+SHORTER = 3  # times a step is halved that leads astray
+TOUCH = 1e-4  # of a parameter
+LEAST = 1e-7  # of its own unit
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model fitted to the training records. theta: (k,) unknowns of the rows' baseline."""
+
+    arm: Arm
+    model: Model
+    rows: Sequence[Rows]
+    theta: Array
+
+    @property
+    def parameters(self) -> Array:
+        """Base parameters (p,)."""
+        return self.rows[0].baseline.base(self.theta)
+
+
+def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> Fitted:
+    """The model with the parameters that explain the rows best."""
+    return Fitted(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
+
+
+def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Prepared]) -> Fitted:
+    """The arm with the causes, everything else fitted anew."""
+    causes = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
+    if not causes:
+        return before
+    bigger = extended_arm(arm, causes)
+    model = build_model(bigger)
+    known = held(model) if train[0].input is None else estimated(model)
+    # links that weigh nothing swing on no spring: not from zero
+    beside = before.rows[0].baseline.base(selection.system.theta[: before.rows[0].columns.shape[2]])
+    values = dict(zip((b.name for b in before.model.grouping.base), beside, strict=True))
+    first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
+    start = None if train[0].input is None else first
+    seen = [_seen_by(p, bigger) for p in train]
+    if any(effect in COMPLIANT for effect, _, _ in causes):
+        rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
+        return Fitted(bigger, model, *settled(bigger, model, seen, known, first, rigid))
+    own = rows_twice(Prober(bigger), model, seen, known, start)
+    if (
+        any(effect == LATER for effect, _, _ in causes)
+        and own[0].columns.shape == before.rows[0].columns.shape
+    ):
+        own = [before.rows[0], *own[1:]]  # the first record is without it
+    return fitted(bigger, model, own)
+
+
+def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
+    """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
+    record = prepared.record
+    if not any(u.name == "lever_geometry" for j in arm.joints for u in j.effects) or not any(
+        record.motor_side
+    ):
+        return prepared
+    return prepare(replace(record, arm=described(arm)), prepared.settings)
+
+
+def replay(fitted: Fitted, rows: Rows) -> Windows | None:
+    """Simulated against measured positions; None where the record is too short, or nothing stays finite.
+
+    A free motion has no inputs, and is simulated from its beginning to its end.
+    """
+    p = rows.prepared
+    trim = int(p.rows[0])
+    if p.input is None:
+        moving = np.flatnonzero(rows.moving.any(axis=1))
+        if not len(moving):
+            return None
+        starts = p.rows[moving[:1]]
+        length = len(p.time) - trim - int(starts[0])
+    else:
+        length = max(4, round(WINDOW / p.record.step))
+        count = (len(p.time) - 2 * trim) // length
+        if count < 2:
+            return None
+        starts = trim + length * np.linspace(0, count - 1, min(count, MOST)).astype(int)
+    states = None
+    if any(f.name == "effects_step" for f in fitted.model.functions):
+        prober = Prober(fitted.arm)
+        states = prober.states(rows.motion, fitted.parameters)
+        moved = prober.link_side.at_drives(rows.motion, fitted.parameters)  # what the model's coordinates are
+        p = replace(p, q=moved.q, dq=moved.dq, ddq=moved.ddq)
+    return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
+
+
+def residuals(
+    test: Rows, before: Fitted, selection: Selection, after: Fitted, prober: Prober, base: Array
+) -> tuple[Array, Array]:
+    """On the test record (M, n), in the unit of its efforts: before and after. base: of `prober`'s arm."""
+    old = (test.effort - test.columns @ before.theta) * test.gain
+    if not selection.causes:
+        return old, old
+    if any(c.trial.candidate.effect == LATER for c in selection.causes):
+        table = [test.columns]
+        for cause in selection.causes:
+            found = columns_of(cause.trial, test, prober, base)
+            assert found is not None
+            table.append(found)
+        left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
+        return old, left * test.gain
+    seen = _seen_by(test.prepared, after.arm)
+    rows = rows_of(Prober(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
+    return old, (rows.effort - rows.columns @ after.theta) * test.gain
+
+
+def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array | None:
+    """Columns (M, n, k) of a cause on another record than those it was fitted to; None where it cannot stand
+    there. base: of `prober`'s arm.
+    """
+    # a payload that came between the records stays
+    records = [test, test] if trial.candidate.effect == LATER else [test]
+    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
+    return None if found is None else found[-1]
+
+
+def unit_of_efforts(test: Prepared) -> str:
+    """Of the log's efforts; several where joints differ."""
+    return ", ".join(dict.fromkeys(test.effort_unit)) or "A"
+
+
+def settled(
+    arm: Arm, model: Model, train: Sequence[Prepared], known: Baseline, theta: Array, rigid: float
+) -> tuple[list[Rows], Array]:
+    """Equations of the records at the unknowns (k,) that explain most, and these. rigid: `misfit` without the
+    joints.
+
+    At first what the joints do is held while the arm's parameters are fitted beside it, over and over. A soft
+    joint answers little of these with much: where that finds nothing better than a rigid arm, Gauss's and
+    Newton's steps follow, by differences.
+    """
+    search = _Search(Prober(arm), model, train, known)
+    for _ in range(HALVES):
+        rows, _ = search.at(theta)
+        theta = (theta + weighted_fit(rows, [r.columns for r in rows])) / 2
+    for _ in range(WHOLES if search.least >= rigid else 0):
+        least, theta = search.least, search.theta
+        rows = search.linearised()
+        step = weighted_fit(rows, [r.columns for r in rows]) - theta
+        if not any(search.at(theta + step / 2**k)[1] < least for k in range(SHORTER + 1)):
+            break
+    return search.rows, search.theta
+
+
+class _Search:
+    """Keeps the best of all unknowns that were tried."""
+
+    def __init__(self, prober: Prober, model: Model, train: Sequence[Prepared], known: Baseline) -> None:
+        self.prober, self.model, self.train, self.known = prober, model, train, known
+        self.rows: list[Rows] = []
+        self.theta, self.least = np.zeros(0), np.inf
+
+    def at(self, theta: Array) -> tuple[list[Rows], float]:
+        """Equations there, and their misfit."""
+        rows = [rows_of(self.prober, self.model, p, theta, self.known) for p in self.train]
+        left = misfit(rows, [r.columns for r in rows], theta)
+        if not self.rows or left < self.least:
+            self.rows, self.theta, self.least = rows, theta, left
+        return rows, left
+
+    def linearised(self) -> list[Rows]:
+        """Equations at the best, with what each unknown changes for its column."""
+        found = []
+        for r in self.rows:
+            here, columns = self.prober.inputs(r.motion, self.known.base(self.theta)), []
+            for k, value in enumerate(self.theta):
+                step = max(TOUCH * abs(value), LEAST)
+                moved = self.theta + step * (np.arange(len(self.theta)) == k)
+                columns.append((self.prober.inputs(r.motion, self.known.base(moved)) - here) / step)
+            table = r.filtered(np.stack(columns, axis=2))
+            found.append(replace(r, effort=r.effort + (table - r.columns) @ self.theta, columns=table))
+        return found

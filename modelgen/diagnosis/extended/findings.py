@@ -1,0 +1,70 @@
+"""TODO."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from modelgen.diagnosis.evidence.instruments import Endogeneity
+from modelgen.numeric import Array
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter of a cause."""
+
+    value: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Share:
+    """What leaving a cause out costs on the test record, percent of the RMSE; low, high: 95 % interval. Below
+    zero where it does harm there. Not a number where that is not known.
+    """
+
+    gain: float = float("nan")
+    low: float = float("nan")
+    high: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Named:
+    """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
+    how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
+    expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.
+    share: of the gain on the test record.
+    """
+
+    effect: str
+    joint: int | None
+    parameters: Mapping[str, Estimate]
+    delta_bic: float
+    cross_gain: float
+    expected_gain: float
+    aliases: tuple[tuple[str, int | None], ...] = ()
+    ambiguous_with: tuple[tuple[str, int | None, float], ...] = ()
+    share: Share = Share()
+
+
+@dataclass(frozen=True)
+class Errors:
+    """RMSE on the test record by joint (n,), in `unit`. gain: percent; low, high: its 95 % interval."""
+
+    unit: str
+    before: Array
+    after: Array
+    gain: Array
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True)
+class Positions:
+    """Errors of the positions. feigned: percent of the RMSE by joint (n,) that they could feign; endogeneity:
+    test of Durbin, Wu and Hausman, None where nothing repeats.
+    """
+
+    feigned: Array
+    endogeneity: Endogeneity | None

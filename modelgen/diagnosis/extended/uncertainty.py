@@ -1,0 +1,173 @@
+"""How far estimates may be off: of weighted least squares in coloured noise.
+
+The estimate is that of the plain equations, rows weighted by joint, whose errors have the noise's colour: its
+covariance is R^-1 V R^-T, with the equations X = Q R and V the variance of such noise along Q (Newey and
+West 1987). What is searched for has a column as well, the slope of what its cause adds (Gauss and Newton;
+Bates and Watts 1988, 2.2): what is said of the others then counts that it is not known either.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from modelgen.description import Arm
+from modelgen.diagnosis.candidates.candidate import COMPLIANT
+from modelgen.diagnosis.candidates.columns import candidate_columns
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.extended.findings import Estimate
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.effects import CATALOGUE
+from modelgen.evaluation import Prober
+from modelgen.functions import Model
+from modelgen.model.parameters import unit_of
+from modelgen.numeric import Array
+from modelgen.transmission import of_joint
+
+STEP = 0.01  # of a value, over which slopes are taken
+OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
+KNOWN = 0.5  # of a value: a larger deviation says that it is not determined
+
+
+def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
+    """Of the least squares estimate of a system's columns (p), and of what has these slopes (M, n, m) of each
+    record: (p + m, p + m). known: columns whose factor is.
+    """
+    plain = system.plain
+    matrix = plain.matrix.copy()
+    matrix[:, list(known)] = 0.0
+    if slopes:
+        matrix = np.hstack([matrix, plain.records(slopes)])
+    norms = np.linalg.norm(matrix, axis=0)
+    norms[norms == 0] = 1.0
+    u, s, vt = np.linalg.svd(matrix / norms, full_matrices=False)
+    kept = s > OPEN * s.max(initial=0.0)
+    along = u[:, kept]
+    noise = np.eye(int(kept.sum())) / plain.share if plain.colour is None else plain.colour.variance(along)
+    back = (vt[kept].T / s[kept]) / norms[:, None]
+    return np.asarray(back @ noise @ back.T)
+
+
+def valued(selection: Selection) -> Selection:
+    """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
+    causes = []
+    for cause, own in zip(selection.causes, _columns_of(selection), strict=True):
+        trial, values = cause.trial, selection.system.theta[own]
+        if trial.candidate.effect not in COMPLIANT:  # which are as they were simulated
+            values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
+            trial = replace(trial, gain=replace(trial.gain, values=values))
+        causes.append(replace(cause, trial=trial))
+    return replace(selection, causes=causes)
+
+
+def _columns_of(selection: Selection) -> list[slice]:
+    """Places of the causes' columns in the system's."""
+    counts = [c.trial.columns[0].shape[2] for c in selection.causes]
+    ends = selection.system.rows[0].columns.shape[2] + np.cumsum([0, *counts])
+    return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
+
+
+def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
+    """Standard deviations of the causes' parameters by name; nan of what was fixed, or is not determined."""
+    if not selection.causes:
+        return []
+    system, rows = selection.system, selection.system.rows
+    base = rows[0].baseline.base(system.theta[: rows[0].columns.shape[2]])
+    slopes = [_slopes(c, rows, prober, base) for c in selection.causes]
+    together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
+    places = _columns_of(selection)
+    compliant = [c.trial.candidate.effect in COMPLIANT for c in selection.causes]
+    held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
+    whole = covariance_of(system, together if together[0].shape[2] else (), held)
+    searched, found = len(system.theta), []
+    for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
+        last = searched + slope[0].shape[2]
+        at = np.r_[own, searched:last]
+        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
+        searched = last
+    return found
+
+
+def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> list[Array]:
+    """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
+    trial = cause.trial
+    theta = np.ones(1) if trial.candidate.effect in COMPLIANT else trial.gain.values
+    parts: list[list[Array]] = [[] for _ in rows]
+    for name, value in trial.values.items():
+        step = STEP * (abs(value) or 1.0)
+        ends = [
+            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, rows, prober, base)
+            for x in (value - step, value + step)
+        ]
+        for k, part in enumerate(parts):
+            if ends[0] is None or ends[1] is None:
+                part.append(np.zeros(trial.columns[k].shape[:2]))
+            else:
+                part.append((ends[1][k] - ends[0][k]) @ theta / (2 * step))
+    return [
+        np.stack(part, axis=2) if part else np.zeros((*c.shape[:2], 0))
+        for part, c in zip(parts, trial.columns, strict=True)
+    ]
+
+
+def _physical(trial: Trial, covariance: Array, linear: int) -> dict[str, float]:
+    """Of the effect's own parameters, by how they follow from what was estimated and searched for."""
+    names, now = list(trial.values), trial.parameters
+    moved: list[dict[str, float]] = []
+    sizes: Array = np.sqrt(np.maximum(0.0, np.diag(covariance)))
+    for k in range(linear):
+        values = trial.gain.values.copy()
+        values[k] += sizes[k]
+        moved.append(replace(trial, gain=replace(trial.gain, values=values)).parameters)
+    for name, size in zip(names, sizes[linear:], strict=True):
+        moved.append(replace(trial, values={**trial.values, name: trial.values[name] + size}).parameters)
+    safe = np.where(sizes > 0, sizes, 1.0)
+    found = {}
+    for name, value in now.items():
+        slope = np.array([other.get(name, value) - value for other in moved]) / safe
+        std = math.sqrt(max(0.0, float(slope @ covariance @ slope)))
+        undetermined = name in names and std > KNOWN * abs(value)
+        found[name] = np.nan if std == 0.0 or undetermined else std
+    return found
+
+
+def cause_estimates(selection: Selection, prober: Prober) -> list[dict[str, Estimate]]:
+    """Of every cause, its own parameters; what was fixed, or is not determined, has no deviation."""
+    found = []
+    for cause, spread in zip(selection.causes, deviations(selection, prober), strict=True):
+        units = _units(prober.arm, *cause.trial.candidate.place)
+        values = cause.trial.parameters
+        found.append({name: Estimate(v, spread[name], units.get(name, "")) for name, v in values.items()})
+    return found
+
+
+def _units(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
+    coordinate = "m"
+    if joint is not None:
+        described = arm.joints[arm.coordinates[joint - 1]]
+        drive = of_joint(arm, described)
+        coordinate = "m" if described.type == "prismatic" else "rad"
+        if CATALOGUE[effect].side == "motor" and drive.driven:
+            coordinate = drive.unit
+    return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
+
+
+def base_estimates(
+    model: Model, rows: Sequence[Rows], theta: Array, periods: Sequence[int | None]
+) -> Mapping[str, Estimate]:
+    """Base parameters of a model from its fit to rows; those that were known have no deviation. periods: rows
+    in a period of each record.
+    """
+    system = System(rows, [r.columns for r in rows], periods)
+    lift = rows[0].baseline.lift
+    spread = np.sqrt(np.maximum(0.0, np.diag(lift @ covariance_of(system) @ lift.T)))
+    return {
+        b.name: Estimate(float(v), float(s), b.unit)
+        for b, v, s in zip(model.grouping.base, rows[0].baseline.base(theta), spread, strict=True)
+    }

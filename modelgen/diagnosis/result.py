@@ -1,0 +1,173 @@
+"""A diagnosis, as it is reported."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from modelgen.description import Arm
+from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
+from modelgen.diagnosis.adequacy.stand_ins import Likeness
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.experiment.experiment import Experiment
+from modelgen.diagnosis.experiment.experiment import to_json as experiment_json
+from modelgen.diagnosis.extended.extended_model import Fitted
+from modelgen.diagnosis.extended.findings import Errors, Estimate, Named, Positions
+from modelgen.diagnosis.selection.cause import Selection
+from modelgen.diagnosis.selection.history import Ranked
+from modelgen.numeric import Array
+from modelgen.simulation.windows import Windows
+
+VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything that was found. likeness: what the causes leave is most like; before, after: the arm as
+    described and the arm with the causes, fitted to the training records; simulation: of the test record with
+    either; test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts;
+    inertias: of drives before elastic joints and play by coordinate (from 1), as `drives.inertias` has them.
+    """
+
+    arm: Arm
+    verdict: str
+    reason: str
+    causes: tuple[Named, ...]
+    not_identifiable: tuple[tuple[str, str], ...]
+    lack_of_fit: LackOfFit | None
+    likeness: Likeness | None
+    errors: Errors
+    simulation: tuple[Windows | None, Windows | None]
+    before: Fitted
+    after: Fitted
+    parameters: Mapping[str, Estimate]
+    next_experiment: Experiment | None
+    test: Rows
+    residuals: tuple[Array, Array]
+    selection: Selection
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    positions: Positions | None = None
+    inertias: Mapping[int, Estimate] = field(default_factory=dict)
+
+
+def to_json(d: Diagnosis) -> dict[str, Any]:
+    """diagnosis.json."""
+    fit = d.lack_of_fit
+    where = None if fit is None else place(fit, d.selection.system.rows)
+    return {
+        "schema": 1,
+        "arm": d.arm.name,
+        "verdict": d.verdict,
+        "reason": d.reason,
+        "causes": [_cause(c) for c in d.causes],
+        "not_identifiable": [{"effect": name, "reason": reason} for name, reason in d.not_identifiable],
+        "lack_of_fit": None
+        if fit is None
+        else {
+            "statistic": rounded(fit.statistic),
+            "threshold": rounded(fit.threshold),
+            "by_joint": numbers(fit.by_joint),
+            "periods": fit.periods,
+            "test": fit.worst.kind,
+            "joint": fit.worst.joint + 1,
+            "part": None
+            if where is None
+            else {"record": where[0], "from_s": rounded(where[1]), "to_s": rounded(where[2])},
+        },
+        "most_like": None
+        if d.likeness is None
+        else {"text": d.likeness.shape.text, "delta_bic": rounded(d.likeness.evidence)},
+        "error": {
+            "unit": d.errors.unit,
+            "before": numbers(d.errors.before),
+            "after": numbers(d.errors.after),
+            "gain_percent": numbers(d.errors.gain),
+            "gain_interval_percent": [
+                [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
+            ],
+            "by_cause": [
+                {
+                    "effect": c.effect,
+                    "joint": c.joint,
+                    "gain_percent": rounded(c.share.gain),
+                    "gain_interval_percent": [rounded(c.share.low), rounded(c.share.high)],
+                }
+                for c in d.causes
+            ],
+        },
+        "simulation": {
+            name: {"f_gof": [], "mae": [], "rmse": []}
+            if scores is None
+            else {"f_gof": numbers(scores.f_gof), "mae": numbers(scores.mae), "rmse": numbers(scores.rmse)}
+            for name, scores in zip(("before", "after"), d.simulation, strict=True)
+        },
+        "drive_inertias": [
+            {"joint": number, "value": rounded(e.value), "unit": e.unit} for number, e in d.inertias.items()
+        ],
+        "next_experiment": experiment_json(d.next_experiment),
+        "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
+        "positions": None if d.positions is None else _positions(d.positions),
+        "settings": dict(d.settings),
+    }
+
+
+def _rank(r: Ranked) -> dict[str, Any]:
+    return {
+        "effect": r.effect,
+        "joint": r.joint,
+        "delta_bic": rounded(r.delta_bic),
+        "cross_gain_percent": None if r.cross_gain is None else rounded(r.cross_gain),
+        "expected_gain_percent": None if r.expected_gain is None else rounded(r.expected_gain),
+        "taken": r.taken,
+        "refused": r.refused or None,
+    }
+
+
+def _positions(p: Positions) -> dict[str, Any]:
+    test = p.endogeneity
+    return {
+        "feigned_percent": numbers(p.feigned),
+        "durbin_wu_hausman": None
+        if test is None
+        else {
+            "statistic": rounded(test.statistic),
+            "threshold": rounded(test.threshold),
+            "degrees": test.degrees,
+            "share_percent": numbers(test.share),
+            "cost_percent": numbers(test.cost),
+        },
+    }
+
+
+def _cause(c: Named) -> dict[str, Any]:
+    return {
+        "effect": c.effect,
+        "joint": c.joint,
+        "parameters": {
+            name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
+            for name, e in c.parameters.items()
+        },
+        "evidence": {
+            "delta_bic": rounded(c.delta_bic),
+            "cross_gain_percent": rounded(c.cross_gain),
+            "expected_gain_percent": rounded(c.expected_gain),
+        },
+        "aliases": [{"effect": effect, "joint": joint} for effect, joint in c.aliases],
+        "ambiguous_with": [
+            {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}
+            for effect, joint, behind in c.ambiguous_with
+        ],
+    }
+
+
+def rounded(value: float) -> float | None:
+    """Six digits; None for what is no number."""
+    return float(f"{value:.6g}") if np.isfinite(value) else None
+
+
+def numbers(values: Array) -> list[float | None]:
+    """A list of rounded numbers."""
+    return [rounded(float(v)) for v in values]

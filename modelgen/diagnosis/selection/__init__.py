@@ -1,0 +1,1 @@
+"""Forward selection, exchange and backward elimination of causes."""

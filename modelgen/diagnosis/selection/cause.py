@@ -1,0 +1,66 @@
+"""TODO."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.history import Turns, taken_back
+from modelgen.diagnosis.validation.form_error import with_causes
+
+
+@dataclass
+class Cause:
+    """A candidate that passed. rivals: (candidate, delta BIC behind) that passed as well at its turn; lesser:
+    that could not be named then and may be there all the same.
+
+    delta_bic: what leaving it out of the final model costs; cross_gain, expected_gain: percent of the RMSE on
+    rows that its fit had not seen, as measured and as it must be if the cause is there as found.
+    """
+
+    trial: Trial
+    delta_bic: float
+    cross_gain: float
+    expected_gain: float
+    rivals: list[tuple[Trial, float]] = field(default_factory=list)
+    lesser: list[tuple[Trial, float]] = field(default_factory=list)
+
+
+def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike: bool = False) -> float:
+    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations; alike: of its
+    plain ones, as if noise hid columns of all colours alike, as that of functions of no law is.
+    """
+    columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
+    positive = [above for t in trials for above in t.candidate.positive]
+    extra = float(sum(len(t.values) for t in trials))
+    passing = any(t.candidate.passing for t in trials)
+    if alike:
+        gain = rest.plain.gain(columns, extra, positive, alike=True)
+    elif fair:
+        gain = rest.fair.gain(columns, extra, positive)
+    else:
+        gain = rest.gain(columns, extra, positive, passing=passing)
+    return -np.inf if gain is None else gain.delta_bic
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The causes and the final system. turns: all candidates with evidence, best first, by turn."""
+
+    causes: list[Cause]
+    system: System
+    turns: Turns
+
+    def without(self, lost: Sequence[Cause], why: str) -> Selection:
+        """The same with fewer causes, and in its turns why."""
+        kept = [c for c in self.causes if all(c is not other for other in lost)]
+        rows = self.system.rows
+        system = System(rows, with_causes(rows, [c.trial for c in kept]), self.system.periods)
+        turns = self.turns
+        for c in lost:
+            turns = taken_back(turns, c.trial.candidate.place, why)
+        return Selection(kept, system, turns)

@@ -1,0 +1,56 @@
+"""Rivals in the place of causes: which of them explain the most once all values are found anew.
+
+A turn compares candidates with what was found until then. Columns that follow no line have since moved, and
+the arm's parameters with them; beside the causes of later turns another one of those that were alike may be
+ahead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from modelgen.diagnosis.candidates.prior_odds import elsewhere
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.cause import Cause, together
+from modelgen.diagnosis.selection.compliance import alternatives
+from modelgen.diagnosis.selection.refit import converge
+from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.evaluation import Prober
+
+
+def exchanged(
+    causes: list[Cause], rows: Sequence[Rows], prober: Prober, periods: Sequence[int | None]
+) -> list[Cause]:
+    """The causes, each replaced by the rival with which all of them together have the best odds.
+
+    Who is replaced becomes the rival. The same list where nothing is replaced.
+    """
+    if not any(cause.rivals for cause in causes):
+        return causes
+    bare = System(rows, with_causes(rows, []), periods)
+    best, most = causes, _worth(causes, bare)
+    for place, cause in enumerate(causes):
+        held = best[place].trial
+        for trial, _ in cause.rivals:
+            others = [c.trial.candidate.place for c in best if c is not best[place]]
+            if trial.candidate.place in others:
+                continue
+            if alternatives(trial.candidate, held.candidate):  # chosen by what they carry as well
+                continue
+            tried = [replace(c) for c in best]
+            tried[place].trial = trial
+            converge(tried, rows, prober)
+            found = _worth(tried, bare)
+            if found > most:
+                rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
+                less = found - most + elsewhere(trial.candidate) - elsewhere(held.candidate)
+                tried[place].rivals, tried[place].lesser = [(held, max(0.0, less)), *rivals], []
+                best, most = tried, found
+    return best
+
+
+def _worth(causes: Sequence[Cause], bare: System) -> float:
+    charged = sum(c.trial.doubt + elsewhere(c.trial.candidate) for c in causes)
+    return together([c.trial for c in causes], bare) - charged

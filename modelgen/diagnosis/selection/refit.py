@@ -1,0 +1,74 @@
+"""Columns of causes at the values and the arm's parameters that are found with them.
+
+Without a cause the arm's parameters take over what they can of it: a delay looks like damping that it takes
+off, and what the cause is said to be worth at those parameters is too little by as much. Found anew in turns,
+both come to where they belong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from modelgen.diagnosis.candidates.candidate import COMPLIANT, CURVED
+from modelgen.diagnosis.candidates.columns import candidate_columns, unchanging
+from modelgen.diagnosis.candidates.prior_odds import doubt
+from modelgen.diagnosis.candidates.trial import Trial, named
+from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.selection.cause import Cause
+from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.evaluation import Prober
+from modelgen.numeric import Array
+
+TURNS = 10
+CLOSE = 0.005  # of a value, its change in a turn
+WORSE = 1e-4  # rise of the misfit by which a turn is not taken
+FARTHEST = 3.0  # times the first sum of squares: what runs on is another law's, and stays as it was
+
+
+def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
+    """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
+    own = rows[0].columns.shape[2]
+    trials = [c.trial for c in causes]
+    best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
+    for turn in range(TURNS):
+        table = with_causes(rows, trials)
+        theta = weighted_fit(rows, table)
+        left = misfit(rows, table, theta)
+        if left > least + WORSE:
+            break
+        ends = np.cumsum([own, *(t.columns[0].shape[2] for t in trials)])
+        values = [theta[begin:end] for begin, end in pairwise(ends)]
+        sizes = [
+            sum(float(((c @ v) ** 2).sum()) for c in t.columns) for t, v in zip(trials, values, strict=True)
+        ]
+        if (np.array(sizes) > most).any():
+            best = [c.trial for c in causes]
+            break
+        best, least = trials, min(left, least)
+        if len(last) and np.allclose(theta[own:], last, rtol=CLOSE, atol=1e-12):
+            break
+        most = most if turn else FARTHEST * np.array(sizes)
+        base, last = rows[0].baseline.base(theta[:own]), theta[own:]
+        trials = [_anew(t, v, rows, prober, base) for t, v in zip(best, values, strict=True)]
+        if all(new is old for new, old in zip(trials, best, strict=True)):
+            break
+    for cause, trial in zip(causes, best, strict=True):
+        cause.trial = trial
+
+
+def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, base: Array) -> Trial:
+    """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
+    c = trial.candidate
+    if c.effect in COMPLIANT or unchanging(c, prober) or (values[np.array(c.positive)] < 0).any():
+        return trial
+    after = replace(
+        trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named(c, values), prober.arm)
+    )
+    around = after.parameters if c.effect in CURVED else {}
+    found = candidate_columns(c, {**trial.values, **around}, rows, prober, base)
+    return trial if found is None else replace(after, columns=found, around=around)

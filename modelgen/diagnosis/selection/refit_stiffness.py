@@ -1,0 +1,70 @@
+"""Stiffness of elastic joints beside the arm's parameters.
+
+What an elastic joint adds to the inputs follows from the efforts that it transmits, and these from parameters
+that took over some of what it does while it was not known: a link that seemed half as heavy lets a joint seem
+twice as soft. Both are found in turns, half a step each (Richardson's iteration, damped), until as much of
+what was simulated is found as was simulated.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.diagnosis.candidates.candidate import ELASTIC
+from modelgen.diagnosis.candidates.columns import candidate_columns
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.least_squares import weighted_fit
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.selection.cause import Selection
+from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.evaluation import Prober
+from modelgen.numeric import Array
+
+TURNS = 16
+CLOSE = 0.01  # of what was simulated, that is found more or less of it
+LEAST, MOST = 0.2, 5.0  # times what was simulated, that count of what is found in a turn
+
+
+def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Selection:
+    """The selection with the stiffness of its elastic joints found anew; as it was where that has no end."""
+    causes = selection.causes
+    elastic = [k for k, c in enumerate(causes) if c.trial.candidate.effect == ELASTIC]
+    if not elastic:
+        return selection
+    own = rows[0].columns.shape[2]
+    trials = [c.trial for c in causes]
+    theta = weighted_fit(rows, [r.columns for r in rows])
+    for _ in range(TURNS):
+        base = rows[0].baseline.base(theta)
+        for k in elastic:
+            found = candidate_columns(trials[k].candidate, trials[k].values, rows, prober, base)
+            if found is None or not all(np.isfinite(c).all() for c in found):
+                return selection
+            trials[k] = replace(trials[k], columns=found)
+        fitted = weighted_fit(rows, with_causes(rows, trials))
+        shares = [_share(trials, k, fitted[own:]) for k in elastic]
+        if max(abs(share - 1.0) for share in shares) < CLOSE:
+            return with_trials(selection, trials, rows)
+        for k, share in zip(elastic, shares, strict=True):
+            softer = math.sqrt(min(max(share, LEAST), MOST))
+            values = {**trials[k].values, "stiffness": trials[k].values["stiffness"] / softer}
+            trials[k] = replace(trials[k], values=values)
+        theta = (theta + fitted[:own]) / 2
+    return selection
+
+
+def _share(trials: Sequence[Trial], which: int, values: Array) -> float:
+    """What is found of an elastic joint's column. values: of all trials' columns, one after the other."""
+    return float(values[sum(t.columns[0].shape[2] for t in trials[:which])])
+
+
+def with_trials(selection: Selection, trials: Sequence[Trial], rows: Sequence[Rows]) -> Selection:
+    """The selection with other values of its causes."""
+    system = System(rows, with_causes(rows, trials), selection.system.periods)
+    causes = [replace(c, trial=t) for c, t in zip(selection.causes, trials, strict=True)]
+    return replace(selection, causes=causes, system=system)

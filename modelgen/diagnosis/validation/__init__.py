@@ -1,0 +1,1 @@
+"""The gates that a cause must pass on rows its fit has not seen."""

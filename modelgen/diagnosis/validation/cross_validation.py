@@ -1,0 +1,85 @@
+"""Parts of the records: those that are fitted, and those that the fit is tried on, then the other way round.
+
+A part is a record, or every other one of many: a short record alone cannot hold the rest of the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, weighted_fit
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.numeric import Array
+
+FEW = 4  # records that are tried one by one
+Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
+
+
+@dataclass(frozen=True)
+class Split:
+    """halves: of all records, not record by record. within: a joint, from 0, whose equations are tried where
+    the fitted rows passed as well: a law of the position tells nothing of other places.
+    """
+
+    halves: bool = False
+    within: int | None = None
+
+
+def folds(rows: Sequence[Rows], split: Split) -> list[tuple[Part, Part]]:
+    """Rows to fit, and rows to try that fit on."""
+    found = _parts(rows, split)
+    if split.within is None:
+        return found
+    return [((fitted, at), (_passed(tried, fitted, split.within), to)) for (fitted, at), (tried, to) in found]
+
+
+def _parts(rows: Sequence[Rows], split: Split) -> list[tuple[Part, Part]]:
+    every = list(range(len(rows)))
+    if split.halves:
+        first, second = ((part, every) for part in _masked(rows))
+        return [(first, second), (second, first)]
+    parts = [[i] for i in every] if len(rows) <= FEW else [every[k::2] for k in range(2)]
+    found = []
+    for part in parts:
+        others = [i for i in every if i not in part]
+        found.append((([rows[i] for i in others], others), ([rows[i] for i in part], part)))
+    return found
+
+
+def _passed(tried: Sequence[Rows], fitted: Sequence[Rows], j: int) -> list[Rows]:
+    """The tried rows without those equations of joint j where no fitted row of it was."""
+    there = np.concatenate([_places(r, j)[r.moving[:, j]] for r in fitted])
+    low, high = (there.min(), there.max()) if len(there) else (np.inf, -np.inf)
+    found = []
+    for r in tried:
+        moving = r.moving.copy()
+        moving[:, j] &= (_places(r, j) >= low) & (_places(r, j) <= high)
+        found.append(replace(r, moving=moving))
+    return found
+
+
+def _places(r: Rows, j: int) -> Array:
+    return np.asarray(r.prepared.q[r.prepared.rows, j])
+
+
+def _masked(rows: Sequence[Rows]) -> tuple[list[Rows], list[Rows]]:
+    """All records with the first half of each alone, and with the second."""
+    first, second = [], []
+    for r in rows:
+        flags = np.zeros(len(r.effort), dtype=bool)
+        flags[: len(flags) // 2] = True
+        first.append(replace(r, moving=r.moving & flags[:, None]))
+        second.append(replace(r, moving=r.moving & ~flags[:, None]))
+    return first, second
+
+
+def left_unseen(rows: Sequence[Rows], columns: Sequence[Array], split: Split) -> Array:
+    """Sums of squares (n,) that predictions leave of the parts that were not fitted."""
+    found = np.zeros(rows[0].effort.shape[1])
+    for (fitted, at), (tried, to) in folds(rows, split):
+        theta = weighted_fit(fitted, [columns[i] for i in at])
+        found += moving_rows(tried) * rmse(tried, [columns[i] for i in to], theta) ** 2
+    return found

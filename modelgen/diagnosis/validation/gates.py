@@ -1,0 +1,241 @@
+"""The gates that a cause with evidence must pass: it helps and matters on rows that its fit has not seen.
+
+The cause is fitted on one part of the records and carried to the other, then the other way round (`folds`);
+the squares of all parts count together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, WARMING
+from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, stacked, weighted_fit
+from modelgen.diagnosis.equations.position_errors import feigned, repeating_errors
+from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.evidence.instruments import Pairs
+from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.thresholds import PRACTICAL, practical
+from modelgen.diagnosis.validation.agreement import agreement
+from modelgen.diagnosis.validation.cross_validation import Split, folds, left_unseen
+from modelgen.diagnosis.validation.form_error import EXACT, FLUID, Forms, with_causes
+from modelgen.numeric import Array
+
+# Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
+FAINT, MORE = (6.0, 15.0), 3.0
+DELAYED = 3.0  # the same for what acts at reversals beside a delay
+STICKING = 5.0  # the same beside what acts at reversals, as play does too: the form of that leaves more
+CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
+AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
+HARDLY = 0.1  # of the power of play in the record that shows it most
+WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
+DELAY = "time_delay"
+PLACED = "position_dependent_friction"  # a law of the position, which says nothing of places beyond the fit's
+SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
+DRAWN = 1.5  # times what a draw of errors of the positions could feign, those that are there may by chance
+# What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
+FEIGNABLE = (*COMPLIANT, DELAY, LATER)
+REVERSING = ("presliding", "stribeck_friction")  # show where a delay shows most
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """gain: percent of the RMSE measured on rows that the fit has not seen; expected: what the value found in
+    all records must gain there, nan where that was not asked; refused: the gate that stays shut, empty where
+    none does.
+    """
+
+    gain: float
+    expected: float
+    refused: str
+
+
+class Gates:
+    """Of one turn. before: causes that were taken; blur: what errors of the positions leave in the residuals,
+    mean squares by joint (n,); narrowed: the usual band over that of the rows; last: what is judged was taken
+    before those, which cannot have left it anything of theirs.
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[Rows],
+        before: Sequence[Trial],
+        system: System,
+        blur: Array | None = None,
+        narrowed: float = 1.0,
+        *,
+        last: bool = False,
+    ) -> None:
+        self.rows = rows
+        self.before = before
+        self.system = system
+        self.blur = np.zeros(system.n) if blur is None else blur
+        self.narrowed = narrowed
+        self.last = last
+        self.old = with_causes(rows, before)
+        self.counts = moving_rows(rows)
+        known = (*EXACT, *FLUID)
+        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
+        self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
+        self._known: dict[Split, Array] = {}
+        self.forms = Forms(rows, before, system)
+
+    def judged(self, trial: Trial) -> Judgement:
+        """Whether the cause helps and matters at a joint that it is judged by.
+
+        Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the
+        unseen rows with and without the cause, which takes up much of what is slow; the larger one counts.
+        That the cause matters is asked of the gain to be expected: what a model without it gets wrong on
+        unseen rows if the cause is there as found, against the noise. That has the scatter of one value,
+        where a measured gain has that of all parameters of a part. A share of it must be measured, or the
+        parts must agree on the cause as far as each can tell: what they contradict is no cause. What errors
+        of the positions could feign the gain where the rest is fitted anew must well exceed, unless the
+        estimate by instruments is not zero. By that gain must pass what such errors look like most;
+        everything where no period repeats, since slow noise, of a size that nobody knows, looks like a slow
+        cause; joints where errors of the positions could feign what counts; and causes at a joint of another,
+        to which its form may leave some. Friction beside friction, and anything beside what a fluid does,
+        must be more than the form of that may leave.
+        """
+        new = with_causes(self.rows, [*self.before, trial])
+        # what shows between records, or in some of them alone: halves of all are tried instead
+        halves = trial.candidate.effect == LATER or self._somewhere(trial)
+        split = Split(halves, (trial.candidate.joint or 1) - 1 if trial.candidate.effect == PLACED else None)
+        whole, again = np.stack([self._without(split), self._with(new, split)], axis=1)
+        places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
+        refitted = _gains(again)[places]
+        least = np.full(len(places), practical(self._least(trial), self.narrowed))
+        least = np.maximum(least, self.forms.least(trial.candidate.effect)[places])
+        could = feigned(self.blur[places], (again[0] / self._tried(split))[places])
+        if (could > least).any() and instrumented(trial, self.system):
+            could = np.zeros(len(places))
+        doubtful = not self.system.noise_known or trial.candidate.effect in FEIGNABLE
+        strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
+        anew = strict & (refitted >= np.maximum(least, DRAWN * could))
+        if strict.all() and not anew.any():
+            shut = "gain" if (refitted < least).all() else "positions"
+            return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
+        expected = self._expected(new, split)[places]
+        hoped = float(expected.max(initial=0.0))
+        gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
+        due = ~strict & (expected >= least)
+        carried = due & (gains >= CARRIED * expected)
+        agreed = bool(due.any()) and not carried.any() and self._agreed(new, split)
+        if agreed:
+            carried = due
+        if not (anew | carried).any():
+            return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
+        if carried.any():
+            worse = not agreed and min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
+        else:
+            worse = self._total(again) >= 1.0
+        shut = "other joints" if worse else ""
+        return Judgement(float(gains[anew | carried].max()), hoped, shut)
+
+    def _somewhere(self, trial: Trial) -> bool:
+        """Whether a record does not show the cause. Play shows where its gap is crossed: beside that a record
+        has of it what the rest of the model takes up, and no more.
+        """
+        if not all(c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True)):
+            return True
+        if trial.candidate.effect != "backlash":
+            return False
+        shows = [replace(r, effort=c[:, :, 0]) for r, c in zip(self.rows, trial.columns, strict=True)]
+        sizes = np.maximum(self.system.sizes, 1e-150)
+        theta = np.linalg.lstsq(*stacked(shows, self.old, 1.0 / sizes), rcond=None)[0]
+        left = [((r.effort - c @ theta) / sizes)[r.moving] for r, c in zip(shows, self.old, strict=True)]
+        power = [float(np.mean(e**2)) for e in left]
+        return min(power) < HARDLY * max(power)
+
+    def _agreed(self, new: Sequence[Array], split: Split) -> bool:
+        """Whether the parts agree on the cause."""
+        parts = [part for _, part in folds(self.rows, split)]
+        own = self.old[0].shape[2]
+        return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
+
+    def _least(self, trial: Trial) -> float:
+        """Percent of the RMSE that the cause must gain in the usual band."""
+        c = trial.candidate
+        if c.effect in (DELAY, *REVERSING) and self._beside(REVERSING, c.joint):
+            return STICKING
+        if c.effect == DELAY and self._beside(COMPLIANT, c.joint):
+            return STICKING
+        if c.effect in REVERSING and self._beside((DELAY,), c.joint):
+            return DELAYED
+        evidence = trial.gain.delta_bic / self.system.price
+        if not self.system.coloured:
+            return MORE if evidence < FAINT[1] else PRACTICAL
+        return float(np.interp(evidence, FAINT, (MORE, PRACTICAL)))
+
+    def _beside(self, effects: tuple[str, ...], joint: int | None) -> bool:
+        """Whether one of them was taken at the joint, or one of the two is everywhere."""
+        there = {t.candidate.joint for t in self.before if t.candidate.effect in effects}
+        return bool(there) and (joint is None or None in there or joint in there)
+
+    def _tried(self, split: Split) -> Array:
+        """How many rows (n,) are tried, at least one."""
+        counts = [moving_rows(tried) for _, (tried, _) in folds(self.rows, split)]
+        return np.asarray(np.maximum(np.sum(counts, axis=0), 1.0))
+
+    def _without(self, split: Split) -> Array:
+        """Sums of squares (2, n) left of unseen rows, the whole predicted and the model fitted anew."""
+        if split not in self._known:
+            again = np.zeros(self.system.n)
+            for _, (tried, to) in folds(self.rows, split):
+                table = [self.old[i] for i in to]
+                again += moving_rows(tried) * rmse(tried, table, weighted_fit(tried, table)) ** 2
+            self._known[split] = np.array([left_unseen(self.rows, self.old, split), again])
+        return self._known[split]
+
+    def _with(self, new: Sequence[Array], split: Split) -> Array:
+        """The same with the cause, as it was fitted to the other part."""
+        own = self.old[0].shape[2]
+        found = np.zeros((2, self.system.n))
+        for (fitted, at), (tried, to) in folds(self.rows, split):
+            theta = weighted_fit(fitted, [new[i] for i in at])
+            carried = [
+                replace(r, effort=r.effort - new[i][:, :, own:] @ theta[own:])
+                for r, i in zip(tried, to, strict=True)
+            ]
+            table = [self.old[i] for i in to]
+            found[0] += moving_rows(tried) * rmse(tried, [new[i] for i in to], theta) ** 2
+            found[1] += moving_rows(tried) * rmse(carried, table, weighted_fit(carried, table)) ** 2
+        return found
+
+    def _expected(self, new: Sequence[Array], split: Split) -> Array:
+        """Percent of the RMSE (n,) that a model without the cause, which is there as found, loses unseen."""
+        own = self.old[0].shape[2]
+        theta = weighted_fit(self.rows, new)
+        shows = [replace(r, effort=c[:, :, own:] @ theta[own:]) for r, c in zip(self.rows, new, strict=True)]
+        bias = left_unseen(shows, self.old, split) / self._tried(split)
+        noise = rmse(self.rows, new, theta) ** 2
+        return np.asarray(100.0 * (1.0 - np.sqrt(noise / (noise + bias))))
+
+    def _total(self, sums: Array) -> float:
+        """Mean over the joints of the squares with the cause over those without."""
+        return float((sums[1] / np.maximum(sums[0], 1e-300))[self.counts > 0].mean())
+
+
+def _gains(sums: Array) -> Array:
+    """Percent of the RMSE by joint, from sums of squares without and with (2, n)."""
+    return np.where(sums[0] > 0, 100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))), 0.0)
+
+
+def instrumented(trial: Trial, system: System) -> bool:
+    """Whether the cause shows where errors of the positions are kept out: its estimate by instruments is not
+    zero, or it does not repeat as they do.
+    """
+    if trial.candidate.effect == WARMING:  # passes while errors of the positions repeat with the excitation
+        return True
+    if trial.candidate.effect == LATER:  # does not repeat
+        return False
+    if trial.candidate.effect in COMPLIANT:  # searched for over what makes a filter of any errors
+        return False
+    table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
+    pairs = Pairs(system.rows, table, system.periods, system.sizes)
+    if not pairs.enough or repeating_errors(system.rows, system.periods).any():
+        return False
+    values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]
+    return bool(np.abs(values).max(initial=0.0) > SIGNIFICANT)

@@ -1,0 +1,1 @@
+"""The laws themselves, one class each."""

@@ -1,0 +1,9 @@
+"""What an effect that the arm does not have would add to its inputs along a recorded motion."""
+
+from __future__ import annotations
+
+from modelgen.effects.placement import places, with_effect
+from modelgen.evaluation.evaluator import Prober
+from modelgen.evaluation.motion import Motion
+
+__all__ = ["Motion", "Prober", "places", "with_effect"]

@@ -1,0 +1,317 @@
+"""Columns and contributions of effects along a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property, partial
+
+import numpy as np
+
+from modelgen.backends.numpy import NumpyFunction
+from modelgen.base_parameters.rules import slid
+from modelgen.description.objects import Arm
+from modelgen.effects import CATALOGUE, Definition, Parameter, described
+from modelgen.effects.placement import changes_description, with_effect
+from modelgen.evaluation.cache import Recent
+from modelgen.evaluation.changed_description import Changed, Changes, Variations
+from modelgen.evaluation.delay import acting, added
+from modelgen.evaluation.inertia_floor import carried
+from modelgen.evaluation.lever_ratio import gain, leverage, reread
+from modelgen.evaluation.link_encoder import LinkSide, at_link, lagging, led_by, rigid
+from modelgen.evaluation.motion import Motion, given_for
+from modelgen.evaluation.programs import (
+    Links,
+    columns_of,
+    grouping,
+    inputs_of,
+    links_alone,
+    links_and_effect,
+    loads_of,
+)
+from modelgen.evaluation.states import Series
+from modelgen.evaluation.tilted_gravity import HiddenWeight
+from modelgen.functions.objects import Function, Model
+from modelgen.model.equations import Equations
+from modelgen.numeric import Array
+
+Values = Mapping[str, float]
+REMEMBERED = 40  # results that do not depend on an effect's own values
+# Not free: they choose the form of the law, or where it acts.
+_FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay", "rise")
+
+
+class Prober:
+    """One arm and its effects to be. `arm`: as described, with the effects that it has already.
+
+    Base parameters are those of `modelgen.functions.build_model` for the same arm. Effects are named as in
+    the catalogue, joints by the number of their coordinate from 1, None for the whole arm.
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm = arm
+        self.base = grouping(arm)
+        self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
+        self._made: dict[object, NumpyFunction] = {}
+        self._arms: dict[object, Equations] = {}
+        self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
+        self._series: dict[Equations, Series] = {}
+        self._recent: Recent[Array] = Recent(REMEMBERED)
+
+    @cached_property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.arm.coordinates)
+
+    def linear(self, effect: str) -> tuple[Parameter, ...]:
+        """Its linear parameters: `columns` has one column for each."""
+        return CATALOGUE[effect].linear
+
+    def nonlinear(self, effect: str) -> tuple[Parameter, ...]:
+        """Its other parameters."""
+        return CATALOGUE[effect].nonlinear
+
+    def needs_load(self, effect: str, joint: int | None, values: Values) -> bool:
+        """Whether its columns depend on the arm's base parameters."""
+        effects = self._of_effect(effect, joint, values).effects
+        return any(e.depends_on(name) for e in effects for name in ("load", "carried"))
+
+    def inputs(self, motion: Motion, parameters: Array) -> Array:
+        """Inputs of the arm as described, (N, n), for its base parameters."""
+        if led_by(self.arm, motion):
+            return self._rigid.inputs(motion, parameters) + self.link_side.led(motion, parameters)
+        return self._recent.along(
+            "own", motion, parameters, lambda: self._along("own", self._own, motion, parameters)
+        )
+
+    @cached_property
+    def _rigid(self) -> Prober:
+        return Prober(rigid(self.arm))
+
+    def regressor(self, model: Model, motion: Motion, parameters: Array) -> Array:
+        """The regressor of the arm's own model (N, n, p); `parameters` where its columns depend on them."""
+        function = self._function(model, "regressor")
+        names = {a.name for a in function.function.arguments}
+        loads = states = None
+        if self._own.state_names() and names & {"load", "state"}:
+            states = self._states(self._own, motion, (), parameters)
+        if "load" in names:
+            made = self._function(model, "load")
+            loads = np.asarray(made(**given_for(made.function, motion, parameters, states=states)))
+        found = function(**given_for(function.function, motion, parameters, loads=loads, states=states))
+        return np.asarray(found).reshape(len(motion.t), self.n, -1)
+
+    def unseen(self, motion: Motion, columns: Array, parameters: Array) -> Array:
+        """What of the inputs the regressor (N, n, p) does not contain: what elastic joints and play behind
+        motors do, (N, n).
+        """
+        joints = [e.joint for e in self._own.effects if e.elastic and e.joint is not None]
+        behind = [self.arm.coordinates.index(joint) + 1 for joint in joints]
+        if not parameters.any() or not behind or any(at_link(motion, joint) for joint in behind):
+            return np.zeros(motion.q.shape)
+        return self.inputs(motion, parameters) - columns @ parameters
+
+    def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
+        """Inputs of ideal drives with the efforts of the measured ones (N, n)."""
+        given = acting(self.arm, motion.t, given)
+        if not any(f.name == "effective_input" for f in model.functions):
+            return given
+        function = self._function(model, "effective_input")
+        states = np.zeros((len(given), max(1, len(model.states))))
+        for k, name in enumerate(model.states):
+            if name.startswith("time_delay_"):  # the lag was undone by the shift
+                joint = int(name.rsplit("_", 1)[1]) - 1
+                states[:, k] = given[:, self.arm.coordinates.index(joint)]
+        known = {"input": given, "state": states}
+        return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
+
+    def states(self, motion: Motion, parameters: Array) -> Array:
+        """States of the arm's own effects at every sample (N, s), from zero at the first."""
+        found = self._states(self._own, motion, (), parameters)
+        return lagging(found, self._own, motion, self.link_side.at_drives(motion, parameters))
+
+    @cached_property
+    def link_side(self) -> LinkSide:
+        """Of drives whose links' positions were measured."""
+        return LinkSide(
+            self._own, self.base, self._links, partial(gain, self.arm), partial(leverage, self.arm)
+        )
+
+    @cached_property
+    def _own(self) -> Equations:
+        """Equations of the arm with its own effects."""
+        return Equations(slid(described(self.arm)), lazy=True)
+
+    def _function(self, model: Model, name: str) -> NumpyFunction:
+        if ("model", name) not in self._made:
+            (function,) = [f for f in model.functions if f.name == name]
+            self._made["model", name] = NumpyFunction(function)
+        return self._made["model", name]
+
+    def columns(
+        self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
+    ) -> Array:
+        """Inputs per unit of each linear parameter, (N, n, k), for `values` of the others.
+
+        States start at zero and are stepped along the motion. Raises InputError where the effect cannot
+        stand there.
+        """
+        e = self._of_effect(effect, joint, values)
+        names = [p.name for p in self.linear(effect)]
+        if e not in self._columns:
+            function, places = columns_of(e)
+            self._columns[e] = NumpyFunction(function), places
+        call, places = self._columns[e]
+        found = self._run(call, e, call.function, motion, values, parameters)
+        result = np.zeros((len(motion.t), self.n, len(names)))
+        for k, (name, coordinate) in enumerate(places):
+            result[:, coordinate, names.index(name)] += found[:, k]
+        return result
+
+    def contribution(
+        self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
+    ) -> Array:
+        """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
+        definition = CATALOGUE[effect]
+        if effect == "time_delay":
+            return added(motion.t, self.inputs(motion, parameters), values["delay"], joint)
+        if effect == "drive_gain_error" and joint is not None and self._proportional:
+            self._changed(effect, joint, values)  # where the arm admits it
+            inputs = self.inputs(motion, parameters)
+            return np.asarray(inputs * (1 / (1 + values["error"]) - 1) * (np.arange(self.n) == joint - 1))
+        if changes_description(effect) or effect == "torque_constant_saturation":
+            changed = self._changed(effect, joint, values)
+            read = joint is not None and motion.motor_side and motion.motor_side[joint - 1]
+            if effect == "lever_geometry" and joint is not None and read:
+                seen = reread(motion, described(self.arm), changed.arm, joint)
+                return self._inputs_of(changed, seen, parameters) - self.inputs(motion, parameters)
+            found = self._inputs_of(changed, motion, parameters) - self.inputs(motion, parameters)
+            turned = np.subtract(changed.arm.gravity, self._own.arm.gravity)
+            return found + self._hidden_weight(motion, turned) if turned.any() else found
+        if definition.linear:
+            weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
+            columns = self.columns(effect, joint, motion, values, parameters)
+            return np.asarray(columns @ weights)
+        if joint is not None and at_link(motion, joint):
+            return self.link_side.added(joint, motion, dict(values), parameters)
+        e = self._of_effect(effect, joint, values)
+        if (e, "added") not in self._made:
+            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+        call = self._made[e, "added"]
+        if joint is not None:
+            parameters = self._carried(joint, motion, parameters)
+        found = self._run(call, e, call.function, motion, values, parameters)
+        return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
+
+    def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
+        """Parameters with which what the joint carries can be simulated."""
+        alone = links_alone(self.arm, self.base, joint, parameters)
+        given = self.arm, self.base, joint, motion, alone, self._bare, self.link_side.drives
+        return self._recent.along(
+            ("carried", joint), motion, parameters, lambda: parameters + (carried(*given) - alone)
+        )
+
+    def _links(self, motion: Motion, parameters: Array) -> Array:
+        """Inputs of the links alone."""
+        return self._recent.along("links", motion, parameters, lambda: self._bare(motion, parameters))
+
+    @cached_property
+    def _bare(self) -> Links:
+        return Links(self.arm, self.base)
+
+    # -- inside -----------------------------------------------------------------------------
+
+    @cached_property
+    def _proportional(self) -> bool:
+        """Whether all inputs are efforts over torque constants: no drive bends them."""
+        return not any(part.place == "input" for effect in self._own.effects for part in effect.parts)
+
+    @cached_property
+    def _weight(self) -> HiddenWeight:
+        return HiddenWeight(self.arm, self.base)
+
+    def _hidden_weight(self, motion: Motion, gravity: Array) -> Array:
+        """Inputs (N, n) that hold in a further gravity (3,) what the base parameters do not contain."""
+        none = np.zeros(0)
+        return np.tensordot(
+            gravity, self._recent.along("weight", motion, none, lambda: self._weight.columns(motion)), 1
+        )
+
+    @cached_property
+    def _varied(self) -> Variations:
+        return Variations(described(self.arm), self.base)
+
+    @cached_property
+    def _changed(self) -> Changes:
+        """The arm with an effect on its description besides."""
+        return Changes(self.arm, None if self._own.state_names() else self._varied)
+
+    def _inputs_of(self, changed: Changed, motion: Motion, parameters: Array) -> Array:
+        if changed.geometry is not None:
+            call = self._varied.call
+            return np.asarray(call(**given_for(call.function, motion, parameters, geometry=changed.geometry)))
+        if changed.key not in self._arms:
+            self._arms[changed.key] = Equations(slid(changed.arm), lazy=True)
+        return self._along(changed.key, self._arms[changed.key], motion, parameters)
+
+    def _along(self, key: object, e: Equations, motion: Motion, parameters: Array) -> Array:
+        """Inputs of an arm whose own effects may have states."""
+        if ("inputs", key) not in self._made:
+            self._made["inputs", key] = NumpyFunction(inputs_of(e, self.base))
+        call = self._made["inputs", key]
+        states = self._states(e, motion, (), parameters) if e.state_names() else None
+        return np.asarray(call(**given_for(call.function, motion, parameters, states=states)))
+
+    def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
+        """Equations of the arm with this effect alone, what is not fixed left free."""
+        definition: type[Definition] = CATALOGUE[effect]
+        free = tuple(p.name for p in definition.nonlinear if p.name not in _FIXED)
+        fixed = {name: value for name, value in values.items() if name in _FIXED}
+        key = (effect, joint, tuple(sorted(fixed.items())))
+        if key not in self._equations:
+            alone = with_effect(self.arm.without_effects(), effect, joint, fixed)
+            self._equations[key] = Equations(slid(alone), free=free, lazy=True)
+        return self._equations[key]
+
+    def _run(
+        self,
+        call: NumpyFunction,
+        e: Equations,
+        function: Function,
+        motion: Motion,
+        values: Values,
+        parameters: Array,
+    ) -> Array:
+        free = self._free(e, values)
+        loads = None
+        if any(effect.depends_on("load") for effect in e.effects):
+            if "loads" not in self._made:
+                self._made["loads"] = NumpyFunction(loads_of(self.arm, self.base))
+            made = self._made["loads"]
+
+            def inputs() -> Array:
+                return np.asarray(made(**given_for(made.function, motion, parameters)))
+
+            loads = self._recent.along("loads", motion, parameters, inputs)
+        states = self._states(e, motion, free, parameters) if e.state_names() else None
+        return np.asarray(
+            call(**given_for(function, motion, parameters, free=free, loads=loads, states=states))
+        )
+
+    def _free(self, e: Equations, values: Values) -> tuple[float, ...]:
+        """Values of what was left free, in order."""
+        defaults = {p.name: p.default for effect in e.effects for p in effect.effect.nonlinear}
+        names = [symbol.name.removeprefix("free_") for symbol in e.free]
+        given = [values.get(name, defaults[name]) for name in names]
+        missing = [name for name, value in zip(names, given, strict=True) if value is None]
+        if missing:
+            raise ValueError(f"no value for {', '.join(missing)}")
+        return tuple(float(value) for value in given if value is not None)
+
+    def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
+        """States at every sample, (N, s), from zero; a transmission's from where its load holds it."""
+        if e not in self._series:
+            self._series[e] = Series(e, self.base)
+        series = self._series[e]
+        head = self._recent.along((e, "head"), motion, parameters, lambda: series.head(motion, parameters))
+        found = series(head, free, motion)
+        return lagging(found, e, motion, motion)  # a measured link is where it is

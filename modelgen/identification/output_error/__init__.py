@@ -1,0 +1,1 @@
+"""Parameters from simulated motion: output-error identification."""

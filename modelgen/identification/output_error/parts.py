@@ -1,0 +1,101 @@
+"""Measured motions cut into parts that are simulated one by one, and each into intervals of shooting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from modelgen.dataset import Prepared
+from modelgen.dataset.processing.prepare import held_inputs
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+RATE = 250.0  # Hz, beyond which samples are left out: the steps between them are exact enough
+AFTER = 1.0  # s of rest that count
+LATEST = 0.1  # s, after which a motion that has not begun is held by a hand
+
+
+@dataclass(frozen=True)
+class Guess:
+    """states: (W, 2n), where each interval begins."""
+
+    states: Array
+
+    def moved(self, step: Array, alpha: float) -> Guess:
+        """By alpha times a step (W, 2n)."""
+        return Guess(self.states + alpha * step)
+
+
+@dataclass(frozen=True)
+class Part:
+    """t: (K,) [s]. q: (K, n) as measured. dq: (K, n) filtered. input: (K, n), held over the interval that
+    follows. intervals: first and last sample of each; the last is the next one's first."""
+
+    name: str
+    t: Array
+    q: Array
+    dq: Array
+    input: Array
+    intervals: tuple[tuple[int, int], ...]
+
+    def single(self) -> Part:
+        """One interval only."""
+        return replace(self, intervals=((0, len(self.t) - 1),))
+
+    def guess(self) -> Guess:
+        """The measured states."""
+        begins = [begin for begin, _ in self.intervals]
+        return Guess(np.hstack([self.q[begins], self.dq[begins]]))
+
+
+def parts(p: Prepared, window: float | None, interval: float) -> list[Part]:
+    """The parts of a record: windows of so many seconds, or the whole from its release on.
+
+    A free motion begins where a hand lets go: rest for longer than LATEST before it is left out, and so is
+    rest later than AFTER. Raises InputError for windows of less than ten samples.
+    """
+    stride = max(1, int((1.0 / p.record.step) / RATE))
+    begin, end = _motion(p) if p.input is None else (0, len(p.time))
+    rows = np.arange(begin, end, stride)
+    q, dq, t = p.record.q[rows], p.dq[rows], p.time[rows]
+    given = held_inputs(p)
+    # held over the samples left out: their mean
+    u = np.add.reduceat(given[:end], rows, axis=0) / np.diff(np.append(rows, end))[:, None]
+    step = float(t[1] - t[0])
+    count = len(t) - 1 if window is None else round(window / step) if np.isfinite(window) else 0
+    if count < 10:
+        raise InputError(f"{p.record.name}: found {count} samples in a window, expected 10 at least")
+    found = []
+    for first in range(0, max(1, len(t) - count // 2), count):
+        last = min(len(t) - 1, first + count)
+        if last - first < 10:
+            continue
+        length = max(5, round(interval / step))
+        edges = [*range(0, max(1, last - first - length // 2), length), last - first]
+        take = slice(first, last + 1)
+        cut = tuple(pairwise(edges))
+        found.append(Part(p.record.name, t[take], q[take], dq[take], u[take], cut))
+    return [_standing(part) if p.input is None else part for part in found]
+
+
+def _motion(p: Prepared) -> tuple[int, int]:
+    """The samples from and before which a free motion moves, with some rest behind it."""
+    q = p.record.q
+    noise = 1.4826 * np.median(np.abs(np.diff(q, axis=0)), axis=0) / np.sqrt(2)
+    far = np.maximum(10 * noise, 5e-3 * np.ptp(q, axis=0))
+    moving = np.flatnonzero((np.abs(q - q[0]) > far).any(axis=1))
+    if not len(moving):
+        raise InputError(f"{p.record.name}: all joints rest; expected a free motion")
+    last = int(np.flatnonzero((np.abs(q - q[-1]) > far).any(axis=1))[-1])
+    begin = int(moving[0]) if moving[0] * p.record.step > LATEST else 0
+    return begin, min(len(q), last + round(AFTER / p.record.step))
+
+
+def _standing(part: Part) -> Part:
+    """Without the speed that noise gives joints at rest, which would tear them loose."""
+    dq = part.dq.copy()
+    slow = np.abs(dq) < 0.01 * np.abs(dq).max(axis=0)
+    dq[slow] = 0.0
+    return replace(part, dq=dq)

@@ -1,0 +1,190 @@
+"""Output-error refinement: parameters tuned until the simulated motion is the measured one.
+
+Direct multiple shooting (Bock 1983): the states at which intervals begin are unknowns too, and equations ask
+that each interval ends where the next begins. Every Gauss-Newton step condenses them to the parameters and
+the initial state of each part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.dataset import Prepared
+from modelgen.effects import applied_effects
+from modelgen.errors import InputError
+from modelgen.identification.output_error.parts import Guess, parts
+from modelgen.identification.output_error.sensitivities import Sensitive
+from modelgen.identification.output_error.shooting import Fit, scored
+from modelgen.numeric import Array
+from modelgen.simulation.metrics import Scores
+from modelgen.simulation.plant import Plant
+
+ROUNDS = 40
+BOUNDARY = 0.9  # of the way to a bound in one step
+HALVINGS = 8  # of a step that does not lower the cost
+LEAST_GAIN = 1e-4  # of the cost, at which a fit ends
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A base parameter before and after; std None where it was held."""
+
+    name: str
+    unit: str
+    start: float
+    value: float
+    std: float | None
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """plant: with the refined parameters. before, after: scores of the whole simulated parts (rad, m).
+
+    measured, simulated: positions part by part (K, n); t their times. rounds: Gauss-Newton steps.
+    """
+
+    plant: Plant
+    parameters: tuple[Refined, ...]
+    before: Scores
+    after: Scores
+    t: tuple[Array, ...]
+    measured: tuple[Array, ...]
+    simulated: tuple[Array, ...]
+    rounds: int
+    converged: bool
+
+
+def default_free(plant: Plant, effort: bool) -> list[str]:
+    """All base parameters where efforts give the scale, else those of effects alone: the links hold it."""
+    of_links = {p.name for p in plant.model.standard} - set(_bounds(plant))
+    standard = plant.model.standard
+    return [
+        base.name
+        for base in plant.model.grouping.base
+        if effort or not any(standard[i].name in of_links for i, _ in base.terms)
+    ]
+
+
+def refine(
+    plant: Plant,
+    records: Sequence[Prepared],
+    *,
+    free: Sequence[str] = (),
+    window: float | None = None,
+    interval: float = 1.0,
+    progress: Callable[[int, float], None] | None = None,
+) -> Refinement:
+    """Base parameters of `plant` named in `free`, tuned from their values on the positions of `records`.
+
+    free: default_free by default; the others are held. window: the simulation starts anew after so long
+    [s], with initial states of their own, for arms that run away from their logs; by default a record is one
+    part. interval: of multiple shooting [s]. Joints are weighted by their remaining errors; standard
+    deviations are those given the held values, of errors that hang together in time. Raises
+    InputError for unknown names, states of effects, values that the motion does not tell apart, and a
+    simulation that does not run.
+    """
+    effort = records[0].input is not None
+    if any((r.input is None) == effort for r in records):
+        raise InputError("found logs with effort and without, expected one kind")
+    chosen = _chosen(plant, free, effort)
+    every = [part for record in records for part in parts(record, window, interval)]
+    model = Sensitive(plant, chosen)
+    p, low, high = plant.parameters.copy(), *_limits(plant, chosen)
+    guesses = [part.guess() for part in every]
+    fit = Fit(model, every)
+    before = fit.whole(p, guesses)
+    names = [plant.model.grouping.base[k].name for k in chosen]
+    rounds = 0
+    for stage in (every, [part.single() for part in every]):
+        # Shooting at many points finds the way; the last steps are those of the motion as one.
+        fit = Fit(model, stage)
+        guesses = [Guess(g.states[: len(part.intervals)]) for g, part in zip(guesses, stage, strict=True)]
+        done = False
+        while rounds < ROUNDS and not done:
+            rounds += 1
+            now = fit.linear(p, guesses)
+            weights = now.weights()
+            cost, step = now.cost(weights), now.step(weights, names)
+            alpha = _room(p[chosen], step.parameters, low, high)
+            for _ in range(HALVINGS):
+                tried = p.copy()
+                tried[chosen] += alpha * step.parameters
+                moved = [g.moved(x, alpha) for g, x in zip(guesses, step.states, strict=True)]
+                value = fit.cost(tried, moved, weights)
+                if value < cost:
+                    done = cost - value < LEAST_GAIN * cost
+                    p, guesses = tried, moved
+                    break
+                alpha /= 2
+            else:
+                done = True
+            if progress is not None:
+                progress(rounds, cost)
+    final = fit.linear(p, guesses)
+    std = final.deviations(final.weights())
+    runs = [fit.through(p, g, part) for g, part in zip(guesses, every, strict=True)]
+    base = plant.model.grouping.base
+    found = tuple(
+        Refined(
+            b.name,
+            b.unit,
+            float(plant.parameters[k]),
+            float(p[k]),
+            float(std[chosen.index(k)]) if k in chosen else None,
+        )
+        for k, b in enumerate(base)
+    )
+    return Refinement(
+        Plant(plant.slip, p, p),
+        found,
+        before,
+        scored(every, runs),
+        tuple(part.t for part in every),
+        tuple(part.q for part in every),
+        tuple(runs),
+        rounds,
+        done,
+    )
+
+
+def _bounds(plant: Plant) -> Mapping[str, tuple[float, float]]:
+    """Bounds of the standard parameters of effects by name."""
+    return {s.name: x.bounds for e in applied_effects(plant.arm) for x, s in e.parameters}
+
+
+def _limits(plant: Plant, chosen: Sequence[int]) -> tuple[Array, Array]:
+    """Bounds of the free base parameters that are one parameter of an effect."""
+    standard, known = plant.model.standard, _bounds(plant)
+    found = []
+    for k in chosen:
+        terms = plant.model.grouping.base[k].terms
+        alone = known.get(standard[terms[0][0]].name) if len(terms) == 1 else None
+        found.append(alone or (-np.inf, np.inf))
+    low, high = np.array(found).T
+    return low, high
+
+
+def _room(p: Array, step: Array, low: Array, high: Array) -> float:
+    """How far of the step may be gone before a bound is near."""
+    edge = np.where(step < 0, low, high) - p
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where((step != 0) & np.isfinite(edge), BOUNDARY * edge / step, np.inf)
+    return float(min(1.0, share.min(initial=1.0)))
+
+
+def _chosen(plant: Plant, free: Sequence[str], effort: bool) -> list[int]:
+    names = [b.name for b in plant.model.grouping.base]
+    if plant.model.states or plant.slip.standard:
+        raise InputError(
+            f"{plant.arm.name}: an effect with states of its own is not refined; expected the arm without it"
+        )
+    for name in free:
+        if name not in names:
+            raise InputError(f"--free {name}: found no such base parameter, expected of {', '.join(names)}")
+    wanted = list(free) or default_free(plant, effort)
+    if not wanted:
+        raise InputError(f"{plant.arm.name}: no parameter of an effect to tune; name others with --free")
+    return [k for k, name in enumerate(names) if name in wanted]

@@ -1,0 +1,9 @@
+"""C compiled on this machine, for speed: shared libraries, cached."""
+
+from __future__ import annotations
+
+from modelgen.native.columns import plain_columns
+from modelgen.native.library import compiler, shared_library
+from modelgen.native.smoothing import both_ways, central
+
+__all__ = ["both_ways", "central", "compiler", "plain_columns", "shared_library"]

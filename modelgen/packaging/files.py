@@ -1,0 +1,69 @@
+"""What build systems and people need of an arm's folder beside the code."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Sequence
+
+from modelgen import __version__
+from modelgen.backends.provenance import Provenance
+from modelgen.backends.text import render
+from modelgen.functions.objects import Model
+from modelgen.packaging.readme import readme
+from modelgen.packaging.self_test import self_test
+
+_TEMPLATES = {
+    "CMakeLists.txt": "package/CMakeLists.txt.j2",
+    "library.properties": "package/library.properties.j2",
+    "idf_component.yml": "package/idf_component.yml.j2",
+    "zephyr/module.yml": "package/module.yml.j2",
+    "zephyr/CMakeLists.txt": "package/zephyr.cmake.j2",
+    "zephyr/Kconfig": "package/Kconfig.j2",
+}
+
+
+def packaging_files(
+    model: Model, provenance: Provenance, paths: Iterable[str], sizes: Sequence[Sequence[str]] = ()
+) -> dict[str, str]:
+    """Text of the packaging's files by path below the arm's folder, whose C files are at `paths`.
+
+    `sizes`: rows of the README's table of measured sizes, its heading first.
+    """
+    arm = model.arm.name
+    macro = arm.upper()
+    values = {
+        "arm": arm,
+        "macro": macro,
+        "provenance": provenance.lines(arm),
+        "version": version(),
+        "real": f"${{{macro}_REAL}}",
+        "sources": sorted(path for path in paths if path.endswith(".c")),
+    }
+    files = {path: render(template, **values) for path, template in _TEMPLATES.items()}
+    files[f"src/{arm}.h"] = render("package/forward.h.j2", **values)
+    files["library.json"] = _platformio(arm, provenance)
+    files["examples/self_test/main.c"] = self_test(model, provenance)
+    files["README.md"] = readme(model, provenance, sizes)
+    return files
+
+
+def version() -> str:
+    """Three numbers, as every one of the build systems reads them."""
+    found = re.match(r"\d+\.\d+\.\d+", __version__)
+    return found.group() if found else "0.0.0"
+
+
+def _platformio(arm: str, provenance: Provenance) -> str:
+    content = {
+        "name": arm,
+        "version": version(),
+        "description": " ".join([f"Dynamic model of the robot arm {arm}.", *provenance.lines(arm)]),
+        "keywords": ["robotics", "dynamics"],
+        "authors": [{"name": "modelgen"}],
+        "frameworks": "*",
+        "platforms": "*",
+        "headers": f"{arm}.h",
+        "build": {"includeDir": "include", "srcDir": "src"},
+    }
+    return json.dumps(content, indent=2) + "\n"

@@ -1,0 +1,1 @@
+"""Least squares with weights by joint, and the noise's autocovariance."""
