@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.diagnosis.equations.prior import Baseline
+from modelgen.diagnosis.equations.prior import Unknowns
 
 UNUSED: Any = None  # records, of which nothing is asked
-BARE = Baseline(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told
+BARE = Unknowns(np.zeros(0), np.zeros((0, 0)))  # of which nothing is told

@@ -9,7 +9,7 @@ from modelgen.description import load
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.effects import CATALOGUE, known_effects
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
 SEARCHED = tuple(p for p in CATALOGUE["nonlinear_viscous_friction"].nonlinear if p.grid)
@@ -27,5 +27,5 @@ def test_drag_of_a_single_joint_is_friction_with_the_square_of_its_speed(
         Candidate("fluid_drag", None),
     ]
     base = np.ones(len(model.grouping.base))
-    (found,) = aliases([Candidate("fluid_drag", None)], pool, Prober(arm), model, base)
+    (found,) = aliases([Candidate("fluid_drag", None)], pool, Evaluator(arm), model, base)
     assert [c.effect for c in found] == same

@@ -13,47 +13,47 @@ from modelgen.dataset import choose, prepare
 from modelgen.description import load
 from modelgen.diagnosis.candidates.candidate import Candidate, candidates
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.search import Court, bracket
+from modelgen.diagnosis.candidates.search import Search, bracket
 from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.pipeline import records, settings_for
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 from modelgen.numeric import Array
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Rows], Prober, Array, Candidate]:
+def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Rows], Evaluator, Array, Candidate]:
     """Rows of an arm without an actuator's mass, what else they show, and the mass as a candidate."""
     folder = tmp_path_factory.mktemp("angle") / "case"
     make(Case("levered2", 5), folder)
     arm = load(folder / "arms.yaml")["arm"]
     found = records(arm, [str(folder / "train_a.csv")], [str(folder / "test.csv")], None)
-    model, prober = build_model(arm), Prober(arm)
+    model, evaluator = build_model(arm), Evaluator(arm)
     prepared = [prepare(r, choose(list(found), settings_for(found, None))) for r in found]
-    rows = rows_twice(prober, model, prepared, estimated(model))
+    rows = rows_twice(evaluator, model, prepared, estimated(model))
     base = rows[0].baseline.base(weighted_fit(rows, [r.columns for r in rows]))
-    forms = [c for c in candidates(prober, rows) if c.effect == "actuator_mass" and c.joint == 2]
+    forms = [c for c in candidates(evaluator, rows) if c.effect == "actuator_mass" and c.joint == 2]
     assert all([p.name for p in c.searched] == ["base_angle"] for c in forms)  # joint 1 moves its base
-    return rows, prober, base, max(forms, key=lambda c: len(c.part))
+    return rows, evaluator, base, max(forms, key=lambda c: len(c.part))
 
 
 @pytest.mark.parametrize("degrees", [5, 40, 44, 58, 130, 222, 357])
 def test_the_base_is_found_where_it_stands(
-    scene: tuple[list[Rows], Prober, Array, Candidate], degrees: float
+    scene: tuple[list[Rows], Evaluator, Array, Candidate], degrees: float
 ) -> None:
-    rows, prober, base, candidate = scene
+    rows, evaluator, base, candidate = scene
     there = {"base_angle": math.radians(degrees)}
-    added = candidate_columns(replace(candidate, part=()), there, rows, prober, base)
+    added = candidate_columns(replace(candidate, part=()), there, rows, evaluator, base)
     assert added is not None
     moved = [
         replace(r, effort=r.effort + c @ np.array([0.2, 1.0, 0.0])) for r, c in zip(rows, added, strict=True)
     ]
-    court = Court(System(moved, [r.columns for r in moved]), moved, prober, base)
-    found = court.trial(candidate)
+    search = Search(System(moved, [r.columns for r in moved]), moved, evaluator, base)
+    found = search.trial(candidate)
     assert found is not None
     off = math.remainder(found.parameters["base_angle"] - there["base_angle"], math.tau)
     assert abs(math.degrees(off)) < 3.0

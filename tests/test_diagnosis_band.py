@@ -14,7 +14,7 @@ from modelgen.diagnosis.equations.position_errors import repeating_errors
 from modelgen.diagnosis.equations.rows import rows_of
 from modelgen.diagnosis.pipeline import diagnose, settings_for
 from modelgen.diagnosis.thresholds import practical
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
 EXACT = three("friction_offset", 1, 0.15, seed=8)
@@ -24,7 +24,7 @@ SEEN = [coarse(r) for r in EXACT]
 def made(records: list[Record], narrower: bool = True) -> Equations:
     lengths = [period_of(r, None) for r in records[:-1]]
     settings, model = settings_for(records, None), build_model(ARM)
-    return next(bands(model, Prober(ARM), records, lengths, settings, narrower=narrower))
+    return next(bands(model, Evaluator(ARM), records, lengths, settings, narrower=narrower))
 
 
 def test_coarse_positions_alone_narrow_the_band() -> None:
@@ -39,11 +39,11 @@ def test_coarse_positions_alone_narrow_the_band() -> None:
 
 def test_no_more_than_the_blur_comes_of_the_errors() -> None:
     """Against the same equations of positions without errors."""
-    seen, prober, model = made(SEEN), Prober(ARM), build_model(ARM)
+    seen, evaluator, model = made(SEEN), Evaluator(ARM), build_model(ARM)
     total, count = np.zeros(2), np.zeros(2)
     for record, rows in zip(EXACT, seen.rows, strict=False):
         exact = replace(prepare(record, seen.chosen), awake=rows.prepared.awake)  # of the same samples
-        true = rows_of(prober, model, exact, seen.theta, rows.baseline)
+        true = rows_of(evaluator, model, exact, seen.theta, rows.baseline)
         left = (true.effort - rows.effort) - (true.columns - rows.columns) @ seen.theta
         total += (left**2 * rows.moving).sum(axis=0)
         count += rows.moving.sum(axis=0)

@@ -6,10 +6,10 @@ from diagnosis_support import BARE, UNUSED
 from numpy.random import Generator, default_rng
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System, covariance
-from modelgen.diagnosis.selection.backward import eliminated
+from modelgen.diagnosis.selection.backward import backward_elimination
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.numeric import Array
@@ -36,9 +36,11 @@ def kept(effects: tuple[str, ...], sizes: tuple[float, ...], seed: int) -> list[
         columns = [own[:, k, None, None] for _, own in made]
         gain = before.gain(columns)
         assert gain is not None
-        causes.append(Cause(Trial(Candidate(effect, 1), {}, columns, gain), gain.delta_bic, 5.0, 5.0))
+        causes.append(
+            Cause(FittedCandidate(Candidate(effect, 1), {}, columns, gain), gain.delta_bic, 5.0, 5.0)
+        )
     system = System(rows, with_causes(rows, [c.trial for c in causes]), before.periods)
-    found, final = eliminated(causes, rows, system, 15.0, None, 1.0)
+    found, final = backward_elimination(causes, rows, system, 15.0, None, 1.0)
     assert final.columns[0].shape[2] == 3 + len(found)
     return [c.trial.candidate.effect for c in found]
 

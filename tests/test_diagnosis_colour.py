@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from scipy.stats import chi2
 
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.noise import LAGS, Colour, correlations
+from modelgen.diagnosis.evidence.noise import LAGS, Autocorrelation, correlations
 from modelgen.diagnosis.evidence.system import System
 from modelgen.numeric import Array
 
@@ -38,7 +38,7 @@ def test_the_variance_of_a_sum_is_that_of_draws() -> None:
     columns = np.column_stack([wave(2.0), wave(120.0, 0.3)])[moving]
     lags: Array = KEPT ** np.arange(LAGS, dtype=float)
     lags[0] = 2.0
-    colour = Colour((lags / 2.0)[None], [moving[:, None]], [None])
+    colour = Autocorrelation((lags / 2.0)[None], [moving[:, None]], [None])
     random = default_rng(1)
     sums = np.array([columns.T @ slow_noise(random)[moving] for _ in range(2000)]) / np.sqrt(2.0)
     np.testing.assert_allclose(np.diag(colour.variance(columns)), sums.var(axis=0), rtol=0.1)

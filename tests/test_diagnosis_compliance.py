@@ -10,8 +10,8 @@ from hidden.judging import FOUND
 from hidden.running import run
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
-from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.validation.gates import Judgement
 
@@ -57,6 +57,6 @@ def test_of_an_elastic_joint_and_a_gap_the_simpler_one_is_taken_where_both_expla
     assert (trial.candidate.effect, trial.candidate.joint) == (named, 2)
 
 
-def judged(effect: str, joint: int, delta_bic: float, gain: float) -> tuple[Trial, Judgement]:
-    found = Gain(delta_bic, np.ones(1), np.ones(1), np.ones(1), 1)
-    return Trial(Candidate(effect, joint), {}, [], found), Judgement(gain, gain, "")
+def judged(effect: str, joint: int, delta_bic: float, gain: float) -> tuple[FittedCandidate, Judgement]:
+    found = Evidence(delta_bic, np.ones(1), np.ones(1), np.ones(1), 1)
+    return FittedCandidate(Candidate(effect, joint), {}, [], found), Judgement(gain, gain, "")

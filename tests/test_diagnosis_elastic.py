@@ -9,7 +9,7 @@ from hidden.recovery import reachable
 from modelgen.description import load
 from modelgen.diagnosis.equations.rows import motion_of
 from modelgen.diagnosis.pipeline import diagnose, records
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 
 SOFT = Case("levered2", 1740050650, (Hidden("joint_flexibility", 2, 1.3, 1.98645),))
 
@@ -29,7 +29,7 @@ def test_the_extended_arm_recovers_what_the_joint_costs(tmp_path: Path) -> None:
     left = []
     for rows in extended.rows:
         motion = motion_of(rows.prepared)
-        given = Prober(extended.arm).inputs(motion, extended.parameters)
+        given = Evaluator(extended.arm).inputs(motion, extended.parameters)
         difference = np.asarray(rows.prepared.parallel(np.asarray(rows.prepared.input) - given))
         left.append(difference[rows.moving[:, 1], 1])
     own = found.before.rows

@@ -10,28 +10,28 @@ from test_diagnosis_selection import ARM
 from test_diagnosis_shapes import cubic, made, offset
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
-from modelgen.diagnosis.equations.prior import Baseline
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.equations.prior import Unknowns
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.backward import measured
 from modelgen.diagnosis.selection.cause import Cause, together
 from modelgen.diagnosis.selection.exchange import exchanged
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 
 def scene() -> tuple[list[Rows], list[int | None], Any]:
     """Records with an offset and a cubic force, and what makes a trial of a law that was taken first."""
     rows, q, periods = made(lambda x: offset(x) + 0.2 * cubic(x))
-    rows = [replace(r, baseline=Baseline(np.zeros(2), np.eye(2))) for r in rows]
+    rows = [replace(r, baseline=Unknowns(np.zeros(2), np.eye(2))) for r in rows]
     bare = System(rows, [r.columns for r in rows], periods)
 
-    def trial(effect: str, law: Any) -> Trial:
+    def trial(effect: str, law: Any) -> FittedCandidate:
         columns: list[Array] = [law(x[:, 0])[:, None, None] for x in q]
         gain = bare.gain(columns)
         assert gain is not None
-        return Trial(Candidate(effect, 1), {}, columns, gain)
+        return FittedCandidate(Candidate(effect, 1), {}, columns, gain)
 
     return rows, periods, trial
 
@@ -42,7 +42,7 @@ def test_the_law_that_is_there_takes_the_place_of_one_like_it() -> None:
     first = trial("asymmetric_viscous_friction", lambda x: np.tanh(x) ** 2)
     right, second = trial("friction_offset", offset), trial("nonlinear_viscous_friction", cubic)
     causes = [Cause(first, 30.0, 5.0, 5.0, [(right, 4.0)]), Cause(second, 30.0, 5.0, 5.0)]
-    found = exchanged(causes, rows, Prober(ARM), periods)
+    found = exchanged(causes, rows, Evaluator(ARM), periods)
     assert [c.trial.candidate.effect for c in found] == ["friction_offset", "nonlinear_viscous_friction"]
     ((rival, behind),) = found[0].rivals
     assert rival is first
@@ -65,7 +65,7 @@ def test_the_places_of_an_effect_share_its_odds(places: int) -> None:
         ahead = together([right, second], bare) - together([worse, second], bare)
         if due - 2.0 < ahead < due + 2.0 and abs(ahead - due) > 0.05:
             causes = [Cause(worse, 30.0, 5.0, 5.0, [(right, 0.0)]), Cause(second, 30.0, 5.0, 5.0)]
-            found = exchanged(causes, rows, Prober(ARM), periods)
+            found = exchanged(causes, rows, Evaluator(ARM), periods)
             assert (found is causes) == (ahead < due), ahead
             if found is not causes:
                 assert found[0].rivals[0][1] == pytest.approx(ahead)  # evidence, whatever the places
@@ -84,8 +84,8 @@ def test_a_rival_that_explains_less_stays_one() -> None:
         Cause(right, 30.0, 5.0, 5.0, [(other, 4.0)]),
         Cause(trial("nonlinear_viscous_friction", cubic), 30.0, 5.0, 5.0),
     ]
-    assert exchanged(causes, rows, Prober(ARM), periods) is causes
-    assert exchanged(causes[1:], rows, Prober(ARM), periods) == causes[1:]  # no rivals, nothing to do
+    assert exchanged(causes, rows, Evaluator(ARM), periods) is causes
+    assert exchanged(causes[1:], rows, Evaluator(ARM), periods) == causes[1:]  # no rivals, nothing to do
 
 
 def test_a_cause_that_took_another_ones_place_has_its_own_evidence_and_gain() -> None:

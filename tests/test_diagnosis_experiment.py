@@ -16,18 +16,18 @@ from numpy.random import default_rng
 from modelgen.dataset import Record, choose, drives_of, prepare, read
 from modelgen.description import Arm, load
 from modelgen.diagnosis.candidates.candidate import Candidate, candidates
-from modelgen.diagnosis.candidates.search import Court
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.candidates.search import Search
 from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge, hypothesis
+from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
 from modelgen.diagnosis.experiment.experiment import Experiment
-from modelgen.diagnosis.experiment.motions import Stage, stage
+from modelgen.diagnosis.experiment.motions import Setup, stage
 from modelgen.diagnosis.experiment.trajectory import MARGIN, Proposal, propose, worth
 from modelgen.diagnosis.pipeline import settings_for
 from modelgen.effects import known_effects
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.excitation.problem import problem
 from modelgen.excitation.random_motion import feasible
 from modelgen.excitation.writing import data
@@ -48,7 +48,7 @@ class Scene:
         folder.mkdir(exist_ok=True)
         arms.write_description(folder / "arms.yaml", "arm", arms.describe(self.bench.arm, default_rng(5)))
         self.arm: Arm = load(folder / "arms.yaml", known_effects())["arm"]
-        self.model, self.prober = build_model(self.arm), Prober(self.arm)
+        self.model, self.evaluator = build_model(self.arm), Evaluator(self.arm)
 
     def record(self, name: str, k: int, true: int) -> Record:
         """Path k of the bench with one member of the pair hidden in it."""
@@ -76,21 +76,21 @@ class Scene:
         plant["frequency"] = 1.0 / found.excitation.problem.settings.period
         self.bench.paths[k] = plant
 
-    def trials(self, records: list[Record]) -> tuple[list[Trial], System, Stage]:
+    def trials(self, records: list[Record]) -> tuple[list[FittedCandidate], System, Setup]:
         """Both members fitted to the records."""
         chosen = choose(records, settings_for(records, None))
         prepared = [prepare(r, chosen) for r in records]
-        rows = rows_twice(self.prober, self.model, prepared, estimated(self.model))
+        rows = rows_twice(self.evaluator, self.model, prepared, estimated(self.model))
         period = round(PERIOD / records[0].step)
         periods = [period // chosen.factor if period % chosen.factor == 0 else None for _ in records]
         system = System(rows, [r.columns for r in rows], periods)
         base = rows[0].baseline.base(system.theta)
-        court = Court(system, rows, self.prober, base)
-        pool = {(c.effect, c.joint): c for c in candidates(self.prober, rows)}
-        found = [court.trial(pool[place]) for place in self.pair]
+        search = Search(system, rows, self.evaluator, base)
+        pool = {(c.effect, c.joint): c for c in candidates(self.evaluator, rows)}
+        found = [search.trial(pool[place]) for place in self.pair]
         assert found[0] is not None
         assert found[1] is not None
-        return [found[0], found[1]], system, stage(self.arm, self.model, self.prober, prepared, base)
+        return [found[0], found[1]], system, stage(self.arm, self.model, self.evaluator, prepared, base)
 
 
 @dataclass(frozen=True)
@@ -114,18 +114,22 @@ SETS = {
 CONVINCING = 10.0  # delta BIC: very strong evidence (Kass and Raftery 1995)
 
 
-def beyond(found: list[Trial], true: int) -> float:
+def beyond(found: list[FittedCandidate], true: int) -> float:
     """Evidence for the truth over the other."""
     return found[true].gain.delta_bic - found[1 - true].gain.delta_bic
 
 
-def judged(scene: Scene, true: int) -> tuple[list[Trial], Stage, Judge]:
+def judged(scene: Scene, true: int) -> tuple[list[FittedCandidate], Setup, Discriminator]:
     """Both members fitted to the record of the scene."""
     found, system, planned = scene.trials([scene.record("old", 0, true)])
     named = [
         np.concatenate([r.columns, c], axis=2) for r, c in zip(system.rows, found[true].columns, strict=True)
     ]
-    return found, planned, Judge(System(system.rows, named, system.periods), scene.prober, planned.base)
+    return (
+        found,
+        planned,
+        Discriminator(System(system.rows, named, system.periods), scene.evaluator, planned.base),
+    )
 
 
 def proposed(scene: Scene, true: int) -> tuple[float, Proposal]:
@@ -159,7 +163,7 @@ def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: 
     if beside:
         law = Candidate("stribeck_friction", 1, {"exponent": 1.0})
         there = Hypothesis(law, {"velocity": 5.0}, np.array([1.0]), ())
-        judge = Judge(judge.system, judge.prober, judge.base, [there])
+        judge = Discriminator(judge.system, judge.evaluator, judge.base, [there])
     members = [hypothesis(t) for t in found]
     p = problem(planned.arm, planned.settings(round(PERIOD / planned.step)))
     rng = default_rng(3)

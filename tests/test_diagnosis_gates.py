@@ -9,7 +9,7 @@ from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import not_negative
@@ -35,7 +35,7 @@ def gains(random: Generator, size: float) -> tuple[float, float, float]:
     system = System(rows[:2], [r.columns for r in rows[:2]], [LONG // 3] * 2)
     gain = system.gain(columns[:2])
     assert gain is not None
-    trial = Trial(Candidate("friction_offset", 1), {}, columns[:2], gain)
+    trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns[:2], gain)
     found = Gates(rows[:2], [], system).judged(trial)
     both = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
     left = []
@@ -93,7 +93,7 @@ def judged(seed: int, sizes: tuple[float, float]) -> Judgement:
     system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(rows, [], system).judged(Trial(Candidate("friction_offset", 1), {}, columns, gain))
+    return Gates(rows, [], system).judged(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
 
 
 def test_a_cause_that_one_record_contradicts_is_refused() -> None:
@@ -123,7 +123,7 @@ def play_judged(seed: int, shown: float, there: tuple[float, float]) -> Judgemen
     system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(rows, [], system).judged(Trial(Candidate("backlash", 1), {}, columns, gain))
+    return Gates(rows, [], system).judged(FittedCandidate(Candidate("backlash", 1), {}, columns, gain))
 
 
 def test_a_record_without_impacts_does_not_speak_against_play() -> None:
@@ -160,7 +160,7 @@ def beside(
         system = System(rows, columns, [LONG // 3] * 2)
         gain = system.gain(table)
         assert gain is not None
-        trials.append(Trial(Candidate(name, None), {}, table, gain))
+        trials.append(FittedCandidate(Candidate(name, None), {}, table, gain))
         columns = [np.concatenate([c, t], axis=2) for c, t in zip(columns, table, strict=True)]
     if evidence is not None:
         trials[-1] = replace(trials[-1], gain=replace(trials[-1].gain, delta_bic=evidence))

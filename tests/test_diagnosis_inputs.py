@@ -18,7 +18,7 @@ from modelgen.evaluation import places
 
 
 @dataclass(frozen=True)
-class Answer:
+class Decision:
     code: int
     said: str
 
@@ -32,10 +32,10 @@ def words(folder: Path, out: Path, *more: str, train: tuple[str, ...], test: tup
     return [*command, "--out", str(out), *more]
 
 
-def ask(folder: Path, out: Path, *more: str, train: tuple[str, ...], test: tuple[str, ...]) -> Answer:
+def ask(folder: Path, out: Path, *more: str, train: tuple[str, ...], test: tuple[str, ...]) -> Decision:
     found = CliRunner().invoke(app, [*words(folder, out, *more, train=train, test=test), "--jobs", "1"])
     assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
-    return Answer(found.exit_code, " ".join(found.stderr.split()))
+    return Decision(found.exit_code, " ".join(found.stderr.split()))
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
 from modelgen.diagnosis.adequacy.stand_ins import doubtful
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
@@ -105,7 +105,7 @@ def cause(column: Array, s: System) -> Cause:
     gain = s.gain(columns)
     assert gain is not None
     judged = Judgement(5.0, 5.0, "")
-    trial = Trial(Candidate("friction_offset", 1), {}, columns, gain)
+    trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
     return Cause(trial, gain.delta_bic, judged.gain, judged.expected)
 
 

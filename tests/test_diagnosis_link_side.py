@@ -11,7 +11,7 @@ from hidden.running import run
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint, load
 from modelgen.diagnosis.pipeline import diagnose, records
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
 
 RATIO, CONSTANT = 100.0, 0.05
@@ -28,7 +28,7 @@ ARM = Arm(
 
 
 def test_the_drive_of_an_elastic_joint_leads_by_what_moves_the_link() -> None:
-    model, prober = build_model(ARM), Prober(ARM)
+    model, evaluator = build_model(ARM), Evaluator(ARM)
     standard = standard_vector(model, np.random.default_rng(3))
     base = base_vector(model, standard)
     values = dict(zip((p.name for p in model.standard), standard, strict=True))
@@ -38,13 +38,13 @@ def test_the_drive_of_an_elastic_joint_leads_by_what_moves_the_link() -> None:
     dq = np.column_stack([np.zeros_like(t), size * w * np.cos(w * t)])
     ddq = -(w**2) * q
     motion = Motion(t, q, dq, ddq, (False, False), 18.0)
-    found = prober.contribution(
+    found = evaluator.contribution(
         "joint_flexibility", 2, motion, {"stiffness": stiffness, "damping": relaxation * stiffness}, base
     )
     # a pendulum in the vertical plane of joint 2: inertia about its axis, first moments, gravity along x
     effort = values["ZZ2"] * ddq[:, 1]
     lift = 9.81 * (values["MX2"] * np.cos(q[:, 1]) - values["MY2"] * np.sin(q[:, 1]))
-    effort += lift if abs(lift[0] - weight(prober, motion, base)) < 1e-6 else -lift
+    effort += lift if abs(lift[0] - weight(evaluator, motion, base)) < 1e-6 else -lift
     # the spring and the damper: relaxation * rate + lead = effort / stiffness, period by period
     spectrum = np.fft.rfft(effort[:4000]) / stiffness
     s = 2j * np.pi * np.fft.rfftfreq(4000, 0.002)
@@ -56,16 +56,16 @@ def test_the_drive_of_an_elastic_joint_leads_by_what_moves_the_link() -> None:
     assert found[middle, 1] == pytest.approx(wanted[middle], abs=0.03 * np.abs(wanted).max())
 
 
-def weight(prober: Prober, motion: Motion, base: np.ndarray) -> float:
+def weight(evaluator: Evaluator, motion: Motion, base: np.ndarray) -> float:
     """Effort at joint 2 that holds the arm where the motion begins."""
     still = np.zeros((2, 2))
-    held = prober.inputs(Motion(motion.t[:2], motion.q[:2], still, still), base)
+    held = evaluator.inputs(Motion(motion.t[:2], motion.q[:2], still, still), base)
     return float(held[0, 1]) * RATIO * CONSTANT
 
 
 def test_play_is_asked_for_where_the_link_is_loose_up_to_half_of_the_time() -> None:
     """A pendulum about its rest: the wider the gap, the longer the link lies in it."""
-    model, prober = build_model(ARM), Prober(ARM)
+    model, evaluator = build_model(ARM), Evaluator(ARM)
     base = base_vector(model, standard_vector(model, np.random.default_rng(3)))
     t = np.arange(0.0, 16.0, 0.002)
     w = 2 * np.pi / 8.0
@@ -75,7 +75,7 @@ def test_play_is_asked_for_where_the_link_is_loose_up_to_half_of_the_time() -> N
     shares = []
     for play in np.geomspace(1e-5, 10.0, 80):
         values = {"play": float(play), "stiffness": 300.0, "damping": 3.0}
-        found = prober.contribution("backlash", 2, motion, values, base)
+        found = evaluator.contribution("backlash", 2, motion, values, base)
         shares.append(np.mean(found[:, 1] != 0.0))
     assert 0.35 < max(shares) <= 0.5
     assert shares[-1] == 0.0

@@ -7,7 +7,7 @@ from scipy import stats
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.prior_odds import doubt, elsewhere, obvious
+from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty, prior_penalty
 
 ROD = 0.42  # m, the actuator at its longest
 MASS = 0.3 * 20.0
@@ -34,12 +34,12 @@ def test_a_value_costs_what_a_cauchy_distribution_says(effect: str, name: str, s
     density = stats.cauchy(scale=SCALES[effect, name]).pdf
     value = size * SCALES[effect, name]
     expected = 2 * math.log(density(0.0) / density(value))
-    assert doubt(Candidate(effect, 1), {name: value}, ARM) == pytest.approx(expected, abs=1e-9)
-    assert doubt(Candidate(effect, 1), {name: -value}, ARM) == pytest.approx(expected, abs=1e-9)
+    assert prior_penalty(Candidate(effect, 1), {name: value}, ARM) == pytest.approx(expected, abs=1e-9)
+    assert prior_penalty(Candidate(effect, 1), {name: -value}, ARM) == pytest.approx(expected, abs=1e-9)
 
 
 def test_forms_of_an_effect_share_what_it_is_given() -> None:
-    one, four = (doubt(Candidate("spring", 2, forms=n), {"stiffness": 5.0}, ARM) for n in (1, 4))
+    one, four = (prior_penalty(Candidate("spring", 2, forms=n), {"stiffness": 5.0}, ARM) for n in (1, 4))
     assert one == 0.0
     assert math.exp(-four / 2) == pytest.approx(1 / 4)
 
@@ -47,13 +47,13 @@ def test_forms_of_an_effect_share_what_it_is_given() -> None:
 def test_places_of_an_effect_share_its_odds_and_not_its_evidence() -> None:
     """A spring somewhere is as likely as a tilted base; whether anything is there is not asked of places."""
     one, four = (Candidate("spring", 2, places=n) for n in (1, 4))
-    assert elsewhere(one) == 0.0
-    assert math.exp(-elsewhere(four) / 2) == pytest.approx(1 / 4)
-    assert doubt(four, {"stiffness": 5.0}, ARM) == 0.0
+    assert place_penalty(one) == 0.0
+    assert math.exp(-place_penalty(four) / 2) == pytest.approx(1 / 4)
+    assert prior_penalty(four, {"stiffness": 5.0}, ARM) == 0.0
 
 
 def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
-    assert doubt(Candidate("lever_geometry", 2), {"l1": 1.0}, ARM) == 0.0
+    assert prior_penalty(Candidate("lever_geometry", 2), {"l1": 1.0}, ARM) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -72,4 +72,4 @@ def test_where_there_is_no_lever_nothing_is_known_of_its_lengths() -> None:
 )
 def test_what_nobody_overlooks(effect: str, name: str, value: float, seen: bool) -> None:
     """A tilt of 80 degrees, a quarter of a length, 90 kg on an arm of 20, no quarter turn of an encoder."""
-    assert obvious(Candidate(effect, 1), {name: value}, ARM) is seen
+    assert beyond_plausible(Candidate(effect, 1), {name: value}, ARM) is seen

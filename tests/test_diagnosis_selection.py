@@ -10,14 +10,14 @@ from arms_support import base_vector, standard_vector
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
-from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection.stepwise import at_one_joint
 from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.errors import InputError
-from modelgen.evaluation import Motion, Prober, with_effect
+from modelgen.evaluation import Evaluator, Motion, with_effect
 from modelgen.functions import build_model
 
 EFFECTS = tuple(EffectUse(n) for n in ("viscous_friction", "coulomb_friction", "drive_inertia"))
@@ -42,16 +42,16 @@ def record(effect: str | None, joint: int, size: float, seed: int, name: str) ->
     q = np.cos(phase) @ a.T + np.sin(phase) @ b.T
     dq = (np.cos(phase) * w) @ b.T - (np.sin(phase) * w) @ a.T
     ddq = -(np.cos(phase) * w**2) @ a.T - (np.sin(phase) * w**2) @ b.T
-    model, prober = build_model(ARM), Prober(ARM)
+    model, evaluator = build_model(ARM), Evaluator(ARM)
     base = base_vector(model, standard_vector(model, np.random.default_rng(5)))
     motion = Motion(t, q, dq, ddq)
-    given = prober.inputs(motion, base)
+    given = evaluator.inputs(motion, base)
     if effect is not None:
         values = {"velocity": 8.0, "magnitude": size, "coefficient": size, "stiffness": size, "harmonic": 2.0}
         values |= {"sine": size, "cosine": 0.0, "preload": 0.0, "offset": size}
-        own = {p.name for p in (*prober.linear(effect), *prober.nonlinear(effect))}
+        own = {p.name for p in (*evaluator.linear(effect), *evaluator.nonlinear(effect))}
         known = {k: v for k, v in values.items() if k in own}
-        given = given + prober.contribution(effect, joint, motion, known, base)
+        given = given + evaluator.contribution(effect, joint, motion, known, base)
     given = given + 0.03 * np.sqrt((given**2).mean(axis=0)) * random.normal(size=given.shape)
     ratio = np.array([80.0, 60.0])
     return Record(name, t, q, q * ratio, given, np.ones_like(q), ("A", "A"), motor_side=(True, True), arm=ARM)
@@ -131,9 +131,9 @@ def test_what_one_joint_promises_alone_is_not_in_all_of_them() -> None:
     """A delay of one drive of three, which the mean of all three spreads; and one that all have."""
 
     def judged(promised: dict[int | None, float]) -> list[int | None]:
-        gain = Gain(50.0, np.array([0.005]), np.ones(3), np.ones(3), 1)
+        gain = Evidence(50.0, np.array([0.005]), np.ones(3), np.ones(3), 1)
         pairs = [
-            (Trial(Candidate("time_delay", joint), {}, [], gain), Judgement(x, x, ""))
+            (FittedCandidate(Candidate("time_delay", joint), {}, [], gain), Judgement(x, x, ""))
             for joint, x in promised.items()
         ]
         return [pair[0].candidate.joint for pair in pairs if not at_one_joint(pair, pairs)]

@@ -11,7 +11,7 @@ from modelgen.description import Arm, DirectDrive, EffectUse, Joint
 from modelgen.diagnosis.candidates.columns import payload, sensitivities
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.effects import CATALOGUE
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
 from modelgen.numeric import Array
 
@@ -30,15 +30,15 @@ def swing(times: Array, seed: int) -> tuple[Array, Array, Array]:
     return c @ a.T + s @ b.T, (c * w) @ b.T - (s * w) @ a.T, -(c * w**2) @ a.T - (s * w**2) @ b.T
 
 
-def prober() -> tuple[Prober, Array]:
+def evaluator() -> tuple[Evaluator, Array]:
     model = build_model(ONE)
-    return Prober(ONE), base_vector(model, standard_vector(model, np.random.default_rng(5)))
+    return Evaluator(ONE), base_vector(model, standard_vector(model, np.random.default_rng(5)))
 
 
 @pytest.mark.parametrize("error", [0.3, -0.2])
 def test_a_secant_is_the_whole_change(error: float) -> None:
     """A larger torque constant asks for less current; a slope is off by the error's share."""
-    own, base = prober()
+    own, base = evaluator()
     motion = Motion(TIMES, *swing(TIMES, 1))
     current = own.inputs(motion, base)
     change = current / (1 + error) - current
@@ -50,7 +50,7 @@ def test_a_secant_is_the_whole_change(error: float) -> None:
 
 def test_a_payload_where_it_was_found_has_its_inertia() -> None:
     """m ((x^2 + y^2) ddq + g (x cos q - y sin q)), over the drive's gain."""
-    own, base = prober()
+    own, base = evaluator()
     q, dq, ddq = swing(TIMES, 2)
     mass, x, y = 3.0, 0.4, -0.2
     torque = mass * ((x**2 + y**2) * ddq + GRAVITY * (x * np.cos(q) - y * np.sin(q)))
@@ -62,7 +62,7 @@ def test_a_payload_where_it_was_found_has_its_inertia() -> None:
 
 def records(law: Callable[[Array], Array], late: float = 0.0) -> list[Record]:
     """Three of one joint: what it needs `late` seconds ahead, by the law that the drive gives it."""
-    own, base = prober()
+    own, base = evaluator()
     found = []
     for k in range(3):
         needed = law(own.inputs(Motion(TIMES, *swing(TIMES + late, k)), base))

@@ -10,8 +10,8 @@ from hidden.cases import Case, Hidden, make
 from hidden.running import diagnose
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
-from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.selection.stepwise import lesser_rivals, needed_behind, no_power
 from modelgen.diagnosis.thresholds import RATHER
 from modelgen.diagnosis.validation.gates import Judgement
@@ -38,8 +38,10 @@ def test_rounding_that_by_chance_leaves_more_than_a_draw_of_it_is_no_delay(tmp_p
     assert [(c["effect"], c["joint"]) for c in answer["causes"]] == [("asymmetric_viscous_friction", 2)]
 
 
-def tried(effect: str, delta_bic: float) -> Trial:
-    return Trial(Candidate(effect, 1), {}, [], Gain(delta_bic, np.ones(1), np.ones(1), np.ones(1), 1))
+def tried(effect: str, delta_bic: float) -> FittedCandidate:
+    return FittedCandidate(
+        Candidate(effect, 1), {}, [], Evidence(delta_bic, np.ones(1), np.ones(1), np.ones(1), 1)
+    )
 
 
 def test_what_is_too_faint_to_be_named_where_the_best_has_little_more() -> None:
@@ -49,7 +51,7 @@ def test_what_is_too_faint_to_be_named_where_the_best_has_little_more() -> None:
     )
     faint = [tried("lever_geometry", 5.0), tried(shut, 5.5)]
 
-    def rivals(best: Trial) -> list[tuple[str, float]]:
+    def rivals(best: FittedCandidate) -> list[tuple[str, float]]:
         found = lesser_rivals(best, faint, gates)
         return [(t.candidate.effect, behind) for t, behind in found]
 
@@ -63,7 +65,7 @@ def test_a_power_of_the_speed_at_the_end_of_its_range_gives_way_to_friction_near
     searched = tuple(p for p in CATALOGUE[effect].nonlinear if p.name == "exponent")
     passed = Judgement(9.0, 9.0, "")
 
-    def gives_way(exponent: float, beside: Trial) -> bool:
+    def gives_way(exponent: float, beside: FittedCandidate) -> bool:
         trial = replace(
             tried(effect, 1654.0),
             candidate=Candidate(effect, 1, searched=searched),

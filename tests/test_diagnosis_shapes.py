@@ -11,10 +11,10 @@ from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
-from modelgen.diagnosis.adequacy.smooth_functions import Shape, functions, worth
-from modelgen.diagnosis.adequacy.stand_ins import outdone
+from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions, log_evidence
+from modelgen.diagnosis.adequacy.stand_ins import without_stand_ins
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.noise import Whitener
 from modelgen.diagnosis.evidence.system import System
@@ -75,11 +75,13 @@ def judged(rows: list[Rows], q: list[Array], periods: list[int | None], *laws: A
         columns = [law(x[:, 0])[:, None, None] for x in q]
         gain = system.gain(columns)
         assert gain is not None
-        trial = Trial(Candidate(name, 1), {}, columns, gain)
+        trial = FittedCandidate(Candidate(name, 1), {}, columns, gain)
         causes.append(Cause(trial, gain.delta_bic, 5.0, 5.0))
         tables = [np.concatenate([t, c], axis=2) for t, c in zip(tables, columns, strict=True)]
         system = System(rows, tables, periods)
-    return outdone(Selection(causes, system, []), rows, [Shape("by place", {0: functions(q, 0.2)})])
+    return without_stand_ins(
+        Selection(causes, system, []), rows, [SmoothFunction("by place", {0: functions(q, 0.2)})]
+    )
 
 
 def test_a_law_that_is_there_stays() -> None:
@@ -141,7 +143,7 @@ def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it(
         beside = [
             np.concatenate([t, offset(x)[:, None, None]], axis=2) for t, x in zip(tables, q, strict=True)
         ]
-        trial = Trial(Candidate("friction_offset", 1), {}, columns, alone)
+        trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, alone)
         return left_to(trial, System(rows, beside, periods)) / alone.delta_bic
 
     assert (
@@ -170,7 +172,7 @@ def test_evidence_is_that_of_a_gaussian_process() -> None:
     """Its density with the kernel written out, noise and baseline integrated out, over that without it."""
     rows, q, periods = made(spot, 3)
     system = System(rows, [r.columns for r in rows], periods, known_noise(1.0))
-    found = worth(Shape("", {0: functions(q, 0.5)}), system)
+    found = log_evidence(SmoothFunction("", {0: functions(q, 0.5)}), system)
 
     used = slice(ORDER, None)  # rows with as many before them
     x = np.concatenate([p[used] for p in q]) / (0.5 * np.ptp(np.concatenate(q)))
@@ -202,7 +204,7 @@ def test_a_function_at_one_joint_that_sets_a_parameter_free_is_worth_what_the_ot
         effort = columns[:, :, 0] * (3.0, 1.0) + noise
         both.append(replace(r, effort=effort, columns=columns, moving=np.ones(effort.shape, dtype=bool)))
     system = System(both, [r.columns for r in both], periods, known_noise(1.0, 0.1))
-    found = worth(Shape("", {1: functions(q, 0.3)}), system)
+    found = log_evidence(SmoothFunction("", {1: functions(q, 0.3)}), system)
     most = float(system.white.counts @ np.log(system.white.rss / system.white.counts))
     assert 0.8 * most < found.evidence < most
 
@@ -215,7 +217,9 @@ def test_slow_noise_is_no_function_of_the_place() -> None:
         noise = lfilter([0.25], [1.0, -0.97], random.normal(size=(2, PERIOD * PERIODS + 500)))[:, 500:]
         rows, q, periods = made(lambda x: 0.0 * x, seed)
         red = [replace(r, effort=r.effort + e[:, None]) for r, e in zip(rows, noise, strict=True)]
-        found = worth(Shape("", {0: functions(q, 0.2)}), System(red, [r.columns for r in red], periods))
+        found = log_evidence(
+            SmoothFunction("", {0: functions(q, 0.2)}), System(red, [r.columns for r in red], periods)
+        )
         slow.append(found.slow)
         fair.append(found.evidence)
     assert max(fair) < 3.0

@@ -11,7 +11,7 @@ from hidden.running import diagnose, run
 from modelgen.dataset import Settings, prepare, read
 from modelgen.description import load
 from modelgen.diagnosis.equations.rows import rows_of
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
 
@@ -53,7 +53,7 @@ def test_what_the_effort_is_while_a_joint_rests_changes_no_equation(tmp_path: Pa
     resting = np.abs(np.gradient(record.motor, record.step, axis=0)) < 1e-9
     assert resting.mean(axis=0).max() > 0.02
     tried = [record, replace(record, input=np.where(resting, 1e3, record.input))]
-    model, prober = build_model(arm), Prober(arm)
-    before, after = (rows_of(prober, model, prepare(r, Settings(cutoff=18.0))) for r in tried)
+    model, evaluator = build_model(arm), Evaluator(arm)
+    before, after = (rows_of(evaluator, model, prepare(r, Settings(cutoff=18.0))) for r in tried)
     np.testing.assert_array_equal(after.moving, before.moving)
     np.testing.assert_allclose(after.effort[after.moving], before.effort[after.moving], atol=1e-9)

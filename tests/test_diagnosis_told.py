@@ -8,7 +8,7 @@ import pytest
 from numpy.random import default_rng
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
-from modelgen.diagnosis.equations.prior import Baseline, Told, estimated, told
+from modelgen.diagnosis.equations.prior import NominalPrior, Unknowns, estimated, told
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.thresholds import RATHER
@@ -97,7 +97,7 @@ def test_links_without_inertials_tell_nothing() -> None:
 
 
 def equations(
-    said: Told | None, seed: int = 1, more: int = 0, off: float = 0.0
+    said: NominalPrior | None, seed: int = 1, more: int = 0, off: float = 0.0
 ) -> tuple[System, list[Array], list[Array]]:
     """One joint with two parameters of its links, 1 and 2, and a force; what is like that force, and what is
     like it but for a good deal of the links.
@@ -110,13 +110,13 @@ def equations(
     other = x[:, 2] - 0.5 * x[:, 0] + 0.02 * x[:, 1] ** 2
     effort = x[:, :2] @ [1.0, 2.0 + off] + 0.5 * force + random.normal(size=1000)
     columns = np.hstack([x[:, :2], np.zeros((1000, more))])[:, None, :]
-    known = Baseline(np.zeros(2 + more), np.eye(2 + more), said)
+    known = Unknowns(np.zeros(2 + more), np.eye(2 + more), said)
     rows = Rows(UNUSED, effort[:, None], columns, np.ones((1000, 1), dtype=bool), known)
     system = System([rows], [columns])
     return system, [force[:, None, None]], [other[:, None, None]]
 
 
-def ahead(said: Told | None, seed: int, stack: str = "white", **more: Any) -> float:
+def ahead(said: NominalPrior | None, seed: int, stack: str = "white", **more: Any) -> float:
     """Evidence of the force over what is like it."""
     system, force, other = equations(said, seed, **more)
     one, two = (getattr(system, stack).gain(columns) for columns in (force, other))
@@ -124,9 +124,9 @@ def ahead(said: Told | None, seed: int, stack: str = "white", **more: Any) -> fl
     return float(one.delta_bic - two.delta_bic)
 
 
-def numbers(values: list[float]) -> Told:
+def numbers(values: list[float]) -> NominalPrior:
     """Each parameter's own, to a tenth."""
-    return Told(np.eye(len(values)) / 0.1, np.array(values) / 0.1)
+    return NominalPrior(np.eye(len(values)) / 0.1, np.array(values) / 0.1)
 
 
 RIGHT, WRONG = numbers([1.0, 2.0]), numbers([40.0, -90.0])
@@ -160,7 +160,7 @@ def test_one_link_that_is_not_as_described_is_not_taken_for_a_cause(count: int) 
     force = x[:, -1]
     effort = 0.3 * x[:, :-1] @ off + 0.5 * force + random.normal(size=3000)
     columns = x[:, None, :-1]
-    known = Baseline(np.zeros(count), np.eye(count), Told(np.eye(count) / 0.3, np.zeros(count)))
+    known = Unknowns(np.zeros(count), np.eye(count), NominalPrior(np.eye(count) / 0.3, np.zeros(count)))
     rows = Rows(UNUSED, effort[:, None], columns, np.ones((3000, 1), dtype=bool), known)
     white = System([rows], [columns]).white
     true, like = (white.gain([c[:, None, None]]) for c in (force, force + 0.9 * x[:, 0]))

@@ -12,7 +12,7 @@ from witness.mechanism import states
 
 from modelgen.backends.casadi.function import casadi_function
 from modelgen.effects import CATALOGUE
-from modelgen.evaluation import Motion, Prober, places, with_effect
+from modelgen.evaluation import Evaluator, Motion, places, with_effect
 from modelgen.evaluation import states as series
 from modelgen.functions import Options
 
@@ -36,8 +36,8 @@ LINKS = np.tile([0.3, 0.01, 0.02, 0.4, -0.01, 0.35, 0.2, 0.1, -0.1, 3.0], 10)
 
 
 @cache
-def prober(arm: str) -> Prober:
-    return Prober(ARMS[arm])
+def evaluator(arm: str) -> Evaluator:
+    return Evaluator(ARMS[arm])
 
 
 def motion(arm: str) -> Motion:
@@ -89,9 +89,9 @@ def test_an_effect_adds_what_the_arm_with_it_does(
     values = VALUES.get(effect, shown)
     # what an upright arm hides is that of the nominal links, where there are some: tests/test_probing_tilt.py
     p = (
-        Prober(replace(ARMS[arm], links=(None,) * len(ARMS[arm].joints)))
+        Evaluator(replace(ARMS[arm], links=(None,) * len(ARMS[arm].joints)))
         if effect == "base_tilt"
-        else prober(arm)
+        else evaluator(arm)
     )
     m = motion(arm)
     emitted = build(with_effect(ARMS[arm], effect, joint, values), Options())
@@ -135,7 +135,7 @@ def test_an_effect_adds_what_the_arm_with_it_does(
 
 
 def test_a_delay_moves_the_inputs_in_time() -> None:
-    p, m = prober("ur10e"), motion("ur10e")
+    p, m = evaluator("ur10e"), motion("ur10e")
     base = np.ones(len(p.base.base))
     found = p.contribution("time_delay", None, m, {"delay": 0.03}, base)
     now = p.inputs(m, base)
@@ -169,7 +169,7 @@ def test_a_function_in_memory_is_the_emitted_one() -> None:
 
 @pytest.mark.parametrize("effect", ["presliding", "backlash"])
 def test_without_a_compiler_the_states_are_the_same(effect: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    m, parameters = motion("ariane4"), np.ones(len(prober("ariane4").base.base))
-    compiled = prober("ariane4").contribution(effect, 2, m, VALUES[effect], parameters)
+    m, parameters = motion("ariane4"), np.ones(len(evaluator("ariane4").base.base))
+    compiled = evaluator("ariane4").contribution(effect, 2, m, VALUES[effect], parameters)
     monkeypatch.setattr(series, "compiler", lambda: None)
-    agree(Prober(ARMS["ariane4"]).contribution(effect, 2, m, VALUES[effect], parameters), compiled, 1e-12)
+    agree(Evaluator(ARMS["ariane4"]).contribution(effect, 2, m, VALUES[effect], parameters), compiled, 1e-12)

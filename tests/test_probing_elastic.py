@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from modelgen.description import Arm, load
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.evaluation.inertia_floor import carried
 
 UPRIGHT = """
@@ -44,7 +44,7 @@ def arm(text: str, tmp_path: Path) -> Arm:
     return load(file)["arm"]
 
 
-def parameters(p: Prober, **values: float) -> np.ndarray:
+def parameters(p: Evaluator, **values: float) -> np.ndarray:
     """Base parameters by name, the others zero."""
     return np.array([values.get(b.name, 0.0) for b in p.base.base])
 
@@ -58,7 +58,7 @@ def test_it_swings_with_the_motion_alone(natural: float, tmp_path: Path) -> None
     m = Motion(t, q, size * w * np.cos(w * t + 0.7)[:, None], -(w**2) * q)
     stiffness = INERTIA * (2 * math.pi * natural) ** 2
     damping = 0.02 * 2 * math.sqrt(stiffness * INERTIA)
-    p = Prober(found_at)
+    p = Evaluator(found_at)
     base = parameters(p, ZZ1R=INERTIA)
     rigid = p.inputs(m, base)
     elastic = p.contribution("joint_flexibility", 1, m, {"stiffness": stiffness, "damping": damping}, base)
@@ -79,7 +79,7 @@ def length(q: float) -> float:
 @pytest.mark.parametrize("stiffness", [200.0, 2000.0])
 def test_a_lever_hangs_on_its_actuator(q: float, stiffness: float, tmp_path: Path) -> None:
     """The actuator is the spring; the lever works where the link hangs, which has the least energy."""
-    p = Prober(arm(LEVERED, tmp_path))
+    p = Evaluator(arm(LEVERED, tmp_path))
     middle = math.acos((L1**2 + L2**2 - ((SHORT + LONG) / 2) ** 2) / (2 * L1 * L2)) - 1.4
     ratio = (length(middle + 1e-6) - length(middle - 1e-6)) / 2e-6
     spring = stiffness / ratio**2  # N/m
@@ -103,7 +103,7 @@ def test_links_lighter_than_nothing_have_a_part_of_what_is_moved(share: float, t
     a twentieth of the whole, which is known all the same, its swings can be simulated. Others stay.
     """
     found_at = arm(LEVERED, tmp_path)
-    p = Prober(found_at)
+    p = Evaluator(found_at)
     w, t = 2 * math.pi * 0.4, np.arange(2000) / 500
     q = 0.5 * np.sin(w * t)[:, None]
     m = Motion(t, q, 0.5 * w * np.cos(w * t)[:, None], -(w**2) * q)

@@ -11,7 +11,7 @@ from witness.rigid_bodies import RigidBodies
 
 from modelgen.description import Arm
 from modelgen.effects import described
-from modelgen.evaluation import Prober, with_effect
+from modelgen.evaluation import Evaluator, with_effect
 from modelgen.functions.nominal import grouped, nominal_links
 
 TILT = {"x": 0.03, "y": -0.05}
@@ -32,8 +32,8 @@ def test_a_tilt_weighs_all_of_the_links(name: str) -> None:
     arm, model = ARMS[name], shipped(name).model
     known = nominal_links(model)
     base = np.array(list(grouped(model, [known.get(p.name, 0.0) for p in model.standard]).values()))
-    m, prober = motion(name), Prober(arm)
-    found = prober.contribution("base_tilt", None, m, TILT, base) * shipped(name)("drive_gain", m.q)
+    m, evaluator = motion(name), Evaluator(arm)
+    found = evaluator.contribution("base_tilt", None, m, TILT, base) * shipped(name)("drive_gain", m.q)
     leaning = described(with_effect(arm, "base_tilt", None, TILT))
     made = [RigidBodies(a, bodies(a)) for a in (leaning, arm)]
     still = np.zeros(m.q.shape[1])
@@ -44,9 +44,9 @@ def test_a_tilt_weighs_all_of_the_links(name: str) -> None:
 def test_without_nominal_links_it_weighs_what_the_records_tell() -> None:
     arm = replace(ARMS["ur10e"], links=(None, *ARMS["ur10e"].links[1:]))
     m = motion("ur10e")
-    base = np.ones(len(Prober(arm).base.base))
-    known = Prober(ARMS["ur10e"]).contribution("base_tilt", None, m, TILT, base)
-    told = Prober(arm).contribution("base_tilt", None, m, TILT, base)
+    base = np.ones(len(Evaluator(arm).base.base))
+    known = Evaluator(ARMS["ur10e"]).contribution("base_tilt", None, m, TILT, base)
+    told = Evaluator(arm).contribution("base_tilt", None, m, TILT, base)
     assert np.isfinite(told).all()
     # the first link hangs on the first joint alone, and all that others carry weighs there as well
     assert np.abs((known - told)[:, 0]).max() > 1e-3 * np.abs(known).max()

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.diagnosis.adequacy.distinguishable import aliases, indistinct
+from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
-from modelgen.diagnosis.adequacy.smooth_functions import shapes
-from modelgen.diagnosis.adequacy.stand_ins import Likeness, outdone
+from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
+from modelgen.diagnosis.adequacy.stand_ins import Likeness, without_stand_ins
 from modelgen.diagnosis.adequacy.verdict import verdict_of
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, Candidate, Place, at_motor, candidates
 from modelgen.diagnosis.candidates.requested import asked
@@ -19,9 +19,9 @@ from modelgen.diagnosis.equations.position_errors import feigned, harmless
 from modelgen.diagnosis.evidence.instruments import Endogeneity, endogeneity
 from modelgen.diagnosis.evidence.system import mean_squares
 from modelgen.diagnosis.selection.cause import Selection
-from modelgen.diagnosis.selection.stepwise import select
+from modelgen.diagnosis.selection.stepwise import forward_selection
 from modelgen.diagnosis.thresholds import PRACTICAL
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.jobs import HERE, Where
 from modelgen.numeric import Array
@@ -32,7 +32,7 @@ COUNTED = 1.25
 
 
 @dataclass(frozen=True)
-class Answer:
+class Decision:
     """made: the equations that were asked. equal: aliases of every cause. share: percent of the RMSE by
     joint (n,) that errors of the positions could feign in what is left.
     """
@@ -48,14 +48,14 @@ class Answer:
     noisy: Endogeneity | None
 
 
-def answered(
+def decide(
     made: Equations,
     model: Model,
-    prober: Prober,
+    evaluator: Evaluator,
     effects: Sequence[Place],
     progress: Progress | None,
     where: Where = HERE,
-) -> Answer:
+) -> Decision:
     """What these equations say. effects: to be asked for alone; all of the catalogue where there are none.
 
     Raises InputError where none of the effects can be asked for.
@@ -68,18 +68,18 @@ def answered(
 
     pool: Sequence[Candidate] = [
         c
-        for c in candidates(prober, rows)
+        for c in candidates(evaluator, rows)
         if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
-    pool = asked(pool, effects, rows, prober, baseline.base(made.theta))
-    selection = select(
-        rows, prober, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed, where=where
+    pool = asked(pool, effects, rows, evaluator, baseline.base(made.theta))
+    selection = forward_selection(
+        rows, evaluator, pool, made.periods, progress, blur=blurs, narrowed=made.narrowed, where=where
     )
-    tried = [] if free else list(shapes(rows, prober, base(selection)))
-    selection, beside, likeness = outdone(selection, rows, tried)
+    tried = [] if free else list(smooth_functions(rows, evaluator, base(selection)))
+    selection, beside, likeness = without_stand_ins(selection, rows, tried)
     named = [c.trial.candidate for c in selection.causes]
-    equal = aliases(named, pool, prober, model, base(selection)) if named else []
-    selection, close = indistinct(selection, equal, made.narrowed)
+    equal = aliases(named, pool, evaluator, model, base(selection)) if named else []
+    selection, close = without_indistinguishable(selection, equal, made.narrowed)
     if close:
         equal, likeness = [], None
     fit, noisy = lack_of_fit(selection.system), endogeneity(selection.system)
@@ -91,4 +91,4 @@ def answered(
     verdict, reason = verdict_of(
         selection, beside, close, fit, share, tested, likeness, counted=counted, asked=bool(effects)
     )
-    return Answer(made, selection, equal, verdict, reason, fit, likeness, share, noisy)
+    return Decision(made, selection, equal, verdict, reason, fit, likeness, share, noisy)

@@ -20,25 +20,25 @@ from modelgen.diagnosis.candidates.candidate import (
     cold,
 )
 from modelgen.diagnosis.candidates.requested import check_one_arm
-from modelgen.diagnosis.decision import Progress, answered
+from modelgen.diagnosis.decision import Progress, decide
 from modelgen.diagnosis.equations.band import bands
 from modelgen.diagnosis.equations.checks import check_efforts
 from modelgen.diagnosis.equations.free_motion import released, settings_of_swings
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.experiment.experiment import next_experiment
 from modelgen.diagnosis.experiment.motions import stage
-from modelgen.diagnosis.extended.drive_inertia import told_apart
+from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.extended_model import extended, fitted, replay, residuals, unit_of_efforts
-from modelgen.diagnosis.extended.findings import Named, Positions
+from modelgen.diagnosis.extended.findings import NamedCause, Positions
 from modelgen.diagnosis.extended.test_errors import errors, motion_errors, shares
 from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, valued
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.selection.cause import Selection
-from modelgen.diagnosis.selection.refit_stiffness import stiffened
+from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness
 from modelgen.diagnosis.selection.stepwise import threshold
 from modelgen.diagnosis.thresholds import PRACTICAL, practical
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober, places
+from modelgen.evaluation import Evaluator, places
 from modelgen.functions import build_model
 from modelgen.jobs import HERE, Where, one_thread
 
@@ -114,26 +114,26 @@ def diagnose(
     lengths = [None if free and period is None else period_of(record, period) for record in found[:-1]]
     if period is not None and all(p is None for p in lengths):
         raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
-    model, prober = build_model(arm), Prober(arm)
-    for made in bands(model, prober, found, lengths, settings, narrower=cutoff is None and not free):
+    model, evaluator = build_model(arm), Evaluator(arm)
+    for made in bands(model, evaluator, found, lengths, settings, narrower=cutoff is None and not free):
         check_efforts(arm, model, made.rows)
-        check_one_arm(arm, model, made.rows, prober, made.rows[0].baseline.base(made.theta))
-        answer = answered(made, model, prober, effects, progress, where)
+        check_one_arm(arm, model, made.rows, evaluator, made.rows[0].baseline.base(made.theta))
+        answer = decide(made, model, evaluator, effects, progress, where)
         if answer.verdict != "cannot_tell":
             break
     made, verdict, chosen, rows = answer.made, answer.verdict, answer.made.chosen, answer.made.rows
     train, test = made.prepared[:-1], made.prepared[-1]
     baseline = rows[0].baseline
     base = baseline.base(answer.selection.system.theta[: rows[0].columns.shape[2]])
-    apart, selection, prober = told_apart(arm, model, answer.selection, base, rows, prober)
-    selection = valued(stiffened(selection, rows, prober))
-    named = _named(selection, answer.equal, prober)
+    apart, selection, evaluator = split_drive_inertia(arm, model, answer.selection, base, rows, evaluator)
+    selection = valued(refit_stiffness(selection, rows, evaluator))
+    named = _named(selection, answer.equal, evaluator)
     before = fitted(arm, model, rows)
-    after = extended(prober.arm, before, selection, train)
-    last = rows_of(prober, model, test, before.theta, baseline)
-    pair = residuals(last, before, selection, after, prober, base)
+    after = extended(evaluator.arm, before, selection, train)
+    last = rows_of(evaluator, model, test, before.theta, baseline)
+    pair = residuals(last, before, selection, after, evaluator, base)
     if selection.causes and not free:
-        gained = shares(selection, last, prober, base)
+        gained = shares(selection, last, evaluator, base)
         named = tuple(replace(cause, share=share) for cause, share in zip(named, gained, strict=True))
     described = replay(before, last)
     played = described, replay(after, last) if selection.causes else described
@@ -176,17 +176,19 @@ def diagnose(
         known(result)
     if not experiment or verdict != "named":
         return result
-    plan = None if free else stage(arm, model, prober, train, base)
+    plan = None if free else stage(arm, model, evaluator, train, base)
     shortest = min((p for p in lengths if p is not None), default=None)
     causes = selection.causes
     following = next_experiment(named, causes, plan, selection.system, shortest, progress, where)
     return replace(result, next_experiment=following)
 
 
-def _named(selection: Selection, equal: Sequence[Sequence[Candidate]], prober: Prober) -> tuple[Named, ...]:
+def _named(
+    selection: Selection, equal: Sequence[Sequence[Candidate]], evaluator: Evaluator
+) -> tuple[NamedCause, ...]:
     if not selection.causes:
         return ()
-    estimates = cause_estimates(selection, prober)
+    estimates = cause_estimates(selection, evaluator)
     result = []
     for cause, same, values in zip(selection.causes, equal, estimates, strict=True):
         c = cause.trial.candidate
@@ -195,7 +197,7 @@ def _named(selection: Selection, equal: Sequence[Sequence[Candidate]], prober: P
             (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in alias
         )
         gains = cause.cross_gain, cause.expected_gain
-        result.append(Named(c.effect, c.joint, values, cause.delta_bic, *gains, alias, rivals))
+        result.append(NamedCause(c.effect, c.joint, values, cause.delta_bic, *gains, alias, rivals))
     return tuple(result)
 
 

@@ -14,8 +14,8 @@ from modelgen.diagnosis.adequacy.stand_ins import Likeness
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.experiment.experiment import Experiment
 from modelgen.diagnosis.experiment.experiment import to_json as experiment_json
-from modelgen.diagnosis.extended.extended_model import Fitted
-from modelgen.diagnosis.extended.findings import Errors, Estimate, Named, Positions
+from modelgen.diagnosis.extended.extended_model import FittedModel
+from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.selection.history import Ranked
 from modelgen.numeric import Array
@@ -35,14 +35,14 @@ class Diagnosis:
     arm: Arm
     verdict: str
     reason: str
-    causes: tuple[Named, ...]
+    causes: tuple[NamedCause, ...]
     not_identifiable: tuple[tuple[str, str], ...]
     lack_of_fit: LackOfFit | None
     likeness: Likeness | None
     errors: Errors
     simulation: tuple[Windows | None, Windows | None]
-    before: Fitted
-    after: Fitted
+    before: FittedModel
+    after: FittedModel
     parameters: Mapping[str, Estimate]
     next_experiment: Experiment | None
     test: Rows
@@ -142,7 +142,7 @@ def _positions(p: Positions) -> dict[str, Any]:
     }
 
 
-def _cause(c: Named) -> dict[str, Any]:
+def _cause(c: NamedCause) -> dict[str, Any]:
     return {
         "effect": c.effect,
         "joint": c.joint,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from modelgen.effects.placement import places, with_effect
-from modelgen.evaluation.evaluator import Prober
+from modelgen.evaluation.evaluator import Evaluator
 from modelgen.evaluation.motion import Motion
 
-__all__ = ["Motion", "Prober", "places", "with_effect"]
+__all__ = ["Evaluator", "Motion", "places", "with_effect"]

@@ -40,7 +40,7 @@ REMEMBERED = 40  # results that do not depend on an effect's own values
 _FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay", "rise")
 
 
-class Prober:
+class Evaluator:
     """One arm and its effects to be. `arm`: as described, with the effects that it has already.
 
     Base parameters are those of `modelgen.functions.build_model` for the same arm. Effects are named as in
@@ -84,8 +84,8 @@ class Prober:
         )
 
     @cached_property
-    def _rigid(self) -> Prober:
-        return Prober(rigid(self.arm))
+    def _rigid(self) -> Evaluator:
+        return Evaluator(rigid(self.arm))
 
     def regressor(self, model: Model, motion: Motion, parameters: Array) -> Array:
         """The regressor of the arm's own model (N, n, p); `parameters` where its columns depend on them."""

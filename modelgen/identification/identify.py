@@ -11,7 +11,7 @@ from modelgen.dataset import Prepared
 from modelgen.dataset.processing.periods import period_of
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
@@ -70,22 +70,22 @@ def identify(
     options = options or Options()
     _refuse(options, method, physical=physical, payloads=bool(payloads))
     known = replace(options, gains="known") if options.gains == "estimated" else options
-    model, prober = build_model(arm, known), Prober(reduced(arm, known))
+    model, evaluator = build_model(arm, known), Evaluator(reduced(arm, known))
     carried = payloads or {}
     added = [payload_base(model, carried.get(k, ())) for k in range(len(train) + len(test))]
     plain = "wls" if method == "iv" else method
     gains: tuple[Gain, ...] = ()
     if options.gains == "estimated":
-        solution, gains = _with_gains(train, prober, model, added, plain, essential_only=essential_only)
+        solution, gains = _with_gains(train, evaluator, model, added, plain, essential_only=essential_only)
         arm = with_gains(arm, gains)
-        model, prober = build_model(arm, known), Prober(reduced(arm, known))
-        found = concluded(arm, model, prober, method, solution, test, physical=physical, added=added)
+        model, evaluator = build_model(arm, known), Evaluator(reduced(arm, known))
+        found = concluded(arm, model, evaluator, method, solution, test, physical=physical, added=added)
         return replace(found, gains=gains)
-    regression, solution = _fitted(train, prober, model, added, plain)
+    regression, solution = _fitted(train, evaluator, model, added, plain)
     if essential_only:
         solution = only(regression, solution, plain)
     both = _by_instruments(
-        train, model, prober, regression, solution, instruments or Instruments(), wanted=method == "iv"
+        train, model, evaluator, regression, solution, instruments or Instruments(), wanted=method == "iv"
     )
     if method == "iv":
         if both is None:
@@ -94,7 +94,7 @@ def identify(
                 "record (see modelgen excite), or --instrument simulated"
             )
         solution = both.solution
-    found = concluded(arm, model, prober, method, solution, test, physical=physical, added=added)
+    found = concluded(arm, model, evaluator, method, solution, test, physical=physical, added=added)
     return replace(found, comparison=both)
 
 
@@ -115,22 +115,22 @@ def _columns_by_load(model: Model) -> bool:
 
 
 def _fitted(
-    train: Sequence[Prepared], prober: Prober, model: Model, added: Sequence[Array], method: str
+    train: Sequence[Prepared], evaluator: Evaluator, model: Model, added: Sequence[Array], method: str
 ) -> tuple[Regression, Solution]:
     """Rows and least squares. Columns that depend on the load are evaluated anew with the load found."""
     theta = np.zeros(len(model.grouping.base))
-    regression = regression_of(prober, model, train, theta, added)
+    regression = regression_of(evaluator, model, train, theta, added)
     enough(model.arm, regression)
     solution = regression.solve(method)
     if _columns_by_load(model):
-        regression = regression_of(prober, model, train, solution.theta, added)
+        regression = regression_of(evaluator, model, train, solution.theta, added)
         solution = regression.solve(method)
     return regression, solution
 
 
 def _with_gains(
     train: Sequence[Prepared],
-    prober: Prober,
+    evaluator: Evaluator,
     model: Model,
     added: Sequence[Array],
     method: str,
@@ -140,7 +140,7 @@ def _with_gains(
     """Parameters and torque constants; what a payload takes stays in the effort."""
     theta = np.zeros(len(model.grouping.base))
     for _ in range(2 if _columns_by_load(model) else 1):
-        regression = regression_of(prober, model, train, theta)
+        regression = regression_of(evaluator, model, train, theta)
         enough(model.arm, regression)
         carried = [c @ more for c, more in zip(regression.columns, added, strict=False)]
         solution, gains = estimated(model.arm, regression, carried, method)
@@ -168,7 +168,7 @@ def enough(arm: Arm, regression: Regression) -> None:
 def _by_instruments(
     train: Sequence[Prepared],
     model: Model,
-    prober: Prober,
+    evaluator: Evaluator,
     regression: Regression,
     least: Solution,
     given: Instruments,
@@ -196,7 +196,7 @@ def _by_instruments(
     theta, found = least.theta, None
     for _ in range(TURNS):
         motions = [given.simulated(p, dict(zip(names, theta.tolist(), strict=True))) for p in train]
-        made = regression_of(prober, model, motions, theta)
+        made = regression_of(evaluator, model, motions, theta)
         instruments = [Instrument(c, m) for c, m in zip(made.columns, made.moving, strict=True)]
         found = compared(regression, least, instruments)
         if found is None:
@@ -219,7 +219,7 @@ def _rows_in_period(p: Prepared) -> int | None:
 def concluded(
     arm: Arm,
     model: Model,
-    prober: Prober,
+    evaluator: Evaluator,
     method: str,
     solution: Solution,
     test: Sequence[Prepared],
@@ -246,7 +246,7 @@ def concluded(
         for k, b in enumerate(model.grouping.base)
     )
     carried = added[len(added) - len(test) :] if added else None
-    validation = validate(prober, model, test, theta, carried) if test else None
+    validation = validate(evaluator, model, test, theta, carried) if test else None
     return Identification(arm, model, method, solution, estimates, validation, found)
 
 

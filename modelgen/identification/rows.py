@@ -9,7 +9,7 @@ import numpy as np
 from modelgen.backends.compiled import RegressorColumns
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.native import compiler
 from modelgen.numeric import Array
@@ -25,8 +25,8 @@ class Rows:
     by it and pass the filter on the way; else NumPy computes them for all samples, to be filtered then.
     """
 
-    def __init__(self, model: Model, prober: Prober) -> None:
-        self.model, self.prober = model, prober
+    def __init__(self, model: Model, evaluator: Evaluator) -> None:
+        self.model, self.evaluator = model, evaluator
         self.n, self.p = len(model.arm.coordinates), len(model.grouping.base)
         self.joint = np.array(model.packed.rows, dtype=np.intp)
         self.parameter = np.array(model.packed.columns, dtype=np.intp)
@@ -48,7 +48,7 @@ class Rows:
         if p.input is None:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
         motion = Motion(p.time, p.q, p.dq, p.ddq)
-        effort = np.asarray(p.parallel(self.prober.ideal(self.model, motion, p.input)))
+        effort = np.asarray(p.parallel(self.evaluator.ideal(self.model, motion, p.input)))
         if self._compiled is not None and self._compiled.fit(q=p.q):
             try:
                 inputs, d = (p.q, p.dq, p.ddq), p.decimation
@@ -57,7 +57,7 @@ class Rows:
                 return effort, self._compiled.filtered(inputs, **vars(d))
             except RuntimeError:  # a compiler that knows no vectors, say
                 self._compiled = None
-        full = np.asarray(self.prober.regressor(self.model, motion, theta))
+        full = np.asarray(self.evaluator.regressor(self.model, motion, theta))
         return effort, p.parallel(full[:, self.joint, self.parameter])
 
     def whole(self, columns: Array) -> Array:

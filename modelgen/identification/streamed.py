@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared, Stream, prepare
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.identify import concluded
@@ -49,8 +49,8 @@ def identify_streamed(
     if method not in ("ols", "wls"):
         raise InputError(f"--method {method}: a streamed log knows ols and wls only; give a part, FILE@t0:t1")
     options = options or Options()
-    model, prober = build_model(arm, options), Prober(reduced(arm, options))
-    rows = Rows(model, prober)
+    model, evaluator = build_model(arm, options), Evaluator(reduced(arm, options))
+    rows = Rows(model, evaluator)
     (function,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in function.arguments}:
         raise InputError(f"{arm.name}: an effect with states or loads needs the whole log; give a part of it")
@@ -76,7 +76,7 @@ def identify_streamed(
     covariance = np.zeros((p, p))
     covariance[np.ix_(known, known)] = _sandwich(blocks, triangles, theta, known, weights)
     solution = Solution(theta, covariance, known, condition, sigma, precision)
-    return concluded(arm, model, prober, method, solution, test, physical=physical)
+    return concluded(arm, model, evaluator, method, solution, test, physical=physical)
 
 
 class _Blocks:

@@ -8,7 +8,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.objects import Validation
 from modelgen.identification.rows import Rows
@@ -17,7 +17,7 @@ from modelgen.regression.least_squares import Regression
 
 
 def validate(
-    prober: Prober,
+    evaluator: Evaluator,
     model: Model,
     records: Sequence[Prepared],
     theta: Array,
@@ -27,7 +27,7 @@ def validate(
 
     Raises InputError for a free motion.
     """
-    regression = regression_of(prober, model, records, theta, added)
+    regression = regression_of(evaluator, model, records, theta, added)
     gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
     more = [np.zeros_like(theta)] * len(records) if added is None else added
     whole = [y + c @ m for y, c, m in zip(regression.effort, regression.columns, more, strict=True)]
@@ -50,7 +50,7 @@ def validate(
 
 
 def regression_of(
-    prober: Prober,
+    evaluator: Evaluator,
     model: Model,
     records: Sequence[Prepared],
     theta: Array,
@@ -61,7 +61,7 @@ def regression_of(
     added: base parameters (p,) that each record has in addition, of a payload: what they take is taken off
     the effort.
     """
-    made = Rows(model, prober)
+    made = Rows(model, evaluator)
     effort, columns = [], []
     for k, p in enumerate(records):
         more = np.zeros_like(theta) if added is None else added[k]

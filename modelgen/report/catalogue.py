@@ -6,7 +6,7 @@ import numpy as np
 
 from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
 from modelgen.effects import CATALOGUE, Definition, Parameter
-from modelgen.evaluation import Motion, Prober, places
+from modelgen.evaluation import Evaluator, Motion, places
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.functions import build_model
 from modelgen.functions.nominal import nominal_base
@@ -42,11 +42,11 @@ def parameters(arm: Arm) -> np.ndarray:
     return np.array(list(nominal_base(build_model(arm)).values()))
 
 
-def picture(name: str, prober: Prober, along: Motion, base: np.ndarray) -> str:
+def picture(name: str, evaluator: Evaluator, along: Motion, base: np.ndarray) -> str:
     """SVG of what the effect adds to the inputs, over time and over what shows it best."""
     joint = places(ARM, name)[-1]
-    added = prober.contribution(name, joint, along, CATALOGUE[name].shown, base)
-    rows = range(prober.n) if joint is None else [joint - 1]
+    added = evaluator.contribution(name, joint, along, CATALOGUE[name].shown, base)
+    rows = range(evaluator.n) if joint is None else [joint - 1]
     made, axes = figure(1, 2, (7.2, 2.2))
     over = CATALOGUE[name].seen_over
     for n in rows:
@@ -70,8 +70,8 @@ def picture(name: str, prober: Prober, along: Motion, base: np.ndarray) -> str:
 
 def pages() -> dict[str, str]:
     """effects.md and the pictures that it shows, by path."""
-    prober, along, base = Prober(ARM), motion(), parameters(ARM)
-    files = {f"effects/{name}.svg": picture(name, prober, along, base) for name in CATALOGUE}
+    evaluator, along, base = Evaluator(ARM), motion(), parameters(ARM)
+    files = {f"effects/{name}.svg": picture(name, evaluator, along, base) for name in CATALOGUE}
     text = [_HEAD, *(_section(effect) for effect in CATALOGUE.values())]
     return {"effects.md": "\n".join(text), **files}
 

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from modelgen.diagnosis.adequacy.lack_of_fit import place
 from modelgen.diagnosis.candidates.candidate import COMPLIANT
-from modelgen.diagnosis.extended.findings import Named
+from modelgen.diagnosis.extended.findings import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
 from modelgen.effects import CATALOGUE
@@ -218,7 +218,7 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
     }
 
 
-def _share(c: Named) -> str:
+def _share(c: NamedCause) -> str:
     """What the cause does to the error on the test record; empty where that is not known."""
     s = c.share
     if np.isnan(s.gain):

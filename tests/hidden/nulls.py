@@ -23,14 +23,14 @@ from modelgen.dataset import choose, prepare
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.adequacy.lack_of_fit import ratios
-from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, shapes, worth
+from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, log_evidence, smooth_functions
 from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.position_errors import with_errors
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.pipeline import records, settings_for
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
 OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
@@ -59,13 +59,13 @@ def of_null(arm: str, seed: int, train: int) -> dict[str, float]:
         found = records(described, paths[:-1], paths[-1:], None)[:-1]
     lengths = [period_of(record, None) for record in found]
     chosen = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
-    model, prober = build_model(described), Prober(described)
-    rows = rows_twice(prober, model, [prepare(r, chosen) for r in found], estimated(model))
+    model, evaluator = build_model(described), Evaluator(described)
+    rows = rows_twice(evaluator, model, [prepare(r, chosen) for r in found], estimated(model))
     periods = [None if p is None else p // chosen.factor for p in lengths]
     theta = weighted_fit(rows, [r.columns for r in rows])
-    rows, _ = with_errors(rows, periods, prober, model, theta)
+    rows, _ = with_errors(rows, periods, evaluator, model, theta)
     system = System(rows, [r.columns for r in rows], periods)
-    evidence = [worth(s, system).evidence for s in shapes(rows, prober, system.theta)]
+    evidence = [log_evidence(s, system).evidence for s in smooth_functions(rows, evaluator, system.theta)]
     return {**ratios(system), SHAPE: max(evidence)}
 
 

@@ -15,7 +15,7 @@ from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.pipeline import records, settings_for
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
 
@@ -32,8 +32,8 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
     found = records(arm, paths[:-1], paths[-1:], None)
     lengths = [period_of(record, None) for record in found[:-1]]
     settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff)), lengths)
-    model, prober = build_model(arm), Prober(arm)
-    *train, test = rows_twice(prober, model, [prepare(r, settings) for r in found], estimated(model))
+    model, evaluator = build_model(arm), Evaluator(arm)
+    *train, test = rows_twice(evaluator, model, [prepare(r, settings) for r in found], estimated(model))
     theta = weighted_fit(train, [r.columns for r in train])
     left = (test.effort - test.columns @ theta) * test.gain
     n = left.shape[1]

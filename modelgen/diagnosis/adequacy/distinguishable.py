@@ -17,7 +17,7 @@ from modelgen.base_parameters.numeric_rank import random_states
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import LATER, PERIODIC, STEPS, Candidate, Values
 from modelgen.diagnosis.candidates.columns import of_part, sensitivities
-from modelgen.diagnosis.candidates.trial import Trial, beside
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
 from modelgen.diagnosis.equations.least_squares import orthonormal
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
@@ -27,7 +27,7 @@ from modelgen.diagnosis.thresholds import RATHER
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.model.equations import Equations
 from modelgen.numeric import Array
@@ -45,17 +45,17 @@ def synthetic(arm: Arm, model: Model, samples: int = 400) -> Motion:
 
 
 def aliases(
-    causes: Sequence[Candidate], pool: Sequence[Candidate], prober: Prober, model: Model, base: Array
+    causes: Sequence[Candidate], pool: Sequence[Candidate], evaluator: Evaluator, model: Model, base: Array
 ) -> list[list[Candidate]]:
     """For every cause the candidates whose columns span the same, whatever their values or with some of those
     that a search begins with: drag of a single joint is friction with the square of its speed.
     """
-    motion = synthetic(prober.arm, model)
-    q = orthonormal(prober.regressor(model, motion, base).reshape(-1, len(base)))
-    spans = {id(c): [_span(c, values, prober, motion, base, q) for values in _values(c)] for c in pool}
+    motion = synthetic(evaluator.arm, model)
+    q = orthonormal(evaluator.regressor(model, motion, base).reshape(-1, len(base)))
+    spans = {id(c): [_span(c, values, evaluator, motion, base, q) for values in _values(c)] for c in pool}
     result = []
     for cause in causes:
-        own = None if cause.searched else _span(cause, {}, prober, motion, base, q)
+        own = None if cause.searched else _span(cause, {}, evaluator, motion, base, q)
         equal = []
         for other in pool:
             if other.place == cause.place:
@@ -80,16 +80,16 @@ def _values(c: Candidate) -> Iterator[Values]:
 
 
 def _span(
-    c: Candidate, values: Values, prober: Prober, motion: Motion, base: Array, q: Array
+    c: Candidate, values: Values, evaluator: Evaluator, motion: Motion, base: Array, q: Array
 ) -> Array | None:
     """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
     if CATALOGUE[c.effect].held(c.fixed) or c.effect in (LATER, PERIODIC):  # states follow one another
         return None
     try:
         if c.effect in STEPS:
-            table = sensitivities(c.effect, c.joint, motion, prober, base, c.names, {})
+            table = sensitivities(c.effect, c.joint, motion, evaluator, base, c.names, {})
         else:
-            (table,) = of_part(c, [prober.columns(c.effect, c.joint, motion, {**c.fixed, **values}, base)])
+            (table,) = of_part(c, [evaluator.columns(c.effect, c.joint, motion, {**c.fixed, **values}, base)])
     except (InputError, ValueError):
         return None
     flat = table.reshape(-1, table.shape[2])
@@ -102,7 +102,7 @@ def _span(
     return orthonormal(own[:, left]) if left.any() else None
 
 
-def indistinct(
+def without_indistinguishable(
     selection: Selection, equal: Sequence[Sequence[Candidate]], narrowed: float
 ) -> tuple[Selection, list[Cause]]:
     """The selection, with no cause at all where rivals come close to some, and these with such rivals alone.
@@ -123,7 +123,7 @@ def indistinct(
     return (selection.without(selection.causes, COARSE), found) if found else (selection, [])
 
 
-def _the_same(rival: Trial, cause: Cause, selection: Selection) -> bool:
+def _the_same(rival: FittedCandidate, cause: Cause, selection: Selection) -> bool:
     """Whether the cause adds nothing to the rival in its place, or the two are an elastic joint and a gap,
     which are told apart by what they carry to other records.
     """

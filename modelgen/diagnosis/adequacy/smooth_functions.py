@@ -17,9 +17,9 @@ from scipy.spatial.distance import cdist
 
 from modelgen.dataset import drives_of
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.likelihood import Stack
+from modelgen.diagnosis.evidence.likelihood import StackedEquations
 from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 SHAPE = "shape"  # among the nulls
@@ -32,7 +32,7 @@ SIZES = np.logspace(-3.0, 5.0, 17)  # of a function against the noise, over whic
 
 
 @dataclass(frozen=True)
-class Shape:
+class SmoothFunction:
     """text: what it is; columns: by joint (from 0) that it acts on, (M, k) of every record."""
 
     text: str
@@ -50,11 +50,11 @@ class Worth:
     percent: float
 
 
-def shapes(rows: Sequence[Rows], prober: Prober, base: Array) -> Iterator[Shape]:
+def smooth_functions(rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> Iterator[SmoothFunction]:
     """Of driven arms. base: base parameters (p,), from which the inputs follow."""
     n = rows[0].effort.shape[1]
-    inputs = [prober.inputs(r.motion, base) for r in rows]
-    drives = drives_of(prober.arm)
+    inputs = [evaluator.inputs(r.motion, base) for r in rows]
+    drives = drives_of(evaluator.arm)
     power = []
     for r, u in zip(rows, inputs, strict=True):
         gains = np.column_stack([drive.gain(r.prepared.q[:, j]) for j, drive in enumerate(drives)])
@@ -62,18 +62,18 @@ def shapes(rows: Sequence[Rows], prober: Prober, base: Array) -> Iterator[Shape]
     for j in range(n):
         alone = functions([r.prepared.q[:, [j]] for r in rows], SHORT)
         spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]
-        yield Shape(f"a force at joint {j + 1} that depends on its position", {j: spots})
+        yield SmoothFunction(f"a force at joint {j + 1} that depends on its position", {j: spots})
     for bend in BENDS:
         free = functions([r.prepared.q for r in rows], bend)
         for j in range(n):
             where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]
-            yield Shape(f"a force at joint {j + 1} that depends on where the arm is", {j: where})
+            yield SmoothFunction(f"a force at joint {j + 1} that depends on where the arm is", {j: where})
         taken = functions(power, bend)
         columns = {
             j: [r.equation(j, u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
             for j in range(n)
         }
-        yield Shape("a gain of all drives that depends on the power that they take", columns)
+        yield SmoothFunction("a gain of all drives that depends on the power that they take", columns)
 
 
 def functions(values: Sequence[Array], bend: float) -> list[Array]:
@@ -103,7 +103,7 @@ def _far_apart(values: Array) -> Array:
     return values[chosen]
 
 
-def worth(shape: Shape, system: System) -> Worth:
+def log_evidence(shape: SmoothFunction, system: System) -> Worth:
     """What the shape explains beside the system's columns: its marginal likelihood, of the best of SIZES.
 
     In the fair equations the variance of each joint's noise is at its best and its colour known: a function
@@ -124,7 +124,9 @@ def worth(shape: Shape, system: System) -> Worth:
     return Worth(evidence, slow, 100.0 * (1.0 - float(np.sqrt(share))))
 
 
-def _likelihood(stack: Stack, columns: Sequence[Array], acted: NDArray[np.bool_]) -> tuple[float, Array]:
+def _likelihood(
+    stack: StackedEquations, columns: Sequence[Array], acted: NDArray[np.bool_]
+) -> tuple[float, Array]:
     """Of the weights (k,) of the columns, each of variance 1 times the best size, and the weights there.
 
     Over that without them; the price of the size is that of one parameter. acted: joints (n,) with columns.

@@ -10,7 +10,7 @@ import numpy as np
 
 from modelgen.diagnosis.adequacy.lack_of_fit import Test, in_parts, lack_of_fit, repeating
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, Shape, Worth, worth
+from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, SmoothFunction, Worth, log_evidence
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System, mean_squares
 from modelgen.diagnosis.selection.cause import Cause, Selection, together
@@ -42,12 +42,12 @@ MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explaine
 class Likeness:
     """What the causes leave is most like `shape`, with this evidence (delta BIC)."""
 
-    shape: Shape
+    shape: SmoothFunction
     evidence: float
 
 
-def outdone(
-    selection: Selection, rows: Sequence[Rows], found: Sequence[Shape]
+def without_stand_ins(
+    selection: Selection, rows: Sequence[Rows], found: Sequence[SmoothFunction]
 ) -> tuple[Selection, list[Cause], Likeness | None]:
     """The selection without the causes that a shape outdoes, those causes, and what is left is most like.
 
@@ -62,7 +62,7 @@ def outdone(
     dropped: list[Cause] = []
     while True:
         system, causes = selection.system, selection.causes
-        beside = [(shape, worth(shape, system)) for shape in found]
+        beside = [(shape, log_evidence(shape, system)) for shape in found]
         doubted = doubtful(selection, rows)
         every = len(causes) > 1 and bool(found) and _outdone_together(causes, rows, system, found)
         lost = [
@@ -85,7 +85,7 @@ def _outdone(
     causes: Sequence[Cause],
     rows: Sequence[Rows],
     system: System,
-    beside: Sequence[tuple[Shape, Worth]],
+    beside: Sequence[tuple[SmoothFunction, Worth]],
     doubted: bool,
 ) -> bool:
     """Whether one of the shapes, with what they are worth beside all causes, takes the cause's place."""
@@ -99,9 +99,9 @@ def _outdone(
     most = max(w.evidence for _, w in able)
     if most > BESIDE and TWICE * own < most:
         return True
-    rough = max(cause.delta_bic, together([cause.trial], without, alike=True) - cause.trial.doubt)
+    rough = max(cause.delta_bic, together([cause.trial], without, alike=True) - cause.trial.prior_penalty)
     for shape, added in able:
-        instead = worth(shape, without)
+        instead = log_evidence(shape, without)
         more, slow = instead.evidence - own, instead.slow - rough
         seen = doubted or added.evidence > BESIDE or (added.evidence > least and more > CLEARLY)
         if more > 0.0 and seen and slow > -BEHIND:
@@ -112,7 +112,7 @@ def _outdone(
 
 
 def _outdone_together(
-    causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[Shape]
+    causes: Sequence[Cause], rows: Sequence[Rows], system: System, found: Sequence[SmoothFunction]
 ) -> bool:
     """Whether one shape explains more than several causes together, or than some of them."""
     bare = System(rows, with_causes(rows, []), system.periods, system)
@@ -122,7 +122,7 @@ def _outdone_together(
         for count in range(1, len(trials) + 1)
         for some in combinations(trials, count)
     )
-    alone = max(worth(shape, bare).evidence for shape in found)
+    alone = max(log_evidence(shape, bare).evidence for shape in found)
     return bool(np.isfinite(explained)) and alone > explained
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from modelgen.dataset import drives_of, parse
 from modelgen.diagnosis.equations.rows import COUPLING, Rows, turning
 from modelgen.effects import CATALOGUE, Parameter
-from modelgen.evaluation import Prober, places
+from modelgen.evaluation import Evaluator, places
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]  # effect and joint
@@ -122,7 +122,7 @@ class Candidate:
         return [self.joint - 1, *others]
 
 
-def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
+def candidates(evaluator: Evaluator, rows: Sequence[Rows]) -> list[Candidate]:
     """Everything of the catalogue that can stand somewhere on the arm and is not there yet."""
     found: list[Candidate] = []
     free = all(r.prepared.input is None for r in rows)
@@ -135,11 +135,11 @@ def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
             continue
         there = [
             joint
-            for joint in places(prober.arm, name)
+            for joint in places(evaluator.arm, name)
             if name not in COMPLIANT or at_motor(joint, rows) or at_links(joint, rows)
         ]
         for joint in there:
-            for fixed, part in (forms := _forms(name, joint, rows, prober)):
+            for fixed, part in (forms := _forms(name, joint, rows, evaluator)):
                 open_to = () if name in STEPS else (p for p in effect.nonlinear if p.grid)
                 searched = tuple(p for p in open_to if p.name not in fixed)
                 found.append(Candidate(name, joint, fixed, searched, part, len(forms), len(there)))
@@ -147,20 +147,20 @@ def candidates(prober: Prober, rows: Sequence[Rows]) -> list[Candidate]:
 
 
 def _forms(
-    name: str, joint: int | None, rows: Sequence[Rows], prober: Prober
+    name: str, joint: int | None, rows: Sequence[Rows], evaluator: Evaluator
 ) -> list[tuple[Values, tuple[str, ...]]]:
     """Fixed values and parts that the effect is tried with at a place."""
     parts = ((), *PARTS.get(name, ()))
-    if name == WEIGHING and carried(joint, prober):
+    if name == WEIGHING and carried(joint, evaluator):
         parts = PARTS[name]  # where its base is says also where its weight points
-    return list(product(_fixed(name, joint, rows, prober), parts))
+    return list(product(_fixed(name, joint, rows, evaluator), parts))
 
 
-def carried(joint: int | None, prober: Prober) -> bool:
+def carried(joint: int | None, evaluator: Evaluator) -> bool:
     """Whether other joints move the link before this one."""
     if joint is None:
         return False
-    arm = prober.arm
+    arm = evaluator.arm
     before = arm.joints[arm.coordinates[joint - 1]].antecedent
     while before is not None and before not in arm.coordinates:
         before = arm.joints[before].antecedent
@@ -191,16 +191,18 @@ def search_of(candidate: Candidate, rows: Sequence[Rows]) -> Mapping[str, tuple[
     return (LINK_SEARCHES if behind else SEARCHES)[candidate.effect]
 
 
-def gap_instead(candidate: Candidate, rows: Sequence[Rows], prober: Prober) -> Candidate | None:
+def gap_instead(candidate: Candidate, rows: Sequence[Rows], evaluator: Evaluator) -> Candidate | None:
     """Play for an elastic joint, behind a link's own position."""
     if candidate.effect != ELASTIC or not at_links(candidate.joint, rows):
         return None
-    (fixed,) = _fixed("backlash", candidate.joint, rows, prober)
+    (fixed,) = _fixed("backlash", candidate.joint, rows, evaluator)
     return Candidate("backlash", candidate.joint, fixed, places=candidate.places)
 
 
-def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> list[dict[str, float]]:
-    if name == WEIGHING and not carried(joint, prober):
+def _fixed(
+    name: str, joint: int | None, rows: Sequence[Rows], evaluator: Evaluator
+) -> list[dict[str, float]]:
+    if name == WEIGHING and not carried(joint, evaluator):
         return [{"base_angle": 0.0}]
     if name == "transmission_coupling":
         assert joint is not None
@@ -210,25 +212,25 @@ def _fixed(name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -
     if name == LOADED:
         return [{}, {"rise": RISE}]
     if name == POWER:
-        return [{"scale": grid_unit("speed", name, joint, rows, prober)}]
+        return [{"scale": grid_unit("speed", name, joint, rows, evaluator)}]
     if name == WARMING:
-        return [{"speed": grid_unit("speed", name, joint, rows, prober)}]
+        return [{"speed": grid_unit("speed", name, joint, rows, evaluator)}]
     if name == "backlash" and at_links(joint, rows):
         (hardest,), (relaxation,) = (SEARCHES[name][p] for p in ("stiffness", "relaxation"))
         return [
             {
-                "stiffness": hardest * grid_unit("stiffness", name, joint, rows, prober),
+                "stiffness": hardest * grid_unit("stiffness", name, joint, rows, evaluator),
                 "relaxation": relaxation,
             }
         ]
     if name == PERIODIC:
         assert joint is not None
-        unit = drives_of(prober.arm)[joint - 1].unit
+        unit = drives_of(evaluator.arm)[joint - 1].unit
         return [{"revolution": 2 * np.pi if unit in ("rad", "unit rad") else 1.0}]
     return [{}]
 
 
-def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], prober: Prober) -> float:
+def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], evaluator: Evaluator) -> float:
     """What a grid is in units of, over all records."""
     if kind == "1":
         return 1.0
@@ -244,7 +246,7 @@ def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], pro
         return span
     if kind == "speed":
         return float(np.quantile(np.abs(np.concatenate(speed)), 0.95))
-    drive = drives_of(prober.arm)[j]
+    drive = drives_of(evaluator.arm)[j]
     efforts = [
         np.abs(drive.gain(r.prepared.q[:, j]) * (0 if r.prepared.input is None else r.prepared.input[:, j]))
         for r in rows

@@ -13,7 +13,7 @@ import numpy as np
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, STEPS, Candidate, Values
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.errors import InputError
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.numeric import Array
 
 FORWARD = "torque_constant_saturation"  # not negative
@@ -25,7 +25,7 @@ def sensitivities(
     effect: str,
     joint: int | None,
     motion: Motion,
-    prober: Prober,
+    evaluator: Evaluator,
     base: Array,
     names: Sequence[str],
     around: Mapping[str, float],
@@ -39,13 +39,13 @@ def sensitivities(
     for name in names:
         step, value = STEPS[effect][name], around.get(name, 0.0)
         if abs(value) > step:
-            parts.append(prober.contribution(effect, joint, motion, {name: value}, base) / value)
+            parts.append(evaluator.contribution(effect, joint, motion, {name: value}, base) / value)
             continue
-        ahead = prober.contribution(effect, joint, motion, {name: step}, base)
+        ahead = evaluator.contribution(effect, joint, motion, {name: step}, base)
         if effect == FORWARD:
             parts.append(ahead / step)
         else:
-            behind = prober.contribution(effect, joint, motion, {name: -step}, base)
+            behind = evaluator.contribution(effect, joint, motion, {name: -step}, base)
             parts.append((ahead - behind) / (2 * step))
     together = np.stack(parts, axis=2)
     # what differences leave of an effect that does not show is no column
@@ -54,7 +54,7 @@ def sensitivities(
 
 
 def payload(
-    joint: int | None, motion: Motion, prober: Prober, base: Array, around: Mapping[str, float]
+    joint: int | None, motion: Motion, evaluator: Evaluator, base: Array, around: Mapping[str, float]
 ) -> Array:
     """Changes of the inputs (N, n, 4) with mass and first moments of what the last link carries.
 
@@ -65,7 +65,7 @@ def payload(
     place = {a: around.get(a, 0.0) if around.get("mass", 0.0) > 0 else 0.0 for a in "xyz"}
 
     def of(**moved: float) -> Array:
-        return prober.contribution("payload_change", joint, motion, {"mass": 1.0, **place, **moved}, base)
+        return evaluator.contribution("payload_change", joint, motion, {"mass": 1.0, **place, **moved}, base)
 
     moments = []
     for a in "xyz":
@@ -75,21 +75,23 @@ def payload(
     return np.stack([mass, *moments], axis=2)
 
 
-def unchanging(candidate: Candidate, prober: Prober) -> bool:
+def unchanging(candidate: Candidate, evaluator: Evaluator) -> bool:
     """Whether its columns are the same whatever the arm's parameters are."""
     if candidate.effect in (*STEPS, LATER, *COMPLIANT):
         return False
-    return not prober.needs_load(candidate.effect, candidate.joint, candidate.fixed)
+    return not evaluator.needs_load(candidate.effect, candidate.joint, candidate.fixed)
 
 
 def candidate_columns(
-    candidate: Candidate, values: Values, rows: Sequence[Rows], prober: Prober, base: Array
+    candidate: Candidate, values: Values, rows: Sequence[Rows], evaluator: Evaluator, base: Array
 ) -> list[Array] | None:
     """Its columns (M, n, k) in every record for values of what is searched, or about which a column that
     follows no line is taken; None where it cannot stand.
     """
     try:
-        found = [r.filtered(_at_full_rate(candidate, values, r, k, prober, base)) for k, r in enumerate(rows)]
+        found = [
+            r.filtered(_at_full_rate(candidate, values, r, k, evaluator, base)) for k, r in enumerate(rows)
+        ]
     except InputError:
         return None
     if candidate.effect in COMPLIANT:  # the tail of a filter, of what lies outside the rows, is nothing
@@ -106,16 +108,20 @@ def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
     return [table[:, :, kept] for table in tables]
 
 
-def _at_full_rate(c: Candidate, values: Values, r: Rows, record: int, prober: Prober, base: Array) -> Array:
+def _at_full_rate(
+    c: Candidate, values: Values, r: Rows, record: int, evaluator: Evaluator, base: Array
+) -> Array:
     motion = r.motion
     if c.effect in STEPS:
-        return sensitivities(c.effect, c.joint, motion, prober, base, c.names, values)
+        return sensitivities(c.effect, c.joint, motion, evaluator, base, c.names, values)
     if c.effect == LATER:  # in all records but the first
         return (
-            payload(c.joint, motion, prober, base, values) if record else np.zeros((*r.prepared.q.shape, 4))
+            payload(c.joint, motion, evaluator, base, values)
+            if record
+            else np.zeros((*r.prepared.q.shape, 4))
         )
     given = {**c.fixed, **values}
     if c.effect in COMPLIANT:
         given["damping"] = given.pop("relaxation") * given["stiffness"]
-        return prober.contribution(c.effect, c.joint, motion, given, base)[:, :, None]
-    return prober.columns(c.effect, c.joint, motion, given, base)
+        return evaluator.contribution(c.effect, c.joint, motion, given, base)[:, :, None]
+    return evaluator.columns(c.effect, c.joint, motion, given, base)

@@ -30,14 +30,14 @@ OBVIOUS = {"base_tilt": 10.0, "lever_geometry": 5.0, WEIGHING: 10.0}
 HIDDEN = 0.03  # m, by which a length between pivots may be off however short it is
 
 
-def doubt(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
+def prior_penalty(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
     """What the candidate's values and its other forms take off its delta BIC."""
     scales = usual(candidate, arm)
     charged = sum(math.log1p((values[name] / scale) ** 2) for name, scale in scales.items() if name in values)
     return 2.0 * (charged + math.log(candidate.forms))
 
 
-def elsewhere(candidate: Candidate) -> float:
+def place_penalty(candidate: Candidate) -> float:
     """What the effect's other places take off the odds of the candidate against one of another effect.
 
     No effect is likelier than another before any record: one that may be at every joint is as likely at each
@@ -46,7 +46,7 @@ def elsewhere(candidate: Candidate) -> float:
     return 2.0 * math.log(candidate.places)
 
 
-def obvious(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
+def beyond_plausible(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> bool:
     """Whether someone would have seen it, so that the records must be about something else."""
     times = OBVIOUS.get(candidate.effect, math.inf)
     least = HIDDEN if candidate.effect == "lever_geometry" else 0.0

@@ -16,12 +16,12 @@ from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.thresholds import APART, LARGE, LEAST, OWN
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
 
-def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, base: Array) -> None:
+def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> None:
     """Raises InputError where no one model of this arm comes near to all records.
 
     One fit to two leaves several times what a fit to each leaves, and much of the effort, though the second
@@ -33,7 +33,7 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], prober: Prober, 
     of_effects = _of_effects(model)
     for r in rows[1:]:
         pair = [rows[0], r]
-        payload = candidate_columns(Candidate(LATER, None), {}, pair, prober, base)
+        payload = candidate_columns(Candidate(LATER, None), {}, pair, evaluator, base)
         own = [np.zeros((len(rows[0].effort), n, len(of_effects))), r.columns[:, :, of_effects]]
         parts = [[x.columns for x in pair], own, *([] if payload is None else [payload])]
         table = [np.concatenate([part[k] for part in parts], axis=2) for k in range(2)]
@@ -56,7 +56,7 @@ def asked(
     pool: Sequence[Candidate],
     wanted: Sequence[Place],
     rows: Sequence[Rows],
-    prober: Prober,
+    evaluator: Evaluator,
     base: Array,
 ) -> list[Candidate]:
     """The candidates that are asked for; all where nothing is. wanted: effects, with a joint from 1 or None.
@@ -66,7 +66,7 @@ def asked(
     """
     if not wanted:
         return list(pool)
-    arm, found = prober.arm, list[Candidate]()
+    arm, found = evaluator.arm, list[Candidate]()
     for effect, joint in wanted:
         if effect not in CATALOGUE:
             near = get_close_matches(effect, CATALOGUE, n=1)
@@ -79,7 +79,7 @@ def asked(
         there = [c for c in pool if c.effect == effect and joint in (None, c.joint)]
         if not there:
             raise InputError(f"--effect {_text((effect, joint))}: {_absent(arm, effect, joint)}")
-        shown = [c for c in there if _shows(c, rows, prober, base)]
+        shown = [c for c in there if _shows(c, rows, evaluator, base)]
         if not shown:
             raise InputError(
                 f"--effect {_text((effect, joint))}: {_hidden(there, rows)}; see modelgen excite"
@@ -109,7 +109,7 @@ def _hidden(there: Sequence[Candidate], rows: Sequence[Rows]) -> str:
     return "the motion of the training records cannot show it: the model's own parameters absorb all of it"
 
 
-def _shows(c: Candidate, rows: Sequence[Rows], prober: Prober, base: Array) -> bool:
+def _shows(c: Candidate, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> bool:
     """Whether the candidate has a part of its own in the equations."""
     share = moving_share(rows)
     if c.joint is not None and share[c.joint - 1] <= LEAST:
@@ -118,8 +118,8 @@ def _shows(c: Candidate, rows: Sequence[Rows], prober: Prober, base: Array) -> b
         return True
     values = {}
     for p in c.searched[:1]:
-        values[p.name] = grid_unit(p.scale, c.effect, c.joint, rows, prober) * p.grid[len(p.grid) // 2]
-    made = candidate_columns(c, values, rows, prober, base)
+        values[p.name] = grid_unit(p.scale, c.effect, c.joint, rows, evaluator) * p.grid[len(p.grid) // 2]
+    made = candidate_columns(c, values, rows, evaluator, base)
     if made is None:
         return False
     weights = _weights(rows)

@@ -22,11 +22,11 @@ from modelgen.diagnosis.candidates.candidate import (
     search_of,
 )
 from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging
-from modelgen.diagnosis.candidates.prior_odds import doubt
-from modelgen.diagnosis.candidates.trial import WHOLLY, Trial, named
+from modelgen.diagnosis.candidates.fitted import WHOLLY, FittedCandidate, named
+from modelgen.diagnosis.candidates.prior_odds import prior_penalty
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
@@ -44,10 +44,10 @@ SETTLED = 1.0  # change of evidence that needs no more of it
 Columns: TypeAlias = dict[object, list[Array] | None]  # of every record, by candidate and values
 
 
-class Court:
+class Search:
     """Tries candidates against one system.
 
-    known: columns for these rows, by candidate and values. They outlive a court: those that change with the
+    known: columns for these rows, by candidate and values. They outlive a search: those that change with the
     arm's parameters serve the next one to pass over what explains nothing, whatever the parameters are.
     elastic: joints with an elastic joint or play among the system's causes.
     """
@@ -56,7 +56,7 @@ class Court:
         self,
         system: System,
         rows: Sequence[Rows],
-        prober: Prober,
+        evaluator: Evaluator,
         base: Array,
         known: Columns | None = None,
         elastic: Collection[int | None] = (),
@@ -64,14 +64,14 @@ class Court:
         self.system = system
         self.known = {} if known is None else known
         self.rows = rows
-        self.prober = prober
+        self.evaluator = evaluator
         self.elastic = elastic
         self.base = base
         self.fresh = True  # whether columns that change are made anew
         self.aged = False  # whether some were not
-        self.renewed: set[object] = set()  # made with the parameters of this court
+        self.renewed: set[object] = set()  # made with the parameters of this search
 
-    def trial(self, candidate: Candidate) -> Trial | None:
+    def trial(self, candidate: Candidate) -> FittedCandidate | None:
         """The best that the candidate can do; None where it adds nothing of its own."""
         self.fresh, self.aged = False, False
         found = self._trial(candidate)
@@ -87,25 +87,25 @@ class Court:
         return found
 
     def learn(self, columns: Columns) -> None:
-        """Takes columns over that this court made in another process."""
+        """Takes columns over that this search made in another process."""
         self.known.update(columns)
         self.renewed |= columns.keys()
 
-    def _trial(self, candidate: Candidate) -> Trial | None:
+    def _trial(self, candidate: Candidate) -> FittedCandidate | None:
         if candidate.effect == PERIODIC:
             return self._periodic(candidate)
         if candidate.effect in COMPLIANT:
             if at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
                 return None  # what is left of one looks like the other
             found = self._compliant(candidate)
-            gap = None if found is None else gap_instead(candidate, self.rows, self.prober)
+            gap = None if found is None else gap_instead(candidate, self.rows, self.evaluator)
             # impacts of a loose link look elastic; the other way round they do not
             other = None if gap is None else self._compliant(gap)
             return None if found and other and ahead(other, found) else found
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
-        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.rows, self.prober)
+        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.rows, self.evaluator)
         if not unit > 0:
             return None
         grid = [unit * g for g in parameter.grid]
@@ -118,11 +118,11 @@ class Court:
 
     def _at(
         self, candidate: Candidate, values: Values, extra: float, around: Values | None = None
-    ) -> Trial | None:
+    ) -> FittedCandidate | None:
         if around is None:
             columns = self._columns(candidate, values)
         else:
-            columns = candidate_columns(candidate, around, self.rows, self.prober, self.base)
+            columns = candidate_columns(candidate, around, self.rows, self.evaluator, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
@@ -131,17 +131,17 @@ class Court:
         held = np.array(candidate.positive) & (gain.values == 0.0)
         if held.any():  # stays zero in every fit to come
             columns = [np.where(held, 0.0, c) for c in columns]
-        charged = doubt(candidate, named(candidate, gain.values), self.prober.arm)
+        charged = prior_penalty(candidate, named(candidate, gain.values), self.evaluator.arm)
         gain = replace(gain, delta_bic=gain.delta_bic - charged)
-        return Trial(candidate, dict(values), columns, gain, charged, dict(around or {}))
+        return FittedCandidate(candidate, dict(values), columns, gain, charged, dict(around or {}))
 
     def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
         given = {**candidate.fixed, **values}
         key = *candidate.place, tuple(sorted(given.items()))
-        stays = unchanging(candidate, self.prober)
+        stays = unchanging(candidate, self.evaluator)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
             every = replace(candidate, part=())
-            self.known[key] = candidate_columns(every, values, self.rows, self.prober, self.base)
+            self.known[key] = candidate_columns(every, values, self.rows, self.evaluator, self.base)
             self.renewed.add(key)
         elif not stays and key not in self.renewed:
             self.aged = True
@@ -149,21 +149,23 @@ class Court:
         return None if found is None else of_part(candidate, found)
 
     def _refined(
-        self, candidate: Candidate, name: str, low: float, high: float, best: Trial, extra: float
-    ) -> Trial:
+        self, candidate: Candidate, name: str, low: float, high: float, best: FittedCandidate, extra: float
+    ) -> FittedCandidate:
         """Golden section over the logarithm."""
 
-        def at(x: float) -> Trial | None:
+        def at(x: float) -> FittedCandidate | None:
             return self._at(candidate, {**best.values, name: math.exp(x)}, extra)
 
         return golden(at, math.log(low), math.log(high), best)
 
-    def _compliant(self, candidate: Candidate) -> Trial | None:
+    def _compliant(self, candidate: Candidate) -> FittedCandidate | None:
         """A scan over the first value, then a section over each in turn."""
         search = search_of(candidate, self.rows)
         kinds = {"play": "span", "stiffness": "stiffness"}
         units = {
-            name: grid_unit(kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.prober)
+            name: grid_unit(
+                kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.evaluator
+            )
             for name in search
         }
         if not all(unit > 0 for unit in units.values()):
@@ -181,23 +183,25 @@ class Court:
                     continue
                 reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
 
-                def at(x: float, name: str = name, held: Trial = best) -> Trial | None:
+                def at(x: float, name: str = name, held: FittedCandidate = best) -> FittedCandidate | None:
                     return self._whole(candidate, {**held.values, name: math.exp(x)}, extra)
 
                 middle = math.log(best.values[name])
                 best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
         return best
 
-    def _whole(self, candidate: Candidate, values: Values, extra: float) -> Trial | None:
+    def _whole(self, candidate: Candidate, values: Values, extra: float) -> FittedCandidate | None:
         return self._if_whole(self._at(candidate, values, extra))
 
-    def _if_whole(self, found: Trial | None) -> Trial | None:
+    def _if_whole(self, found: FittedCandidate | None) -> FittedCandidate | None:
         """Behind a link's own position, only what is found about as large as it was simulated."""
         if found is None or not at_links(found.candidate.joint, self.rows):
             return found
         return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
 
-    def _between(self, scanned: Sequence[Trial | None], name: str, extra: float) -> Trial | None:
+    def _between(
+        self, scanned: Sequence[FittedCandidate | None], name: str, extra: float
+    ) -> FittedCandidate | None:
         """Where less of what was simulated is found at one value of a scan and more at the next, one between
         them at which all of it is. None where no neighbours are so.
         """
@@ -206,7 +210,9 @@ class Court:
                 return self._halved(low, high, name, extra)
         return None
 
-    def _halved(self, low: Trial, high: Trial, name: str, extra: float) -> Trial | None:
+    def _halved(
+        self, low: FittedCandidate, high: FittedCandidate, name: str, extra: float
+    ) -> FittedCandidate | None:
         for _ in range(HALVINGS):
             middle = math.sqrt(low.values[name] * high.values[name])
             found = self._at(low.candidate, {**low.values, name: middle}, extra)
@@ -218,7 +224,7 @@ class Court:
                 high = found
         return None
 
-    def _periodic(self, candidate: Candidate) -> Trial | None:
+    def _periodic(self, candidate: Candidate) -> FittedCandidate | None:
         assert candidate.joint is not None
         j = candidate.joint - 1
         residual, position, speed = [], [], []
@@ -230,7 +236,7 @@ class Court:
         together = [np.concatenate(x) for x in (residual, position, speed)]
         cutoff = self.rows[0].prepared.settings.cutoff or self.rows[0].prepared.rate / 2
         per_harmonic = 2 * np.pi / candidate.fixed["revolution"]
-        best: Trial | None = None
+        best: FittedCandidate | None = None
         step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
         for wave in waves(together[0], together[1], together[2], cutoff):
             harmonic = wave / per_harmonic
@@ -249,7 +255,7 @@ class Court:
         return best
 
 
-def ahead(one: Trial, other: Trial) -> bool:
+def ahead(one: FittedCandidate, other: FittedCandidate) -> bool:
     """Whether one explains more than the other for certain."""
     return one.gain.delta_bic - other.gain.delta_bic > CERTAIN
 
@@ -265,8 +271,12 @@ def bracket(grid: Sequence[float], k: int, *, turns: bool) -> tuple[float, float
 
 
 def golden(
-    at: Callable[[float], Trial | None], low: float, high: float, best: Trial, sections: int = REFINEMENTS
-) -> Trial:
+    at: Callable[[float], FittedCandidate | None],
+    low: float,
+    high: float,
+    best: FittedCandidate,
+    sections: int = REFINEMENTS,
+) -> FittedCandidate:
     """The best trial of a golden section search on [low, high]."""
     a, b = low, high
     inner = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)]
@@ -285,7 +295,7 @@ def golden(
     return _best([best, *found]) or best
 
 
-def _best(trials: Sequence[Trial | None]) -> Trial | None:
+def _best(trials: Sequence[FittedCandidate | None]) -> FittedCandidate | None:
     there = [t for t in trials if t is not None]
     return max(there, key=lambda t: t.gain.delta_bic) if there else None
 

@@ -20,10 +20,10 @@ from modelgen.diagnosis.equations.checks import check_excitation, check_motion, 
 from modelgen.diagnosis.equations.free_motion import away_from_rest
 from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.position_errors import feigned, with_errors
-from modelgen.diagnosis.equations.prior import Baseline, estimated, held
+from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.thresholds import PRACTICAL
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
@@ -57,7 +57,7 @@ class Equations:
 
 def bands(
     model: Model,
-    prober: Prober,
+    evaluator: Evaluator,
     found: Sequence[Record],
     lengths: Sequence[int | None],
     settings: Settings,
@@ -70,20 +70,20 @@ def bands(
     could feign a little more than what counts, the wide one is asked first: it shows what is fast.
     Raises InputError where the records are too short, rest, or excite too little.
     """
-    wide = _equations(model, prober, found, lengths, settings)
+    wide = _equations(model, evaluator, found, lengths, settings)
     lost = wide.feigned
     cutoff = OVER_MOTION * max(motion_bandwidth(record) for record in found[:-1]) if narrower else np.inf
     narrowed = cutoff < wide.chosen.cutoff and lost > PRACTICAL
     if not narrowed or lost <= LOST:
         yield wide
     if narrowed:
-        narrow = _equations(model, prober, found, lengths, replace(settings, cutoff=cutoff))
+        narrow = _equations(model, evaluator, found, lengths, replace(settings, cutoff=cutoff))
         yield replace(narrow, narrowed=wide.chosen.cutoff / cutoff)
 
 
 def _equations(
     model: Model,
-    prober: Prober,
+    evaluator: Evaluator,
     found: Sequence[Record],
     lengths: Sequence[int | None],
     settings: Settings,
@@ -97,25 +97,25 @@ def _equations(
         prepared = [away_from_rest(p) for p in prepared]
     check_test(prepared[-1])
     train = prepared[:-1]
-    rows = rows_twice(prober, model, train, held(model) if free else estimated(model))
+    rows = rows_twice(evaluator, model, train, held(model) if free else estimated(model))
     check_motion(model.arm, rows)
     check_excitation(model.arm, model, rows)
     theta = weighted_fit(rows, [r.columns for r in rows])
-    rows, blur = with_errors(rows, periods, prober, model, theta)
+    rows, blur = with_errors(rows, periods, evaluator, model, theta)
     return Equations(chosen, periods, prepared, rows, theta, blur)
 
 
 def rows_twice(
-    prober: Prober,
+    evaluator: Evaluator,
     model: Model,
     prepared: Sequence[Prepared],
-    baseline: Baseline,
+    baseline: Unknowns,
     start: Array | None = None,
 ) -> list[Rows]:
     """The records' equations; made twice where columns depend on the parameters. start: unknowns (k,)."""
-    rows = [rows_of(prober, model, p, start, baseline) for p in prepared]
+    rows = [rows_of(evaluator, model, p, start, baseline) for p in prepared]
     (regressor,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in regressor.arguments}:
         theta = weighted_fit(rows, [r.columns for r in rows])
-        rows = [rows_of(prober, model, p, theta, baseline) for p in prepared]
+        rows = [rows_of(evaluator, model, p, theta, baseline) for p in prepared]
     return rows

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from modelgen.dataset import Record, drives_of, prepare
 from modelgen.diagnosis.equations.least_squares import moving_rows
 from modelgen.diagnosis.equations.rows import Rows, rows_of
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
@@ -85,7 +85,7 @@ def blurred(record: Record, which: NDArray[np.bool_] | None = None) -> Record:
 
 
 def with_errors(
-    rows: Sequence[Rows], periods: Sequence[int | None], prober: Prober, model: Model, theta: Array
+    rows: Sequence[Rows], periods: Sequence[int | None], evaluator: Evaluator, model: Model, theta: Array
 ) -> tuple[list[Rows], Array]:
     """The rows with what errors of the positions leave where that repeats, and its mean squares where it
     repeats or not, by joint (n,), inputs squared.
@@ -93,24 +93,24 @@ def with_errors(
     which = repeating_errors(rows, periods)
     total, found = np.zeros(len(which)), []
     for r in rows:
-        every = _left_by_errors(r, prober, model, theta)
+        every = _left_by_errors(r, evaluator, model, theta)
         total += (every**2 * r.moving).sum(axis=0)
         some = None
         if which.any():
-            some = every if which.all() else _left_by_errors(r, prober, model, theta, which)
+            some = every if which.all() else _left_by_errors(r, evaluator, model, theta, which)
         found.append(replace(r, repeated=some))
     return found, np.asarray(total / np.maximum(moving_rows(rows), 1.0))
 
 
 def _left_by_errors(
-    r: Rows, prober: Prober, model: Model, theta: Array, which: NDArray[np.bool_] | None = None
+    r: Rows, evaluator: Evaluator, model: Model, theta: Array, which: NDArray[np.bool_] | None = None
 ) -> Array:
     """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
     p = r.prepared
     if not counts(p.record).any():
         return np.zeros(r.effort.shape)
     blurry = replace(prepare(blurred(p.record, which), p.settings), awake=p.awake)
-    again = rows_of(prober, model, blurry, theta, r.baseline)
+    again = rows_of(evaluator, model, blurry, theta, r.baseline)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 
 

@@ -27,14 +27,14 @@ NOTHING = 1e-9  # of the largest scatter
 
 
 @dataclass(frozen=True)
-class Told:
+class NominalPrior:
     """Equations rows @ base parameters = right, each with scatter 1. rows: (k, p), right: (k,)."""
 
     rows: Array
     right: Array
 
 
-def told(model: Model) -> Told | None:
+def told(model: Model) -> NominalPrior | None:
     """Of the links; what drives and effects have is not told, nor what a link has nothing of. None where a
     link has no inertials.
     """
@@ -62,7 +62,7 @@ def told(model: Model) -> Told | None:
     turned = (u[:, there] / s[there]).T @ kept.T
     rows = np.zeros((len(turned), len(factors)))
     rows[:, places] = turned
-    return Told(rows, turned @ (links @ np.array([known[name] for name in names])))
+    return NominalPrior(rows, turned @ (links @ np.array([known[name] for name in names])))
 
 
 def _sizes(arm: Arm) -> dict[str, float]:
@@ -81,27 +81,27 @@ def _sizes(arm: Arm) -> dict[str, float]:
 
 
 @dataclass(frozen=True)
-class Baseline:
+class Unknowns:
     """Base parameters = fixed + lift theta. fixed: (p,); lift: (p, k), for k unknowns. said: what the
     description tells of unknown ones.
     """
 
     fixed: Array
     lift: Array
-    said: Told | None = None
+    said: NominalPrior | None = None
 
     def base(self, theta: Array) -> Array:
         """Base parameters (p,) of the unknowns (k,)."""
         return np.asarray(self.fixed + self.lift @ theta)
 
 
-def estimated(model: Model) -> Baseline:
+def estimated(model: Model) -> Unknowns:
     """Every base parameter is unknown."""
     p = len(model.grouping.base)
-    return Baseline(np.zeros(p), np.eye(p), told(model))
+    return Unknowns(np.zeros(p), np.eye(p), told(model))
 
 
-def held(model: Model) -> Baseline:
+def held(model: Model) -> Unknowns:
     """Links as the description has them, effects unknown. Raises InputError where a link has no inertials."""
     try:
         known = nominal_links(model)
@@ -123,4 +123,4 @@ def held(model: Model) -> Baseline:
             else:
                 unknown.setdefault(i, np.zeros(len(base)))[k] = value
     lift = np.column_stack([unknown[i] for i in sorted(unknown)]) if unknown else np.zeros((len(base), 0))
-    return Baseline(fixed, lift)
+    return Unknowns(fixed, lift)

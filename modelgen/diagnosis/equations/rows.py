@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rest import moving_samples
 from modelgen.description import Arm
-from modelgen.diagnosis.equations.prior import Baseline, estimated
-from modelgen.evaluation import Motion, Prober
+from modelgen.diagnosis.equations.prior import Unknowns, estimated
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
@@ -32,7 +32,7 @@ class Rows:
     effort: Array
     columns: Array
     moving: NDArray[np.bool_]
-    baseline: Baseline
+    baseline: Unknowns
     repeated: Array | None = None
 
     @cached_property
@@ -76,11 +76,11 @@ def motion_of(prepared: Prepared) -> Motion:
 
 
 def rows_of(
-    prober: Prober,
+    evaluator: Evaluator,
     model: Model,
     prepared: Prepared,
     theta: Array | None = None,
-    baseline: Baseline | None = None,
+    baseline: Unknowns | None = None,
 ) -> Rows:
     """The equations of a record. theta: unknowns, for what of the regressor depends on them (loads).
 
@@ -89,14 +89,14 @@ def rows_of(
     known = baseline or estimated(model)
     parameters = known.base(np.zeros(known.lift.shape[1]) if theta is None else theta)
     motion = motion_of(prepared)
-    columns = prober.regressor(model, motion, parameters)
+    columns = evaluator.regressor(model, motion, parameters)
     given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
-    effort = prober.ideal(model, motion, given) - prober.link_side.led(motion, parameters)
-    effort = effort - prober.unseen(motion, columns, parameters)
+    effort = evaluator.ideal(model, motion, given) - evaluator.link_side.led(motion, parameters)
+    effort = effort - evaluator.unseen(motion, columns, parameters)
     if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift
-    moving = prepared.moving & of_arm(prober.arm, prepared)
+    moving = prepared.moving & of_arm(evaluator.arm, prepared)
     empty = Rows(prepared, np.zeros((len(prepared.rows), prepared.n)), np.zeros(0), moving, known)
     effort, columns = empty.filtered(effort[:, :, None])[:, :, 0], empty.filtered(columns)
     # states of a law that does not hold along this motion may leave all bounds

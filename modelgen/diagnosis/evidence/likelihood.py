@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.diagnosis.equations.least_squares import orthonormal
-from modelgen.diagnosis.equations.prior import FAITH, Told
-from modelgen.diagnosis.evidence.noise import Colour
+from modelgen.diagnosis.equations.prior import FAITH, NominalPrior
+from modelgen.diagnosis.evidence.noise import Autocorrelation
 from modelgen.numeric import Array
 
 TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
@@ -21,7 +21,7 @@ NOTHING = 1e-7  # part of a column, of unit length, that the others leave over w
 
 
 @dataclass(frozen=True)
-class Gain:
+class Evidence:
     """What further columns explain. rss0, rss1: by joint, without and with; values: of the columns."""
 
     delta_bic: float
@@ -31,7 +31,7 @@ class Gain:
     rank: int
 
 
-class Stack:
+class StackedEquations:
     """What a baseline leaves of R equations, and below them of the D that the description tells of it.
 
     matrix, right: (R, b), (R,), of the records alone; joint: (R,), from 0; counts, rss: (n,), how many of a
@@ -51,8 +51,8 @@ class Stack:
         counts: Array,
         columns: Sequence[Array],
         efforts: Sequence[Array],
-        said: Told | None = None,
-        colour: Colour | None = None,
+        said: NominalPrior | None = None,
+        colour: Autocorrelation | None = None,
     ) -> None:
         self.records = stacked
         self.colour = colour
@@ -97,7 +97,7 @@ class Stack:
         *,
         alike: bool = False,
         passing: bool = False,
-    ) -> Gain | None:
+    ) -> Evidence | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
@@ -165,17 +165,17 @@ def joints_of(flags: Sequence[NDArray[np.bool_]]) -> NDArray[np.intp]:
 
 def explained(
     stacked: Array,
-    stack: Stack,
+    stack: StackedEquations,
     extra: float = 0.0,
     positive: Sequence[bool] = (),
     *,
     alike: bool = False,
     passing: bool = False,
-) -> Gain | None:
+) -> Evidence | None:
     """What columns (R + D, k) explain of what the stack's baseline leaves.
 
     positive: columns whose value may not be negative: it is zero where it would be. alike, passing: as of
-    `Stack.gain`.
+    `StackedEquations.gain`.
     """
     basis, left, n = stack.basis, stack.left, len(stack.counts)
     norms = np.linalg.norm(stacked, axis=0)
@@ -210,10 +210,12 @@ def explained(
         weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, passing=passing)
     drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
-    return Gain(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
+    return Evidence(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
 
 
-def _unhidden(basis: Array, scores: Array, stack: Stack, colour: Colour, *, passing: bool) -> float:
+def _unhidden(
+    basis: Array, scores: Array, stack: StackedEquations, colour: Autocorrelation, *, passing: bool
+) -> float:
     """Share of the evidence of scores (k,) along orthonormal columns (R + D, k) that noise of this colour
     leaves: as many rows are independent as the variance of the scores says, and not more than for variances,
     or, where what passes was a part of the noise by which those were counted, than there are.

@@ -17,7 +17,7 @@ LAGS = 80  # rows of autocorrelation that count
 LEAST = 300  # rows from which noise is told from what repeats
 
 
-class Colour:
+class Autocorrelation:
     """Of the noise of rows that are stacked record after record, joint after joint in each.
 
     correlations: (n, LAGS) of each joint's noise, from lag 0, tapered so that no combination of rows has a
@@ -41,7 +41,7 @@ class Colour:
                 row += len(at)
             self.length += len(flags) + LAGS
 
-    def of(self, left: Array) -> Colour:
+    def of(self, left: Array) -> Autocorrelation:
         """That of what is left, (R,), once what does not repeat is taken off."""
         residuals = [np.zeros(flags.shape) for flags in self.moving]
         ends = np.cumsum([len(flags) + LAGS for flags in self.moving])
@@ -49,11 +49,11 @@ class Colour:
             for (rows, at), table, end in zip(places, residuals, ends, strict=True):
                 table[at - (end - len(table) - LAGS), j] = left[rows]
         found = correlations(residuals, self.moving, self.periods)
-        return self if found is None else Colour(found, self.moving, self.periods)
+        return self if found is None else Autocorrelation(found, self.moving, self.periods)
 
-    def along(self, moving: Sequence[NDArray[np.bool_]]) -> Colour:
+    def along(self, moving: Sequence[NDArray[np.bool_]]) -> Autocorrelation:
         """The same in rows of other motions."""
-        return Colour(self.correlations, moving, [None] * len(moving))
+        return Autocorrelation(self.correlations, moving, [None] * len(moving))
 
     def variance(self, columns: Array) -> Array:
         """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""

@@ -9,11 +9,11 @@ import numpy as np
 from modelgen.dataset.processing.periods import noise_of
 from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.likelihood import Gain, Stack, joints_of, weighted
+from modelgen.diagnosis.evidence.likelihood import Evidence, StackedEquations, joints_of, weighted
 from modelgen.diagnosis.evidence.noise import (
     LAGS,
     LEAST,
-    Colour,
+    Autocorrelation,
     Whitener,
     all_usable,
     correlations,
@@ -51,7 +51,7 @@ class System:
         moving, usable = [r.moving for r in rows], [all_usable(r.moving) for r in rows]
         self.sizes = np.array([max(_size(self, j), 1e-300) for j in range(self.n)])
         efforts, joint = [r.effort for r in rows], joints_of(usable)
-        self.white = Stack(
+        self.white = StackedEquations(
             lambda c: whitened(c, usable, self.whiteners),
             joint,
             np.bincount(joint, minlength=self.n).astype(float),
@@ -61,14 +61,14 @@ class System:
         )
         shares = np.array([_independent(self, j) for j in range(self.n)])
         coloured = correlations(self.residuals, moving, self.periods)
-        self.plain = Stack(
+        self.plain = StackedEquations(
             lambda c: weighted(c, moving, self.sizes),
             joints_of(moving),
             moving_rows(rows) * shares,
             columns,
             efforts,
             rows[0].baseline.said,
-            None if coloured is None else Colour(coloured, moving, self.periods),
+            None if coloured is None else Autocorrelation(coloured, moving, self.periods),
         )
 
     def _whitener(self, j: int) -> Whitener:
@@ -104,7 +104,7 @@ class System:
         return 1.0 if self.coloured else DEARER
 
     @property
-    def fair(self) -> Stack:
+    def fair(self) -> StackedEquations:
         """The equations by which a law and a function of no law are compared: the more a function bends, the
         more noise of any colour it follows. Plain ones where no noise is known by which to whiten.
         """
@@ -117,7 +117,7 @@ class System:
         positive: Sequence[bool] = (),
         *,
         passing: bool = False,
-    ) -> Gain | None:
+    ) -> Evidence | None:
         """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.dataset import drives_of
-from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge
-from modelgen.diagnosis.experiment.motions import Stage
+from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
+from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.diagnosis.experiment.trajectory import Proposal
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds, ranges, speeds
@@ -46,7 +46,9 @@ class Test:
     evidence: float | None
 
 
-def tests(stage: Stage, judge: Judge, members: Sequence[Hypothesis], proposal: Proposal | None) -> list[Test]:
+def tests(
+    stage: Setup, judge: Discriminator, members: Sequence[Hypothesis], proposal: Proposal | None
+) -> list[Test]:
     """All that are worth more than nothing."""
     found: list[Test] = []
     joints = sorted({h.candidate.joint for h in members if h.candidate.joint is not None})
@@ -75,7 +77,7 @@ def least(evidence: Array) -> float | None:
 
 
 def readings(
-    stage: Stage, judge: Judge, claims: Sequence[tuple[str, int | None, Mapping[str, float]]]
+    stage: Setup, judge: Discriminator, claims: Sequence[tuple[str, int | None, Mapping[str, float]]]
 ) -> list[Test]:
     """Of what causes claim: (effect, joint, values of its parameters)."""
     found = []
@@ -98,7 +100,7 @@ def readings(
     return found
 
 
-def _motions(stage: Stage, k: int) -> Iterator[tuple[str, Array]]:
+def _motions(stage: Setup, k: int) -> Iterator[tuple[str, Array]]:
     """Text and positions (N, n) of motions of coordinate k alone, the others at their middles."""
     try:
         limits, _ = bounds(stage.arm, Settings())
@@ -135,7 +137,7 @@ def _staircase(t: Array, speed: float, half: float) -> Array:
     return np.asarray(path - (path.max() + path.min()) / 2)
 
 
-def _loaded(stage: Stage) -> Array | None:
+def _loaded(stage: Setup) -> Array | None:
     """Base parameters with a payload at the last link's centre; None without its nominal inertials."""
     arm = stage.model.arm
     last = max(arm.coordinates)

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.least_squares import orthonormal
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import NOTHING, joints_of, weighted
-from modelgen.diagnosis.evidence.noise import Colour, all_usable, whitened
+from modelgen.diagnosis.evidence.noise import Autocorrelation, all_usable, whitened
 from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 AROUND = (0.5, 0.7, 1.4, 2.0)  # of the nonlinear parameter that was found
@@ -43,7 +43,7 @@ class Hypothesis:
         return len(self.theta) + len(self.values)
 
 
-def hypothesis(trial: Trial) -> Hypothesis:
+def hypothesis(trial: FittedCandidate) -> Hypothesis:
     """The cause as it was fitted to the training records."""
     others: list[Mapping[str, float]] = []
     for name, value in trial.values.items():
@@ -62,7 +62,7 @@ class _Scale:
     joint: NDArray[np.intp]
     variance: Array
     shares: Array
-    colour: Colour | None = None
+    colour: Autocorrelation | None = None
 
     @property
     def rows(self) -> Array:
@@ -91,7 +91,7 @@ class _Scale:
         return counted / max(1.0, hidden)
 
 
-class Judge:
+class Discriminator:
     """What records of motions would say about hypotheses, with the noise that the training records have.
 
     system: the final one. base: base parameters (p,) of the prober's arm. before: causes beside those in
@@ -99,9 +99,9 @@ class Judge:
     """
 
     def __init__(
-        self, system: System, prober: Prober, base: Array, before: Sequence[Hypothesis] = ()
+        self, system: System, evaluator: Evaluator, base: Array, before: Sequence[Hypothesis] = ()
     ) -> None:
-        self.system, self.prober, self.base, self.before = system, prober, base, before
+        self.system, self.evaluator, self.base, self.before = system, evaluator, base, before
         n = system.n
         self.white = system.white.rss / np.maximum(system.white.counts, 1)
         rows = np.maximum(np.bincount(system.plain.joint, minlength=n), 1)
@@ -114,7 +114,7 @@ class Judge:
         """Columns (M, n, k) of every record; None where the cause cannot stand."""
         result = []
         for r, base in zip(rows, bases, strict=True):
-            found = candidate_columns(h.candidate, values, [r], self.prober, base)
+            found = candidate_columns(h.candidate, values, [r], self.evaluator, base)
             if found is None or not np.isfinite(found[0]).all():
                 return None
             result += found

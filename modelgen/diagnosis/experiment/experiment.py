@@ -12,8 +12,8 @@ import numpy as np
 from modelgen.diagnosis.candidates.candidate import LATER, WARMING
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.experiment.bench_tests import Test, least, readings, tests
-from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge, hypothesis
-from modelgen.diagnosis.experiment.motions import Stage
+from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
+from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.diagnosis.experiment.trajectory import PERIODS, Progress, Proposal, propose
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.thresholds import RATHER
@@ -22,7 +22,7 @@ from modelgen.jobs import HERE, Where
 from modelgen.numeric import Array
 
 if TYPE_CHECKING:
-    from modelgen.diagnosis.extended.findings import Named
+    from modelgen.diagnosis.extended.findings import NamedCause
 
 MEMBERS = 4  # of a set that a trajectory is looked for
 UNSUITED = (LATER, WARMING)  # show between records, not within a motion
@@ -40,7 +40,7 @@ class Experiment:
     proposal: Proposal | None
     tests: tuple[Test, ...]
     assumed: tuple[str, ...]
-    judge: Judge | None = None
+    judge: Discriminator | None = None
 
     @property
     def evidence(self) -> float | None:
@@ -63,9 +63,9 @@ class Experiment:
 
 
 def next_experiment(
-    causes: Sequence[Named],
+    causes: Sequence[NamedCause],
     found: Sequence[Cause],
-    stage: Stage | None,
+    stage: Setup | None,
     system: System,
     period: int | None,
     progress: Progress | None = None,
@@ -86,7 +86,7 @@ def next_experiment(
         trials = [cause.trial] + [t for t, _ in cause.rivals if t.candidate.place in rivals]
         claims = [(*t.candidate.place, t.parameters) for t in trials]
         before = [hypothesis(c.trial) for c in found if c is not cause]
-        judge = Judge(system, stage.prober, stage.base, before)
+        judge = Discriminator(system, stage.evaluator, stage.base, before)
         suited = [t for t in trials if t.candidate.effect not in UNSUITED][:MEMBERS]
         members = tuple(hypothesis(t) for t in suited) if len(suited) > 1 else ()
         proposal = propose(stage, judge, members, period, progress, where) if members else None

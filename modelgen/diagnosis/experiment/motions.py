@@ -13,7 +13,7 @@ from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.thresholds import ORDER
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
-from modelgen.evaluation import Motion, Prober
+from modelgen.evaluation import Evaluator, Motion
 from modelgen.excitation.limits import bounds
 from modelgen.excitation.settings import Settings
 from modelgen.functions import Model
@@ -25,7 +25,7 @@ SHORTEST, USUAL, LONGEST = 4.0, 10.0, 12.0  # s, period of a motion
 
 
 @dataclass(frozen=True)
-class Stage:
+class Setup:
     """The arm with the processing of its training records.
 
     arm: with a limit wherever the description has none, and without effects that have states. prepared: the
@@ -36,7 +36,7 @@ class Stage:
 
     arm: Arm
     model: Model
-    prober: Prober
+    evaluator: Evaluator
     prepared: Sequence[Prepared]
     base: Array
     assumed: tuple[str, ...]
@@ -52,7 +52,7 @@ class Stage:
         return np.asarray(self.every * self.step * np.arange(count), dtype=np.float64)
 
     @property
-    def coarse(self) -> Stage:
+    def coarse(self) -> Setup:
         """With as few samples as the same rows of a slow motion follow from."""
         factor = self.prepared[0].settings.factor
         rest = next(k for k in range(min(FEWEST, factor), factor + 1) if factor % k == 0)
@@ -71,7 +71,7 @@ class Stage:
         settings = first.settings
         if self.every > 1:
             settings = replace(settings, factor=settings.factor // self.every, position_cutoff=0.0)
-        motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.prober.arm))])
+        motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.evaluator.arm))])
         if not np.isfinite(motor).all():
             return None
         nothing = np.zeros(q.shape)
@@ -86,15 +86,15 @@ class Stage:
         if len(prepared.rows) < 3 * ORDER:
             return None
         base = self.base if parameters is None else parameters
-        return rows_of(self.prober, self.model, prepared, base)
+        return rows_of(self.evaluator, self.model, prepared, base)
 
     def overload(self, q: Array, dq: Array, ddq: Array) -> float:
         """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
         limits = [b for b in bounds(self.arm, Settings())[0] if b.signal in ("input", "effort")]
         if not limits:
             return 0.0
-        given = self.prober.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)
-        drives, most = drives_of(self.prober.arm), 0.0
+        given = self.evaluator.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)
+        drives, most = drives_of(self.evaluator.arm), 0.0
         for b in limits:
             x = given[:, b.coordinate]
             if b.signal == "effort":
@@ -103,7 +103,7 @@ class Stage:
         return most
 
 
-def stage(arm: Arm, model: Model, prober: Prober, prepared: Sequence[Prepared], base: Array) -> Stage:
+def stage(arm: Arm, model: Model, evaluator: Evaluator, prepared: Sequence[Prepared], base: Array) -> Setup:
     """What motions are planned on. Where the description has no limit, what the records reached counts."""
     joints, assumed = list(arm.joints), []
     for n, i in enumerate(arm.coordinates):
@@ -119,8 +119,8 @@ def stage(arm: Arm, model: Model, prober: Prober, prepared: Sequence[Prepared], 
         assumed += [f"{name} of joint {n + 1}" for name in given]
         joints[i] = replace(joints[i], limits=replace(own, **given), effects=effects)  # type: ignore[arg-type]
     kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].held(u.values))
-    return Stage(
-        replace(arm, joints=tuple(joints), effects=kept), model, prober, prepared, base, tuple(assumed)
+    return Setup(
+        replace(arm, joints=tuple(joints), effects=kept), model, evaluator, prepared, base, tuple(assumed)
     )
 
 

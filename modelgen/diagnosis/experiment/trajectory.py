@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.experiment.discrimination import Hypothesis, Judge
-from modelgen.diagnosis.experiment.motions import Stage
+from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
+from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.problem import SIGNALS, Problem, problem
@@ -36,7 +36,7 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Proposal:
-    """A trajectory of one period. q (N, n), rows, evidence (k, k; see Judge): of PERIODS."""
+    """A trajectory of one period. q (N, n), rows, evidence (k, k; see Discriminator): of PERIODS."""
 
     excitation: Excitation
     q: Array
@@ -45,8 +45,8 @@ class Proposal:
 
 
 def propose(
-    stage: Stage,
-    judge: Judge,
+    stage: Setup,
+    judge: Discriminator,
     members: Sequence[Hypothesis],
     period: int | None,
     progress: Progress | None = None,
@@ -114,7 +114,7 @@ def evolved(
     return best, most
 
 
-def worth(stage: Stage, judge: Judge, members: Sequence[Hypothesis], p: Problem, z: Array) -> float:
+def worth(stage: Setup, judge: Discriminator, members: Sequence[Hypothesis], p: Problem, z: Array) -> float:
     """The least evidence of one period over all pairs; minus infinity where an effort would be too large."""
     q, dq, ddq = positions(p, z, 1, stage.every)
     if stage.overload(q, dq, ddq) > 1:
@@ -128,7 +128,7 @@ def scaled(z: Array, factor: float) -> Array:
     return np.concatenate([z[:, :1], factor * z[:, 1:]], axis=1)
 
 
-def as_run(stage: Stage, p: Problem, k: int) -> Array | None:
+def as_run(stage: Setup, p: Problem, k: int) -> Array | None:
     """What training record k ran, as a series; None where it left the limits."""
     prepared, t = stage.prepared[k], p.at_rate()
     x = prepared.motor if p.settings.coordinates == "motor" else prepared.q

@@ -20,7 +20,7 @@ from modelgen.diagnosis.selection.compliance import best_beside
 from modelgen.diagnosis.selection.refit_stiffness import with_trials
 from modelgen.effects.placement import Found, extended_arm
 from modelgen.errors import InputError
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.functions.nominal import factor_value, nominal_links
 from modelgen.numeric import Array
@@ -64,25 +64,25 @@ def described_by(values: Mapping[int, Estimate]) -> list[Found]:
     return [(INERTIA, number, {"inertia": e.value}) for number, e in values.items()]
 
 
-def told_apart(
-    arm: Arm, model: Model, selection: Selection, base: Array, rows: Sequence[Rows], prober: Prober
-) -> tuple[dict[int, Estimate], Selection, Prober]:
-    """`inertias`, and with them the selection and the prober of the arm that has them; all as they were, and
-    none, where compliant joints do no better with them than rigid ones.
+def split_drive_inertia(
+    arm: Arm, model: Model, selection: Selection, base: Array, rows: Sequence[Rows], evaluator: Evaluator
+) -> tuple[dict[int, Estimate], Selection, Evaluator]:
+    """`inertias`, and with them the selection and the evaluator of the arm that has them; all as they were,
+    and none, where compliant joints do no better with them than rigid ones.
     """
     values = inertias(model, base, selection.causes)
     if values:
-        split = Prober(extended_arm(arm, described_by(values)))
+        split = Evaluator(extended_arm(arm, described_by(values)))
         found = refound(selection, values, rows, split)
         if found is not None:
             return values, found, split
-    return {}, selection, prober
+    return {}, selection, evaluator
 
 
 def refound(
-    selection: Selection, numbers: Collection[int], rows: Sequence[Rows], prober: Prober
+    selection: Selection, numbers: Collection[int], rows: Sequence[Rows], evaluator: Evaluator
 ) -> Selection | None:
-    """The selection with the values of the compliant joints `numbers` that are best on the arm of `prober`;
+    """The selection with the values of the compliant joints `numbers` that are best on the evaluator's arm;
     None where rigid ones are better there.
 
     The search begins at what was found, and at softer ones: slowly, a joint does the same with half the
@@ -95,7 +95,7 @@ def refound(
             starts = [trial.values]
             if "stiffness" in trial.values:  # which a gap behind a link's own position has not
                 starts += [{**trial.values, "stiffness": f * trial.values["stiffness"]} for f in SOFTER]
-            found = best_beside(trial, starts, others, rows, prober)
+            found = best_beside(trial, starts, others, rows, evaluator)
             if found is None:
                 return None
             trials[k] = found

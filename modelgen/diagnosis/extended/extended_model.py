@@ -11,15 +11,15 @@ from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
-from modelgen.diagnosis.equations.prior import Baseline, estimated, held
+from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.effects import described
 from modelgen.effects.placement import extended_arm
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, build_model
 from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows, simulated_windows
@@ -34,7 +34,7 @@ LEAST = 1e-7  # of its own unit
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedModel:
     """A model fitted to the training records. theta: (k,) unknowns of the rows' baseline."""
 
     arm: Arm
@@ -48,12 +48,12 @@ class Fitted:
         return self.rows[0].baseline.base(self.theta)
 
 
-def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> Fitted:
+def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> FittedModel:
     """The model with the parameters that explain the rows best."""
-    return Fitted(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
+    return FittedModel(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
 
 
-def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Prepared]) -> Fitted:
+def extended(arm: Arm, before: FittedModel, selection: Selection, train: Sequence[Prepared]) -> FittedModel:
     """The arm with the causes, everything else fitted anew."""
     causes = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     if not causes:
@@ -69,8 +69,8 @@ def extended(arm: Arm, before: Fitted, selection: Selection, train: Sequence[Pre
     seen = [_seen_by(p, bigger) for p in train]
     if any(effect in COMPLIANT for effect, _, _ in causes):
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
-        return Fitted(bigger, model, *settled(bigger, model, seen, known, first, rigid))
-    own = rows_twice(Prober(bigger), model, seen, known, start)
+        return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
+    own = rows_twice(Evaluator(bigger), model, seen, known, start)
     if (
         any(effect == LATER for effect, _, _ in causes)
         and own[0].columns.shape == before.rows[0].columns.shape
@@ -89,7 +89,7 @@ def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
     return prepare(replace(record, arm=described(arm)), prepared.settings)
 
 
-def replay(fitted: Fitted, rows: Rows) -> Windows | None:
+def replay(fitted: FittedModel, rows: Rows) -> Windows | None:
     """Simulated against measured positions; None where the record is too short, or nothing stays finite.
 
     A free motion has no inputs, and is simulated from its beginning to its end.
@@ -110,40 +110,47 @@ def replay(fitted: Fitted, rows: Rows) -> Windows | None:
         starts = trim + length * np.linspace(0, count - 1, min(count, MOST)).astype(int)
     states = None
     if any(f.name == "effects_step" for f in fitted.model.functions):
-        prober = Prober(fitted.arm)
-        states = prober.states(rows.motion, fitted.parameters)
-        moved = prober.link_side.at_drives(rows.motion, fitted.parameters)  # what the model's coordinates are
+        evaluator = Evaluator(fitted.arm)
+        states = evaluator.states(rows.motion, fitted.parameters)
+        moved = evaluator.link_side.at_drives(
+            rows.motion, fitted.parameters
+        )  # what the model's coordinates are
         p = replace(p, q=moved.q, dq=moved.dq, ddq=moved.ddq)
     return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
 
 
 def residuals(
-    test: Rows, before: Fitted, selection: Selection, after: Fitted, prober: Prober, base: Array
+    test: Rows,
+    before: FittedModel,
+    selection: Selection,
+    after: FittedModel,
+    evaluator: Evaluator,
+    base: Array,
 ) -> tuple[Array, Array]:
-    """On the test record (M, n), in the unit of its efforts: before and after. base: of `prober`'s arm."""
+    """On the test record (M, n), in the unit of its efforts: before and after. base: of `evaluator`'s arm."""
     old = (test.effort - test.columns @ before.theta) * test.gain
     if not selection.causes:
         return old, old
     if any(c.trial.candidate.effect == LATER for c in selection.causes):
         table = [test.columns]
         for cause in selection.causes:
-            found = columns_of(cause.trial, test, prober, base)
+            found = columns_of(cause.trial, test, evaluator, base)
             assert found is not None
             table.append(found)
         left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
         return old, left * test.gain
     seen = _seen_by(test.prepared, after.arm)
-    rows = rows_of(Prober(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
+    rows = rows_of(Evaluator(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
     return old, (rows.effort - rows.columns @ after.theta) * test.gain
 
 
-def columns_of(trial: Trial, test: Rows, prober: Prober, base: Array) -> Array | None:
+def columns_of(trial: FittedCandidate, test: Rows, evaluator: Evaluator, base: Array) -> Array | None:
     """Columns (M, n, k) of a cause on another record than those it was fitted to; None where it cannot stand
-    there. base: of `prober`'s arm.
+    there. base: of `evaluator`'s arm.
     """
     # a payload that came between the records stays
     records = [test, test] if trial.candidate.effect == LATER else [test]
-    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, prober, base)
+    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, evaluator, base)
     return None if found is None else found[-1]
 
 
@@ -153,7 +160,7 @@ def unit_of_efforts(test: Prepared) -> str:
 
 
 def settled(
-    arm: Arm, model: Model, train: Sequence[Prepared], known: Baseline, theta: Array, rigid: float
+    arm: Arm, model: Model, train: Sequence[Prepared], known: Unknowns, theta: Array, rigid: float
 ) -> tuple[list[Rows], Array]:
     """Equations of the records at the unknowns (k,) that explain most, and these. rigid: `misfit` without the
     joints.
@@ -162,7 +169,7 @@ def settled(
     joint answers little of these with much: where that finds nothing better than a rigid arm, Gauss's and
     Newton's steps follow, by differences.
     """
-    search = _Search(Prober(arm), model, train, known)
+    search = _Search(Evaluator(arm), model, train, known)
     for _ in range(HALVES):
         rows, _ = search.at(theta)
         theta = (theta + weighted_fit(rows, [r.columns for r in rows])) / 2
@@ -178,14 +185,16 @@ def settled(
 class _Search:
     """Keeps the best of all unknowns that were tried."""
 
-    def __init__(self, prober: Prober, model: Model, train: Sequence[Prepared], known: Baseline) -> None:
-        self.prober, self.model, self.train, self.known = prober, model, train, known
+    def __init__(
+        self, evaluator: Evaluator, model: Model, train: Sequence[Prepared], known: Unknowns
+    ) -> None:
+        self.evaluator, self.model, self.train, self.known = evaluator, model, train, known
         self.rows: list[Rows] = []
         self.theta, self.least = np.zeros(0), np.inf
 
     def at(self, theta: Array) -> tuple[list[Rows], float]:
         """Equations there, and their misfit."""
-        rows = [rows_of(self.prober, self.model, p, theta, self.known) for p in self.train]
+        rows = [rows_of(self.evaluator, self.model, p, theta, self.known) for p in self.train]
         left = misfit(rows, [r.columns for r in rows], theta)
         if not self.rows or left < self.least:
             self.rows, self.theta, self.least = rows, theta, left
@@ -195,11 +204,11 @@ class _Search:
         """Equations at the best, with what each unknown changes for its column."""
         found = []
         for r in self.rows:
-            here, columns = self.prober.inputs(r.motion, self.known.base(self.theta)), []
+            here, columns = self.evaluator.inputs(r.motion, self.known.base(self.theta)), []
             for k, value in enumerate(self.theta):
                 step = max(TOUCH * abs(value), LEAST)
                 moved = self.theta + step * (np.arange(len(self.theta)) == k)
-                columns.append((self.prober.inputs(r.motion, self.known.base(moved)) - here) / step)
+                columns.append((self.evaluator.inputs(r.motion, self.known.base(moved)) - here) / step)
             table = r.filtered(np.stack(columns, axis=2))
             found.append(replace(r, effort=r.effort + (table - r.columns) @ self.theta, columns=table))
         return found

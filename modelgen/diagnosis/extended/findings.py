@@ -30,7 +30,7 @@ class Share:
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedCause:
     """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
     how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
     expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.

@@ -16,7 +16,7 @@ from modelgen.diagnosis.extended.extended_model import columns_of
 from modelgen.diagnosis.extended.findings import Errors, Share
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows
 
@@ -59,14 +59,14 @@ def compared(before: Array, after: Array) -> tuple[float, ...]:
     return float(old), float(new), float(100 * (1 - new / old)), float(low), float(high)
 
 
-def shares(selection: Selection, test: Rows, prober: Prober, base: Array) -> list[Share]:
+def shares(selection: Selection, test: Rows, evaluator: Evaluator, base: Array) -> list[Share]:
     """Of every cause, over the joints where it acts, each in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. Not a number where one of them cannot stand on that record. base: of `prober`'s arm.
+    searched for stay. Not a number where one of them cannot stand on that record. base: of `evaluator`'s arm.
     """
     rows, trials = selection.system.rows, [cause.trial for cause in selection.causes]
-    made = [columns_of(trial, test, prober, base) for trial in trials]
+    made = [columns_of(trial, test, evaluator, base) for trial in trials]
     there = [table for table in made if table is not None and np.isfinite(table).all()]
     if len(there) < len(trials):
         return [Share()] * len(trials)

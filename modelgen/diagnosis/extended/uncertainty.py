@@ -18,13 +18,13 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import COMPLIANT
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.effects import CATALOGUE
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.model.parameters import unit_of
 from modelgen.numeric import Array
@@ -73,13 +73,13 @@ def _columns_of(selection: Selection) -> list[slice]:
     return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
 
-def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
+def deviations(selection: Selection, evaluator: Evaluator) -> list[dict[str, float]]:
     """Standard deviations of the causes' parameters by name; nan of what was fixed, or is not determined."""
     if not selection.causes:
         return []
     system, rows = selection.system, selection.system.rows
     base = rows[0].baseline.base(system.theta[: rows[0].columns.shape[2]])
-    slopes = [_slopes(c, rows, prober, base) for c in selection.causes]
+    slopes = [_slopes(c, rows, evaluator, base) for c in selection.causes]
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
     places = _columns_of(selection)
     compliant = [c.trial.candidate.effect in COMPLIANT for c in selection.causes]
@@ -94,7 +94,7 @@ def deviations(selection: Selection, prober: Prober) -> list[dict[str, float]]:
     return found
 
 
-def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> list[Array]:
+def _slopes(cause: Cause, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> list[Array]:
     """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
     trial = cause.trial
     theta = np.ones(1) if trial.candidate.effect in COMPLIANT else trial.gain.values
@@ -102,7 +102,9 @@ def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> 
     for name, value in trial.values.items():
         step = STEP * (abs(value) or 1.0)
         ends = [
-            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, rows, prober, base)
+            candidate_columns(
+                trial.candidate, {**trial.values, **trial.around, name: x}, rows, evaluator, base
+            )
             for x in (value - step, value + step)
         ]
         for k, part in enumerate(parts):
@@ -116,7 +118,7 @@ def _slopes(cause: Cause, rows: Sequence[Rows], prober: Prober, base: Array) -> 
     ]
 
 
-def _physical(trial: Trial, covariance: Array, linear: int) -> dict[str, float]:
+def _physical(trial: FittedCandidate, covariance: Array, linear: int) -> dict[str, float]:
     """Of the effect's own parameters, by how they follow from what was estimated and searched for."""
     names, now = list(trial.values), trial.parameters
     moved: list[dict[str, float]] = []
@@ -137,11 +139,11 @@ def _physical(trial: Trial, covariance: Array, linear: int) -> dict[str, float]:
     return found
 
 
-def cause_estimates(selection: Selection, prober: Prober) -> list[dict[str, Estimate]]:
+def cause_estimates(selection: Selection, evaluator: Evaluator) -> list[dict[str, Estimate]]:
     """Of every cause, its own parameters; what was fixed, or is not determined, has no deviation."""
     found = []
-    for cause, spread in zip(selection.causes, deviations(selection, prober), strict=True):
-        units = _units(prober.arm, *cause.trial.candidate.place)
+    for cause, spread in zip(selection.causes, deviations(selection, evaluator), strict=True):
+        units = _units(evaluator.arm, *cause.trial.candidate.place)
         values = cause.trial.parameters
         found.append({name: Estimate(v, spread[name], units.get(name, "")) for name, v in values.items()})
     return found

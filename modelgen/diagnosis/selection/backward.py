@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.trial import Trial, beside
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System, whitened_fit
 from modelgen.diagnosis.selection.cause import Cause
@@ -18,7 +18,7 @@ from modelgen.numeric import Array
 CONTRADICTION = 3.0  # standard deviations below zero, of what cannot be negative
 
 
-def eliminated(
+def backward_elimination(
     causes: list[Cause],
     rows: Sequence[Rows],
     system: System,
@@ -70,16 +70,16 @@ def measured(
     )
 
 
-def _gain(trial: Trial, gates: Gates) -> float:
+def _gain(trial: FittedCandidate, gates: Gates) -> float:
     """Expected gain given all others, in percent; zero where a gate stays shut."""
     found = gates.judged(trial)
     return 0.0 if found.refused else max(found.expected, found.gain)
 
 
-def _worth(trial: Trial, without: System) -> float:
+def _worth(trial: FittedCandidate, without: System) -> float:
     """Delta BIC given all others."""
     gain = beside(trial, without)
-    return -np.inf if gain is None else gain.delta_bic - trial.doubt
+    return -np.inf if gain is None else gain.delta_bic - trial.prior_penalty
 
 
 def _least_values(causes: Sequence[Cause], system: System) -> list[float]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.selection.history import Turns, taken_back
+from modelgen.diagnosis.selection.history import History, taken_back
 from modelgen.diagnosis.validation.form_error import with_causes
 
 
@@ -22,15 +22,17 @@ class Cause:
     rows that its fit had not seen, as measured and as it must be if the cause is there as found.
     """
 
-    trial: Trial
+    trial: FittedCandidate
     delta_bic: float
     cross_gain: float
     expected_gain: float
-    rivals: list[tuple[Trial, float]] = field(default_factory=list)
-    lesser: list[tuple[Trial, float]] = field(default_factory=list)
+    rivals: list[tuple[FittedCandidate, float]] = field(default_factory=list)
+    lesser: list[tuple[FittedCandidate, float]] = field(default_factory=list)
 
 
-def together(trials: Sequence[Trial], rest: System, *, fair: bool = False, alike: bool = False) -> float:
+def together(
+    trials: Sequence[FittedCandidate], rest: System, *, fair: bool = False, alike: bool = False
+) -> float:
     """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations; alike: of its
     plain ones, as if noise hid columns of all colours alike, as that of functions of no law is.
     """
@@ -53,7 +55,7 @@ class Selection:
 
     causes: list[Cause]
     system: System
-    turns: Turns
+    turns: History
 
     def without(self, lost: Sequence[Cause], why: str) -> Selection:
         """The same with fewer causes, and in its turns why."""

@@ -18,15 +18,15 @@ from scipy.optimize import minimize
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, ELASTIC, GAP, Candidate, Values
 from modelgen.diagnosis.candidates.columns import candidate_columns
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
 from modelgen.diagnosis.candidates.search import ahead
-from modelgen.diagnosis.candidates.trial import Trial, beside, sensible
 from modelgen.diagnosis.equations.least_squares import stacked, weighted_fit, weights_of
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.diagnosis.validation.gates import Judgement
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.jobs import HERE, Where, forked
 from modelgen.numeric import Array
 
@@ -40,37 +40,41 @@ FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
 SIMPLER = 1.15  # times what an elastic joint carries to rows that were not seen, that a gap must
 SINGULAR = 1e-10
 LEAST = 1e-300
-Judged = tuple[Trial, Judgement]
+Judged = tuple[FittedCandidate, Judgement]
 _Begun = tuple[Values, float, Array]  # values, what they leave, parameters beside them
 
 
-def refine(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
+def refine(causes: Sequence[Cause], rows: Sequence[Rows], evaluator: Evaluator) -> None:
     """Finds the values of the gaps among the causes anew, beside all others; see `stiffness` for the rest."""
     for cause in causes:
         if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
-            found = best_beside(cause.trial, [cause.trial.values], others, rows, prober)
+            found = best_beside(cause.trial, [cause.trial.values], others, rows, evaluator)
             cause.trial = found or cause.trial
 
 
 def best_beside(
-    trial: Trial, starts: Sequence[Values], others: Sequence[Trial], rows: Sequence[Rows], prober: Prober
-) -> Trial | None:
+    trial: FittedCandidate,
+    starts: Sequence[Values],
+    others: Sequence[FittedCandidate],
+    rows: Sequence[Rows],
+    evaluator: Evaluator,
+) -> FittedCandidate | None:
     """An elastic joint or a gap with its best values beside others, whose columns stay; None where a rigid
     joint leaves less. starts: where the search may begin.
     """
-    place = _Beside(rows, others, trial, prober)
+    place = _Beside(rows, others, trial, evaluator)
     return place.best([place.begun(values) for values in starts])
 
 
 def refined(
-    trials: Sequence[Trial],
+    trials: Sequence[FittedCandidate],
     causes: Sequence[Cause],
     system: System,
     rows: Sequence[Rows],
-    prober: Prober,
+    evaluator: Evaluator,
     where: Where = HERE,
-) -> list[Trial]:
+) -> list[FittedCandidate]:
     """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
 
     Where a rigid joint leaves less than all of them, whatever is ahead of the other trials. None beside
@@ -83,16 +87,18 @@ def refined(
     while left and left[0].candidate.effect in COMPLIANT:
         joint = left[0].candidate.joint
         there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
-        better = _better(there, [_Beside(rows, others, t, prober) for t in there], where)
+        better = _better(there, [_Beside(rows, others, t, evaluator) for t in there], where)
         gains = [beside(t, system) for t in better]
         found = [replace(t, gain=gain) for t, gain in zip(better, gains, strict=True) if gain]
         if found:
-            return [t for t in found if sensible(t, prober.arm)]
+            return [t for t in found if sensible(t, evaluator.arm)]
         left = [t for t in left if t.candidate.effect not in COMPLIANT or t.candidate.joint != joint]
     return []
 
 
-def _better(trials: Sequence[Trial], places: Sequence[_Beside], where: Where) -> list[Trial]:
+def _better(
+    trials: Sequence[FittedCandidate], places: Sequence[_Beside], where: Where
+) -> list[FittedCandidate]:
     """Those of the trials that leave less than a rigid joint, with their best values."""
     begins = [(k, values) for k, trial in enumerate(trials) for values in (trial.values, *_starts(trial))]
 
@@ -102,7 +108,7 @@ def _better(trials: Sequence[Trial], places: Sequence[_Beside], where: Where) ->
 
     all_begun = forked(begun, len(begins), where)
 
-    def best(k: int) -> Trial | None:
+    def best(k: int) -> FittedCandidate | None:
         return places[k].best([b for (of, _), b in zip(begins, all_begun, strict=True) if of == k])
 
     return [t for t in forked(best, len(trials), where) if t is not None]
@@ -130,7 +136,7 @@ def alternatives(one: Candidate, other: Candidate) -> bool:
     return one.joint == other.joint and {one.effect, other.effect} == {*COMPLIANT}
 
 
-def _starts(trial: Trial) -> list[dict[str, float]]:
+def _starts(trial: FittedCandidate) -> list[dict[str, float]]:
     """Values to begin at, where those that were found may be near another minimum."""
     names = [name for name in STARTS if name in trial.values]
     return [
@@ -142,8 +148,14 @@ def _starts(trial: Trial) -> list[dict[str, float]]:
 class _Beside:
     """One of them beside the arm and the other causes, whose columns stay."""
 
-    def __init__(self, rows: Sequence[Rows], others: Sequence[Trial], trial: Trial, prober: Prober) -> None:
-        self.rows, self.prober, self.trial = rows, prober, trial
+    def __init__(
+        self,
+        rows: Sequence[Rows],
+        others: Sequence[FittedCandidate],
+        trial: FittedCandidate,
+        evaluator: Evaluator,
+    ) -> None:
+        self.rows, self.evaluator, self.trial = rows, evaluator, trial
         self.own = rows[0].columns.shape[2]
         table, whole = with_causes(rows, others), with_causes(rows, [*others, trial])
         self.weights = weights_of(rows, whole, weighted_fit(rows, whole))
@@ -162,7 +174,7 @@ class _Beside:
         """The parameters settled beside values at which a search may begin."""
         return values, *self.at(values, self.rigid, FIRST if values is self.trial.values else SETTLING)
 
-    def best(self, begun: Sequence[_Begun]) -> Trial | None:
+    def best(self, begun: Sequence[_Begun]) -> FittedCandidate | None:
         """The trial with the values that leave least, and its columns at the parameters that go with them.
         None where a rigid joint leaves less.
 
@@ -214,7 +226,7 @@ class _Beside:
 
     def _columns(self, values: Values, theta: Array) -> list[Array] | None:
         base = self.rows[0].baseline.base(theta[: self.own])
-        made = candidate_columns(self.trial.candidate, values, self.rows, self.prober, base)
+        made = candidate_columns(self.trial.candidate, values, self.rows, self.evaluator, base)
         return None if made is None or not all(np.isfinite(c).all() for c in made) else made
 
     def _stacked(self, made: Sequence[Array]) -> Array:

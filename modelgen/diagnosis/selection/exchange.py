@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from modelgen.diagnosis.candidates.prior_odds import elsewhere
+from modelgen.diagnosis.candidates.prior_odds import place_penalty
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause, together
 from modelgen.diagnosis.selection.compliance import alternatives
-from modelgen.diagnosis.selection.refit import converge
+from modelgen.diagnosis.selection.refit import refit
 from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 
 
 def exchanged(
-    causes: list[Cause], rows: Sequence[Rows], prober: Prober, periods: Sequence[int | None]
+    causes: list[Cause], rows: Sequence[Rows], evaluator: Evaluator, periods: Sequence[int | None]
 ) -> list[Cause]:
     """The causes, each replaced by the rival with which all of them together have the best odds.
 
@@ -41,16 +41,16 @@ def exchanged(
                 continue
             tried = [replace(c) for c in best]
             tried[place].trial = trial
-            converge(tried, rows, prober)
+            refit(tried, rows, evaluator)
             found = _worth(tried, bare)
             if found > most:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
-                less = found - most + elsewhere(trial.candidate) - elsewhere(held.candidate)
+                less = found - most + place_penalty(trial.candidate) - place_penalty(held.candidate)
                 tried[place].rivals, tried[place].lesser = [(held, max(0.0, less)), *rivals], []
                 best, most = tried, found
     return best
 
 
 def _worth(causes: Sequence[Cause], bare: System) -> float:
-    charged = sum(c.trial.doubt + elsewhere(c.trial.candidate) for c in causes)
+    charged = sum(c.trial.prior_penalty + place_penalty(c.trial.candidate) for c in causes)
     return together([c.trial for c in causes], bare) - charged

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from modelgen.diagnosis.candidates.candidate import Place
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.validation.gates import Judgement
 
 # Why what was taken is no cause in the end.
@@ -35,10 +35,10 @@ class Ranked:
         return self.effect, self.joint
 
 
-Turns = list[list[Ranked]]
+History = list[list[Ranked]]
 
 
-def ranked(trial: Trial, by: Judgement | None, refused: str) -> Ranked:
+def ranked(trial: FittedCandidate, by: Judgement | None, refused: str) -> Ranked:
     """by: where the gates were asked."""
     gain, expected = (None, None) if by is None else (by.gain, by.expected)
     return Ranked(*trial.candidate.place, trial.gain.delta_bic, gain, expected, refused)
@@ -52,7 +52,7 @@ def best_of_each(ranking: Sequence[Ranked], taken: Place | None) -> list[Ranked]
     return sorted(best.values(), key=lambda r: -r.delta_bic)
 
 
-def taken_back(turns: Turns, place: Place, why: str, instead: Place | None = None) -> Turns:
+def taken_back(turns: History, place: Place, why: str, instead: Place | None = None) -> History:
     """The turns, where one took `place`, with the reason why it did not stay; and took `instead`."""
     return [
         [_with_taken(r, place, why, instead or place) for r in turn]

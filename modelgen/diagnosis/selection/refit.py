@@ -15,13 +15,13 @@ import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, CURVED
 from modelgen.diagnosis.candidates.columns import candidate_columns, unchanging
-from modelgen.diagnosis.candidates.prior_odds import doubt
-from modelgen.diagnosis.candidates.trial import Trial, named
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
+from modelgen.diagnosis.candidates.prior_odds import prior_penalty
 from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 TURNS = 10
@@ -30,7 +30,7 @@ WORSE = 1e-4  # rise of the misfit by which a turn is not taken
 FARTHEST = 3.0  # times the first sum of squares: what runs on is another law's, and stays as it was
 
 
-def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> None:
+def refit(causes: Sequence[Cause], rows: Sequence[Rows], evaluator: Evaluator) -> None:
     """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
     own = rows[0].columns.shape[2]
     trials = [c.trial for c in causes]
@@ -54,21 +54,25 @@ def converge(causes: Sequence[Cause], rows: Sequence[Rows], prober: Prober) -> N
             break
         most = most if turn else FARTHEST * np.array(sizes)
         base, last = rows[0].baseline.base(theta[:own]), theta[own:]
-        trials = [_anew(t, v, rows, prober, base) for t, v in zip(best, values, strict=True)]
+        trials = [_anew(t, v, rows, evaluator, base) for t, v in zip(best, values, strict=True)]
         if all(new is old for new, old in zip(trials, best, strict=True)):
             break
     for cause, trial in zip(causes, best, strict=True):
         cause.trial = trial
 
 
-def _anew(trial: Trial, values: Array, rows: Sequence[Rows], prober: Prober, base: Array) -> Trial:
+def _anew(
+    trial: FittedCandidate, values: Array, rows: Sequence[Rows], evaluator: Evaluator, base: Array
+) -> FittedCandidate:
     """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
     c = trial.candidate
-    if c.effect in COMPLIANT or unchanging(c, prober) or (values[np.array(c.positive)] < 0).any():
+    if c.effect in COMPLIANT or unchanging(c, evaluator) or (values[np.array(c.positive)] < 0).any():
         return trial
     after = replace(
-        trial, gain=replace(trial.gain, values=values), doubt=doubt(c, named(c, values), prober.arm)
+        trial,
+        gain=replace(trial.gain, values=values),
+        prior_penalty=prior_penalty(c, named(c, values), evaluator.arm),
     )
     around = after.parameters if c.effect in CURVED else {}
-    found = candidate_columns(c, {**trial.values, **around}, rows, prober, base)
+    found = candidate_columns(c, {**trial.values, **around}, rows, evaluator, base)
     return trial if found is None else replace(after, columns=found, around=around)

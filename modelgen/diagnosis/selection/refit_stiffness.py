@@ -16,13 +16,13 @@ import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import ELASTIC
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 
 TURNS = 16
@@ -30,7 +30,7 @@ CLOSE = 0.01  # of what was simulated, that is found more or less of it
 LEAST, MOST = 0.2, 5.0  # times what was simulated, that count of what is found in a turn
 
 
-def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Selection:
+def refit_stiffness(selection: Selection, rows: Sequence[Rows], evaluator: Evaluator) -> Selection:
     """The selection with the stiffness of its elastic joints found anew; as it was where that has no end."""
     causes = selection.causes
     elastic = [k for k, c in enumerate(causes) if c.trial.candidate.effect == ELASTIC]
@@ -42,7 +42,7 @@ def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Sel
     for _ in range(TURNS):
         base = rows[0].baseline.base(theta)
         for k in elastic:
-            found = candidate_columns(trials[k].candidate, trials[k].values, rows, prober, base)
+            found = candidate_columns(trials[k].candidate, trials[k].values, rows, evaluator, base)
             if found is None or not all(np.isfinite(c).all() for c in found):
                 return selection
             trials[k] = replace(trials[k], columns=found)
@@ -58,12 +58,12 @@ def stiffened(selection: Selection, rows: Sequence[Rows], prober: Prober) -> Sel
     return selection
 
 
-def _share(trials: Sequence[Trial], which: int, values: Array) -> float:
+def _share(trials: Sequence[FittedCandidate], which: int, values: Array) -> float:
     """What is found of an elastic joint's column. values: of all trials' columns, one after the other."""
     return float(values[sum(t.columns[0].shape[2] for t in trials[:which])])
 
 
-def with_trials(selection: Selection, trials: Sequence[Trial], rows: Sequence[Rows]) -> Selection:
+def with_trials(selection: Selection, trials: Sequence[FittedCandidate], rows: Sequence[Rows]) -> Selection:
     """The selection with other values of its causes."""
     system = System(rows, with_causes(rows, trials), selection.system.periods)
     causes = [replace(c, trial=t) for c, t in zip(selection.causes, trials, strict=True)]

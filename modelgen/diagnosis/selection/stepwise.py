@@ -10,31 +10,31 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, POWER, Candidate, without_rests
-from modelgen.diagnosis.candidates.pool import tried
-from modelgen.diagnosis.candidates.search import Columns, Court
-from modelgen.diagnosis.candidates.trial import Trial, beside, sensible
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
+from modelgen.diagnosis.candidates.pool import fit_pool
+from modelgen.diagnosis.candidates.search import Columns, Search
 from modelgen.diagnosis.equations.position_errors import feigned, harmless, repeating_errors
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.instruments import endogeneity
 from modelgen.diagnosis.evidence.system import System, mean_squares
-from modelgen.diagnosis.selection.backward import eliminated, measured
+from modelgen.diagnosis.selection.backward import backward_elimination, measured
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import alternatives, member, refine, refined
 from modelgen.diagnosis.selection.exchange import exchanged
 from modelgen.diagnosis.selection.history import (
     EXCHANGED,
     SUPERFLUOUS,
+    History,
     Ranked,
-    Turns,
     best_of_each,
     ranked,
     taken_back,
 )
-from modelgen.diagnosis.selection.refit import converge
+from modelgen.diagnosis.selection.refit import refit
 from modelgen.diagnosis.thresholds import ALONE, COLOURLESS, EVIDENCE, PASSING, PRACTICAL, RATHER, STAYS
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.diagnosis.validation.gates import Gates, Judgement, instrumented
-from modelgen.evaluation import Prober
+from modelgen.evaluation import Evaluator
 from modelgen.jobs import HERE, Where
 from modelgen.numeric import Array
 
@@ -46,9 +46,9 @@ MOST = 4  # causes, or two for each joint where these are more
 Report = Callable[[str, int, int], None]
 
 
-def select(
+def forward_selection(
     rows: Sequence[Rows],
-    prober: Prober,
+    evaluator: Evaluator,
     pool: Sequence[Candidate],
     periods: Sequence[int | None],
     report: Report | None = None,
@@ -68,18 +68,18 @@ def select(
     evidence = threshold(system)
     known: Columns = {}
     steps = repeating_errors(rows, periods).any()  # errors of a known size: `blur` is their price
-    turns: Turns = []
+    turns: History = []
     for turn in range(max(MOST, 2 * rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
         elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
-        court = Court(system, rows, prober, rows[0].baseline.base(system.theta[:p]), known, elastic)
+        search = Search(system, rows, evaluator, rows[0].baseline.base(system.theta[:p]), known, elastic)
         taken = {c.trial.candidate.place for c in causes}
         left = [c for c in pool if c.place not in taken]
         told = None if report is None else partial(report, f"cause {turn + 1}")
-        trials, faint, ranking = _weighed(tried(left, court, where, told), evidence, prober.arm)
-        settled = refined(trials, causes, system, rows, prober, where)
+        trials, faint, ranking = _weighed(fit_pool(left, search, where, told), evidence, evaluator.arm)
+        settled = refined(trials, causes, system, rows, evaluator, where)
         gates = Gates(rows, [c.trial for c in causes], system, blur, narrowed)
-        weighed: list[tuple[Trial, Judgement]] = []
+        weighed: list[tuple[FittedCandidate, Judgement]] = []
         for t in sorted([*trials, *settled], key=lambda t: -t.odds):
             judged = gates.judged(t)
             if noisy and not judged.refused and not instrumented(t, system):
@@ -113,11 +113,11 @@ def select(
         own = [t for t in settled if t.candidate == best.candidate]
         causes.append(Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser))
         rows = without_rests(rows, best.candidate)
-        converge(causes, rows, prober)
+        refit(causes, rows, evaluator)
         if not own:
-            refine(causes, rows, prober)
+            refine(causes, rows, evaluator)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
-    better = exchanged(causes, rows, prober, periods)
+    better = exchanged(causes, rows, evaluator, periods)
     if better is not causes:
         for old, new in zip(causes, better, strict=True):
             place = new.trial.candidate.place
@@ -131,11 +131,11 @@ def select(
             for new, old in zip(better, causes, strict=True)
         ]
     every = causes[:]
-    causes, system = eliminated(causes, rows, system, evidence, blur, narrowed)
+    causes, system = backward_elimination(causes, rows, system, evidence, blur, narrowed)
     if len(causes) < len(every):
         for lost in (c for c in every if all(c is not kept for kept in causes)):
             turns = taken_back(turns, lost.trial.candidate.place, SUPERFLUOUS)
-        converge(causes, rows, prober)
+        refit(causes, rows, evaluator)
         system = System(rows, with_causes(rows, [c.trial for c in causes]), periods)
     named = {c.trial.candidate.place for c in causes}
     for cause in causes:  # what is there beside it, or could be, does not stand for it
@@ -146,8 +146,8 @@ def select(
 
 
 def _weighed(
-    every: Sequence[Trial | None], evidence: float, arm: Arm
-) -> tuple[list[Trial], list[Trial], list[Ranked]]:
+    every: Sequence[FittedCandidate | None], evidence: float, arm: Arm
+) -> tuple[list[FittedCandidate], list[FittedCandidate], list[Ranked]]:
     """Candidates with evidence, those with too little of it, and what evidence or values refuse."""
     trials, faint, refused = [], [], []
     for found in every:
@@ -164,7 +164,9 @@ def _weighed(
     return trials, faint, refused
 
 
-def lesser_rivals(best: Trial, faint: Sequence[Trial], gates: Gates) -> list[tuple[Trial, float]]:
+def lesser_rivals(
+    best: FittedCandidate, faint: Sequence[FittedCandidate], gates: Gates
+) -> list[tuple[FittedCandidate, float]]:
     """Rivals of the best that cannot be named themselves and may be what is there all the same: of too little
     evidence, where the best has little more.
     """
@@ -173,7 +175,7 @@ def lesser_rivals(best: Trial, faint: Sequence[Trial], gates: Gates) -> list[tup
     return [(t, by) for t, by in near if not gates.judged(t).refused]
 
 
-def least_evidence(trial: Trial) -> float:
+def least_evidence(trial: FittedCandidate) -> float:
     """Delta BIC that it takes to name this cause where the noise is known."""
     if trial.gain.rank + len(trial.candidate.searched) == 1:
         return ALONE
@@ -185,19 +187,21 @@ def threshold(system: System) -> float:
     return EVIDENCE if system.coloured else COLOURLESS
 
 
-def needed_behind(best: Trial, other: Trial) -> float:
+def needed_behind(best: FittedCandidate, other: FittedCandidate) -> float:
     """Delta BIC by which a rival must be behind to be none."""
     of_it = FORM if alternatives(best.candidate, other.candidate) else 0.0
     return max(RATHER, of_it * best.gain.delta_bic)
 
 
-def left_to(trial: Trial, system: System) -> float:
+def left_to(trial: FittedCandidate, system: System) -> float:
     """Evidence of a candidate, with the values it was found at, beside the system's causes."""
     gain = beside(trial, system)
     return -np.inf if gain is None else gain.delta_bic
 
 
-def at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
+def at_one_joint(
+    pair: tuple[FittedCandidate, Judgement], others: Sequence[tuple[FittedCandidate, Judgement]]
+) -> bool:
     """Whether what was tried for all joints together promises at none what it does alone at one of them."""
     trial, by = pair
     return trial.candidate.joint is None and any(
@@ -207,7 +211,9 @@ def at_one_joint(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Ju
     )
 
 
-def no_power(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgement]]) -> bool:
+def no_power(
+    pair: tuple[FittedCandidate, Judgement], others: Sequence[tuple[FittedCandidate, Judgement]]
+) -> bool:
     """Whether a power of the speed is at the least exponent that is searched, where it is dry friction that
     is lower near rest, and what friction does near rest is there by a law of its own.
     """
@@ -219,7 +225,9 @@ def no_power(pair: tuple[Trial, Judgement], others: Sequence[tuple[Trial, Judgem
     return values["exponent"] < END * least and there
 
 
-def _given_way(pair: tuple[Trial, Judgement], passed: Sequence[tuple[Trial, Judgement]]) -> str:
+def _given_way(
+    pair: tuple[FittedCandidate, Judgement], passed: Sequence[tuple[FittedCandidate, Judgement]]
+) -> str:
     """Why what passed every gate is not what is there; empty for most."""
     if at_one_joint(pair, passed):
         return "one joint"
@@ -237,7 +245,7 @@ def _harmless(rows: Sequence[Rows], blur: Array | None, system: System) -> bool:
     return blur is not None and harmless(rows, blur, mean_squares(system), PRACTICAL)
 
 
-def _margin(best: Trial, gain: float, system: System, blur: Array | None) -> float:
+def _margin(best: FittedCandidate, gain: float, system: System, blur: Array | None) -> float:
     """Percent of what a rival leaves by which errors of coarse positions can put the best before it."""
     if blur is None:
         return -np.inf

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, WARMING
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System, mean_squares
@@ -37,7 +37,7 @@ SPRING = ("spring",)  # none is linear over all its travel
 FLUID = ("added_mass", "fluid_drag")  # one value for all links, whose widths differ
 
 
-def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
+def with_causes(rows: Sequence[Rows], trials: Sequence[FittedCandidate]) -> list[Array]:
     """Baseline and the causes' columns side by side, by record."""
     return [np.concatenate([r.columns, *(t.columns[i] for t in trials)], axis=2) for i, r in enumerate(rows)]
 
@@ -45,7 +45,7 @@ def with_causes(rows: Sequence[Rows], trials: Sequence[Trial]) -> list[Array]:
 class Forms:
     """Of the causes taken before, in this order, whose columns stand in the system beside the baseline's."""
 
-    def __init__(self, rows: Sequence[Rows], before: Sequence[Trial], system: System) -> None:
+    def __init__(self, rows: Sequence[Rows], before: Sequence[FittedCandidate], system: System) -> None:
         self.rows = rows
         self.before = before
         self.system = system

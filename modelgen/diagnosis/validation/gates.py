@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, WARMING
-from modelgen.diagnosis.candidates.trial import Trial
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, stacked, weighted_fit
 from modelgen.diagnosis.equations.position_errors import feigned, repeating_errors
 from modelgen.diagnosis.equations.rows import Rows
@@ -62,7 +62,7 @@ class Gates:
     def __init__(
         self,
         rows: Sequence[Rows],
-        before: Sequence[Trial],
+        before: Sequence[FittedCandidate],
         system: System,
         blur: Array | None = None,
         narrowed: float = 1.0,
@@ -83,7 +83,7 @@ class Gates:
         self._known: dict[Split, Array] = {}
         self.forms = Forms(rows, before, system)
 
-    def judged(self, trial: Trial) -> Judgement:
+    def judged(self, trial: FittedCandidate) -> Judgement:
         """Whether the cause helps and matters at a joint that it is judged by.
 
         Gains are measured of the whole prediction, and where the rest of the model is fitted anew to the
@@ -134,7 +134,7 @@ class Gates:
         shut = "other joints" if worse else ""
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
 
-    def _somewhere(self, trial: Trial) -> bool:
+    def _somewhere(self, trial: FittedCandidate) -> bool:
         """Whether a record does not show the cause. Play shows where its gap is crossed: beside that a record
         has of it what the rest of the model takes up, and no more.
         """
@@ -155,7 +155,7 @@ class Gates:
         own = self.old[0].shape[2]
         return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
 
-    def _least(self, trial: Trial) -> float:
+    def _least(self, trial: FittedCandidate) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
         c = trial.candidate
         if c.effect in (DELAY, *REVERSING) and self._beside(REVERSING, c.joint):
@@ -223,7 +223,7 @@ def _gains(sums: Array) -> Array:
     return np.where(sums[0] > 0, 100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))), 0.0)
 
 
-def instrumented(trial: Trial, system: System) -> bool:
+def instrumented(trial: FittedCandidate, system: System) -> bool:
     """Whether the cause shows where errors of the positions are kept out: its estimate by instruments is not
     zero, or it does not repeat as they do.
     """

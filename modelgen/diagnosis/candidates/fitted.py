@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, STEPS, WEIGHING, Candidate, Values
-from modelgen.diagnosis.candidates.prior_odds import elsewhere, obvious
-from modelgen.diagnosis.evidence.likelihood import Gain
+from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty
+from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.evidence.system import System
 from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
@@ -20,24 +20,24 @@ WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play,
 
 
 @dataclass(frozen=True)
-class Trial:
+class FittedCandidate:
     """A candidate with values for what is searched. columns: (M, n, k) of every training record.
 
-    gain: its evidence is what is left after `doubt`, see `plausible`. around: values at which columns that
-    follow no line were taken.
+    gain: its evidence is what is left after `prior_penalty`, see `prior_odds`. around: values at which columns
+    that follow no line were taken.
     """
 
     candidate: Candidate
     values: Values
     columns: Sequence[Array]
-    gain: Gain
-    doubt: float = 0.0
+    gain: Evidence
+    prior_penalty: float = 0.0
     around: Values = field(default_factory=dict)
 
     @property
     def odds(self) -> float:
         """By which rivals are compared, see `plausible.elsewhere`."""
-        return self.gain.delta_bic - elsewhere(self.candidate)
+        return self.gain.delta_bic - place_penalty(self.candidate)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -64,19 +64,19 @@ def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
     return found
 
 
-def beside(trial: Trial, system: System) -> Gain | None:
+def beside(trial: FittedCandidate, system: System) -> Evidence | None:
     """What a candidate explains beside another system's columns, with the values it was found at."""
     c = trial.candidate
     return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.passing)
 
 
-def sensible(trial: Trial, arm: Arm) -> bool:
+def sensible(trial: FittedCandidate, arm: Arm) -> bool:
     """Whether something is left where values may not be negative, and the arm admits them."""
     c, found = trial.candidate, trial.parameters
     bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
     if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
         return False
-    if obvious(c, found, arm):
+    if beyond_plausible(c, found, arm):
         return False
     if c.effect in STEPS:
         try:
