@@ -93,7 +93,7 @@ fuzz: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
 
 hidden: $(INSTALLED)
-	$(BIN)/python -m pytest -n auto tests/test_hidden_suite.py
+	$(BIN)/python -m pytest -n auto tests/hidden/test_suite.py
 
 blind: $(INSTALLED)
 	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED)) $(if $(TRAIN),--train $(TRAIN)) \

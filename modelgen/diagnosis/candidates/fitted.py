@@ -23,7 +23,7 @@ WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play,
 class FittedCandidate:
     """A candidate with values for what is searched. columns: (M, n, k) of every training record.
 
-    gain: its evidence is what is left after `prior_penalty`, see `prior_odds`. around: values at which columns
+    gain: its evidence, after `prior_penalty` (see `prior_odds`). around: values at which columns
     that follow no line were taken.
     """
 

@@ -1,0 +1,74 @@
+"""Coarse positions: known, priced, and never taken for a cause."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnosis_support import ARM, COUNT, coarse, three
+
+from modelgen.dataset import Record
+from modelgen.dataset.processing.periods import other_period
+from modelgen.diagnosis.equations.position_errors import blurred, counts, feigned, rounded
+from modelgen.diagnosis.pipeline import diagnose
+
+
+def test_the_count_is_found_where_there_is_one() -> None:
+    record = three(None, 1, 0.0)[0]
+    np.testing.assert_allclose(counts(coarse(record)), COUNT, rtol=1e-6)
+    assert not counts(record).any()
+    error = blurred(coarse(record)).q - coarse(record).q
+    assert 0.45 * COUNT < np.abs(error).max() <= 0.5 * COUNT
+    np.testing.assert_allclose(error.std(axis=0), COUNT / np.sqrt(12), rtol=0.03)
+
+
+def test_rounding_is_told_from_noise_that_is_rounded() -> None:
+    record = three(None, 1, 0.0)[0]
+    assert rounded(coarse(record))
+    assert not rounded(record)  # no steps: what errors there are is not known
+    for size, alone in ((0.1, True), (1.0, False)):
+        error = size * COUNT * np.random.default_rng(1).normal(size=record.q.shape)
+        assert rounded(coarse(replace(record, q=record.q + error))) is alone
+
+
+def test_what_errors_of_positions_can_feign() -> None:
+    found = feigned(np.array([0.0, 0.19, 2.0]), np.array([1.0, 1.0, 1.0]))
+    np.testing.assert_allclose(found, [0.0, 10.0, 100.0], atol=1e-9)
+
+
+def test_coarse_positions_name_nothing_and_say_why() -> None:
+    records = [coarse(r) for r in three(None, 1, 0.0, seed=4)]
+    found = diagnose(ARM, records)
+    assert found.verdict == "cannot_tell", found.causes
+    assert "too coarse" in found.reason
+
+
+@pytest.mark.parametrize("effect", ["stribeck_friction", "friction_offset"])
+def test_a_large_cause_is_among_those_named(effect: str) -> None:
+    found = diagnose(ARM, [coarse(r) for r in three(effect, 1, 1.5, seed=5)])
+    first = found.causes[0]
+    assert (effect, 1) in {(first.effect, first.joint), *(rival[:2] for rival in first.ambiguous_with)}
+
+
+def noisy(record: Record, size: float, seed: int) -> Record:
+    """Seen by encoders whose noise has no steps, another one in every period."""
+    q = record.q + size * np.random.default_rng(seed).normal(size=record.q.shape)
+    return replace(record, q=q, motor=q * np.array([80.0, 60.0]), motor_side=(False, False))
+
+
+def test_noise_without_steps_is_seen_by_instruments() -> None:
+    exact = diagnose(ARM, three(None, 1, 0.0, seed=6))
+    assert exact.positions is not None
+    assert exact.positions.endogeneity is not None
+    assert not exact.positions.endogeneity.found
+    found = diagnose(ARM, [noisy(r, 2e-4, k) for k, r in enumerate(three(None, 1, 0.0, seed=6))])
+    assert found.positions is not None
+    assert found.positions.endogeneity is not None
+    assert found.positions.endogeneity.found
+    assert not found.positions.feigned.any()
+    assert found.verdict == "cannot_tell", (found.verdict, found.causes)
+    assert "too noisy" in found.reason
+
+
+def test_the_other_period_has_the_same_phase() -> None:
+    assert list(other_period(7, 3)) == [3, 4, 5, 6, 1, 2, 3]
+    assert list(other_period(4, 3)) == [3, -1, -1, 0]

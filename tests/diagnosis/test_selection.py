@@ -1,0 +1,100 @@
+"""The diagnosis on records made of the model itself: what was put in comes out, and nothing else."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnosis_support import ARM, three
+
+from modelgen.dataset import Record
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.evidence.likelihood import Evidence
+from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.result import to_json
+from modelgen.diagnosis.selection.stepwise import at_one_joint
+from modelgen.diagnosis.validation.gates import Judgement
+from modelgen.errors import InputError
+from modelgen.evaluation import with_effect
+
+
+@pytest.mark.parametrize(
+    ("effect", "joint", "size"),
+    [
+        ("stribeck_friction", 2, 0.02),
+        ("friction_offset", 1, 0.04),
+        ("spring", 2, 1.2),
+        ("load_dependent_friction", 1, 0.2),
+        ("torque_ripple", 1, 0.02),
+    ],
+)
+def test_what_was_put_in_is_named_and_the_gain_measured(effect: str, joint: int, size: float) -> None:
+    found = diagnose(ARM, three(effect, joint, size))
+    assert found.verdict == "named"
+    assert [(c.effect, c.joint) for c in found.causes] == [(effect, joint)]
+    assert found.errors.gain[joint - 1] > 1.5
+    assert found.errors.low[joint - 1] > 0.0
+    name = {"stribeck_friction": "magnitude", "friction_offset": "offset", "spring": "stiffness"}.get(effect)
+    if name:
+        estimate = found.causes[0].parameters[name]
+        assert abs(estimate.value - size) < 4 * estimate.std + 0.05 * size
+    uses = found.after.arm.joints[joint - 1].effects
+    assert effect in {use.name for use in uses}
+    assert to_json(found)["causes"][0]["evidence"]["delta_bic"] > 15
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_nothing_is_named_where_nothing_was_put_in(seed: int) -> None:
+    found = diagnose(ARM, three(None, 1, 0.0, seed))
+    assert found.verdict == "nothing_missing"
+    assert found.lack_of_fit is not None
+    assert found.lack_of_fit.periods == 3
+    assert found.lack_of_fit.statistic < found.lack_of_fit.threshold
+    np.testing.assert_array_equal(found.errors.before, found.errors.after)
+
+
+def test_without_repetition_nothing_can_be_said() -> None:
+    records = [replace_part(r, 0, 2200) for r in three(None, 1, 0.0, 4)]
+    found = diagnose(ARM, records)
+    assert found.verdict == "cannot_tell"
+    assert "--period" in found.reason
+
+
+def replace_part(r: Record, begin: int, end: int) -> Record:
+    return r.part(begin, end, r.name)
+
+
+@pytest.mark.parametrize(
+    ("effect", "joint", "values"),
+    [("encoder_offset", 1, {"offset": 0.02}), ("base_tilt", None, {"x": 0.01, "y": 0.0})],
+)
+def test_what_is_described_already_is_not_asked_for(
+    effect: str, joint: int | None, values: dict[str, float]
+) -> None:
+    """Geometry that is off is a part of the model, though none of its parameters."""
+    arm = with_effect(ARM, effect, joint, values)
+    records = [replace(r, arm=arm) for r in three(None, 1, 0.0, 4)]
+    with pytest.raises(InputError, match="has it already"):
+        diagnose(arm, records, effects=[(effect, joint)])
+
+
+def test_an_effect_that_is_there_already_is_not_named_again(tmp_path: Path) -> None:
+    arm = with_effect(ARM, "friction_offset", 1, {})
+    records = [replace(r, arm=arm) for r in three("friction_offset", 1, 0.04)]
+    assert diagnose(arm, records).verdict == "nothing_missing"
+
+
+def test_what_one_joint_promises_alone_is_not_in_all_of_them() -> None:
+    """A delay of one drive of three, which the mean of all three spreads; and one that all have."""
+
+    def judged(promised: dict[int | None, float]) -> list[int | None]:
+        gain = Evidence(50.0, np.array([0.005]), np.ones(3), np.ones(3), 1)
+        pairs = [
+            (FittedCandidate(Candidate("time_delay", joint), {}, [], gain), Judgement(x, x, ""))
+            for joint, x in promised.items()
+        ]
+        return [pair[0].candidate.joint for pair in pairs if not at_one_joint(pair, pairs)]
+
+    assert judged({None: 3.2, 1: 0.2, 3: 7.1}) == [1, 3]
+    assert judged({None: 7.0, 1: 5.0, 3: 7.1}) == [None, 1, 3]

@@ -1,0 +1,47 @@
+"""The documentation builds without a warning, and has every page and every public name."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = pytest.mark.xdist_group("site")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("site")
+    call = [sys.executable, str(ROOT / "docs" / "build.py"), "--out", str(out)]
+    done = subprocess.run(call, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    assert "WARNING" not in done.stderr
+    return out
+
+
+def test_every_page_is_there_and_is_reached_from_the_first(site: Path) -> None:
+    first = (site / "index.html").read_text(encoding="utf-8")
+    pages = [p.relative_to(ROOT / "docs").with_suffix(".html") for p in (ROOT / "docs").rglob("*.md")]
+    assert len(pages) > 15
+    for page in pages:
+        assert (site / page).is_file()
+        assert page.name == "index.html" or f'href="{page.as_posix()}"' in first
+
+
+def test_the_reference_has_docstrings_and_the_help(site: Path) -> None:
+    simulation = (site / "reference" / "simulation.html").read_text(encoding="utf-8")
+    assert 'id="modelgen.simulation.simulate"' in simulation
+    assert "dry friction as a set" in simulation
+    commands = (site / "reference" / "command_line.html").read_text(encoding="utf-8")
+    for name in ("generate", "identify", "diagnose", "simulate"):
+        assert f'id="{name}"' in commands
+    assert "--train" in commands
+
+
+def test_nothing_comes_from_the_network(site: Path) -> None:
+    for page in site.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert 'src="http' not in text, page
+        assert 'rel="stylesheet" href="http' not in text, page
