@@ -38,10 +38,9 @@ PACKAGES = (
     "dataset",
     "excitation",
     "calibration",
-    "identification",
+    "evaluation",
     "simulation",
-    "probing",
-    "extension",
+    "identification",
     "diagnosis",
     "fleet",
     "jobs",
@@ -51,6 +50,7 @@ GUIDES = {
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
     "What a model lacks": ["diagnosing", "effects", "fleet", "case-studies", "diagnosis_method"],
+    "Working on modelgen": ["architecture", "glossary"],
 }
 
 
