@@ -14,8 +14,9 @@ from identification import BEFORE, ROOT, TEST, identified
 from long_log import CHUNK, NOISE, RATE, names, period, write
 from numpy.typing import NDArray
 
+from modelgen.dataset.objects import Reader
 from modelgen.dataset.reading import sources
-from modelgen.dataset.reading.tables import Reader, open_table
+from modelgen.dataset.reading.tables import open_table
 from modelgen.figures import COLOURS, figure, svg
 
 Array = NDArray[np.float64]

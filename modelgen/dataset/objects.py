@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from modelgen.description import Arm
 from modelgen.numeric import Array
@@ -71,3 +73,18 @@ class Record:
             temperature=cut(self.temperature),
             core=None,
         )
+
+
+class Reader(Protocol):
+    """A file with named columns."""
+
+    @property
+    def by_column(self) -> bool:
+        """Whether a column is read without the others."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns, in the file's order; doubled ones as often as they stand there."""
+
+    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+        """The wanted columns (rows at most, len(wanted)), block after block. Raises InputError."""

@@ -28,7 +28,13 @@ from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.experiment.experiment import next_experiment
 from modelgen.diagnosis.experiment.motions import stage
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
-from modelgen.diagnosis.extended.extended_model import extended, fitted, replay, residuals, unit_of_efforts
+from modelgen.diagnosis.extended.extended_model import (
+    extended,
+    fitted,
+    replay,
+    residuals,
+    unit_of_efforts,
+)
 from modelgen.diagnosis.extended.findings import NamedCause, Positions
 from modelgen.diagnosis.extended.test_errors import errors, motion_errors, shares
 from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, valued

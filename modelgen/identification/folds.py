@@ -11,6 +11,7 @@ from modelgen.dataset import Chosen, Prepared, Record, prepare
 from modelgen.errors import InputError
 from modelgen.identification.objects import Identification, Validation
 from modelgen.numeric import Array
+from modelgen.regression.cross_validation import blocks
 
 SHORTEST = 1.0  # s, of what lies between two held-out parts and is of use
 
@@ -44,7 +45,7 @@ def folds(
         test: list[Record] = []
         for record in records:
             size = len(record.t)
-            begin, end = size * k // count, size * (k + 1) // count
+            begin, end = blocks(size, count)[k]
             test.append(record.part(begin, end))
             train += [
                 record.part(a, b) for a, b in ((0, begin), (end, size)) if (b - a) * record.step >= SHORTEST

@@ -18,10 +18,11 @@ from modelgen.functions.options import prepared as reduced
 from modelgen.identification.consistent import consistent
 from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
-from modelgen.identification.instrumental import Comparison, Instrument, compared, of_period
+from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification
 from modelgen.identification.validation import regression_of, validate
 from modelgen.numeric import Array
+from modelgen.regression.instruments import Instrument, of_period
 from modelgen.regression.least_squares import Regression, Solution
 
 METHODS = ("ols", "wls", "gls", "robust", "iv")

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from modelgen.dataset.processing.periods import other_period
 from modelgen.numeric import Array
 from modelgen.regression.autocovariance import autocovariance, autoregression, meat_of
+from modelgen.regression.instruments import Instrument
 from modelgen.regression.least_squares import Regression, Solution
 
 SIGNIFICANCE = 1e-3
@@ -42,20 +42,6 @@ class Comparison:
     def biased(self) -> bool:
         """Whether errors of the positions bias least squares."""
         return self.statistic > self.threshold
-
-
-@dataclass(frozen=True)
-class Instrument:
-    """Of a record: columns (M, n, p) without the errors of its regressor; there (M, n): where they exist."""
-
-    columns: Array
-    there: NDArray[np.bool_]
-
-
-def of_period(columns: Array, moving: NDArray[np.bool_], period: int) -> Instrument:
-    """The regressor (M, n, p) at the same phase of another period of so many rows."""
-    partner = other_period(len(columns), period)
-    return Instrument(columns[partner], (partner >= 0)[:, None] & moving[partner])
 
 
 def compared(

@@ -1,1 +1,1 @@
-"""Least squares with weights by joint, and the noise's autocovariance."""
+"""Least squares with weights by joint, the noise's autocovariance, instruments, parts held out in turn."""

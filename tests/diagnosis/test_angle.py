@@ -15,7 +15,6 @@ from modelgen.diagnosis.candidates.candidate import Candidate, candidates
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.search import Search, bracket
 from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
@@ -23,6 +22,7 @@ from modelgen.diagnosis.pipeline import records, settings_for
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import weighted_fit
 
 
 @pytest.fixture(scope="module")

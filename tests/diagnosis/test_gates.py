@@ -10,12 +10,12 @@ from scipy.optimize import lsq_linear
 
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import not_negative
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.validation.gates import Gates, Judgement
 from modelgen.numeric import Array
+from modelgen.regression.weighted import rmse, weighted_fit
 
 LONG, UNKNOWNS = 300, 6
 

@@ -25,13 +25,13 @@ from modelgen.description import load
 from modelgen.diagnosis.adequacy.lack_of_fit import ratios
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, log_evidence, smooth_functions
 from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.position_errors import with_errors
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.pipeline import records, settings_for
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
+from modelgen.regression.weighted import weighted_fit
 
 OUT = Path(__file__).parents[2] / "modelgen" / "diagnosis" / "null_distribution.py"
 HEAD = '''\

@@ -12,11 +12,11 @@ from modelgen.dataset import choose, prepare
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.prior import estimated
 from modelgen.diagnosis.pipeline import records, settings_for
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
+from modelgen.regression.weighted import weighted_fit
 
 
 def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[float]:

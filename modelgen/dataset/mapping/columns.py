@@ -12,7 +12,7 @@ from modelgen.dataset.mapping import units
 from modelgen.dataset.mapping.files import Foreign, listed
 from modelgen.dataset.mapping.formula import Formula, FormulaError, formula
 from modelgen.dataset.mapping.schema import ColumnModel, JointModel
-from modelgen.dataset.reading.tables import Reader
+from modelgen.dataset.objects import Reader
 from modelgen.description import Arm
 from modelgen.description.document import Steps
 from modelgen.description.messages import describe, suggest

@@ -11,10 +11,11 @@ import numpy as np
 from modelgen.dataset.drives import Drive, drives_of
 from modelgen.dataset.mapping.columns import MappedReader
 from modelgen.dataset.mapping.files import listed, load_mapping
+from modelgen.dataset.objects import Reader
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.signals import Signals, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
-from modelgen.dataset.reading.tables import Reader, open_table
+from modelgen.dataset.reading.tables import open_table
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array

@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Protocol
 
+from modelgen.dataset.objects import Reader
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.csv_table import CsvReader
 from modelgen.dataset.reading.parquet_table import ParquetReader
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.errors import InputError
-from modelgen.numeric import Array
 
 BAGS = (".bag", ".db3", ".mcap")
-
-
-class Reader(Protocol):
-    """A file with named columns."""
-
-    @property
-    def by_column(self) -> bool:
-        """Whether a column is read without the others."""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the columns, in the file's order; doubled ones as often as they stand there."""
-
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
-        """The wanted columns (rows at most, len(wanted)), block after block. Raises InputError."""
 
 
 def open_table(path: Path) -> Reader:

@@ -18,7 +18,6 @@ from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import LATER, PERIODIC, STEPS, Candidate, Values
 from modelgen.diagnosis.candidates.columns import of_part, sensitivities
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
-from modelgen.diagnosis.equations.least_squares import orthonormal
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import alternatives
@@ -31,6 +30,7 @@ from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.model.equations import Equations
 from modelgen.numeric import Array
+from modelgen.regression.weighted import orthonormal
 
 EQUAL = 1e-6  # rad, principal angle
 ABSORBED = 1e-6  # part of a column that is left

@@ -7,7 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, STEPS, WEIGHING, Candidate, Values
+from modelgen.diagnosis.candidates.candidate import (
+    COMPLIANT,
+    LATER,
+    STEPS,
+    WEIGHING,
+    Candidate,
+    Values,
+)
 from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty
 from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.evidence.system import System

@@ -11,7 +11,6 @@ from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import LATER, PERIODIC, Candidate, Place, grid_unit
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.equations.checks import _of_effects, _weights
-from modelgen.diagnosis.equations.least_squares import moving_share, orthonormal, rmse, stacked, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.thresholds import APART, LARGE, LEAST, OWN
 from modelgen.effects import CATALOGUE
@@ -19,6 +18,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_share, orthonormal, rmse, stacked, weighted_fit
 
 
 def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> None:

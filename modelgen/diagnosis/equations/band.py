@@ -18,7 +18,6 @@ from modelgen.dataset.processing.periods import with_whole_rows
 from modelgen.dataset.processing.settings import motion_bandwidth
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion, check_test
 from modelgen.diagnosis.equations.free_motion import away_from_rest
-from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.position_errors import feigned, with_errors
 from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
@@ -26,6 +25,7 @@ from modelgen.diagnosis.thresholds import PRACTICAL
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import rmse, weighted_fit
 
 OVER_MOTION = 10.0  # narrow cut-off over the bandwidth of the motion
 LOST = 5.0  # percent of the RMSE that errors of the positions could feign where a band is lost in them

@@ -8,12 +8,12 @@ import numpy as np
 
 from modelgen.dataset import Prepared, drives_of
 from modelgen.description import Arm
-from modelgen.diagnosis.equations.least_squares import moving_share, rmse, stacked, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.thresholds import LEAST, ORDER
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_share, rmse, stacked, weighted_fit
 
 WORST = 1e3  # condition number, columns of unit norm, up to which the motion counts as an excitation
 NONE = 0.95  # of the effort, left where nothing is explained

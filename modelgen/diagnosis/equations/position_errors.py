@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Record, drives_of, prepare
-from modelgen.diagnosis.equations.least_squares import moving_rows
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_rows
 
 STEPPED = 0.05  # of a count: how far differences may lie from whole counts
 SEED = 19940801

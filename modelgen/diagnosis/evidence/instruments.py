@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy import special
 from scipy.linalg import lstsq
 
-from modelgen.dataset.processing.periods import other_period
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.numeric import Array
+from modelgen.regression.instruments import of_period
 
 FEWEST = 10  # equations for an unknown
 SIGNIFICANCE = 1e-4
@@ -32,19 +32,19 @@ class Pairs:
     def __init__(
         self, rows: Sequence[Rows], columns: Sequence[Array], periods: Sequence[int | None], sizes: Array
     ) -> None:
-        self.partners = [
-            None if p is None else other_period(len(r.effort), p) for r, p in zip(rows, periods, strict=True)
+        self.instruments = [
+            None if p is None else of_period(table, r.moving, p)
+            for r, table, p in zip(rows, columns, periods, strict=True)
         ]
         self.flags: list[NDArray[np.bool_]] = []
         own, other, right = [], [], []
-        for r, table, partner in zip(rows, columns, self.partners, strict=True):
+        for r, table, z in zip(rows, columns, self.instruments, strict=True):
             there = np.zeros(r.moving.shape, dtype=bool)
-            if partner is not None:
-                there = r.moving & (partner >= 0)[:, None] & r.moving[partner]
-                shifted = table[partner]
+            if z is not None:
+                there = r.moving & z.there
                 for j in range(r.effort.shape[1]):
                     own.append(table[there[:, j], j] / sizes[j])
-                    other.append(shifted[there[:, j], j] / sizes[j])
+                    other.append(z.columns[there[:, j], j] / sizes[j])
                     right.append(r.effort[there[:, j], j] / sizes[j])
             self.flags.append(there)
         p = columns[0].shape[2]
@@ -111,9 +111,9 @@ def endogeneity(system: System) -> Endogeneity | None:
     stage = pairs.first_stage()
     left = [
         np.zeros(table.shape)
-        if partner is None
-        else (table - (table[partner] / pairs.scale) @ stage) * there[:, :, None]
-        for table, partner, there in zip(system.columns, pairs.partners, pairs.flags, strict=True)
+        if z is None
+        else (table - (z.columns / pairs.scale) @ stage) * there[:, :, None]
+        for table, z, there in zip(system.columns, pairs.instruments, pairs.flags, strict=True)
     ]
     gain = system.white.gain(left)
     if gain is None:

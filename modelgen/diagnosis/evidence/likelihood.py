@@ -10,10 +10,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.diagnosis.equations.least_squares import orthonormal
 from modelgen.diagnosis.equations.prior import FAITH, NominalPrior
 from modelgen.diagnosis.evidence.noise import Autocorrelation
 from modelgen.numeric import Array
+from modelgen.regression.weighted import orthonormal
 
 TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
 OPEN = 1e-9  # of the largest singular value: below, records say nothing

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset.processing.periods import noise_of
-from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import Evidence, StackedEquations, joints_of, weighted
 from modelgen.diagnosis.evidence.noise import (
@@ -21,6 +20,7 @@ from modelgen.diagnosis.evidence.noise import (
     whitener,
 )
 from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
 DEARER = 1.5  # times the evidence that it takes where the colour of the noise is not known
 

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.least_squares import orthonormal
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import NOTHING, joints_of, weighted
 from modelgen.diagnosis.evidence.noise import Autocorrelation, all_usable, whitened
 from modelgen.diagnosis.evidence.system import System
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
+from modelgen.regression.weighted import orthonormal
 
 AROUND = (0.5, 0.7, 1.4, 2.0)  # of the nonlinear parameter that was found
 CONTAINED = 1e-6  # part of a column that is left over

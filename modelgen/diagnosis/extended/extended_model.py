@@ -13,7 +13,6 @@ from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
 from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.selection.cause import Selection
@@ -22,6 +21,7 @@ from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, build_model
 from modelgen.numeric import Array
+from modelgen.regression.weighted import misfit, weighted_fit
 from modelgen.simulation.windows import Windows, simulated_windows
 
 WINDOW = 0.25  # s

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset import Record
-from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.extended.extended_model import columns_of
 from modelgen.diagnosis.extended.findings import Errors, Share
@@ -18,6 +17,7 @@ from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
+from modelgen.regression.weighted import rmse, weighted_fit
 from modelgen.simulation.windows import Windows
 
 DRAWS = 400

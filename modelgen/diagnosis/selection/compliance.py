@@ -20,7 +20,6 @@ from modelgen.diagnosis.candidates.candidate import COMPLIANT, ELASTIC, GAP, Can
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
 from modelgen.diagnosis.candidates.search import ahead
-from modelgen.diagnosis.equations.least_squares import stacked, weighted_fit, weights_of
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause
@@ -29,6 +28,7 @@ from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.evaluation import Evaluator
 from modelgen.jobs import HERE, Where, forked
 from modelgen.numeric import Array
+from modelgen.regression.weighted import stacked, weighted_fit, weights_of
 
 # A gap has minima of its own at other widths, and what was found beside a rigid arm's parameters may be far
 # from what is best beside the right ones: times the value that was found, where the search begins.

@@ -17,12 +17,12 @@ from modelgen.diagnosis.candidates.candidate import COMPLIANT, CURVED
 from modelgen.diagnosis.candidates.columns import candidate_columns, unchanging
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
 from modelgen.diagnosis.candidates.prior_odds import prior_penalty
-from modelgen.diagnosis.equations.least_squares import misfit, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
+from modelgen.regression.weighted import misfit, weighted_fit
 
 TURNS = 10
 CLOSE = 0.005  # of a value, its change in a turn

@@ -17,13 +17,13 @@ import numpy as np
 from modelgen.diagnosis.candidates.candidate import ELASTIC
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.least_squares import weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
+from modelgen.regression.weighted import weighted_fit
 
 TURNS = 16
 CLOSE = 0.01  # of what was simulated, that is found more or less of it

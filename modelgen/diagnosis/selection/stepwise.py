@@ -31,7 +31,15 @@ from modelgen.diagnosis.selection.history import (
     taken_back,
 )
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.thresholds import ALONE, COLOURLESS, EVIDENCE, PASSING, PRACTICAL, RATHER, STAYS
+from modelgen.diagnosis.thresholds import (
+    ALONE,
+    COLOURLESS,
+    EVIDENCE,
+    PASSING,
+    PRACTICAL,
+    RATHER,
+    STAYS,
+)
 from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.diagnosis.validation.gates import Gates, Judgement, instrumented
 from modelgen.evaluation import Evaluator

@@ -16,9 +16,9 @@ from scipy.linalg import lstsq
 from scipy.stats import chi2
 
 from modelgen.dataset.processing.periods import noise_of
-from modelgen.diagnosis.equations.least_squares import stacked, weighted_fit, weights_of
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.numeric import Array
+from modelgen.regression.weighted import stacked, weighted_fit, weights_of
 
 DRAWS = 64
 SEED = 20010601

@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.numeric import Array
+from modelgen.regression.cross_validation import blocks, groups
+from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
 FEW = 4  # records that are tried one by one
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
@@ -41,9 +42,8 @@ def _parts(rows: Sequence[Rows], split: Split) -> list[tuple[Part, Part]]:
     if split.halves:
         first, second = ((part, every) for part in _masked(rows))
         return [(first, second), (second, first)]
-    parts = [[i] for i in every] if len(rows) <= FEW else [every[k::2] for k in range(2)]
     found = []
-    for part in parts:
+    for part in groups(len(rows), FEW):
         others = [i for i in every if i not in part]
         found.append((([rows[i] for i in others], others), ([rows[i] for i in part], part)))
     return found
@@ -67,12 +67,13 @@ def _places(r: Rows, j: int) -> Array:
 
 def _masked(rows: Sequence[Rows]) -> tuple[list[Rows], list[Rows]]:
     """All records with the first half of each alone, and with the second."""
-    first, second = [], []
+    first: list[Rows] = []
+    second: list[Rows] = []
     for r in rows:
-        flags = np.zeros(len(r.effort), dtype=bool)
-        flags[: len(flags) // 2] = True
-        first.append(replace(r, moving=r.moving & flags[:, None]))
-        second.append(replace(r, moving=r.moving & ~flags[:, None]))
+        for half, (begin, end) in zip((first, second), blocks(len(r.effort), 2), strict=True):
+            flags = np.zeros(len(r.effort), dtype=bool)
+            flags[begin:end] = True
+            half.append(replace(r, moving=r.moving & flags[:, None]))
     return first, second
 
 

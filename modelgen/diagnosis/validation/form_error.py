@@ -8,10 +8,10 @@ import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, WARMING
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.least_squares import rmse, weighted_fit
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System, mean_squares
 from modelgen.numeric import Array
+from modelgen.regression.weighted import rmse, weighted_fit
 
 FORM = 0.05  # of the power that causes explain at a joint: less is what a law's form leaves
 SWINGS = 0.1  # the same of elastic joints and play, simulated beside an arm that had taken over some of it

@@ -13,7 +13,6 @@ import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, WARMING
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.least_squares import moving_rows, rmse, stacked, weighted_fit
 from modelgen.diagnosis.equations.position_errors import feigned, repeating_errors
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.instruments import Pairs
@@ -23,6 +22,7 @@ from modelgen.diagnosis.validation.agreement import agreement
 from modelgen.diagnosis.validation.cross_validation import Split, folds, left_unseen
 from modelgen.diagnosis.validation.form_error import EXACT, FLUID, Forms, with_causes
 from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_rows, rmse, stacked, weighted_fit
 
 # Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
 FAINT, MORE = (6.0, 15.0), 3.0

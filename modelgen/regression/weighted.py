@@ -1,4 +1,4 @@
-"""TODO."""
+"""Least squares over the moving rows of several records, each joint weighted by its residuals."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
-from modelgen.diagnosis.equations.rows import Rows
 from modelgen.numeric import Array
+from modelgen.regression.rows import MovingRows
 
-EXACT = 1e-9  # of the largest residuals of a joint: what is less is taken for this
+EXACT = 1e-9  # residuals of a joint count as at least this part of the largest ones
 
 
-def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
+def weighted_fit(rows: Sequence[MovingRows], columns: Sequence[Array]) -> Array:
     """Least squares over the moving rows, each joint weighted by what it leaves; two passes."""
     n = rows[0].effort.shape[1]
     weights = np.ones(n)
@@ -32,14 +31,14 @@ def weighted_fit(rows: Sequence[Rows], columns: Sequence[Array]) -> Array:
     return theta
 
 
-def weights_of(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
-    """By joint (n,), of what the parameters leave."""
+def weights_of(rows: Sequence[MovingRows], columns: Sequence[Array], theta: Array) -> Array:
+    """One over the RMSE that the parameters leave, by joint (n,)."""
     left = rmse(rows, columns, theta)
     return np.asarray(1.0 / np.maximum(left, max(EXACT * float(left.max()), 1e-150)))
 
 
 def stacked(
-    rows: Sequence[Rows], columns: Sequence[Array], weights: Array | None = None
+    rows: Sequence[MovingRows], columns: Sequence[Array], weights: Array | None = None
 ) -> tuple[Array, Array]:
     """Moving rows of all records and joints, weighted by joint: (R, p) and (R,)."""
     left, right = [], []
@@ -52,8 +51,8 @@ def stacked(
     return np.concatenate(left), np.concatenate(right)
 
 
-def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
-    """Of the moving rows, by joint (n,); nan where a joint never moves."""
+def rmse(rows: Sequence[MovingRows], columns: Sequence[Array], theta: Array) -> Array:
+    """RMSE of the moving rows by joint (n,); 1 where a joint never moves."""
     n = rows[0].effort.shape[1]
     found = np.full(n, np.nan)
     for j in range(n):
@@ -67,12 +66,12 @@ def rmse(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> Array:
     return np.where(np.isnan(found), 1.0, found)
 
 
-def moving_rows(rows: Sequence[Rows]) -> Array:
+def moving_rows(rows: Sequence[MovingRows]) -> Array:
     """How many rows count, by joint (n,)."""
     return np.asarray(np.sum([r.moving.sum(axis=0) for r in rows], axis=0))
 
 
-def moving_share(rows: Sequence[Rows]) -> NDArray[np.float64]:
+def moving_share(rows: Sequence[MovingRows]) -> Array:
     """Share of rows that count, by joint."""
     return np.asarray(np.mean(np.concatenate([r.moving for r in rows]), axis=0))
 
@@ -85,6 +84,6 @@ def orthonormal(matrix: Array) -> Array:
     return np.asarray(u[:, s > 1e-10 * s[0]]) if len(s) else np.zeros((len(matrix), 0))
 
 
-def misfit(rows: Sequence[Rows], columns: Sequence[Array], theta: Array) -> float:
-    """Sum over the joints of the logarithm of what the unknowns of these columns leave."""
+def misfit(rows: Sequence[MovingRows], columns: Sequence[Array], theta: Array) -> float:
+    """Sum over the joints of the logarithm of the RMSE that these parameters leave."""
     return float(np.log(rmse(rows, columns, theta)).sum())
