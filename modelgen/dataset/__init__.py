@@ -10,10 +10,12 @@ from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.sources import read_columns
 from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse, split
 from modelgen.dataset.streaming import Stream
+from modelgen.dataset.thresholds import DatasetThresholds
 
 __all__ = [
     "PRESETS",
     "Chosen",
+    "DatasetThresholds",
     "Drive",
     "Prepared",
     "Record",

@@ -19,6 +19,7 @@ from modelgen.dataset.processing.timing import Axis, Survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.read import record_of
 from modelgen.dataset.reading.sources import open_source
+from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
 from modelgen.numeric import Array
 
@@ -49,7 +50,8 @@ class Stream:
         block: int = 16_384,
     ) -> None:
         self.spec, self.arm = spec, arm
-        self._source = open_source(spec, arm, mapping)
+        limits = USUAL if settings is None else settings.thresholds
+        self._source = open_source(spec, arm, mapping, limits)
         self._asked, self._least = settings, block
         self.axis = self._survey()
         self.samples = self.axis.count
@@ -112,7 +114,8 @@ class Stream:
 
     def _survey(self) -> Axis:
         """First pass: running time; the signals too where all columns are read anyway. Raises InputError."""
-        found = Survey(self.spec, self._source.rate, self._source.gap)
+        limits = self._source.thresholds
+        found = Survey(self.spec, self._source.rate, self._source.gap, limits)
         alone = self._source.reader.by_column
         content = _Content(self)
         blocks = self._source.blocks(time_alone=True) if alone else content.checked(self._source.blocks())
@@ -120,7 +123,7 @@ class Stream:
             if alone:
                 checks.check_finite(self.spec, block[:, 0], ("t",), block, found.count)
             found.add(block[:, 0])
-        checks.check_length(self.spec, found.count)
+        checks.check_length(self.spec, found.count, limits.min_samples)
         if not alone:
             content.check_changes()
         return found.axis()

@@ -8,6 +8,7 @@ from architecture.house import circles, file_graph, files, floors, imports, room
 ORDER = (
     "__init__",
     "errors",
+    "thresholds",
     "numeric",
     "resources",
     "jobs",

@@ -11,29 +11,26 @@ from numpy.typing import NDArray
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.settings import Chosen
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-REPEATS = 2e-3  # of the positions' power may differ from one period to the next
-LOOSE = 0.05  # the same where the period is given: someone knows that it repeats
-SHORTEST = 4  # samples
 
-
-def period_of(record: Record, given: float | None) -> int | None:
+def period_of(record: Record, given: float | None, limits: DatasetThresholds = USUAL) -> int | None:
     """Samples in a period of the motion, as given [s] or the first lag at which all positions repeat.
 
     None where the record does not hold two whole periods, or nothing repeats. Raises InputError for a given
     period that is none.
     """
     if given is not None:
-        return _checked(record, given)
+        return _checked(record, given, limits)
     count = len(record.t)
     coarse = max(1, count // 3000)
     q = record.q[::coarse] - record.q.mean(axis=0)
     scale = np.maximum((q**2).mean(axis=0), 1e-300)
     lags = np.arange(max(3, len(q) // 60), len(q) // 2 + 1)
     errors = np.array([(((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / (2 * scale)).max() for lag in lags])
-    good = np.flatnonzero(errors < REPEATS)
+    good = np.flatnonzero(errors < limits.max_period_difference)
     if not len(good):
         return None
     # the first valley: its multiples repeat as well
@@ -49,23 +46,24 @@ def period_of(record: Record, given: float | None) -> int | None:
     return near[int(np.argmin(exact))]
 
 
-def _checked(record: Record, given: float) -> int | None:
+def _checked(record: Record, given: float, limits: DatasetThresholds) -> int | None:
     """Samples in a given period [s]; None where the record does not hold two of them."""
-    if not (math.isfinite(given) and given >= SHORTEST * record.step):
+    shortest, loose = limits.min_period_samples, limits.max_given_period_difference
+    if not (math.isfinite(given) and given >= shortest * record.step):
         raise InputError(
-            f"--period: found {given:g} s, expected at least {SHORTEST} samples of {record.name}, "
-            f"{SHORTEST * record.step:.3g} s"
+            f"--period: found {given:g} s, expected at least {shortest} samples of {record.name}, "
+            f"{shortest * record.step:.3g} s"
         )
     lag = round(min(given / record.step, len(record.t)))
     if 2 * lag > len(record.t) + 1:
         return None
-    differs = float(_differing(record.q, lag)[_differing(record.q, 1) < LOOSE].max(initial=0.0))
-    if differs > LOOSE:
-        found = period_of(record, None)
+    differs = float(_differing(record.q, lag)[_differing(record.q, 1) < loose].max(initial=0.0))
+    if differs > loose:
+        found = period_of(record, None, limits)
         hint = "leave it out" if found is None else f"found is {found * record.step:.6g} s"
         raise InputError(
             f"--period: {record.name} does not repeat after {given:g} s: its positions differ by "
-            f"{100 * differs:.2g} % of their power, expected {100 * LOOSE:g} % at most; {hint}"
+            f"{100 * differs:.2g} % of their power, expected {100 * loose:g} % at most; {hint}"
         )
     return lag
 

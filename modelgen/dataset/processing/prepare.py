@@ -20,7 +20,6 @@ from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-FEWEST_ROWS = 10
 COLUMNS = 32  # filtered together
 
 
@@ -138,11 +137,11 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
     given = None
     if record.input is not None:
         given = advanced(record.input, record.hold / step, record.held) if record.hold else record.input
-    rows = kept_rows(record, chosen)
-    if len(rows) < FEWEST_ROWS and record.core is None:
+    rows, least = kept_rows(record, chosen), chosen.thresholds.min_rows
+    if len(rows) < least and record.core is None:
         raise InputError(
             f"{record.name}: found {len(record.t) * step:.4g} s, too short a record: with the cut-off "
-            f"{chosen.cutoff:.4g} Hz only {len(rows)} rows remain, expected at least {FEWEST_ROWS}"
+            f"{chosen.cutoff:.4g} Hz only {len(rows)} rows remain, expected at least {least}"
         )
     return Prepared(
         record=record,

@@ -9,9 +9,6 @@ from modelgen.dataset.processing.decimation import kept
 from modelgen.dataset.processing.settings import Chosen
 from modelgen.numeric import Array
 
-SHARE = 0.02  # of the filter's weight that may lie on samples at rest
-MOMENT = 0.05  # of a period of the cut-off: a rest so short leaves nothing in what the filter lets pass
-
 
 def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -> np.ndarray:
     """Whether each joint moves at the rows (M, n), given its speeds dq (N, n).
@@ -26,7 +23,8 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     resting = np.flatnonzero(rest.any(axis=0))
     if len(resting):
         flags = rest[:, resting].astype(np.float64)
-        moving[:, resting] &= kept(flags, rows, settings.cutoff, rate, settings.order) < SHARE
+        weight = kept(flags, rows, settings.cutoff, rate, settings.order)
+        moving[:, resting] &= weight < settings.thresholds.max_rest_weight
     return np.asarray(moving)
 
 
@@ -37,7 +35,7 @@ def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarr
     slow = np.abs(dq) < np.array(settings.gates)
     moment, reach = settings.rest_time, settings.half_width
     if settings.cutoff:
-        moment = min(moment, MOMENT / settings.cutoff)
+        moment = min(moment, settings.thresholds.short_rest_cutoff_periods / settings.cutoff)
     if settings.position_cutoff:
         reach += round(0.5 * rate / settings.position_cutoff)
     long = ndimage.binary_dilation(_resting(slow, settings.rest_time * rate), np.ones((2 * reach + 1, 1)))

@@ -12,21 +12,9 @@ from scipy import signal
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.filters import differences, low_pass
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
-
-NOISE = 1e-3  # of the accelerations' power may be noise of the positions, below the cut-off
-CONTENT = 0.9  # of the speeds' power make up the bandwidth of the motion
-OVER_CONTENT = 2.5  # cut-off over that bandwidth, at least
-PERIODS = 10.0  # of the cut-off in a record, at least
-SAMPLES = 25.0  # per period of the cut-off, at least
-POSITION_OVER_EFFORT = 4.5  # cut-off of the positions over the parallel one
-HIGHEST = 0.45  # of the rate: a filter above it does nothing
-DECIMATED_OVER_CUTOFF = 2.3  # rate of the rows over the parallel cut-off: the pass band fills it
-SAME_RATE = 0.02  # relative difference of the rates of records that are processed alike
-GATE = 0.01  # of the joint's speed (99 % quantile)
-STILL = 5  # readings: a joint that has no more rests, be it shaken under its brake
-REVERSAL = 5e-3  # s, at most, below the gates: passing through them is no rest, whatever the cut-off
 
 
 @dataclass(frozen=True)
@@ -37,7 +25,8 @@ class Settings:
     which runs forwards and backwards. position_cutoff, position_order: light filter of the positions,
     0 Hz: none. half_width: of the central differences, whose order is twice that. factor: decimation,
     every factor-th sample is kept. trim: cut off at both ends [s]. rest_gate: speeds below which a
-    joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s].
+    joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s]. thresholds:
+    by which the rest is chosen.
     """
 
     cutoff: float | None = None
@@ -49,6 +38,7 @@ class Settings:
     trim: float | None = None
     rest_gate: float | tuple[float, ...] | None = None
     rest_time: float | None = None
+    thresholds: DatasetThresholds = USUAL
 
 
 @dataclass(frozen=True)
@@ -64,6 +54,7 @@ class Chosen:
     trim: float
     gates: tuple[float, ...]
     rest_time: float
+    thresholds: DatasetThresholds = USUAL
 
     def trimmed(self, step: float) -> int:
         """Samples cut off at both ends, for a sampling period [s]."""
@@ -91,12 +82,13 @@ def preset(name: str, rate: float) -> Settings:
 def choose(records: Record | Sequence[Record], settings: Settings | Chosen | None = None) -> Chosen:
     """The settings with every choice made, the same for all of the records.
 
-    They must have one rate, to 2 %. Raises InputError where the settings do not fit them.
+    They must have one rate, to `max_rate_difference`. Raises InputError where the settings do not fit them.
     """
     several = [records] if isinstance(records, Record) else list(records)
     first = several[0]
+    limits = USUAL if settings is None else settings.thresholds
     for record in several[1:]:
-        if abs(record.step / first.step - 1.0) > SAME_RATE:
+        if abs(record.step / first.step - 1.0) > limits.max_rate_difference:
             raise InputError(
                 f"{record.name}: found the rate {1 / record.step:.6g} Hz, {first.name} has "
                 f"{1 / first.step:.6g} Hz; `time: {{resample: ...}}` in a mapping file gives them one rate"
@@ -108,22 +100,23 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     settings = settings or Settings()
     cutoff = settings.cutoff
     if cutoff is None:
-        cutoff = max(chosen_cutoff(record) for record in several)
+        cutoff = max(chosen_cutoff(record, limits) for record in several)
     position = settings.position_cutoff
     if position is None:
-        position = POSITION_OVER_EFFORT * cutoff
-        position = 0.0 if position > HIGHEST * rate else position
+        position = limits.position_cutoff_over_cutoff * cutoff
+        position = 0.0 if position > limits.max_position_cutoff * rate else position
     _check(first, cutoff, position)
     factor = settings.factor
     if factor is None:
-        factor = max(1, int(rate / (DECIMATED_OVER_CUTOFF * cutoff))) if cutoff else 1
+        factor = max(1, int(rate / (limits.row_rate_over_cutoff * cutoff))) if cutoff else 1
     trim = settings.trim
     if trim is None:
         lowest = min((f for f in (cutoff, position) if f), default=np.inf)
-        trim = 1.5 / lowest + settings.half_width * first.step
+        trim = limits.trimmed_cutoff_periods / lowest + settings.half_width * first.step
     gates = settings.rest_gate
     if gates is None:
-        found = [chosen_gates(r, position, settings.position_order, settings.half_width) for r in several]
+        chosen = replace(settings, position_cutoff=position)
+        found = [chosen_gates(r, chosen) for r in several]
         gates = tuple(max(column) for column in zip(*found, strict=True))
     elif isinstance(gates, float | int):
         gates = (float(gates),) * first.n
@@ -131,7 +124,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         raise InputError(f"{first.name}: found {len(gates)} rest gates, expected one or {first.n}")
     time = settings.rest_time
     if time is None:
-        time = max(0.25 / cutoff, REVERSAL) if cutoff else 3 * first.step
+        time = max(limits.rest_cutoff_periods / cutoff, limits.min_rest_time) if cutoff else 3 * first.step
     return Chosen(
         cutoff=cutoff,
         order=settings.order,
@@ -142,6 +135,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         trim=trim,
         gates=gates,
         rest_time=time,
+        thresholds=limits,
     )
 
 
@@ -155,7 +149,7 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
             )
 
 
-def chosen_cutoff(record: Record) -> float:
+def chosen_cutoff(record: Record, limits: DatasetThresholds = USUAL) -> float:
     """Parallel cut-off [Hz]: as high as the noise of the positions allows.
 
     Noise in a regressor biases least squares. What the accelerations' spectrum holds beyond its valley, and
@@ -164,18 +158,19 @@ def chosen_cutoff(record: Record) -> float:
     """
     rate = 1.0 / record.step
     length = len(record.t) * record.step
-    found = [_frequencies(record.q[:, k], rate) for k in range(record.n)]
+    found = [_frequencies(record.q[:, k], rate, limits) for k in range(record.n)]
     quiet = min(f for f, _ in found)
     content = max(f for _, f in found)
-    return float(min(max(quiet, OVER_CONTENT * content, PERIODS / length), rate / SAMPLES))
+    least = max(limits.cutoff_over_bandwidth * content, limits.min_cutoff_periods / length)
+    return float(min(max(quiet, least), rate / limits.samples_per_cutoff_period))
 
 
-def motion_bandwidth(record: Record) -> float:
+def motion_bandwidth(record: Record, limits: DatasetThresholds = USUAL) -> float:
     """Frequency [Hz] below which nine tenths of the power of every joint's speed lie, noise apart."""
-    return max(_frequencies(q, 1.0 / record.step)[1] for q in record.q.T)
+    return max(_frequencies(q, 1.0 / record.step, limits)[1] for q in record.q.T)
 
 
-def _frequencies(q: Array, rate: float) -> tuple[float, float]:
+def _frequencies(q: Array, rate: float, limits: DatasetThresholds) -> tuple[float, float]:
     """Highest cut-off [Hz] that the noise of a position q (N,) allows, and the bandwidth of the motion."""
     speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
     window = int(min(len(speed), max(64, 10.0 * rate)))
@@ -187,25 +182,27 @@ def _frequencies(q: Array, rate: float) -> tuple[float, float]:
     upper = f > 0.5 * top
     floor = 2.0 * float(np.median(power[upper] / white[upper]))
     speeds = np.cumsum(np.maximum(power - floor * white, 0.0))
-    content = float(f[np.searchsorted(speeds, CONTENT * speeds[-1])])
+    content = float(f[np.searchsorted(speeds, limits.bandwidth_power * speeds[-1])])
     accelerations = power * (2 * np.pi * f) ** 2
     edges = max(content, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
     bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
     levels = [(float(np.mean(accelerations[b])), float(f[b][0])) for b in bands if b.any()]
     level, valley = min(levels, default=(0.0, top))
     noise = np.cumsum(np.where(f < valley, level, accelerations))
-    noisy = noise > NOISE * np.sum(accelerations[f < valley])
+    noisy = noise > limits.max_noise_share * np.sum(accelerations[f < valley])
     return float(f[np.argmax(noisy)]) if noisy.any() else top, content
 
 
-def chosen_gates(record: Record, cutoff: float, order: int, half_width: int) -> tuple[float, ...]:
+def chosen_gates(record: Record, settings: Settings) -> tuple[float, ...]:
     """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds, and all of their
     speeds where they have a few readings alone.
 
-    cutoff, order: of the positions' filter [Hz]. half_width: of the differences.
+    settings: whose filter of the positions, which is chosen, and differences make the speeds.
     """
-    q = low_pass(record.q, cutoff, 1.0 / record.step, order) if cutoff else record.q
-    speed, _ = differences(q, record.step, half_width)
+    cutoff, limits = settings.position_cutoff, settings.thresholds
+    q = low_pass(record.q, cutoff, 1.0 / record.step, settings.position_order) if cutoff else record.q
+    speed, _ = differences(q, record.step, settings.half_width)
     high = np.quantile(np.abs(speed), 0.99, axis=0)
-    still = [len(np.unique(q)) <= STILL for q in record.q.T]
-    return tuple(np.where(still, (1.0 + GATE) * np.abs(speed).max(axis=0), GATE * high).tolist())
+    still = [len(np.unique(q)) <= limits.max_readings_at_rest for q in record.q.T]
+    gate = limits.rest_speed
+    return tuple(np.where(still, (1.0 + gate) * np.abs(speed).max(axis=0), gate * high).tolist())

@@ -7,13 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
-
-JITTER = 0.02  # of the period; below it the stamps are taken as uniform
-UNEVEN = 0.5  # of the period; above it splines ring
-COARSER = 1.5  # of the period; an axis with longer steps holds means
-GAP = 10.0  # periods without a sample
 
 
 @dataclass(frozen=True)
@@ -46,6 +42,7 @@ class Survey:
     file: str
     rate: float | None = None
     gap: float | None = None
+    limits: DatasetThresholds = USUAL
     period: float = 0.0  # median of the first block
     count: int = 0
     last: float = 0.0
@@ -67,7 +64,7 @@ class Survey:
             )
         if self.period == 0.0 and steps.size:
             self.period = float(np.median(steps))
-        longest = GAP * self.period if self.gap is None else self.gap
+        longest = self.limits.max_gap_periods * self.period if self.gap is None else self.gap
         if steps.size and steps.max() > longest:
             k = int(np.argmax(steps > longest))
             raise InputError(
@@ -91,19 +88,19 @@ class Survey:
         if self.rate is None:
             step = (end - begin) / number
             drift = max(abs(t - begin - k * step) for k, t in self.ends)
-            if drift + max(self.bends) <= JITTER * self.period:
+            if drift + max(self.bends) <= self.limits.max_jitter * self.period:
                 return Axis(begin, step, self.count, self.jitter, "none")
             step = self.period
         else:
             step = 1.0 / self.rate
         count = int(np.floor((end - begin) / step * (1.0 + 1e-12))) + 1
-        even = "spline" if self.jitter < UNEVEN else "monotone"
-        return Axis(begin, step, count, self.jitter, "mean" if step > COARSER * self.period else even)
+        even = "spline" if self.jitter < self.limits.max_spline_jitter else "monotone"
+        averaged = step > self.limits.averaging_step * self.period
+        return Axis(begin, step, count, self.jitter, "mean" if averaged else even)
 
 
-def survey(file: str, stamps: Array, block: int, rate: float | None, gap: float | None) -> Axis:
+def survey(found: Survey, stamps: Array, block: int) -> Axis:
     """The uniform axis of stamps (N,) [s], taken `block` at a time. Raises InputError as Survey does."""
-    found = Survey(file, rate, gap)
     for begin, end in pairwise([*range(0, len(stamps), block), len(stamps)]):
         found.add(stamps[begin:end])
     return found.axis()

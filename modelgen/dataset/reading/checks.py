@@ -13,9 +13,6 @@ from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.transmission import of_joint
 
-SHORTEST = 20  # samples
-MARGIN = 0.1  # of a joint's range, by which a log may leave it
-
 
 def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array, first: int = 0) -> None:
     """No NaN and no infinity in a block (N, k) of columns. Raises InputError."""
@@ -30,10 +27,10 @@ def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array,
         )
 
 
-def check_length(file: str, samples: int) -> None:
-    """Enough samples. Raises InputError."""
-    if samples < SHORTEST:
-        raise InputError(f"{file}: found {samples} samples, expected at least {SHORTEST}")
+def check_length(file: str, samples: int, least: int) -> None:
+    """At least so many samples. Raises InputError."""
+    if samples < least:
+        raise InputError(f"{file}: found {samples} samples, expected at least {least}")
 
 
 def check_constant(
@@ -66,15 +63,17 @@ def check_constant(
         )
 
 
-def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array) -> None:
-    """No sensor that starts anew after a turn. q: (N, n) joint coordinates. Raises InputError."""
+def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array, steady: float) -> None:
+    """No sensor that starts anew after a turn. q: (N, n) joint coordinates; steady: median step [rad] below
+    which a jump is no motion. Raises InputError.
+    """
     for k, i in enumerate(arm.coordinates):
         if arm.joints[i].type == "prismatic":
             continue
         steps = np.diff(q[:, k])
         jumps = np.abs(steps) > math.pi
         # Half a turn within one sample, among samples that hardly move: no motion does that.
-        if jumps.any() and np.median(np.abs(steps)) < 0.1:
+        if jumps.any() and np.median(np.abs(steps)) < steady:
             m = int(np.argmax(jumps))
             raise InputError(
                 f"{file}: {names[k]} jumps by {steps[m]:.4g} rad after t = {t[m]:.9g} s; where the sensor "
@@ -83,9 +82,15 @@ def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array)
 
 
 def check_range(
-    file: str, arm: Arm, drives: Sequence[Drive], names: tuple[str, ...], columns: Array, q: Array
+    file: str,
+    arm: Arm,
+    drives: Sequence[Drive],
+    names: tuple[str, ...],
+    columns: Array,
+    q: Array,
+    margin: float,
 ) -> list[str]:
-    """Positions within the joint's range and the drive's stroke, up to a tenth of it.
+    """Positions within the joint's range and the drive's stroke, up to `margin` times that.
 
     columns: (N, n) as logged; q: (N, n) joint coordinates, NaN where a lever cannot reach. Returns remarks
     where a range is left by less. Raises InputError, with the unit that would fit.
@@ -103,29 +108,29 @@ def check_range(
             continue
         low, high = given
         found = float(columns[:, k].min()), float(columns[:, k].max())
-        excess = max(low - found[0], found[1] - high)
+        excess, slack = max(low - found[0], found[1] - high), margin * (high - low)
         unit = drive.unit if motor_side else ("m" if joint.type == "prismatic" else "rad")
         printed = "motor units" if unit == "unit" else unit
         shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {printed}"
         limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"
-        if excess > MARGIN * (high - low) or not np.isfinite(q[:, k]).all():
-            hint = _unit_hint(found, (low, high), unit, motor_side and isinstance(joint.drive, LeveredDrive))
+        if excess > slack or not np.isfinite(q[:, k]).all():
+            lever = motor_side and isinstance(joint.drive, LeveredDrive)
+            hint = _unit_hint(found, (low - slack, high + slack), unit, lever)
             raise InputError(f"{file}: {shown}, {limits}{hint}")
         if excess > 0.0:
             remarks.append(f"{shown}, {limits}")
     return remarks
 
 
-def _unit_hint(found: tuple[float, float], limits: tuple[float, float], unit: str, lever: bool) -> str:
-    """The unit in which the values would fit, else what may be wrong, a lever's lengths included."""
-    slack = MARGIN * (limits[1] - limits[0])
+def _unit_hint(found: tuple[float, float], allowed: tuple[float, float], unit: str, lever: bool) -> str:
+    """The unit in which the values would be allowed, else what may be wrong, a lever's lengths included."""
     options = {
         "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
         "m": (("millimetres", "mm", 1e-3), ("centimetres", "cm", 1e-2)),
     }.get(unit, ())
     for words, name, factor in options:
         low, high = sorted((found[0] * factor, found[1] * factor))
-        if low >= limits[0] - slack and high <= limits[1] + slack:
+        if low >= allowed[0] and high <= allowed[1]:
             return f": these look like {words}; declare `unit: {name}` in a mapping file (--mapping)"
     described = "the limits or the lever's lengths" if lever else "the limits"
     return f": correct unit, sign or offset in a mapping file (--mapping), or {described} in the description"

@@ -10,14 +10,17 @@ import numpy as np
 from modelgen.dataset.objects import Record
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.specs import check_separate
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
-RUN = 50  # samples in a row that two records may not share
-
 
 def gather(
-    train: Sequence[str], test: Sequence[str], arm: Arm, mapping: Path | str | None = None
+    train: Sequence[str],
+    test: Sequence[str],
+    arm: Arm,
+    mapping: Path | str | None = None,
+    thresholds: DatasetThresholds = USUAL,
 ) -> tuple[list[Record], list[Record]]:
     """Training and test records of `--train`, `--test`, `--mapping`.
 
@@ -25,16 +28,16 @@ def gather(
     record under another name.
     """
     check_separate(train, test)
-    training = [read(spec, arm, mapping) for spec in train]
-    testing = [read(spec, arm, mapping) for spec in test]
+    training = [read(spec, arm, mapping, thresholds) for spec in train]
+    testing = [read(spec, arm, mapping, thresholds) for spec in test]
     for record in testing:
         for other in training:
-            check_different(other, record)
+            check_different(other, record, thresholds)
     return training, testing
 
 
-def check_different(train: Record, test: Record) -> None:
-    """No fifty consecutive samples of a motion in both. Raises InputError.
+def check_different(train: Record, test: Record, limits: DatasetThresholds = USUAL) -> None:
+    """No `max_shared_samples` consecutive samples of a motion in both. Raises InputError.
 
     Measured samples do not repeat to the last digit: such runs are copies, whatever the files are called.
     """
@@ -44,8 +47,9 @@ def check_different(train: Record, test: Record) -> None:
     # At rest, quantised samples do repeat.
     moving = np.any(np.diff(test.q, axis=0, prepend=test.q[:1]) != 0.0, axis=1)
     counts = np.cumsum(np.concatenate([[0], shared & moving]))
-    if len(counts) > RUN and np.any(counts[RUN:] - counts[:-RUN] == RUN):
-        first = int(np.argmax(counts[RUN:] - counts[:-RUN] == RUN))
+    run = limits.max_shared_samples
+    if len(counts) > run and np.any(counts[run:] - counts[:-run] == run):
+        first = int(np.argmax(counts[run:] - counts[:-run] == run))
         raise InputError(
             f"--train {train.name} and --test {test.name} share samples: those after "
             f"t = {test.t[first]:.6g} s "

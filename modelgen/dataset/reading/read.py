@@ -10,28 +10,32 @@ import numpy as np
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
-from modelgen.dataset.processing.timing import Axis, survey
+from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-SLOW = 0.5  # s between samples: hardly a log of a motion
 
-
-def read(spec: str, arm: Arm, mapping: Path | str | None = None) -> Record:
+def read(
+    spec: str,
+    arm: Arm,
+    mapping: Path | str | None = None,
+    thresholds: DatasetThresholds = USUAL,
+) -> Record:
     """The record that `FILE` or `FILE@t0:t1` names, in the arm's coordinates.
 
     Columns are those of docs/logs.md, or what the mapping file makes of the log's own. Raises InputError
     for anything that is missing, doubled, not finite, out of order, constant, too short or out of range.
     """
-    source = open_source(spec, arm, mapping)
+    source = open_source(spec, arm, mapping, thresholds)
     blocks = list(source.blocks())
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
-    checks.check_length(spec, len(table))
+    checks.check_length(spec, len(table), thresholds.min_samples)
     checks.check_finite(spec, table[:, 0], source.wanted, table)
-    axis = survey(spec, table[:, 0], BLOCK, source.rate, source.gap)
+    axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     record, logged = record_of(source, arm, table, axis, axis.times())
     checks.check_constant(spec, arm, source.signals.position, logged, "position")
     if record.input is not None:
@@ -45,7 +49,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     t: times of the axis that it shall have (M,) [s], all or a part. Raises InputError where positions leave
     the arm's limits.
     """
-    file = source.spec.text
+    file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
@@ -58,14 +62,16 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
             motor[:, k] *= drive.ratio
         else:
             motor[:, k] = drive.motor(logged[:, k])
-    checks.check_jumps(file, arm, signals.position, q, t)
-    remarks = [*source.remarks, *checks.check_range(file, arm, drives, signals.position, logged, q)]
+    checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
+    margin = limits.max_range_excess
+    left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
+    remarks = [*source.remarks, *left]
     if axis.method != "none":
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
             f"resampled at {1 / axis.step:.6g} Hz"
         )
-    if axis.step >= SLOW:
+    if axis.step >= limits.slow_sampling_step:
         remarks.append(
             f"a sample every {axis.step:.6g} s: where t is in milliseconds, a mapping file says so"
         )

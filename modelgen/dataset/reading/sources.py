@@ -16,6 +16,7 @@ from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.signals import Signals, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.reading.tables import open_table
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -29,7 +30,7 @@ class Source:
 
     hold: "following", "previous", "instant", or the delay [s] of the effort's samples. rate: of the uniform
     axis [Hz]; gap: longest time without a sample [s]; None: by default. effort_units: by column, where
-    they are not those of its name.
+    they are not those of its name. thresholds: by which the log is refused or resampled.
     """
 
     spec: Spec
@@ -41,6 +42,7 @@ class Source:
     gap: float | None = None
     effort_units: dict[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    thresholds: DatasetThresholds = USUAL
 
     @property
     def wanted(self) -> tuple[str, ...]:
@@ -67,7 +69,12 @@ class Source:
             yield rest
 
 
-def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Source:
+def open_source(
+    text: str,
+    arm: Arm,
+    mapping: Path | str | None = None,
+    thresholds: DatasetThresholds = USUAL,
+) -> Source:
     """The log that `FILE` or `FILE@t0:t1` names, opened. Raises InputError."""
     spec = parse(text)
     drives = drives_of(arm)
@@ -78,7 +85,8 @@ def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Sourc
                 f"{text}: a bag needs a mapping file (--mapping) that names its columns: "
                 + listed(reader.names)
             )
-        return Source(spec, reader, find_signals(spec.text, reader.names, arm, drives), drives)
+        signals = find_signals(spec.text, reader.names, arm, drives)
+        return Source(spec, reader, signals, drives, thresholds=thresholds)
     foreign = load_mapping(mapping)
     mapped = MappedReader(foreign, open_table(spec.path), arm, drives)
     time = foreign.document.time
@@ -92,6 +100,7 @@ def open_source(text: str, arm: Arm, mapping: Path | str | None = None) -> Sourc
         foreign.positive(time.largest_gap, ["time", "largest_gap"]),
         mapped.effort_units,
         tuple(mapped.remarks),
+        thresholds,
     )
 
 

@@ -1,0 +1,159 @@
+"""Thresholds by which a log is refused, and by which its processing is chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from modelgen.thresholds import Group, entry
+
+_GUARD = "a guard against mistakes in logs, chosen by judgement"
+_CHOICE = "chosen by judgement on the example logs"
+
+
+@dataclass(frozen=True)
+class DatasetThresholds(Group):
+    """What decides about records: stamps, ranges, cut-offs, periods, rest. See docs/thresholds.md."""
+
+    min_samples: int = entry(20, "samples", "A log with fewer samples is refused.", _GUARD)
+    max_gap_periods: float = entry(
+        10.0, "sampling periods", "A longer time without a sample is refused as a gap.", _GUARD
+    )
+    max_jitter: float = entry(
+        0.02,
+        "sampling periods",
+        "Stamps that stay this near to a uniform axis are taken as uniform, and nothing is resampled.",
+        _CHOICE,
+    )
+    max_spline_jitter: float = entry(
+        0.5,
+        "sampling periods",
+        "Where the time between samples varies by more, a spline would ring: interpolation is monotone.",
+        _CHOICE,
+    )
+    averaging_step: float = entry(
+        1.5,
+        "sampling periods",
+        "A uniform axis with longer steps holds means of the samples between, not interpolated values.",
+        _CHOICE,
+    )
+    slow_sampling_step: float = entry(
+        0.5, "s", "A longer step is remarked on: stamps may be in milliseconds.", _GUARD
+    )
+    max_range_excess: float = entry(
+        0.1, "of the range", "Positions that leave a joint's range by more are refused.", _GUARD
+    )
+    steady_step: float = entry(
+        0.1,
+        "rad",
+        "Half a turn within one sample is refused, as a sensor's new start, where the median step is less.",
+        _GUARD,
+    )
+    max_shared_samples: int = entry(
+        50,
+        "samples",
+        "A test record with so many consecutive moving samples of a training record is refused as a copy.",
+        _GUARD,
+    )
+    max_rate_difference: float = entry(
+        0.02, "1", "Records whose rates differ by more cannot be processed alike and are refused.", _GUARD
+    )
+    max_noise_share: float = entry(
+        1e-3,
+        "of the power",
+        "The cut-off is as high as leaves noise of the positions this share of the accelerations' power.",
+        "keeps the bias of least squares by noise in the regressor small (Gautier 1997)",
+    )
+    bandwidth_power: float = entry(
+        0.9,
+        "of the power",
+        "The bandwidth of a motion is the frequency below which this share of the speeds' power lies.",
+        _CHOICE,
+    )
+    cutoff_over_bandwidth: float = entry(
+        2.5, "1", "The cut-off is at least so many times the bandwidth of the motion.", _CHOICE
+    )
+    min_cutoff_periods: float = entry(
+        10.0,
+        "periods of the cut-off",
+        "The cut-off is so high that a record holds so many at least.",
+        _CHOICE,
+    )
+    samples_per_cutoff_period: float = entry(
+        25.0, "samples", "The cut-off is so low that its period holds at least so many samples.", _CHOICE
+    )
+    position_cutoff_over_cutoff: float = entry(
+        4.5,
+        "1",
+        "The positions' filter has so many times the cut-off of the parallel one.",
+        "well above the pass band of the parallel filter (Gautier 1997), chosen on the example logs",
+    )
+    max_position_cutoff: float = entry(
+        0.45,
+        "of the rate",
+        "A positions' filter with a higher cut-off would do nothing and is left out.",
+        "just below half the rate, the highest frequency that samples show",
+    )
+    row_rate_over_cutoff: float = entry(
+        2.3,
+        "1",
+        "Rows are decimated to so many times the parallel cut-off at least.",
+        "the pass band fills the rows' band (Gautier 1997)",
+    )
+    trimmed_cutoff_periods: float = entry(
+        1.5,
+        "periods of the lowest cut-off",
+        "So much is trimmed at both ends of a record, where filters have no past or future.",
+        _CHOICE,
+    )
+    rest_speed: float = entry(
+        0.01,
+        "of its 99 % quantile",
+        "A joint's speed below counts as slow.",
+        _CHOICE,
+    )
+    max_readings_at_rest: int = entry(
+        5,
+        "readings",
+        "A joint with no more distinct positions in a record rests, be it shaken.",
+        _CHOICE,
+    )
+    rest_cutoff_periods: float = entry(
+        0.25,
+        "periods of the cut-off",
+        "A joint that stays slow for longer rests; a reversal passes faster.",
+        _CHOICE,
+    )
+    min_rest_time: float = entry(
+        5e-3, "s", "A joint that is slow for less does not rest, whatever the cut-off.", _CHOICE
+    )
+    max_rest_weight: float = entry(
+        0.02,
+        "of the filter's weight",
+        "A row counts as moving where the parallel filter takes less of its weight from samples at rest.",
+        _CHOICE,
+    )
+    short_rest_cutoff_periods: float = entry(
+        0.05,
+        "periods of the cut-off",
+        "Samples of a rest that lasts longer are taken out of effort and columns before the parallel filter.",
+        "a shorter rest leaves nothing in what the filter lets pass",
+    )
+    min_rows: int = entry(
+        10, "rows", "A record with fewer rows after filtering and decimation is refused.", _GUARD
+    )
+    max_period_difference: float = entry(
+        2e-3,
+        "of the power",
+        "Positions repeat after a lag if they differ by less of their power.",
+        "calibrated on repeated trajectories of measured arms",
+    )
+    max_given_period_difference: float = entry(
+        0.05,
+        "of the power",
+        "A period that the user gives is refused where positions differ by more from one to the next.",
+        _GUARD,
+    )
+    min_period_samples: int = entry(4, "samples", "A given period with fewer samples is refused.", _GUARD)
+
+
+USUAL = DatasetThresholds()
