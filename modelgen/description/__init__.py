@@ -16,6 +16,8 @@ from modelgen.description.objects import (
     NoDrive,
     Range,
     Scalar,
+    Tool,
+    Transform,
     geometry_symbol,
 )
 from modelgen.description.schema import json_schema
@@ -36,6 +38,8 @@ __all__ = [
     "NoDrive",
     "Range",
     "Scalar",
+    "Tool",
+    "Transform",
     "geometry_symbol",
     "json_schema",
     "load",

@@ -12,6 +12,7 @@ from modelgen.description.messages import describe, suggest
 from modelgen.description.names import arm_name_problem, symbol_name_problem
 from modelgen.description.objects import Arm, Inertial
 from modelgen.description.schema import ArmModel, Document
+from modelgen.description.transforms import read_base, read_tools
 
 
 def build(document: Document, root: Node, known_effects: KnownEffects | None) -> dict[str, Arm]:
@@ -59,6 +60,8 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
         symbols=MappingProxyType(dict(context.symbols)),
         notes=tuple(context.notes),
         effects=read_effects(context, model.effects, known_effects, ["effects"], "arm"),
+        base=read_base(context, model),
+        tools=read_tools(context, model, names),
         where=context.where([], key=True),
     )
 

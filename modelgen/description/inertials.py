@@ -17,7 +17,8 @@ def read_inertial(context: Context, model: LinkModel, steps: Steps) -> Inertial:
     """Mass [kg], centre of mass [m], inertia about it [kg m^2]. Raises InputError if no body has them.
 
     The principal moments of a body are not negative, and none exceeds the sum of the other two
-    (Traversaro et al., 2016); a body without mass has no inertia.
+    (Traversaro et al., 2016); a body without mass has no inertia. With `as_given` nothing but the mass is
+    checked.
     """
     mass = context.number(model.mass, "plain", [*steps, "mass"])
     com = context.numbers(model.com, "length", [*steps, "com"])
@@ -25,6 +26,8 @@ def read_inertial(context: Context, model: LinkModel, steps: Steps) -> Inertial:
     at = [*steps, "inertia"]
     if mass < 0.0:
         raise context.error(f"found {mass:g} kg, expected a mass that is not negative", [*steps, "mass"])
+    if model.as_given:
+        return Inertial(mass, (com[0], com[1], com[2]), _six(inertia))
     if mass == 0.0 and any(inertia):
         raise context.error("found an inertia without mass, expected zeros for a link of mass 0", at)
     scale = max(map(abs, inertia), default=0.0)

@@ -18,6 +18,8 @@ from modelgen.errors import Location
 
 Scalar: TypeAlias = float | sp.Expr
 Range: TypeAlias = tuple[float, float]
+# Marks what most arms do not have: the hash of a description then says nothing of it.
+OPTIONAL = MappingProxyType({"optional": True})
 
 
 def geometry_symbol(name: str) -> sp.Symbol:
@@ -145,11 +147,29 @@ class Inertial:
 
 
 @dataclass(frozen=True)
+class Transform:
+    """A fixed rotation (rows) and translation [m]."""
+
+    rotation: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    translation: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A named frame on the link of joint `link` (an index): link <- tool."""
+
+    name: str
+    link: int
+    transform: Transform
+
+
+@dataclass(frozen=True)
 class Arm:
     """One arm: joints in YAML order; an antecedent may stand later in the file, without cycles.
 
     `links[i]` belongs to `joints[i]`. `symbols` maps the names of geometry symbols to their values.
-    `effects` are those of the whole arm.
+    `effects` are those of the whole arm. `base` is world <- base frame, None where that is the world; gravity
+    is given in the base frame. `tools` are named frames on links.
     `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
     """
 
@@ -161,7 +181,9 @@ class Arm:
     source: str = ""
     symbols: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     notes: tuple[str, ...] = ()
-    effects: tuple[EffectUse, ...] = ()
+    effects: tuple[EffectUse, ...] = field(default=(), metadata=OPTIONAL)
+    base: Transform | None = field(default=None, metadata=OPTIONAL)
+    tools: tuple[Tool, ...] = field(default=(), metadata=OPTIONAL)
     where: Location | None = field(default=None, compare=False)
 
     @property

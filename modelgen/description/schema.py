@@ -57,6 +57,7 @@ Number: TypeAlias = Annotated[
 ]
 Pair: TypeAlias = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Triple: TypeAlias = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Quadruple: TypeAlias = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Sextuple: TypeAlias = Annotated[list[Number], Field(min_length=6, max_length=6)]
 JointName: TypeAlias = Annotated[str, Field(pattern=JOINT_NAME)]
 EffectEntry: TypeAlias = Annotated[
@@ -196,12 +197,34 @@ class JointModel(Model):
     )
 
 
+class TransformModel(Model):
+    """A fixed transform: a place and angles, or a matrix."""
+
+    xyz: Triple = Field(default=[0.0, 0.0, 0.0], description="Place of the origin [m].")
+    rpy: Triple = Field(
+        default=[0.0, 0.0, 0.0],
+        description="Roll, pitch, yaw [rad]: turns about x, then y, then z, which stand still.",
+    )
+    matrix: Annotated[list[Quadruple], Field(min_length=4, max_length=4)] | None = Field(
+        default=None, description="Instead of both: a homogeneous 4 x 4 matrix, row by row [1; m]."
+    )
+
+
+class ToolModel(TransformModel):
+    """A named frame on a link: link <- tool."""
+
+    link: JointName = Field(description="Name of the joint whose link carries it.")
+
+
 class LinkModel(Model):
     """Nominal inertials of a link, in the frame of its joint."""
 
     mass: Number = Field(description="Mass [kg].")
     com: Triple = Field(description="Centre of mass x, y, z [m].")
     inertia: Sextuple = Field(description="ixx, ixy, ixz, iyy, iyz, izz about the centre of mass [kg m^2].")
+    as_given: Literal[True] | None = Field(
+        default=None, description="true: the figures are kept even where no body can have them."
+    )
 
 
 class ArmModel(Model):
@@ -224,6 +247,12 @@ class ArmModel(Model):
     joints: Annotated[list[JointModel], Field(min_length=1)] = Field(description="The joints, base first.")
     effects: list[EffectEntry] = Field(
         default=[], description="Effects of the whole arm: base_tilt, fluid_drag, time_delay and others."
+    )
+    base: TransformModel | None = Field(
+        default=None, description="World <- base frame; poses are then given in the world. Default: the same."
+    )
+    tools: dict[JointName, ToolModel] = Field(
+        default={}, description="Named frames on links: name to link and transform, for poses and Jacobian."
     )
     links: dict[str, LinkModel] = Field(
         default={}, description="Nominal inertials by the name of the link's joint."

@@ -10,7 +10,7 @@ from modelgen.functions.objects import Function, Output
 from modelgen.graph import Expr
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.model.effect_forces import EffectForces
-from modelgen.model.kinematics import jacobian, link_poses, transform
+from modelgen.model.kinematics import jacobian, link_poses, tool_poses, transform
 from modelgen.model.motion import Rates
 
 
@@ -28,25 +28,40 @@ def kinematic_functions(a: Assembly) -> list[Function]:
 
 def _forward_kinematics(a: Assembly) -> Function:
     frames = a.real.frames
-    poses = link_poses(frames)
-    results = [
-        (Output(f"T_{joint.name}", 4, 4, "m", f"base <- link {joint.name}"), transform(pose))
-        for joint, pose in zip(frames.arm.joints, poses, strict=True)
+    arm = frames.arm
+    ground = "base" if arm.base is None else "world"
+    named = [
+        *((joint.name, f"link {joint.name}") for joint in arm.joints),
+        *((tool.name, f"tool {tool.name}, on link {arm.joints[tool.link].name}") for tool in arm.tools),
     ]
-    text = "Homogeneous transforms from every link's frame to the base, link after link."
+    poses = [*link_poses(frames), *tool_poses(frames)]
+    results = [
+        (Output(f"T_{name}", 4, 4, "m", f"{ground} <- {what}"), transform(pose))
+        for (name, what), pose in zip(named, poses, strict=True)
+    ]
+    text = f"Homogeneous transforms from every link's frame to the {ground}, link after link"
+    text += ", then tool after tool." if arm.tools else "."
     return a.function("forward_kinematics", text, ["q"], results, drives=False, stacked=True)
 
 
 def _jacobian(a: Assembly) -> Function:
-    joints = a.real.arm.joints
+    arm, frames = a.real.arm, a.real.frames
+    joints = arm.joints
     names = [joint.name for joint in joints]
+    tools = [tool.name for tool in arm.tools]
     name = a.options.jacobian_link or names[-1]
-    if name not in names:
-        raise InputError(f"no link {name} for the Jacobian; links: {', '.join(names)}")
-    rows = jacobian(a.real.frames, names.index(name))
+    if name not in names and name not in tools:
+        listed = ", ".join(names) + (f"; tools: {', '.join(tools)}" if tools else "")
+        raise InputError(f"no link {name} for the Jacobian; links: {listed}")
+    if name in tools:
+        k = tools.index(name)
+        rows, what = jacobian(frames, arm.tools[k].link, tool_poses(frames)[k][1]), f"tool {name}"
+    else:
+        rows, what = jacobian(frames, names.index(name)), f"link {name}"
+    axes = "base" if arm.base is None else "world"
     unit = "m, 1 over 1, 1/m" if any(j.type == "prismatic" for j in joints) else "m over 1"
-    output = Output("jacobian", 6, a.n, unit, "linear over angular, base axes")
-    text = f"Velocity of the origin of link {name} over its angular velocity, per joint velocity."
+    output = Output("jacobian", 6, a.n, unit, f"linear over angular, {axes} axes")
+    text = f"Velocity of the origin of {what} over its angular velocity, per joint velocity."
     return a.function("jacobian", text, ["q"], [(output, [x for row in rows for x in row])], drives=False)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import Field, fields, is_dataclass
 from typing import Any
 
 import sympy as sp
@@ -40,10 +40,12 @@ def _plain(value: Any) -> Any:
         content = {
             f.name: _plain(getattr(value, f.name))
             for f in fields(value)
-            if f.compare and not f.metadata.get("derived")
+            if f.compare and not f.metadata.get("derived") and not _unsaid(value, f)
         }
-        if isinstance(value, Arm) and not value.effects:
-            # No effects of the whole arm: nothing is said of them, and hashes of before they existed stay.
-            del content["effects"]
         return {"is": type(value).__name__, **content}
     raise TypeError(f"{type(value).__name__} has no canonical form")
+
+
+def _unsaid(value: Any, of: Field[Any]) -> bool:
+    """Whether nothing is said of what the arm does not have: hashes of before it existed stay."""
+    return bool(of.metadata.get("optional")) and getattr(value, of.name) == of.default

@@ -44,12 +44,14 @@ def animation(plant: Plant, t: Array, q: Array) -> str:
 
 
 def places(plant: Plant, q: Array) -> Array:
-    """Points of the drawing (F, 1 + 2 J, 3) [m] in the base frame: base, then origin and tip of each link."""
+    """Points of the drawing (F, 1 + 2 J, 3) [m] in the world: base, then origin and tip of each link."""
     function = NumpyFunction(next(f for f in plant.model.functions if f.name == "forward_kinematics"))
     found = function(q)
     poses = np.stack(found if isinstance(found, tuple) else [found], axis=1)
-    poses = poses.reshape(len(q), -1, 4, 4)
+    poses = poses.reshape(len(q), -1, 4, 4)[:, : len(plant.arm.joints)]  # tools come after the links
     result = np.zeros((len(q), 1 + 2 * poses.shape[1], 3))
+    if plant.arm.base is not None:
+        result[:, 0] = plant.arm.base.translation
     tips = _tips(plant.arm, float(np.linalg.norm(poses[:, :, :3, 3], axis=-1).max()))
     for i in range(poses.shape[1]):
         result[:, 1 + 2 * i] = poses[:, i, :3, 3]
@@ -78,5 +80,7 @@ def _tips(arm: Arm, reach: float) -> list[Array]:
 def _up(arm: Arm) -> list[float]:
     """The direction against gravity; z without gravity."""
     g = -np.array(arm.gravity, dtype=float)
+    if arm.base is not None:
+        g = np.array(arm.base.rotation) @ g
     size = float(np.linalg.norm(g))
     return (g / size).tolist() if size else [0.0, 0.0, 1.0]
