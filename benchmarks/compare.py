@@ -100,7 +100,7 @@ def drifted(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
 def main(arguments: Sequence[str]) -> int:
     """Measure, print, compare or accept."""
     parser = argparse.ArgumentParser(description="Generated functions beside those of other tools.")
-    parser.add_argument("arm", nargs="*", help="arms, by default every shipped one")
+    parser.add_argument("arm", nargs="*", help="arms, by default every one")
     parser.add_argument("--accept", action="store_true", help="write the tables")
     parser.add_argument("--page", action="store_true", help="write the page from the files of figures alone")
     given = parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""CPU time of `modelgen generate`: every shipped arm, then chains of 2 to 50 revolute joints.
+"""CPU time of `modelgen generate`: every arm, then chains of 2 to 50 revolute joints.
 
 Each row is a process of its own, timed from the end of its imports to the files written, so that no row
 profits from what an earlier one has cached. The last column of the chains is the local exponent of growth,
@@ -13,6 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from peers.arms import OWN
 from ruamel.yaml import YAML
 
 from modelgen.resources import shipped_arms
@@ -61,10 +62,10 @@ def seconds(arms: Path, arm: str) -> float:
 
 def main() -> None:
     """Measure and print both tables."""
-    shipped = shipped_arms()
     print(f"{'arm':24}{'CPU s':>8}")
-    for arm in YAML(typ="safe").load(shipped)["arms"]:
-        print(f"{arm:24}{seconds(shipped, arm):8.2f}", flush=True)
+    for file in (shipped_arms(), OWN):
+        for arm in YAML(typ="safe").load(file)["arms"]:
+            print(f"{arm:24}{seconds(file, arm):8.2f}", flush=True)
 
     print(f"\n{'joints in a chain':24}{'CPU s':>8}{'exponent':>10}")
     before: tuple[int, float] | None = None

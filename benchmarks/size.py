@@ -20,13 +20,11 @@ from pathlib import Path
 
 from firmware.sizes import Size, Sizes, compiler, grown, measure
 from firmware.targets import M4F, python_tools_missing
+from peers.arms import described
 
-from modelgen.description import load
 from modelgen.description.objects import Arm
-from modelgen.effects import known_effects
 from modelgen.functions import Model, Options, build_model, nominal_base
 from modelgen.generation.sizes import code_digest
-from modelgen.resources import shipped_arms
 
 ROOT = Path(__file__).resolve().parent.parent
 ACCEPTED = ROOT / "benchmarks" / "sizes.json"
@@ -35,11 +33,6 @@ TABLE = ROOT / "docs" / "sizes.md"
 FOLDED = ("ariane4", "yaw3pitch")
 
 Table = Mapping[str, Sizes]  # by arm
-
-
-def arms() -> Mapping[str, Arm]:
-    """The shipped arms by name."""
-    return load(shipped_arms(), known_effects())
 
 
 def sized_model(arm: Arm) -> Model:
@@ -118,18 +111,18 @@ def tools() -> list[str]:
 def main(arguments: Sequence[str]) -> int:
     """Measure, print, compare or accept."""
     parser = argparse.ArgumentParser(description="Sizes of the generated functions on a Cortex-M4F.")
-    parser.add_argument("arm", nargs="*", help="arms, by default every shipped one")
+    parser.add_argument("arm", nargs="*", help="arms, by default every one")
     parser.add_argument("--accept", action="store_true", help="write the tables")
     given = parser.parse_args(arguments)
-    described = arms()
-    if unknown := [name for name in given.arm if name not in described]:
-        parser.error(f"unknown arm {unknown[0]!r}, expected one of {', '.join(described)}")
+    known = described()
+    if unknown := [name for name in given.arm if name not in known]:
+        parser.error(f"unknown arm {unknown[0]!r}, expected one of {', '.join(known)}")
     if given.accept and given.arm:
         parser.error("--accept measures every arm")
     measured: dict[str, dict[str, dict[str, Size]]] = {compiler(tool): {} for tool in tools()}
     code: dict[str, str] = {}
-    for name in given.arm or described:
-        model = sized_model(described[name])
+    for name in given.arm or known:
+        model = sized_model(known[name])
         code[name] = code_digest(model)
         for tool in tools():
             with tempfile.TemporaryDirectory() as folder:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from peers.bodies import Body, bodies
 
 Array = NDArray[np.float64]
 
+OWN = Path(__file__).resolve().parents[1] / "arms.yaml"
 # Bench arms with nominal bodies of their own; a link without inertials gets the same body everywhere.
 BENCH = ("yaw3pitch", "ur10e_bench", "iiwa14_bench")
 _BODY = Inertial(mass=2.0, com=(0.1, 0.05, -0.05), inertia=(0.1, 0.002, -0.001, 0.12, 0.003, 0.09))
@@ -38,14 +40,20 @@ class Subject:
         return len(self.bodies)
 
 
+def described() -> dict[str, Arm]:
+    """The arms that ship, then those of benchmarks/arms.yaml, by name."""
+    effects = known_effects()
+    return {**load(shipped_arms(), effects), **load(OWN, effects)}
+
+
 def names() -> list[str]:
-    """The bench arms, then the other shipped ones."""
-    return [*BENCH, *(name for name in load(shipped_arms(), known_effects()) if name not in BENCH)]
+    """The bench arms, then the others."""
+    return [*BENCH, *(name for name in described() if name not in BENCH)]
 
 
 def subject(name: str, samples: int = 200) -> Subject:
-    """A shipped arm."""
-    return subject_of(load(shipped_arms(), known_effects())[name], samples)
+    """An arm by its name."""
+    return subject_of(described()[name], samples)
 
 
 def subject_of(arm: Arm, samples: int = 200) -> Subject:

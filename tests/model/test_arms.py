@@ -26,17 +26,21 @@ COORDINATES = {
     "wam7": 7,
     "iiwa14": 7,
     "yaw3pitch": 4,
-    "ur10e_bench": 6,
-    "iiwa14_bench": 7,
     "scara": 4,
     "screw_axis": 1,
     "two_fingers": 5,
 }
+BENCHMARKS = {"ur10e_bench": 6, "iiwa14_bench": 7}
 
 
 @pytest.fixture(scope="module")
 def arms(checkout: Path) -> dict[str, Arm]:
     return load(checkout / "arms.yaml", known_effects())
+
+
+@pytest.fixture(scope="module")
+def benchmarks(checkout: Path) -> dict[str, Arm]:
+    return load(checkout / "benchmarks" / "arms.yaml", known_effects())
 
 
 def rot_x(a: float) -> Matrix:
@@ -90,26 +94,37 @@ def standard_dh(rows: list[tuple[float, float, float]], q: list[float]) -> Matri
     return result
 
 
-def test_they_are_all_there_and_the_effects_are_in_the_catalogue(arms: dict[str, Arm]) -> None:
+def test_they_are_all_there_and_the_effects_are_in_the_catalogue(
+    arms: dict[str, Arm], benchmarks: dict[str, Arm]
+) -> None:
     assert {name: len(arm.coordinates) for name, arm in arms.items()} == COORDINATES
-    assert all(arm.notes == () for arm in arms.values())
+    assert {name: len(arm.coordinates) for name, arm in benchmarks.items()} == BENCHMARKS
+    assert all(arm.notes == () for arm in (*arms.values(), *benchmarks.values()))
 
 
-def test_every_arm_names_its_source_and_can_be_simulated(arms: dict[str, Arm]) -> None:
-    for arm in arms.values():
+def test_only_the_arms_that_ship_are_in_the_folder_of_generated_code(checkout: Path) -> None:
+    assert {path.name for path in (checkout / "generated").iterdir()} == set(COORDINATES)
+
+
+def test_every_arm_names_its_source_and_can_be_simulated(
+    arms: dict[str, Arm], benchmarks: dict[str, Arm]
+) -> None:
+    for arm in (*arms.values(), *benchmarks.values()):
         assert len(arm.source) > 20
         assert None not in arm.links
 
 
 def test_what_no_source_gives_is_marked(checkout: Path) -> None:
     text = (checkout / "arms.yaml").read_text(encoding="utf-8")
-    blocks = text.split("\n\n  ")
-    assert len(blocks) == len(COORDINATES)
+    added = (checkout / "benchmarks" / "arms.yaml").read_text(encoding="utf-8").partition("arms:\n")[2]
+    blocks = [*text.split("\n\n  "), *added.split("\n\n  ")]
+    known = COORDINATES | BENCHMARKS
+    assert len(blocks) == len(known)
     # The three repeat gravity_arm; all of the WAM is published.
     exact = {"gravity_link1", "gravity_link1_loaded", "gravity_link2", "wam7"}
     for block in blocks[1:]:
         name = block.split(":")[0].strip()
-        assert name in COORDINATES
+        assert name in known
         assert ("assumed" in block) is (name not in exact), name
 
 

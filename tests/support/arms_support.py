@@ -1,4 +1,4 @@
-"""The shipped arms, their models, and inputs for their functions."""
+"""The arms that ship and those of the benchmarks, their models, and inputs for their functions."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 import sympy as sp
+from peers.arms import described
 
 from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
@@ -17,7 +18,8 @@ from modelgen.functions import Function, Model, Options, build_model
 from modelgen.resources import shipped_arms
 from modelgen.transmission import of_joint
 
-ARMS = load(shipped_arms(), known_effects())
+ARMS = described()
+SHIPPED = list(load(shipped_arms(), known_effects()))
 # One worker deals with an arm, so that its model is built once.
 EVERY_ARM = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in ARMS]
 
@@ -128,6 +130,3 @@ def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np
                 value[r.index] = r.low + (r.high - r.low) * rng.uniform(0.02, 0.98)
         result.append(value)
     return result
-
-
-__all__ = ["ARMS", "EVERY_ARM", "VARIANTS", "base_vector", "inputs", "model", "number", "standard_vector"]
