@@ -24,10 +24,9 @@ ROOT = HERE.parent
 PICTURES = (".svg", ".png")
 # In the order in which data flows.
 PACKAGES = (
-    "linkages",
+    "transmission",
     "description",
     "geometry",
-    "transmission",
     "effects",
     "model",
     "base_parameters",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from modelgen.description.objects import Joint, LeveredDrive, LinkageDrive, NoDrive
 from modelgen.functions.objects import Argument, Function, Model
 
 # Names of parameters are short and carry the number of their joint, so they never meet those of a library.
@@ -24,7 +23,7 @@ class Element:
 def coordinates(model: Model) -> tuple[Element, ...]:
     """The coordinates q of an arm."""
     return tuple(
-        Element(joint.name, "m" if joint.type == "prismatic" else "rad", f"{joint.type}, {_drive(joint)}")
+        Element(joint.name, "m" if joint.type == "prismatic" else "rad", f"{joint.type}, {joint.drive.title}")
         for joint in (model.arm.joints[i] for i in model.arm.coordinates)
     )
 
@@ -74,11 +73,3 @@ def local_names(model: Model, function: Function) -> dict[str, tuple[Element | N
             named.append(element if free else None)
         result[argument.name] = tuple(named)
     return result
-
-
-def _drive(joint: Joint) -> str:
-    if isinstance(joint.drive, NoDrive):
-        return "undriven"
-    if isinstance(joint.drive, LinkageDrive):
-        return f"{joint.drive.linkage} drive"
-    return "levered drive" if isinstance(joint.drive, LeveredDrive) else "direct drive"

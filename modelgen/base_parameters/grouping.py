@@ -13,12 +13,13 @@ from modelgen.base_parameters.numeric_rank import rank, regressor_values
 from modelgen.base_parameters.objects import BaseParameter, Grouping
 from modelgen.base_parameters.printing import printed
 from modelgen.base_parameters.rules import Combination, about_foot, composed, passed_on, slid, tidy
-from modelgen.description.objects import Arm, LeveredDrive, LinkageDrive, Scalar, geometry_symbol
+from modelgen.description.objects import Arm, Scalar, geometry_symbol
 from modelgen.graph import Expr
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, base_motion, link_motions
 from modelgen.model.regressor import Plan, Regressor
+from modelgen.transmission import of_joint
 
 Columns = list[dict[int, Expr]]  # standard index -> {coordinate: effort per unit}
 
@@ -73,7 +74,7 @@ def _settled(arm: Arm, candidates: Sequence[int], row: int | None) -> list[Combi
         return tuple(candidates[k] for k in result.kept), pairs
 
     kept, found = factors(dict(arm.symbols))
-    formulas = closed_forms(arm.symbols, lambda values: factors(values)[1], found, _of_levers(arm))
+    formulas = closed_forms(arm.symbols, lambda values: factors(values)[1], found, _of_mechanisms(arm))
     settled: list[Combination] = [{} for _ in range(max(candidates, default=-1) + 1)]
     for k in kept:
         settled[k] = {k: 1.0}
@@ -82,18 +83,10 @@ def _settled(arm: Arm, candidates: Sequence[int], row: int | None) -> list[Combi
     return settled
 
 
-def _of_levers(arm: Arm) -> set[str]:
-    """Symbols in the levers: no factor depends on them, and other values may leave no triangle."""
-    names = set()
-    for joint in arm.joints:
-        drive = joint.drive
-        if isinstance(drive, LeveredDrive):
-            for value in (drive.l1, drive.l2, *drive.length, drive.offset):
-                names |= {symbol.name for symbol in sp.sympify(value).free_symbols}
-        if isinstance(drive, LinkageDrive):
-            for value in drive.figures.values():
-                names |= {symbol.name for symbol in sp.sympify(value).free_symbols}
-    return names
+def _of_mechanisms(arm: Arm) -> set[str]:
+    """Symbols in drives of varying ratio: no factor depends on them, other values may leave no mechanism."""
+    varying = (joint.drive for joint in arm.joints if of_joint(arm, joint).varies)
+    return set().union(*(drive.free_symbols() for drive in varying))
 
 
 def _grouping(

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.description import Arm, LeveredDrive, Scalar, geometry_symbol
+from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
+from modelgen.symbolic import number
 
 NAMES = ("l1", "l2", "qp_min", "qp_max", "offset")
 UNITS = ("m", "m", "m", "m", "rad")
@@ -75,17 +76,10 @@ def lever_of(arm: Arm, joint: int) -> Lever:
     if not 1 <= joint <= len(arm.coordinates):
         raise InputError(f"--joint: found {joint}, expected 1 to {len(arm.coordinates)} ({arm.name})")
     own = arm.joints[arm.coordinates[joint - 1]]
-    drive = own.drive
-    if not isinstance(drive, LeveredDrive):
-        levered = [
-            str(n) for n, i in enumerate(arm.coordinates, 1) if isinstance(arm.joints[i].drive, LeveredDrive)
-        ]
+    actuator = own.drive.actuator
+    if actuator is None:
+        levered = [str(n) for n, i in enumerate(arm.coordinates, 1) if arm.joints[i].drive.actuator]
         available = f"levered: {', '.join(levered)}" if levered else "the arm has no levered drive"
         raise InputError(f"--joint: joint {joint} ({own.name}) has no lever to calibrate ({available})")
-    symbols = {geometry_symbol(name): value for name, value in arm.symbols.items()}
-
-    def number(value: Scalar) -> float:
-        return float(value.subs(symbols)) if hasattr(value, "subs") else float(value)
-
-    values = (drive.l1, drive.l2, *drive.length, drive.offset)
-    return Lever(drive.rev, (drive.motor[0], drive.motor[1]), np.array([number(v) for v in values]))
+    values = (actuator.l1, actuator.l2, *actuator.length, actuator.offset)
+    return Lever(actuator.rev, actuator.motor, np.array([number(v, arm.symbols) for v in values]))

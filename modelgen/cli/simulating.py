@@ -17,7 +17,7 @@ from rich.progress import Progress
 from modelgen.cli.files import check_writable, write_together
 from modelgen.cli.output import print_json, print_table
 from modelgen.dataset import read_columns
-from modelgen.description import Arm, NoDrive
+from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.figures import COLOURS, figure, svg
 from modelgen.numeric import Array
@@ -142,7 +142,7 @@ def _inputs(p: Plant, path: Path) -> tuple[Array, Array]:
 def _input_names(p: Plant) -> list[str]:
     """The inputs' columns in a log."""
     drives = [p.arm.joints[i].drive for i in p.arm.coordinates]
-    return [f"{'tau' if isinstance(d, NoDrive) else 'i'}{k + 1}" for k, d in enumerate(drives)]
+    return [f"{'i' if d.driven else 'tau'}{k + 1}" for k, d in enumerate(drives)]
 
 
 def _table(option: str, path: Path, names: list[str]) -> tuple[Array, Array]:

@@ -1,6 +1,6 @@
 """Measured logs: reading, checking, processing."""
 
-from modelgen.dataset.drives import Drive, drives_of
+from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
@@ -16,7 +16,7 @@ __all__ = [
     "PRESETS",
     "Chosen",
     "DatasetThresholds",
-    "Drive",
+    "NumericDrive",
     "Prepared",
     "Record",
     "Settings",

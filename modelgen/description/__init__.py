@@ -2,26 +2,11 @@
 
 from modelgen.description.joints import DEFAULT_EFFECTS
 from modelgen.description.loading import load, loads
-from modelgen.description.objects import (
-    Arm,
-    DirectDrive,
-    Drive,
-    EffectUse,
-    Inertial,
-    Joint,
-    LeveredDrive,
-    Limits,
-    LinkageDrive,
-    MotorLimits,
-    NoDrive,
-    Range,
-    Scalar,
-    Tool,
-    Transform,
-    geometry_symbol,
-)
+from modelgen.description.objects import Arm, EffectUse, Inertial, Joint, Limits, Tool, Transform
 from modelgen.description.schema import json_schema
 from modelgen.description.starter import starter
+from modelgen.symbolic import Range, Scalar, geometry_symbol
+from modelgen.transmission import DirectDrive, Drive, LeveredDrive, MotorLimits, NoDrive
 
 __all__ = [
     "DEFAULT_EFFECTS",
@@ -33,7 +18,6 @@ __all__ = [
     "Joint",
     "LeveredDrive",
     "Limits",
-    "LinkageDrive",
     "MotorLimits",
     "NoDrive",
     "Range",

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from modelgen.description.objects import Scalar, geometry_symbol
+from modelgen.symbolic import Scalar, geometry_symbol
 
 MAX_LENGTH = 200
 MAX_DEPTH = 64

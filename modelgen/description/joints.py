@@ -8,11 +8,11 @@ from typing import TypeAlias
 
 from modelgen.description.context import Context, show
 from modelgen.description.document import Steps
-from modelgen.description.drives import LEVER, read_drive, stroke_range, within_stroke
+from modelgen.description.drives import read_drive, within_reach
 from modelgen.description.messages import describe, suggest
-from modelgen.description.objects import Drive, EffectUse, Joint, Limits, NoDrive
-from modelgen.description.schema import EffectEntry, JointModel, LeveredDriveModel, LinkageModel
-from modelgen.linkages import LINKAGES
+from modelgen.description.objects import EffectUse, Joint, Limits
+from modelgen.description.schema import EffectEntry, JointModel
+from modelgen.transmission import Drive
 
 DEFAULT_EFFECTS = ("viscous_friction", "coulomb_friction", "drive_inertia")
 
@@ -45,7 +45,7 @@ def read_joint(
         for name, raw in (("d", model.d), ("r", model.r), ("b", model.b))
     )
     drive = read_drive(context, model.drive, model.type, [*at, "drive"])
-    limits = _limits(context, model, kind, at)
+    limits = _limits(context, model, drive, kind, at)
     effects = _effects(context, model, drive, known_effects, at)
     if locked is not None:
         if limits.position and not limits.position[0] <= locked <= limits.position[1]:
@@ -73,7 +73,7 @@ def read_joint(
     )
 
 
-def _limits(context: Context, model: JointModel, kind: str, joint_at: Steps) -> Limits:
+def _limits(context: Context, model: JointModel, drive: Drive, kind: str, joint_at: Steps) -> Limits:
     given = model.limits
     at = [*joint_at, "limits"]
     position = None
@@ -87,12 +87,7 @@ def _limits(context: Context, model: JointModel, kind: str, joint_at: Steps) -> 
                 [*at, "position"],
             )
         position = low, high
-    if isinstance(model.drive, LeveredDriveModel | LinkageModel):
-        stroke = stroke_range(context, model.drive, [*joint_at, "drive"])
-        figures = LEVER
-        if isinstance(model.drive, LinkageModel):
-            figures = ", ".join(f.name for f in LINKAGES[model.drive.type].figures)
-        position = within_stroke(context, model.name, position, stroke, [*at, "position"], figures)
+    position = within_reach(context, model.name, position, drive, kind, [*at, "position"])
     return Limits(
         position=position,
         velocity=context.positive(given.velocity, kind, [*at, "velocity"]),
@@ -105,7 +100,7 @@ def _effects(
     context: Context, model: JointModel, drive: Drive, known_effects: KnownEffects | None, joint_at: Steps
 ) -> tuple[EffectUse, ...]:
     if model.effects is None:
-        return () if isinstance(drive, NoDrive) else tuple(EffectUse(name) for name in DEFAULT_EFFECTS)
+        return tuple(EffectUse(name) for name in DEFAULT_EFFECTS) if drive.driven else ()
     at = [*joint_at, "effects"]
     if model.type == "fixed" and model.effects:
         raise context.error("found effects on a fixed joint, expected none", at, key=True)

@@ -11,9 +11,7 @@ from pydantic import ValidationError
 
 from modelgen.description.document import Node, Steps, one_line
 from modelgen.errors import InputError
-from modelgen.linkages import LINKAGES
-
-_DRIVES = ("none", "direct", "levered", *LINKAGES)
+from modelgen.transmission import KINDS
 
 _EXPECTED = {
     "string_type": "text (put quotes around it)",
@@ -90,7 +88,7 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], Inp
     elif kind == "missing":
         message = f"the key '{entry['loc'][-1]}' is missing"
     elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
-        message = f"the key 'type' is missing, expected one of {', '.join(_DRIVES)}"
+        message = f"the key 'type' is missing, expected one of {', '.join(KINDS)}"
     elif kind == "union_tag_invalid":
         path = [*path, "type"]
         options = re.findall(r"'(\w+)'", context["expected_tags"])

@@ -10,21 +10,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TypeAlias
-
-import sympy as sp
 
 from modelgen.errors import Location
+from modelgen.symbolic import Range, Scalar, geometry_symbol
+from modelgen.transmission import UNDRIVEN, Drive
 
-Scalar: TypeAlias = float | sp.Expr
-Range: TypeAlias = tuple[float, float]
+__all__ = [
+    "OPTIONAL",
+    "Arm",
+    "EffectUse",
+    "Inertial",
+    "Joint",
+    "Limits",
+    "Range",
+    "Scalar",
+    "Tool",
+    "Transform",
+    "geometry_symbol",
+]
+
 # Marks what most arms do not have: the hash of a description then says nothing of it.
 OPTIONAL = MappingProxyType({"optional": True})
-
-
-def geometry_symbol(name: str) -> sp.Symbol:
-    """The SymPy symbol of one of an arm's named geometry values."""
-    return sp.Symbol(name, real=True)
 
 
 @dataclass(frozen=True)
@@ -35,60 +41,6 @@ class Limits:
     velocity: float | None = None
     acceleration: float | None = None
     effort: float | None = None
-
-
-@dataclass(frozen=True)
-class MotorLimits:
-    """Limits in the motor coordinate: unit/s, unit/s^2, A."""
-
-    velocity: float | None = None
-    acceleration: float | None = None
-    current: float | None = None
-
-
-@dataclass(frozen=True)
-class NoDrive:
-    """The joint's input is its effort: K = 1, q_m = q."""
-
-
-@dataclass(frozen=True)
-class DirectDrive:
-    """q_m = ratio q. `torque_constant` in N m/A at the motor coordinate."""
-
-    ratio: Scalar
-    torque_constant: float
-    limits: MotorLimits = MotorLimits()
-
-
-@dataclass(frozen=True)
-class LeveredDrive:
-    """Linear actuator of length q_p between points at l1 and l2 [m] from the joint axis.
-
-    q = rev q_j + offset with q_j the inner angle in (0, pi); q_p runs from length[0] to length[1]
-    while q_m runs from motor[0] to motor[1]. `torque_constant` in J per motor unit per A.
-    """
-
-    l1: Scalar
-    l2: Scalar
-    length: tuple[Scalar, Scalar]
-    motor: Range
-    rev: int
-    offset: Scalar
-    torque_constant: float
-    limits: MotorLimits = MotorLimits()
-
-
-@dataclass(frozen=True)
-class LinkageDrive:
-    """A drive of modelgen.linkages: its name and its figures [m, rad] by name."""
-
-    linkage: str
-    figures: Mapping[str, Scalar]
-    torque_constant: float
-    limits: MotorLimits = MotorLimits()
-
-
-Drive: TypeAlias = NoDrive | DirectDrive | LeveredDrive | LinkageDrive
 
 
 @dataclass(frozen=True)
@@ -122,7 +74,7 @@ class Joint:
     b: Scalar = 0.0
     antecedent: int | None = None
     limits: Limits = Limits()
-    drive: Drive = NoDrive()
+    drive: Drive = UNDRIVEN
     effects: tuple[EffectUse, ...] = ()
     locked: float | None = None
     lift: Scalar = field(default=0.0, metadata={"derived": True})

@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from modelgen.description.expressions import MAX_LENGTH
-from modelgen.linkages import LINKAGES, Linkage
+from modelgen.transmission import KINDS, Drive, NoDrive
 
 JOINT_NAME = r"^[A-Za-z_][A-Za-z0-9_-]*$"
 ARM_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
@@ -59,6 +59,7 @@ Pair: TypeAlias = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Triple: TypeAlias = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quadruple: TypeAlias = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Sextuple: TypeAlias = Annotated[list[Number], Field(min_length=6, max_length=6)]
+Sign: TypeAlias = Annotated[Literal[1, -1], BeforeValidator(_whole)]
 JointName: TypeAlias = Annotated[str, Field(pattern=JOINT_NAME)]
 EffectEntry: TypeAlias = Annotated[
     Annotated[str, Field(min_length=1), Tag("<name>")]
@@ -96,19 +97,16 @@ class LimitsModel(Model):
     effort: Number | None = Field(default=None, description="Largest effort at the joint [N m or N].")
 
 
-class NoDriveModel(Model):
-    """No drive: the input of the model is the joint's effort [N m or N]."""
+class DriveModel(Model):
+    """A drive; each kind has a model of its own, with its figures as fields."""
 
-    type: Literal["none"] = Field(description="none: the input is the joint's effort.")
+    type: str
 
 
-class MotorModel(Model):
+class MotorModel(DriveModel):
     """What every motor has: its torque constant and its limits in its own coordinate."""
 
-    torque_constant: Number = Field(
-        description="Generalised force at the motor coordinate per ampere: N m/A for a direct drive, "
-        "J per motor unit per A for a levered one. Not zero."
-    )
+    torque_constant: Number
     motor_velocity: Number | None = Field(default=None, description="Largest motor speed [units/s].")
     motor_acceleration: Number | None = Field(
         default=None, description="Largest motor acceleration [units/s^2]."
@@ -116,53 +114,28 @@ class MotorModel(Model):
     current: Number | None = Field(default=None, description="Largest motor current [A].")
 
 
-class DirectDriveModel(MotorModel):
-    """A geared motor on the joint, q_m = ratio q; a ball-screw axis has ratio = 2 pi / lead [rad/m]."""
-
-    type: Literal["direct"] = Field(description="direct: q_m = ratio q.")
-    ratio: Number = Field(description="Motor coordinate per joint coordinate [1; prismatic: rad/m].")
-
-
-class LeveredDriveModel(MotorModel):
-    """A linear actuator between two points at l1 and l2 from the axis of a revolute joint."""
-
-    type: Literal["levered"] = Field(description="levered: a linear actuator on a lever.")
-    l1: Number = Field(description="Distance from the joint axis to one end of the actuator [m].")
-    l2: Number = Field(description="Distance from the joint axis to the other end of the actuator [m].")
-    length: Pair = Field(description="Actuator length at the two values of `motor` [m].")
-    motor: Pair = Field(description="Motor coordinate at the two lengths [any unit, increments usually].")
-    rev: Annotated[Literal[1, -1], BeforeValidator(_whole)] = Field(
-        description="Branch: q = rev q_j + offset, q_j the inner angle of the lever."
-    )
-    offset: Number = Field(description="Joint angle minus rev times the lever's inner angle [rad].")
-
-
-class LinkageModel(MotorModel):
-    """A drive of modelgen.linkages; each has a class of its own, with its figures as fields."""
-
-    type: str
-
-
-def _linkage_model(linkage: Linkage) -> type[LinkageModel]:
-    fields: dict[str, Any] = {f.name: (Number, Field(description=f.text)) for f in linkage.figures}
-    fields["type"] = (Literal[linkage.name], Field(description=f"{linkage.name}: {linkage.text}."))
-    force = f"Generalised force at the motor coordinate per ampere [J per {linkage.unit} per A]. Not zero."
-    fields["torque_constant"] = (Number, Field(description=force))
-    made: type[LinkageModel] = create_model(
-        f"{type(linkage).__name__}Model",
-        __base__=LinkageModel,
-        __doc__=linkage.text[0].upper() + linkage.text[1:] + ".",
+def _drive_model(kind: type[Drive]) -> type[DriveModel]:
+    fields: dict[str, Any] = {"type": (Literal[kind.name], Field(description=f"{kind.name}: {kind.text}."))}
+    if kind.driven:
+        force = f"Generalised force at the motor coordinate per ampere [{kind.force_unit}]. Not zero."
+        fields["torque_constant"] = (Number, Field(description=force))
+    for name, figure in kind.figures().items():
+        value = Sign if figure.kind == "sign" else Pair if figure.pair else Number
+        fields[name] = (value, Field(description=figure.text))
+    made: type[DriveModel] = create_model(
+        f"{kind.__name__}Model",
+        __base__=MotorModel if kind.driven else DriveModel,
+        __doc__=kind.text[0].upper() + kind.text[1:] + ".",
         **fields,
     )
     return made
 
 
-AnyDriveModel: TypeAlias = NoDriveModel | DirectDriveModel | LeveredDriveModel | LinkageModel
+_MODELS = {name: _drive_model(kind) for name, kind in KINDS.items()}
 if TYPE_CHECKING:
-    DriveModel: TypeAlias = AnyDriveModel
+    AnyDriveModel: TypeAlias = DriveModel
 else:
-    _MODELS = (NoDriveModel, DirectDriveModel, LeveredDriveModel, *map(_linkage_model, LINKAGES.values()))
-    DriveModel = Annotated[Union[_MODELS], Field(discriminator="type")]  # noqa: UP007 - made of a tuple
+    AnyDriveModel = Annotated[Union[tuple(_MODELS.values())], Field(discriminator="type")]  # noqa: UP007 - made of a tuple
 
 
 class JointModel(Model):
@@ -186,8 +159,9 @@ class JointModel(Model):
         default=None, description="The joint that carries this one, or 'base'. Default: the joint before."
     )
     limits: LimitsModel = Field(default=LimitsModel(), description="Limits of the joint coordinate.")
-    drive: DriveModel = Field(
-        default=NoDriveModel(type="none"), description="How the joint is driven; default: not at all."
+    drive: AnyDriveModel = Field(
+        default=_MODELS[NoDrive.name](type=NoDrive.name),
+        description="How the joint is driven; default: not at all.",
     )
     effects: list[EffectEntry] | None = Field(
         default=None,

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from modelgen.description import Arm
-from modelgen.description.objects import EffectUse, LeveredDrive, NoDrive
+from modelgen.description.objects import EffectUse
 from modelgen.effects import CATALOGUE, DescriptionEffect, InputEffect
 from modelgen.effects.laws.environment import AddedMass, FluidDrag
 from modelgen.effects.laws.measurement import LeverGeometry
@@ -53,9 +53,9 @@ def places(arm: Arm, name: str) -> list[int | None]:
         joint = arm.joints[index]
         if any(use.name == name for use in joint.effects):
             continue
-        if issubclass(effect, _LEVERS) and not isinstance(joint.drive, LeveredDrive):
+        if issubclass(effect, _LEVERS) and joint.drive.actuator is None:
             continue
-        driven = not isinstance(joint.drive, NoDrive)
+        driven = joint.drive.driven
         if name == "drive_gain_error" and not driven:
             continue
         if issubclass(effect, InputEffect) and not driven:
@@ -74,7 +74,7 @@ def _of_delay(arm: Arm) -> list[int | None]:
     for number, index in enumerate(arm.coordinates, 1):
         joint = arm.joints[index]
         there = any(use.name == "time_delay" for use in joint.effects)
-        if not isinstance(joint.drive, NoDrive) and not there:
+        if joint.drive.driven and not there:
             found.append(number)
     return found if len(found) != 2 else [None]
 

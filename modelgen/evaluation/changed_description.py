@@ -12,7 +12,7 @@ import sympy as sp
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters import Grouping
 from modelgen.base_parameters.rules import slid
-from modelgen.description.objects import Arm, Joint, LeveredDrive, Scalar, geometry_symbol
+from modelgen.description.objects import Arm, Joint, Scalar, geometry_symbol
 from modelgen.effects import described
 from modelgen.effects.placement import with_effect
 from modelgen.evaluation.cache import Recent
@@ -92,15 +92,7 @@ def _with_symbols(arm: Arm) -> tuple[Arm, list[float]]:
             return joint
         place = "r" if joint.type == "prismatic" else "theta"
         changes: dict[str, Any] = {place: named(f"{place}_{number}", getattr(joint, place))}
-        if isinstance(joint.drive, LeveredDrive):
-            low, high = joint.drive.length
-            changes["drive"] = replace(
-                joint.drive,
-                l1=named(f"l1_{number}", joint.drive.l1),
-                l2=named(f"l2_{number}", joint.drive.l2),
-                length=(named(f"length0_{number}", low), named(f"length1_{number}", high)),
-                offset=named(f"offset_{number}", joint.drive.offset),
-            )
+        changes["drive"] = joint.drive.with_runtime(lambda name, x: named(f"{name}_{number}", x))
         return replace(joint, **changes)
 
     joints = tuple(of_joint(number, joint) for number, joint in enumerate(arm.joints, 1))

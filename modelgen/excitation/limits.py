@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.dataset import drives_of
-from modelgen.description import Arm, NoDrive
+from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.excitation.settings import Settings
 from modelgen.numeric import Array
@@ -50,9 +50,9 @@ def bounds(arm: Arm, settings: Settings) -> tuple[list[Bound], list[str]]:
             remarks.append(f"{joint.name} has no limits: {{position: ...}}; -180 to 180 deg are taken")
         if position is not None:
             found.append(Bound("q", n, *position))
-        motor = None if isinstance(joint.drive, NoDrive) else joint.drive.limits
+        motor = joint.drive.limits
         speed, acceleration = own.velocity, own.acceleration
-        if speed is None and (motor is None or motor.velocity is None):
+        if speed is None and motor.velocity is None:
             speed = settings.velocity
             if speed is None:
                 raise InputError(
@@ -60,19 +60,18 @@ def bounds(arm: Arm, settings: Settings) -> tuple[list[Bound], list[str]]:
                     "in the description (or drive: {motor_velocity: ...}), or --velocity",
                     joint.where,
                 )
-        if acceleration is None and (motor is None or motor.acceleration is None):
+        if acceleration is None and motor.acceleration is None:
             acceleration = settings.acceleration
-        for signal, most in (("dq", speed), ("ddq", acceleration), ("effort", own.effort)):
+        for signal, most in (
+            ("dq", speed),
+            ("ddq", acceleration),
+            ("effort", own.effort),
+            ("dqm", motor.velocity),
+            ("ddqm", motor.acceleration),
+            ("input", motor.current),
+        ):
             if most is not None:
                 found.append(Bound(signal, n, -most, most))
-        if motor is not None:
-            for signal, most in (
-                ("dqm", motor.velocity),
-                ("ddqm", motor.acceleration),
-                ("input", motor.current),
-            ):
-                if most is not None:
-                    found.append(Bound(signal, n, -most, most))
     return found, remarks
 
 

@@ -15,7 +15,7 @@ from modelgen.functions.options import Options
 from modelgen.graph import Expr, Program, Term, count_operations, lower
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.model.equations import Equations
-from modelgen.transmission import STROKE_MARGIN, Levered
+from modelgen.transmission import STROKE_MARGIN, Transmission
 
 Result = tuple[Output, Sequence[Expr]]
 
@@ -104,9 +104,9 @@ class Assembly:
         result = []
         for n, drive in enumerate(self.real.drives):
             motor = drive.transmission.motor_range()
-            # a lever's geometry is then an input, see stroke_guards
-            lever = isinstance(drive.transmission, Levered)
-            if "q" in inputs and not (self.options.runtime_geometry and lever):
+            # its geometry is then an input, see stroke_guards
+            guarded = self.options.runtime_geometry and bool(drive.transmission.drive.runtime)
+            if "q" in inputs and not guarded:
                 joint = drive.transmission.joint_range()
                 if joint:
                     result.append(_range("q", n, joint, STROKE_MARGIN))
@@ -124,20 +124,18 @@ class Assembly:
             if equations.graph not in graphs:
                 continue
             for n, drive in enumerate(equations.drives):
-                lever = drive.transmission
-                if not isinstance(lever, Levered):
-                    continue
-                tests = [lever.clearance(), lever.side()] if "q" in inputs else [lever.triangle()]
-                guards += [(self._of_lever(equations, n, lever, test), STATUS_STROKE) for test in tests]
+                t = drive.transmission
+                tests = t.drive.guards(t.q) if "q" in inputs else t.drive.motor_guards(t.q_m)
+                guards += [(self._of_drive(equations, n, t, test), STATUS_STROKE) for test in tests]
         return guards
 
-    def _of_lever(self, equations: Equations, n: int, lever: Levered, expression: sp.Expr) -> Expr:
+    def _of_drive(self, equations: Equations, n: int, t: Transmission, expression: sp.Expr) -> Expr:
         graph = equations.graph
         return from_sympy(
             graph,
             expression,
-            {**equations.scalars.symbols, lever.q: graph.input("q", n), lever.q_m: graph.input("q_m", n)},
-            lambda angle: equations.trigonometry.lookup(n, lever.q, angle),
+            {**equations.scalars.symbols, t.q: graph.input("q", n), t.q_m: graph.input("q_m", n)},
+            lambda angle: equations.trigonometry.lookup(n, t.q, angle),
         )
 
 

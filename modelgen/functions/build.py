@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from modelgen.base_parameters import Grouping, fluid_remarks, group
 from modelgen.base_parameters.rules import slid
-from modelgen.description.objects import Arm, NoDrive
+from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.dynamics import Dynamics
@@ -67,9 +67,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
 
 def _gain_remarks(options: Options, arm: Arm) -> list[str]:
     """What the mode of the drive gains means for the parameters."""
-    driven = [
-        f"gamma{n + 1}" for n, i in enumerate(arm.coordinates) if not isinstance(arm.joints[i].drive, NoDrive)
-    ]
+    driven = [f"gamma{n + 1}" for n, i in enumerate(arm.coordinates) if arm.joints[i].drive.driven]
     if options.gains == "estimated" and driven:
         return [
             f"estimated gains: {', '.join(driven)}, true over described torque constant, join the parameters",

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from modelgen.description.objects import Arm, NoDrive
+from modelgen.description.objects import Arm
 from modelgen.effects import described
-from modelgen.transmission import with_lever_symbols
+from modelgen.geometry import with_geometry_symbols
+from modelgen.transmission import UNDRIVEN
 
 GAINS = ("known", "estimated", "row_wise")
 PARTS = ("drives", "effects")
@@ -34,8 +35,8 @@ class Options:
 def prepared(arm: Arm, options: Options) -> Arm:
     """The arm with drives or effects left out, and symbols in place of run-time geometry."""
     if "drives" in options.without:
-        arm = replace(arm, joints=tuple(replace(joint, drive=NoDrive()) for joint in arm.joints))
+        arm = replace(arm, joints=tuple(replace(joint, drive=UNDRIVEN) for joint in arm.joints))
     if "effects" in options.without:
         arm = arm.without_effects()
     arm = described(arm)
-    return with_lever_symbols(arm) if options.runtime_geometry else arm
+    return with_geometry_symbols(arm) if options.runtime_geometry else arm

@@ -1,7 +1,8 @@
 """Where frames lie and how they turn: modified DH in the expression graph."""
 
 from modelgen.geometry.frames import Frame, Frames
+from modelgen.geometry.runtime import with_geometry_symbols
 from modelgen.geometry.scalars import Scalars
 from modelgen.geometry.trigonometry import Trigonometry
 
-__all__ = ["Frame", "Frames", "Scalars", "Trigonometry"]
+__all__ = ["Frame", "Frames", "Scalars", "Trigonometry", "with_geometry_symbols"]

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.description import Arm
-from modelgen.description.objects import DirectDrive, LeveredDrive
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression, Solution, Triangle
@@ -38,7 +37,7 @@ class Gain:
 
 def driven(arm: Arm) -> NDArray[np.bool_]:
     """Flags (n,) of the coordinates that have a drive."""
-    return np.array([isinstance(arm.joints[i].drive, DirectDrive | LeveredDrive) for i in arm.coordinates])
+    return np.array([arm.joints[i].drive.driven for i in arm.coordinates])
 
 
 def estimated(
@@ -78,12 +77,9 @@ def estimated(
             )
     found = []
     for k, j in enumerate(where):
-        drive = arm.joints[arm.coordinates[j]].drive
-        assert isinstance(drive, DirectDrive | LeveredDrive)
-        value = drive.torque_constant / x[p + k]
-        found.append(
-            Gain(int(j) + 1, drive.torque_constant, float(value), float(value * spread[k] / x[p + k]))
-        )
+        described = arm.joints[arm.coordinates[j]].drive.torque_constant
+        value = described / x[p + k]
+        found.append(Gain(int(j) + 1, described, float(value), float(value * spread[k] / x[p + k])))
     return _of_parameters(solution, p), tuple(found)
 
 
@@ -92,9 +88,8 @@ def with_gains(arm: Arm, gains: Sequence[Gain]) -> Arm:
     joints = list(arm.joints)
     for gain in gains:
         index = arm.coordinates[gain.joint - 1]
-        drive = joints[index].drive
-        assert isinstance(drive, DirectDrive | LeveredDrive)
-        joints[index] = replace(joints[index], drive=replace(drive, torque_constant=gain.value))
+        drive = joints[index].drive.with_torque_constant(gain.value)
+        joints[index] = replace(joints[index], drive=drive)
     return replace(arm, joints=tuple(joints))
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from modelgen.dataset import Chosen, Record, prepare
-from modelgen.description import Arm, DirectDrive, LeveredDrive
+from modelgen.description import Arm, DirectDrive
 from modelgen.description.objects import EffectUse, geometry_symbol
 from modelgen.errors import InputError
 from modelgen.functions import Options
@@ -60,7 +60,7 @@ def without_drives(
         return validation
 
     result = [Alternative(LINKS_ALONE, identified(arm, Options(without=frozenset({"effects"})), True))]
-    if any(isinstance(arm.joints[i].drive, LeveredDrive) for i in arm.coordinates):
+    if any(of_joint(arm, arm.joints[i]).varies for i in arm.coordinates):
         result.append(Alternative(CONSTANT_RATIO, identified(geared(arm), Options(), False)))
     return tuple(result)
 
@@ -74,9 +74,9 @@ def geared(arm: Arm) -> Arm:
     joints = list(arm.joints)
     for i in arm.coordinates:
         joint = arm.joints[i]
-        if not isinstance(joint.drive, LeveredDrive):
-            continue
         transmission = of_joint(arm, joint)
+        if not transmission.varies:
+            continue
         span, stroke = transmission.joint_range(), transmission.motor_range()
         if span is None or stroke is None or not span[1] > span[0]:
             raise InputError(f"{arm.name}: the stroke of joint {joint.name} has no length")

@@ -13,7 +13,6 @@ from modelgen.backends.exact import CONTEXT, exact_values
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import render, wrapped_code
-from modelgen.description.objects import LeveredDrive
 from modelgen.functions.objects import Argument, Function, Model
 from modelgen.numeric import Array
 
@@ -134,7 +133,7 @@ def _standard(model: Model) -> Array:
         values |= {f"{k}{i + 1}": mass * v for k, v in products.items()}
         values |= {f"M{axis}{i + 1}": mass * c for axis, c in zip("XYZ", com, strict=True)}
         values[f"M{i + 1}"] = mass
-        values[f"IA{i + 1}"] = 1e-8 if isinstance(joint.drive, LeveredDrive) else 1e-4
+        values[f"IA{i + 1}"] = joint.drive.typical_inertia
     return np.array([float(f"{values.get(p.name, 0.015):.6g}") for p in model.standard])
 
 

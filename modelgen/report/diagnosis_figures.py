@@ -6,7 +6,6 @@ import numpy as np
 from markupsafe import Markup
 
 from modelgen.dataset.drives import drives_of
-from modelgen.description import NoDrive
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.figures import COLOURS
@@ -59,7 +58,7 @@ def units_of(d: Diagnosis) -> list[str]:
         return list(d.test.prepared.effort_unit) or ["A"] * len(d.arm.coordinates)
     joints = [d.arm.joints[i] for i in d.arm.coordinates]
     forces = ["N" if j.type == "prismatic" else "N m" for j in joints]
-    return [u if isinstance(j.drive, NoDrive) else "A" for j, u in zip(joints, forces, strict=True)]
+    return ["A" if j.drive.driven else u for j, u in zip(joints, forces, strict=True)]
 
 
 def _position_units(d: Diagnosis) -> list[str]:

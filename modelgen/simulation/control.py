@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from modelgen.backends.casadi.function import casadi_function
-from modelgen.description.objects import NoDrive
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
@@ -66,7 +65,7 @@ def current_limits(plant: Plant) -> Array:
     found = np.full(plant.n, np.inf)
     for k, i in enumerate(plant.arm.coordinates):
         joint = plant.arm.joints[i]
-        limit = joint.limits.effort if isinstance(joint.drive, NoDrive) else joint.drive.limits.current
+        limit = joint.drive.limits.current if joint.drive.driven else joint.limits.effort
         if limit is not None:
             found[k] = limit
     return found

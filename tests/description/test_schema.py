@@ -109,8 +109,7 @@ def test_every_field_is_described_and_every_quantity_has_its_unit() -> None:
         for name, field in definition["properties"].items()
         if '"number"' in str(field).replace("'", '"')
     }
-    # The torque constant's unit depends on the drive, an effect's on its parameter: in words.
-    constants = {"DirectDriveModel.torque_constant", "LeveredDriveModel.torque_constant"}
-    in_words = constants | {"JointModel.effects", "ArmModel.effects"}
+    # An effect's unit depends on its parameter: in words.
+    in_words = {"JointModel.effects", "ArmModel.effects"}
     without = {name for name in quantities if "[" not in fields[name]}
     assert without == in_words

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from witness.arms import build
 
-from modelgen.description.objects import Arm, EffectUse, Inertial, Joint, LeveredDrive
+from modelgen.description import Arm, EffectUse, Inertial, Joint, LeveredDrive
 from modelgen.functions import Options
 
 L1, L2, SHORT, LONG, TURNS, CONSTANT, OFFSET = 0.35, 0.09, 0.29, 0.417, 160.0, 0.06, -1.4

@@ -25,8 +25,7 @@ from pathlib import Path
 
 from modelgen.backends import Provenance, c_files
 from modelgen.backends.c.dialect import arrays
-from modelgen.description import load
-from modelgen.description.objects import LeveredDrive
+from modelgen.description import LeveredDrive, load
 from modelgen.effects import known_effects
 from modelgen.functions import Function, Model, build_model
 from modelgen.resources import shipped_arms

@@ -1,8 +1,10 @@
-"""Drives through a linkage against the points of the mechanism, which scipy puts together."""
+"""Drives of varying ratio against the points of the mechanism, which scipy puts together."""
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,17 +14,17 @@ from witness.arms import Emitted, build
 from witness.compare import agree
 
 from modelgen.backends import Provenance, c_files
-from modelgen.description import Arm, EffectUse, Joint, LinkageDrive, loads
+from modelgen.description import Arm, DirectDrive, EffectUse, Joint, LeveredDrive, NoDrive, loads
 from modelgen.errors import InputError
 from modelgen.functions import STATUS_STROKE, Options
-from modelgen.linkages import DEAD_CENTRE, LINKAGES
-from modelgen.transmission import of_joint
+from modelgen.transmission import DEAD_CENTRE, KINDS, SliderCrank, curves, of_joint
 
 TORQUE_CONSTANT = 0.05
 FIGURES = {
     "slider_crank": {"lever": 0.06, "rod": 0.3, "height": -0.02, "lead": 0.005, "offset": 0.4},
 }
-each = pytest.mark.parametrize("name", LINKAGES)
+TOLD_ELSEWHERE = (NoDrive, DirectDrive, LeveredDrive)  # test_lever.py
+each = pytest.mark.parametrize("name", [n for n, kind in KINDS.items() if kind not in TOLD_ELSEWHERE])
 
 
 def slider_crank(q: float) -> tuple[float, float]:
@@ -47,9 +49,10 @@ WITNESSES: dict[str, Callable[[float], tuple[float, float]]] = {
 
 
 def arm_with(name: str, **figures: float) -> Arm:
-    drive = LinkageDrive(name, {**FIGURES[name], **figures}, TORQUE_CONSTANT)
+    kind: Any = KINDS[name]
+    drive = kind(**{**FIGURES[name], **figures}, torque_constant=TORQUE_CONSTANT)
     effects = (EffectUse("viscous_friction"), EffectUse("drive_inertia"))
-    joint = Joint("j1", LINKAGES[name].joint, drive=drive, effects=effects)
+    joint = Joint("j1", kind.joint_type or "revolute", drive=drive, effects=effects)
     return Arm("one", (joint,), (None,), (3.0, 9.0, 1.0))
 
 
@@ -99,6 +102,19 @@ def test_the_input_does_the_work_of_joint_and_drive(name: str) -> None:
     power = 0.3 * ddq * dq + 2e-4 * acceleration * speed + 1e-3 * speed**2
     agree(TORQUE_CONSTANT * speed * current, power, 1e-11)
     agree(emitted("forward_dynamics_standard", q, dq, current, theta), ddq, 1e-9)
+
+
+@each
+def test_the_drive_moves_on_with_the_zero_of_its_joint(name: str) -> None:
+    """By an encoder that reads 0.03 less, the same positions have other coordinates."""
+    arm = arm_with(name)
+    (joint,) = arm.joints
+    moved = replace(arm, joints=(replace(joint, drive=joint.drive.shifted(0.03)),))
+    here, there = (curves(of_joint(a, a.joints[0])) for a in (arm, moved))
+    q = np.linspace(*(of_joint(arm, joint).joint_range() or (0.0, 0.0)), 9)
+    agree(there.k1(q - 0.03), here.k1(q), 1e-9)
+    change = there.motor(q - 0.03) - here.motor(q)
+    agree(change, 0 * change + change[0], 1e-9)
 
 
 @each
@@ -174,7 +190,7 @@ def test_a_linkage_that_cannot_be_is_refused(change: dict[str, str], message: st
 
 def test_its_figures_may_be_symbols_and_its_range_is_the_joint_s() -> None:
     arm = loads(TEXT.format(joint="revolute", limits="", rod="0.3"), "arms.yaml")["one"]
-    assert isinstance(arm.joints[0].drive, LinkageDrive)
+    assert isinstance(arm.joints[0].drive, SliderCrank)
     assert arm.joints[0].limits.position == pytest.approx((math.radians(5), math.radians(175)))
     symbolic = build(arm, Options(runtime_geometry=True))
     plain = build(arm, Options())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.dataset.drives import Drive
+from modelgen.dataset.drives import NumericDrive
 from modelgen.dataset.mapping import units
 from modelgen.dataset.mapping.files import Foreign, listed
 from modelgen.dataset.mapping.formula import Formula, FormulaError, formula
@@ -46,7 +46,7 @@ class MappedReader:
     mapping does not fit the arm or the file's columns.
     """
 
-    def __init__(self, foreign: Foreign, reader: Reader, arm: Arm, drives: Sequence[Drive]) -> None:
+    def __init__(self, foreign: Foreign, reader: Reader, arm: Arm, drives: Sequence[NumericDrive]) -> None:
         self.foreign, self.reader, self.arm, self.drives = foreign, reader, arm, drives
         self.by_column = reader.by_column
         document = foreign.document

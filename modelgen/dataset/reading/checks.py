@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modelgen.dataset.drives import Drive
-from modelgen.description import Arm, LeveredDrive, NoDrive
+from modelgen.dataset.drives import NumericDrive
+from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.transmission import of_joint
@@ -50,7 +50,7 @@ def check_constant(
         if name is None or np.ptp(columns[:, k]) > 0.0:
             continue
         drive, joint = arm.joints[arm.coordinates[k]].drive, arm.joints[arm.coordinates[k]].name
-        if what == "effort" and isinstance(drive, NoDrive) and columns[0, k] == 0.0:
+        if what == "effort" and not drive.driven and columns[0, k] == 0.0:
             continue
         advice = (
             f"where joint {joint} was held, lock it in the description, locked: {{{joint}: ...}}"
@@ -84,7 +84,7 @@ def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array,
 def check_range(
     file: str,
     arm: Arm,
-    drives: Sequence[Drive],
+    drives: Sequence[NumericDrive],
     names: tuple[str, ...],
     columns: Array,
     q: Array,
@@ -114,16 +114,16 @@ def check_range(
         shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {printed}"
         limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"
         if excess > slack or not np.isfinite(q[:, k]).all():
-            lever = motor_side and isinstance(joint.drive, LeveredDrive)
-            hint = _unit_hint(found, (low - slack, high + slack), unit, lever)
+            also = joint.drive.decides_motor if motor_side else ""
+            hint = _unit_hint(found, (low - slack, high + slack), unit, also)
             raise InputError(f"{file}: {shown}, {limits}{hint}")
         if excess > 0.0:
             remarks.append(f"{shown}, {limits}")
     return remarks
 
 
-def _unit_hint(found: tuple[float, float], allowed: tuple[float, float], unit: str, lever: bool) -> str:
-    """The unit in which the values would be allowed, else what may be wrong, a lever's lengths included."""
+def _unit_hint(found: tuple[float, float], allowed: tuple[float, float], unit: str, also: str) -> str:
+    """The unit in which the values would be allowed, else what may be wrong, `also` besides the limits."""
     options = {
         "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
         "m": (("millimetres", "mm", 1e-3), ("centimetres", "cm", 1e-2)),
@@ -132,5 +132,5 @@ def _unit_hint(found: tuple[float, float], allowed: tuple[float, float], unit: s
         low, high = sorted((found[0] * factor, found[1] * factor))
         if low >= allowed[0] and high <= allowed[1]:
             return f": these look like {words}; declare `unit: {name}` in a mapping file (--mapping)"
-    described = "the limits or the lever's lengths" if lever else "the limits"
+    described = f"the limits or {also}" if also else "the limits"
     return f": correct unit, sign or offset in a mapping file (--mapping), or {described} in the description"

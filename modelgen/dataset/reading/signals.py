@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from modelgen.dataset.drives import Drive
+from modelgen.dataset.drives import NumericDrive
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
@@ -35,7 +35,7 @@ class Signals:
 
 
 def find_signals(
-    file: str, names: Sequence[str], arm: Arm, drives: Sequence[Drive], *, mapped: bool = False
+    file: str, names: Sequence[str], arm: Arm, drives: Sequence[NumericDrive], *, mapped: bool = False
 ) -> Signals:
     """The signals of an arm with n coordinates among the columns of a log. Raises InputError.
 
@@ -92,7 +92,9 @@ def _one(file: str, names: Sequence[str], first: str, second: str, arm: Arm) -> 
     return found[0] if found else None
 
 
-def _effort(file: str, names: Sequence[str], k: int, drive: Drive, arm: Arm, mapped: bool) -> str | None:
+def _effort(
+    file: str, names: Sequence[str], k: int, drive: NumericDrive, arm: Arm, mapped: bool
+) -> str | None:
     for kind in MAPPED_EFFORTS if mapped else ():
         if f"{kind}{k}" in names:
             return f"{kind}{k}"

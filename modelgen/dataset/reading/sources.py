@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset.drives import Drive, drives_of
+from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.mapping.columns import MappedReader
 from modelgen.dataset.mapping.files import listed, load_mapping
 from modelgen.dataset.objects import Reader
@@ -36,7 +36,7 @@ class Source:
     spec: Spec
     reader: Reader
     signals: Signals
-    drives: tuple[Drive, ...]
+    drives: tuple[NumericDrive, ...]
     hold: str | float = "following"
     rate: float | None = None
     gap: float | None = None

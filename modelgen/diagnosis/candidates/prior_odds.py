@@ -11,10 +11,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import sympy as sp
-
-from modelgen.description.objects import Arm, LeveredDrive, Scalar, geometry_symbol
+from modelgen.description.objects import Arm
 from modelgen.diagnosis.candidates.candidate import WEIGHING, Candidate
+from modelgen.symbolic import number
 
 # Scales that no arm tells: rad where the joint turns, of the torque constant, s.
 USUAL: Mapping[str, Mapping[str, float]] = {
@@ -61,10 +60,11 @@ def usual(candidate: Candidate, arm: Arm) -> Mapping[str, float]:
     joint = arm.joints[arm.coordinates[candidate.joint - 1]]
     if candidate.effect == "encoder_offset" and joint.type == "prismatic":
         return {}
-    drive = joint.drive
-    if not isinstance(drive, LeveredDrive):
+    actuator = joint.drive.actuator
+    if actuator is None:
         return USUAL.get(candidate.effect, {})
-    l1, l2, shortest, longest = (_number(x, arm) for x in (drive.l1, drive.l2, *drive.length))
+    lengths = (actuator.l1, actuator.l2, *actuator.length)
+    l1, l2, shortest, longest = (number(x, arm.symbols) for x in lengths)
     if candidate.effect == "lever_geometry":
         return {"l1": MEASURED * l1, "l2": MEASURED * l2, "length": MEASURED * (shortest + longest) / 2}
     mass = HEAVY * sum(link.mass for link in arm.links if link is not None)
@@ -72,10 +72,3 @@ def usual(candidate: Candidate, arm: Arm) -> Mapping[str, float]:
         moment = mass * longest / 2
         return {"inertia": mass * longest**2 / 3, "moment_x": moment, "moment_y": moment}
     return USUAL.get(candidate.effect, {})
-
-
-def _number(value: Scalar, arm: Arm) -> float:
-    if isinstance(value, float):
-        return value
-    given = {geometry_symbol(name): number for name, number in arm.symbols.items()}
-    return float(sp.sympify(value).subs(given))

@@ -7,11 +7,9 @@ from dataclasses import replace
 
 import sympy as sp
 
-from modelgen.description.objects import Arm, LeveredDrive, NoDrive
+from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
 from modelgen.effects.variables import InputVariables
-
-DEAD = 1e-4  # of both lengths together, that a stroke keeps from where they lie in line
 
 
 class EncoderOffset(DescriptionEffect):
@@ -31,11 +29,8 @@ class EncoderOffset(DescriptionEffect):
         assert joint is not None
         old, offset = arm.joints[joint], values["offset"]
         if old.type == "prismatic":
-            return _with(arm, joint, r=old.r + offset)
-        drive = old.drive
-        if isinstance(drive, LeveredDrive):
-            drive = replace(drive, offset=drive.offset - offset)
-        return _with(arm, joint, theta=old.theta + offset, drive=drive)
+            return _with(arm, joint, r=old.r + offset, drive=old.drive.shifted(offset))
+        return _with(arm, joint, theta=old.theta + offset, drive=old.drive.shifted(offset))
 
 
 class LeverGeometry(DescriptionEffect):
@@ -58,29 +53,10 @@ class LeverGeometry(DescriptionEffect):
         """The lever with its true lengths; its stroke ends where they no longer close."""
         assert joint is not None
         drive = arm.joints[joint].drive
-        if not isinstance(drive, LeveredDrive):
+        if drive.actuator is None:
             raise ValueError("found on a joint without a lever, expected a levered drive")
-        low, high = (end + values["length"] for end in drive.length)
-        l1, l2 = drive.l1 + values["l1"], drive.l2 + values["l2"]
-        lever = replace(drive, l1=l1, l2=l2, length=(low, high))
-        if all(isinstance(x, float) for x in (l1, l2, low, high)):
-            lever = _closed(lever)
-        return _with(arm, joint, drive=lever)
-
-
-def _closed(lever: LeveredDrive) -> LeveredDrive:
-    """A lever of numbers with the part of its stroke on which it closes, and what the motor is there."""
-    l1, l2, *ends = (float(x) for x in (lever.l1, lever.l2, *lever.length))
-    spare = DEAD * (l1 + l2)
-    shortest, longest = abs(l1 - l2) + spare, l1 + l2 - spare
-    inside = [min(max(end, shortest), longest) for end in ends]
-    if min(l1, l2) <= 0 or inside[0] == inside[1]:
-        raise ValueError("these lengths leave no triangle anywhere on the stroke")
-    if inside == ends:
-        return lever
-    per_length = (lever.motor[1] - lever.motor[0]) / (ends[1] - ends[0])
-    first, last = (lever.motor[0] + per_length * (end - ends[0]) for end in inside)
-    return replace(lever, length=(inside[0], inside[1]), motor=(first, last))
+        actuator = drive.actuator.lengthened(values["l1"], values["l2"], values["length"])
+        return _with(arm, joint, drive=drive.with_actuator(actuator))
 
 
 class DriveGainError(DescriptionEffect):
@@ -99,10 +75,10 @@ class DriveGainError(DescriptionEffect):
         """The drive with its true torque constant."""
         assert joint is not None
         drive = arm.joints[joint].drive
-        if isinstance(drive, NoDrive):
+        if not drive.driven:
             raise ValueError("found on a joint without a drive, expected a driven joint")
         constant = drive.torque_constant * (1 + values["error"])
-        return _with(arm, joint, drive=replace(drive, torque_constant=constant))
+        return _with(arm, joint, drive=drive.with_torque_constant(constant))
 
 
 class TorqueConstantSaturation(InputEffect):

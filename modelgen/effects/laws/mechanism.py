@@ -9,7 +9,6 @@ import sympy as sp
 
 from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, Swing, Values, at
 from modelgen.effects.variables import BodyVariables, Variables
-from modelgen.transmission import Levered
 
 
 class DriveInertia(Effect):
@@ -163,20 +162,16 @@ class ActuatorMass(BodyEffect):
 
     def swing(self, x: BodyVariables, p: Values) -> Swing:
         """From the base, at the distance l1 from the joint, to the lever's end, at l2."""
-        drive = x.transmission
-        if not isinstance(drive, Levered):
+        q, actuator = x.transmission.q, x.transmission.drive.actuator
+        if actuator is None:
             raise ValueError("found on a joint without a lever, expected a levered drive")
-        l1, l2 = sp.sympify(drive.drive.l1), sp.sympify(drive.drive.l2)
-        angle = drive.q - drive.drive.offset
-        square = l1**2 + l2**2 - 2 * l1 * l2 * sp.cos(angle)
-        along, across = l2 * sp.cos(angle) - l1, l2 * sp.sin(angle)
-        turn = (l2**2 - l1 * l2 * sp.cos(angle)) / square
+        (along, across), turn = actuator.direction(q), actuator.turn(q)
         c, s = sp.cos(p["base_angle"]), sp.sin(p["base_angle"])
-        length = sp.sqrt(square)
+        length = sp.sqrt(actuator.square(q))
         cosine, sine = (c * along - s * across) / length, (s * along + c * across) / length
-        parts = (cosine, sine, turn, sp.diff(turn, drive.q))
-        cosine, sine, turn, bend = (part.subs(drive.q, x.q) for part in parts)
-        return Swing(cosine, sine, turn, bend, (l1 * c, l1 * s))
+        parts = (cosine, sine, turn, sp.diff(turn, q))
+        cosine, sine, turn, bend = (part.subs(q, x.q) for part in parts)
+        return Swing(cosine, sine, turn, bend, (actuator.l1 * c, actuator.l1 * s))
 
     def force(self, x: BodyVariables, p: Values) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
         """SX x'' + SY y'' at the base, SX a + JS x'' and SY a at 1 m on its axes; a that of the base.
