@@ -14,6 +14,7 @@ from c_support import (
     WARNINGS,
     Library,
     counted,
+    evaluated,
     flat,
     flat_c,
     one_source,
@@ -22,7 +23,7 @@ from c_support import (
     write,
 )
 
-from modelgen.backends import NumpyFunction, Provenance, c_files, casadi_files
+from modelgen.backends import Provenance, c_files, casadi_files
 from modelgen.functions import Function, Model
 
 PROVENANCE = Provenance("modelgen test", "0" * 64)
@@ -61,14 +62,14 @@ def casadi_functions(made: Model) -> dict[str, object]:
     return functions
 
 
-def condition(made: Model, function: Function, x: list[np.ndarray]) -> float:
-    """Condition number of the mass matrix at the inputs of a forward dynamics."""
+def conditions(made: Model, function: Function, samples: list[list[np.ndarray]]) -> np.ndarray:
+    """Condition numbers of the mass matrix at the inputs of a forward dynamics."""
     suffix = function.name.removeprefix("forward_dynamics")
     (mass,) = [f for f in made.functions if f.name == f"mass_matrix{suffix}"]
-    given = {a.name: v for a, v in zip(function.arguments, x, strict=True)}
+    names = [a.name for a in function.arguments]
     n = len(made.arm.coordinates)
-    matrix = NumpyFunction(mass)(*(given[a.name] for a in mass.arguments))
-    return float(np.linalg.cond(matrix.reshape(n, n)))
+    given = [[x[names.index(a.name)] for a in mass.arguments] for x in samples]
+    return np.asarray(np.linalg.cond(evaluated(mass, given).reshape(-1, n, n)))
 
 
 def check_values(name: str, variant: str, libraries: dict[str, Library]) -> None:
@@ -77,21 +78,21 @@ def check_values(name: str, variant: str, libraries: dict[str, Library]) -> None
     assert list(casadi) == [f"{name}_{f.name}" for f in made.functions]
     rng = np.random.default_rng(11)
     for f in made.functions:
-        evaluate = NumpyFunction(f)
-        for _ in range(SAMPLES):
-            x = inputs(made, f, rng)
-            expected = flat(f, evaluate(*x))
-            assert np.isfinite(expected).all(), f.name
-            norm = np.linalg.norm(expected)
-            factor = condition(made, f, x) if f.name.startswith("forward_dynamics") else 0.0
+        samples = [inputs(made, f, rng) for _ in range(SAMPLES)]
+        dynamics = f.name.startswith("forward_dynamics")
+        factors = conditions(made, f, samples) if dynamics else np.zeros(SAMPLES)
+        expected = evaluated(f, samples)
+        assert np.isfinite(expected).all(), f.name
+        for x, right, factor in zip(samples, expected, factors, strict=True):
             by_casadi = flat(f, casadi[f"{name}_{f.name}"](*x))  # type: ignore[operator]
             allowed = max(TOLERANCE["double"], 50 * EPSILON["double"] * factor)
-            assert np.linalg.norm(by_casadi - expected) <= allowed * norm, f.name
-            for real, library in libraries.items():
-                # What float cannot hold of the inputs is no error of the code.
-                rounded = [v.astype(library.type).astype(float) for v in x]
-                reference = flat(f, evaluate(*rounded))
-                status, result = library.call(f.name, *rounded)
+            assert np.linalg.norm(by_casadi - right) <= allowed * np.linalg.norm(right), f.name
+        for real, library in libraries.items():
+            # What float cannot hold of the inputs is no error of the code.
+            rounded = [[v.astype(library.type).astype(float) for v in x] for x in samples]
+            references = evaluated(f, rounded)
+            for x, reference, factor in zip(rounded, references, factors, strict=True):
+                status, result = library.call(f.name, *x)
                 assert status == 0, f.name
                 allowed = max(TOLERANCE[real], 50 * EPSILON[real] * factor)
                 error = np.linalg.norm(flat_c(result) - reference)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from modelgen.backends import NumpyFunction
 from modelgen.backends.c.dialect import arrays
 from modelgen.functions.objects import Function, Model
 
@@ -50,11 +51,15 @@ def sources(folder: Path) -> list[str]:
     return found
 
 
-def shared_library(folder: Path, arm: str, real: str, *, optimise: str = "-O1") -> Path:
-    """The arm's C as a library; a contraction to fused operations would hide what the text says."""
+def shared_library(folder: Path, arm: str, real: str, *, optimise: str = "-O0") -> Path:
+    """The arm's C as a library, by default unoptimised, since its compilation takes longer than all calls of a test.
+
+    A contraction to fused operations would hide what the text says.
+    """
     library = folder / f"{real}.so"
     flags = [f"-D{arm.upper()}_REAL={real}", optimise, "-ffp-contract=off", "-std=c99", "-fPIC", "-shared"]
-    run([C_COMPILERS[0], *flags, "-I", str(folder / "include"), *sources(folder), "-o", str(library), "-lm"])
+    include = ["-I", str(folder / "include")]
+    run([C_COMPILERS[0], *flags, *include, one_source(folder), "-o", str(library), "-lm"])
     return library
 
 
@@ -93,6 +98,14 @@ def flat(function: Function, outputs: object) -> np.ndarray:
     assert len(several) == len(function.outputs)
     arrays_ = [np.asarray(getattr(o, "full", lambda o=o: o)(), dtype=float).ravel() for o in several]
     return np.concatenate(arrays_)
+
+
+def evaluated(function: Function, samples: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
+    """Outputs of NumPy for samples of the inputs, one row a sample, in the order of the C arrays."""
+    columns = [np.array([given[i] for given in samples]) for i in range(len(function.arguments))]
+    found = NumpyFunction(function)(*columns)
+    several = found if isinstance(found, tuple) else (found,)
+    return np.concatenate([np.reshape(part, (len(samples), -1)) for part in several], axis=1)
 
 
 def flat_c(results: Mapping[str, np.ndarray]) -> np.ndarray:
