@@ -1,5 +1,6 @@
 # Needs Python 3.11 or later, a C and C++ compiler and make; everything else goes into $(VENV).
 #   make run     generate every arm of arms.yaml into generated/, then diagnose a simulated recording
+#   make check   lint and the fast tests, for while one works
 #   make test    lint, then every test
 #   make pytest  every test
 #   make lint    ruff and mypy
@@ -16,15 +17,18 @@
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make hidden  diagnose two dozen simulated recordings with hidden effects (a part of make test)
 #   make blind   diagnose the full matrix of hidden effects (SEED=n, TRAIN=4 records; hours), write docs/diagnosis.md
+#   make mutations  defects put into the diagnosis, one after the other: its tests must see each
 #   make clean   remove the environment and the caches
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# modelgen alone, which is what it takes to run; and with what its tests, pages and measurements need besides.
 INSTALLED := $(VENV)/.installed
+TESTED := $(VENV)/.installed-test
 
-.PHONY: run test pytest lint format bench bench-scale bench-identification bench-generation bench-fleet docs size \
-    run-examples prove fuzz hidden blind clean
+.PHONY: run check test pytest lint format bench bench-scale bench-identification bench-generation bench-fleet docs size \
+    run-examples prove fuzz hidden blind mutations clean
 
 EXAMPLE := examples/diagnosis
 
@@ -34,49 +38,52 @@ run: $(INSTALLED)
 	$(BIN)/modelgen diagnose $(EXAMPLE)/arms.yaml --arm digger --train $(EXAMPLE)/train_a.csv \
 	    --train $(EXAMPLE)/train_b.csv --test $(EXAMPLE)/test.csv --out build/digger
 
+check: lint
+	$(BIN)/python -m pytest -q -n auto --dist loadgroup -m "not slow"
+
 test: lint pytest
 
-pytest: $(INSTALLED)
+pytest: $(TESTED)
 	$(BIN)/python -m pytest -n auto --dist loadgroup
 
-lint: $(INSTALLED)
+lint: $(TESTED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --strict
 
-format: $(INSTALLED)
+format: $(TESTED)
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: $(INSTALLED)
+bench: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python benchmarks/variants.py --accept
 	$(BIN)/python benchmarks/compare.py --accept
 
-bench-scale: $(INSTALLED)
+bench-scale: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python benchmarks/scale.py --accept
 	$(BIN)/python benchmarks/compare.py --page
 
-bench-identification: $(INSTALLED)
+bench-identification: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench,logs]'
 	$(BIN)/python benchmarks/identification.py
 	$(BIN)/python benchmarks/identification.py --scale 1e8
 
-bench-generation: $(INSTALLED)
+bench-generation: $(TESTED)
 	$(BIN)/python benchmarks/generate.py
 
-bench-fleet: $(INSTALLED)
+bench-fleet: $(TESTED)
 	$(BIN)/python benchmarks/fleet.py build/fleet
 	$(BIN)/python benchmarks/diagnosis_scale.py
 
-docs: $(INSTALLED)
+docs: $(TESTED)
 	$(BIN)/python docs/build.py
 
-size: $(INSTALLED)
+size: $(TESTED)
 	$(BIN)/python benchmarks/size.py
 
-run-examples: $(INSTALLED)
+run-examples: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[examples]'
 	$(BIN)/python examples/firmware/run.py
 	$(BIN)/python examples/mpc/mpc_run.py
@@ -84,28 +91,41 @@ run-examples: $(INSTALLED)
 	$(BIN)/python examples/ariane_experiment/twin_coverage.py
 	$(BIN)/python examples/gravity_test/gravity_run.py
 
-prove: $(INSTALLED)
+prove: $(TESTED)
 	PYTHONPATH=tests $(BIN)/python -m safety.eva
 
 FUZZ_SECONDS ?= 60
 
-fuzz: $(INSTALLED)
+fuzz: $(TESTED)
 	PYTHONPATH=tests $(BIN)/python -m safety.fuzz --seconds $(FUZZ_SECONDS)
 
-hidden: $(INSTALLED)
+hidden: $(TESTED)
 	$(BIN)/python -m pytest -n auto tests/hidden/test_suite.py
 
-blind: $(INSTALLED)
+blind: $(TESTED)
 	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED)) $(if $(TRAIN),--train $(TRAIN)) \
 	    $(if $(ONLY),--only $(ONLY))
+
+mutations: $(TESTED)
+	PYTHONPATH=tests $(BIN)/python -m architecture.mutations
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find modelgen tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# The stamp is written last: an installation that failed is taken up again by the next make.
+# An environment that is there is kept, with what it holds besides. The stamps are written last: an installation that
+# failed is taken up again by the next make.
+define environment
+	@test -x $(BIN)/python || $(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("modelgen needs Python 3.11 or later, and $(PYTHON) is " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+endef
+
 $(INSTALLED): pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("modelgen needs Python 3.11 or later, and $(PYTHON) is " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(environment)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
+
+$(TESTED): pyproject.toml
+	$(environment)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@touch $(INSTALLED) $@

@@ -11,11 +11,10 @@ from types import ModuleType
 import casadi as ca
 import numpy as np
 
-from modelgen.description import Arm, load
+from modelgen.description import Arm, LeveredDrive, load
 from modelgen.effects import known_effects
 from modelgen.functions import Options, build_model, nominal_base
 from modelgen.generation import generate
-from modelgen.transmission import of_joint
 
 FloatArray = np.ndarray
 
@@ -104,14 +103,17 @@ def smallest_eigenvalue(arm: ControlledArm, parameters: FloatArray, points: int 
 
 
 def _drives(arm: Arm) -> Drives:
-    joints = [arm.joints[i] for i in arm.coordinates]
-    strokes = [stroke for joint in joints if (stroke := of_joint(arm, joint).motor_range())]
-    limits = [(joint.drive.limits.current, joint.drive.limits.velocity) for joint in joints]
-    if len(strokes) < len(joints) or any(value is None for pair in limits for value in pair):
-        raise ValueError(f"{arm.name}: every joint needs a drive with a stroke, current and motor_velocity")
-    low, high = np.array(strokes, dtype=float).T
-    current, speed = np.array(limits, dtype=float).T
-    return Drives(current=current, low=low, high=high, speed=speed)
+    drives = [arm.joints[i].drive for i in arm.coordinates]
+    levers = [d for d in drives if isinstance(d, LeveredDrive)]
+    limits = [(d.limits.current, d.limits.velocity) for d in levers]
+    if len(levers) < len(drives) or any(value is None for pair in limits for value in pair):
+        raise ValueError(f"{arm.name}: every joint needs a levered drive with current and motor_velocity")
+    return Drives(
+        current=np.array([current for current, _ in limits], dtype=float),
+        low=np.array([min(d.motor) for d in levers]),
+        high=np.array([max(d.motor) for d in levers]),
+        speed=np.array([speed for _, speed in limits], dtype=float),
+    )
 
 
 def _imported(file: Path) -> ModuleType:

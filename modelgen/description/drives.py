@@ -12,9 +12,9 @@ from modelgen.symbolic import Range
 from modelgen.transmission import KINDS, Drive, Figure, FigureError, MotorLimits
 
 # Joint range and stroke come from different measurements: below `ROUNDING` the cut is not worth a remark,
-# beyond `DISAGREEMENT` one of the two must be wrong. Of a slide they are what the angles are at half a metre.
-ROUNDING = {"angle": math.radians(0.01), "length": 1e-4}
-DISAGREEMENT = {"angle": math.radians(0.5), "length": 5e-3}
+# beyond `DISAGREEMENT` one of the two must be wrong.
+ROUNDING = math.radians(0.01)
+DISAGREEMENT = math.radians(0.5)
 
 
 def read_drive(context: Context, model: DriveModel, joint_type: str, steps: Steps) -> Drive:
@@ -86,7 +86,7 @@ def within_reach(
     excess = max(reach[0] - position[0], position[1] - reach[1])
     shown = f"{show(position[0], kind)} to {show(position[1], kind)}"
     allowed = f"{show(reach[0], kind)} to {show(reach[1], kind)}"
-    if excess >= DISAGREEMENT[kind]:
+    if excess >= DISAGREEMENT:
         calibrated = " until modelgen calibrate has found them" if drive.actuator else ""
         raise context.error(
             f"found the joint range {shown}, but the actuator's stroke allows {allowed}; "
@@ -95,7 +95,7 @@ def within_reach(
             steps,
         )
     cut = max(position[0], reach[0]), min(position[1], reach[1])
-    if excess > ROUNDING[kind]:
+    if excess > ROUNDING:
         context.notes.append(
             f"{joint}: the joint range {shown} is cut to {show(cut[0], kind)} to {show(cut[1], kind)}, "
             f"which the actuator's stroke allows"

@@ -24,7 +24,7 @@ from modelgen.model.parameters import StandardParameter, effect_parameters, link
 from modelgen.transmission import Transmission, of_joint
 
 
-class GraphDrive:
+class Drive:
     """A coordinate's transmission in the graph; what of it is not made yet is made when it is asked for."""
 
     def __init__(self, transmission: Transmission, convert: Callable[[sp.Expr], Expr]) -> None:
@@ -105,9 +105,9 @@ class Equations:
 
     # -- drives ---------------------------------------------------------------------------
 
-    def _drive(self, n: int, index: int) -> GraphDrive:
+    def _drive(self, n: int, index: int) -> Drive:
         transmission = of_joint(self.arm, self.arm.joints[index])
-        return GraphDrive(transmission, self._converter(n, transmission))
+        return Drive(transmission, self._converter(n, transmission))
 
     def _converter(self, n: int, transmission: Transmission) -> Callable[[sp.Expr], Expr]:
         symbols = {**self.scalars.symbols, transmission.q: self.graph.input("q", n)}

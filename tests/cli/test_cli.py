@@ -11,8 +11,10 @@ from pathlib import Path
 import jsonschema
 import pytest
 from arms_support import SHIPPED, model
+from command_support import Done, called
 from ruamel.yaml import YAML
 
+import modelgen
 from modelgen import __version__
 
 LEVER = """\
@@ -29,9 +31,16 @@ arms:
 """
 
 
-def call(
+def call(*arguments: str, cwd: Path, checkout: Path) -> Done:
+    """In this process: with its own shipped arms, those of the checkout."""
+    assert Path(modelgen.__file__).is_relative_to(checkout)
+    return called(*arguments, cwd=cwd)
+
+
+def outside(
     *arguments: str, cwd: Path, checkout: Path, **environment: str
 ) -> "subprocess.CompletedProcess[str]":
+    """In a process of its own, as a shell calls it."""
     variables = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "PYTHONHASHSEED")}
     variables |= {"PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1", **environment}
     command = [sys.executable, "-P", "-m", "modelgen", *arguments]
@@ -42,7 +51,7 @@ def content(folder: Path) -> dict[str, bytes]:
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-def refused(done: "subprocess.CompletedProcess[str]") -> str:
+def refused(done: "Done | subprocess.CompletedProcess[str]") -> str:
     """The one line of a refusal."""
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
@@ -52,7 +61,7 @@ def refused(done: "subprocess.CompletedProcess[str]") -> str:
 
 
 def test_generate_prints_a_table_and_writes_the_arms(tmp_path: Path, checkout: Path) -> None:
-    done = call("generate", "--arm", "rx90", "--arm", "gravity_arm", cwd=tmp_path, checkout=checkout)
+    done = outside("generate", "--arm", "rx90", "--arm", "gravity_arm", cwd=tmp_path, checkout=checkout)
     assert done.returncode == 0, done.stderr
     assert sorted(p.name for p in (tmp_path / "generated").iterdir()) == ["gravity_arm", "rx90"]
     (row,) = [line for line in done.stdout.splitlines() if line.strip().startswith("rx90")]
@@ -73,7 +82,7 @@ def test_generated_files_depend_neither_on_the_hash_seed_nor_on_processes(
 ) -> None:
     arms = ["--arm", "ariane4", "--arm", "two_fingers"]
     for out, seed, jobs in (("a", "0", "1"), ("b", "1", "2"), ("c", "4242", "1")):
-        done = call(
+        done = outside(
             "generate", *arms, "--out", out, "-j", jobs, cwd=tmp_path, checkout=checkout, PYTHONHASHSEED=seed
         )
         assert done.returncode == 0, done.stderr
@@ -152,7 +161,7 @@ def test_show_without_drives_and_effects_leaves_the_links(tmp_path: Path, checko
 
 def test_show_prints_notes_and_takes_text_as_it_is(tmp_path: Path, checkout: Path) -> None:
     (tmp_path / "my.yaml").write_text(LEVER.replace("-70 deg, 40 deg", "-29.7 deg, 67 deg"))
-    done = call("show", "my.yaml", "--arm", "boom", cwd=tmp_path, checkout=checkout)
+    done = outside("show", "my.yaml", "--arm", "boom", cwd=tmp_path, checkout=checkout)
     assert done.returncode == 0, done.stderr
     assert "source: a [bold]test[/bold] of text" in done.stdout
     assert "note: " in done.stdout
@@ -259,7 +268,7 @@ def test_a_wrong_call_exits_with_2_and_shows_the_usage(
 
 
 def test_version_and_help(tmp_path: Path, checkout: Path) -> None:
-    assert call("--version", cwd=tmp_path, checkout=checkout).stdout == f"modelgen {__version__}\n"
+    assert outside("--version", cwd=tmp_path, checkout=checkout).stdout == f"modelgen {__version__}\n"
     for arguments in ([], ["--help"]):
         done = call(*arguments, cwd=tmp_path, checkout=checkout)
         assert done.returncode == 0
@@ -341,7 +350,7 @@ def test_progress_is_for_terminals_and_goes_to_stderr(tmp_path: Path, checkout: 
 
 
 def test_every_shipped_arm_is_offered(tmp_path: Path, checkout: Path) -> None:
-    line = refused(call("show", "--arm", "?", cwd=tmp_path, checkout=checkout))
+    line = refused(outside("show", "--arm", "?", cwd=tmp_path, checkout=checkout))
     assert line.endswith(f"(available: {', '.join(SHIPPED)})")
 
 

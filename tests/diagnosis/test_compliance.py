@@ -1,13 +1,12 @@
 """Elastic joints and gaps have their own values, not those of the arm that was taken for rigid."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
-from hidden.running import run
+from hidden.running import run_here
 
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
@@ -23,16 +22,15 @@ def test_a_gap_comes_out_as_wide_as_it_is(tmp_path: Path) -> None:
     # predicts the test record no better than the rigid one
     size = 3.0678565382
     case = Case("mixed4", 3679181655, (Hidden("backlash", 3, 1.3, size),))
-    outcome, _, _ = run(case, tmp_path / "case")
+    outcome, answer = run_here(case, tmp_path / "case")
     assert outcome.result == FOUND, outcome
-    answer = json.loads((tmp_path / "case" / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
     play = answer["causes"][0]["parameters"]["play"]["value"]
     assert 0.7 * GAP * size < play < 1.4 * GAP * size
 
 
 def test_a_gap_is_named_whose_first_values_explain_too_little(tmp_path: Path) -> None:
     case = Case("mixed4", 3637445377, (Hidden("backlash", 4, 1.1, 0.8640359577),))
-    outcome, _, _ = run(case, tmp_path / "case")
+    outcome, _ = run_here(case, tmp_path / "case")
     assert outcome.result == FOUND, outcome
     assert outcome.recovered is not None
     assert outcome.recovered > 0.5

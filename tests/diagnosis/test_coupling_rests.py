@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hidden.cases import Case, Hidden, make
-from hidden.running import diagnose
+from hidden.running import diagnosed_here
 
 from modelgen.dataset import prepare, read
 from modelgen.description import load
@@ -36,7 +36,7 @@ def test_rows_count_where_the_coupling_turns(folder: Path) -> None:
 
 
 def test_the_rests_of_a_coupling_are_no_delay(folder: Path) -> None:
-    answer, _ = diagnose(folder, "arm")
+    answer = diagnosed_here(folder, "arm")
     assert [(c["effect"], c["joint"]) for c in answer["causes"]] == [("transmission_coupling", 2)]
     found = {name: value["value"] for name, value in answer["causes"][0]["parameters"].items()}
     assert found["viscous"] == pytest.approx(0.211, rel=0.1)

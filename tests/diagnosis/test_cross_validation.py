@@ -9,7 +9,7 @@ import pytest
 from diagnosis_support import BARE
 from hidden.cases import Case, Hidden
 from hidden.judging import FOUND
-from hidden.running import run
+from hidden.running import run_here
 
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.validation.cross_validation import Split, folds
@@ -28,7 +28,7 @@ RIPPLE = Case("direct3", 2579679106, (Hidden("torque_ripple", 3, 1.05, 0.1055547
 
 @pytest.mark.parametrize("case", [WAVE, HARDENING, RIPPLE], ids=lambda case: case.hidden[0].effect)
 def test_the_cause_and_nothing_else_is_named(case: Case, tmp_path: Path) -> None:
-    outcome, _, _ = run(case, tmp_path / "case")
+    outcome, _ = run_here(case, tmp_path / "case")
     assert outcome.result == FOUND, outcome
 
 

@@ -7,7 +7,7 @@ import pytest
 from arms_support import base_vector, standard_vector
 from hidden.cases import Case, Hidden, make
 from hidden.judging import FOUND
-from hidden.running import run
+from hidden.running import run_here
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint, load
 from modelgen.diagnosis.pipeline import diagnose, records
@@ -92,7 +92,7 @@ def test_play_is_asked_for_where_the_link_is_loose_up_to_half_of_the_time() -> N
     ids=lambda case: f"{case.arm}-{case.hidden[0].effect}",
 )
 def test_it_is_named_from_the_motion_of_the_link_alone(case: Case, tmp_path: Path) -> None:
-    outcome, _, _ = run(case, tmp_path / "case")
+    outcome, _ = run_here(case, tmp_path / "case")
     assert outcome.result == FOUND, outcome
     assert outcome.recovered is not None
     assert outcome.recovered > 0.5

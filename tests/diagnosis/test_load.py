@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from hidden.cases import Case, Hidden, make
-from hidden.running import diagnose
+from hidden.running import diagnosed_here
 
 
 @pytest.mark.parametrize(("carried", "magnitude"), [(True, 0.3398), (False, 0.5)])
@@ -12,7 +12,7 @@ def test_what_the_friction_follows_is_found(*, carried: bool, magnitude: float, 
     hidden = Hidden("load_dependent_friction", 2, 1.3, magnitude, carried=carried)
     case = Case("direct2", 22, (hidden,), train=2)
     label = make(case, tmp_path)
-    found, _ = diagnose(tmp_path, case.name)
+    found = diagnosed_here(tmp_path, case.name)
     (cause,) = found["causes"]
     assert (cause["effect"], cause["joint"]) == ("load_dependent_friction", 2)
     assert ("rise" in cause["parameters"]) is carried

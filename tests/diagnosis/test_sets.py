@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from hidden.cases import Case, Hidden, make
-from hidden.running import diagnose
+from hidden.running import diagnosed_here
 
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
@@ -22,7 +22,7 @@ def test_coarse_positions_do_not_tell_a_lever_from_a_torque_constant(tmp_path: P
     """Errors of the positions put the wrong one of two ahead by 3 of 155 of evidence."""
     case = Case("mixed4", 79368935, (Hidden("lever_geometry", 2, 1.3, 4.598426492040),), "coarse")
     make(case, tmp_path / "case")
-    answer, _ = diagnose(tmp_path / "case", case.name)
+    answer = diagnosed_here(tmp_path / "case", case.name)
     assert answer["verdict"] == "cannot_tell"
     assert answer["causes"] == []
     assert "drive_gain_error at joint 2" in answer["reason"]
@@ -34,7 +34,7 @@ def test_rounding_that_by_chance_leaves_more_than_a_draw_of_it_is_no_delay(tmp_p
     hidden = (Hidden("asymmetric_viscous_friction", 2, 1.3, 2.396727079478),)
     case = Case("mixed4", 2321734202, hidden, "coarse", train=4)
     make(case, tmp_path / "case")
-    answer, _ = diagnose(tmp_path / "case", case.name)
+    answer = diagnosed_here(tmp_path / "case", case.name)
     assert [(c["effect"], c["joint"]) for c in answer["causes"]] == [("asymmetric_viscous_friction", 2)]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hidden.cases import Case, Hidden, make
-from hidden.running import diagnose, run
+from hidden.running import diagnosed_here, run_here
 
 from modelgen.dataset import Settings, prepare, read
 from modelgen.description import load
@@ -19,14 +19,14 @@ from modelgen.functions import build_model
 def test_nothing_is_missing_where_joints_stick_at_every_reversal(arm: str, seed: int, tmp_path: Path) -> None:
     case = Case(arm, seed, dry=5.0)
     make(case, tmp_path / "case")
-    answer, _ = diagnose(tmp_path / "case", case.name)
+    answer = diagnosed_here(tmp_path / "case", case.name)
     assert answer["verdict"] == "nothing_missing", answer["reason"]
 
 
 def test_nothing_is_missing_where_a_joint_sticks_for_a_moment_in_some_periods(tmp_path: Path) -> None:
     case = Case("mixed2", 2732881948)
     make(case, tmp_path / "case")
-    answer, _ = diagnose(tmp_path / "case", case.name)
+    answer = diagnosed_here(tmp_path / "case", case.name)
     assert answer["verdict"] == "nothing_missing", answer["reason"]
     late = [c for c in answer["ranking"][0] if c["effect"] == "time_delay"]
     assert max(c["delta_bic"] for c in late) < 6.0  # the reversals look late by a sample where they stick
@@ -40,7 +40,7 @@ def test_nothing_is_missing_where_a_joint_sticks_for_a_moment_in_some_periods(tm
     ],
 )
 def test_a_cause_is_found_at_a_joint_that_sticks(case: Case, tmp_path: Path) -> None:
-    outcome, _, _ = run(case, tmp_path / "case")
+    outcome, _ = run_here(case, tmp_path / "case")
     assert outcome.result == "found", outcome
 
 

@@ -11,9 +11,11 @@ import time
 from html.parser import HTMLParser
 from pathlib import Path
 
+import command_support
 import jsonschema
 import pyarrow.parquet
 import pytest
+from command_support import Done
 from hidden.cases import Case, Hidden, make
 from jobs_support import cluster
 from ruamel.yaml import YAML
@@ -46,6 +48,11 @@ TIMES = ("seconds", "cpu_seconds")
 
 def fleet(file: Path, out: Path, *more: str) -> list[str]:
     return [sys.executable, "-m", "modelgen", "fleet", str(file), "--out", str(out), *more]
+
+
+def here(file: Path, out: Path, *more: str) -> Done:
+    """As called in a process of its own, where nothing but the answer is asked for."""
+    return command_support.called("fleet", file, "--out", out, *more)
 
 
 def called(file: Path, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
@@ -185,13 +192,13 @@ def test_what_has_not_changed_is_kept_and_what_has_is_made_anew(
     page = (again / "out" / "overview.html").read_bytes()
     log = again / "logs" / "broken" / "train_b.csv"
     log.write_text(log.read_text(encoding="ascii").replace("word", "WORD"), encoding="ascii")
-    answer = called(again / "fleet.yaml", again / "out", "--json", "--jobs", "1")
+    answer = here(again / "fleet.yaml", again / "out", "--json", "--jobs", "1")
     said = json.loads(answer.stdout)
     assert said["kept"] == 4  # all but the one whose log has changed
     (error,) = (failed["error"] for failed in said["failed"] if failed["unit"] == "broken")
     assert "WORD" in error
     assert (again / "out" / "overview.html").read_bytes() != page
-    more = json.loads(called(again / "fleet.yaml", again / "out", "--json", "--again", "-j", "1").stdout)
+    more = json.loads(here(again / "fleet.yaml", again / "out", "--json", "--again", "-j", "1").stdout)
     assert more["kept"] == 2
     assert more["failed"] == said["failed"]
 
@@ -208,7 +215,7 @@ def test_a_fleet_of_which_nothing_can_be_diagnosed(file: Path, tmp_path: Path) -
     text = FLEET[: FLEET.index("patterns:")]
     shutil.copytree(file.parent / "logs" / "one", tmp_path / "logs" / "one")
     (tmp_path / "fleet.yaml").write_text(text, encoding="utf-8")
-    answer = called(tmp_path / "fleet.yaml", tmp_path / "out", "-j", "1")
+    answer = here(tmp_path / "fleet.yaml", tmp_path / "out", "-j", "1")
     assert answer.returncode == 2
     assert "no unit of" in answer.stderr
     assert len(table(tmp_path / "out")) == 1
@@ -318,7 +325,7 @@ def test_bad_input_on_the_command_line_writes_nothing(file: Path, tmp_path: Path
         ((tmp_path / "no.yaml", tmp_path / "out"), "there is no such fleet file"),
         ((file, taken), "found a file, expected a folder"),
     ):
-        answer = called(*arguments)
+        answer = here(*arguments)
         assert answer.returncode == 2
         assert said in answer.stderr
         assert len(answer.stderr.splitlines()) == 1

@@ -111,6 +111,7 @@ class Bench:
         walked = [q] if free else [trajectories.motion(self.paths[k], times)[0] for k in (*ROTATED, CHECK)]
         self.scales: Scales = scales(self.arm.plant, q, current, case.rate, walked)
         self._sizes: dict[int, Array] = {}
+        self._records: dict[tuple[int, tuple[tuple[int, float], ...], bool], Log] = {}
 
     def _encoders(self, plant: Plant) -> None:
         bits = {"motor": None, "joint": 20, "coarse": 14}[self.case.encoder]
@@ -145,8 +146,14 @@ class Bench:
     def record(self, k: int, magnitudes: dict[int, float], noisy: bool = True) -> Log:
         """Record k with effects of the case, by their place in its list, at these magnitudes.
 
-        noisy: with noise on the current.
+        noisy: with noise on the current. Each is simulated once.
         """
+        key = k, tuple(sorted(magnitudes.items())), noisy
+        if key not in self._records:
+            self._records[key] = self._simulated(k, magnitudes, noisy)
+        return self._records[key]
+
+    def _simulated(self, k: int, magnitudes: dict[int, float], noisy: bool) -> Log:
         case, plant = self.case, self.arm.plant.copy()
         names = [case.hidden[place].effect for place in magnitudes]
         for place, magnitude in magnitudes.items():

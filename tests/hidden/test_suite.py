@@ -1,34 +1,31 @@
-"""Logs with a hidden effect through the command line; their labels are opened when it has answered."""
+"""Logs with a hidden effect are diagnosed; their labels are opened when modelgen has answered.
+
+The whole command line runs on one case of each kind, and gives what the function gives. The others are asked
+for their answer alone: no report and no code.
+"""
 
 import json
 import os
 import statistics
-import subprocess
-import sys
 import time
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from hidden.cases import Case
-from hidden.running import run
+from hidden.cases import Case, make, seal
+from hidden.running import diagnose, diagnosed_here, judged
 from hidden.suite import NULLS, OUTSIDE, PAIRS, SINGLES
 
 RECOVERED = 0.9  # of the recoverable error, median
 WAIT = 900.0  # s, for a case that another worker has begun
-
-
-def command_exists() -> bool:
-    command = [sys.executable, "-m", "modelgen", "diagnose", "--help"]
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+WHOLE = (NULLS[0], SINGLES[2], OUTSIDE[0], PAIRS[1])  # through the command line
 
 
 @pytest.fixture(scope="session")
 def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Runs a case, or takes what another worker has found: both cores work, no case runs twice."""
-    if not command_exists():
-        pytest.skip("this version of modelgen has no command diagnose")
     base = tmp_path_factory.getbasetemp()
     shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "hidden"
     shared.mkdir(exist_ok=True)
@@ -44,10 +41,13 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> Any:
                 time.sleep(0.2)
         else:
             try:
-                found, label, seconds = run(case, shared / name)
-                written = (shared / name / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8")
-                answer = json.loads(written)
-                content = {**asdict(found), "strength": label.strength, "seconds": seconds}
+                folder = shared / name
+                seal(make(case, folder), folder.with_suffix(".sealed"))
+                answer = (
+                    diagnose(folder, case.name)[0] if case in WHOLE else diagnosed_here(folder, case.name)
+                )
+                found, label = judged(case, folder, answer)
+                content = {**asdict(found), "strength": label.strength, "folder": str(folder)}
                 content |= {"like": answer["most_like"], "ranking": answer["ranking"]}
             except Exception as error:
                 content = {"error": str(error)}
@@ -75,6 +75,13 @@ def test_the_ranking_tells_the_story_of_what_is_named(case: Case, outcome: Any) 
     assert all(len(turn) <= 1 for turn in taken)
     stayed = [[r["effect"], r["joint"]] for turn in taken for r in turn if r["refused"] is None]
     assert sorted(stayed, key=str) == sorted(found["named"], key=str)
+
+
+@pytest.mark.parametrize("case", WHOLE[2:3], ids=title)
+def test_the_command_line_and_the_function_give_the_same(case: Case, outcome: Any) -> None:
+    folder = Path(outcome(case)["folder"])
+    written = json.loads((folder / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert diagnosed_here(folder, case.name, experiment=True) == written
 
 
 @pytest.mark.parametrize("case", NULLS, ids=title)

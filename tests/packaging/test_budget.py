@@ -4,11 +4,11 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from arms_support import ARMS
+from command_support import Done, called
 
 from modelgen.errors import InputError
 from modelgen.functions import Options
@@ -28,25 +28,8 @@ def installed(target: str) -> bool:
     return all(shutil.which(tool) for tool in (TARGETS[target].compiler, TARGETS[target].size))
 
 
-def command(tmp_path: Path, *options: str, path: str | None = None) -> "subprocess.CompletedProcess[str]":
-    environment = os.environ | ({} if path is None else {"PATH": path})
-    return subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "modelgen",
-            "generate",
-            "--arm",
-            ARM,
-            "--out",
-            str(tmp_path / "out"),
-            *options,
-        ],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=environment,
-    )
+def command(tmp_path: Path, *options: str) -> Done:
+    return called("generate", "--arm", ARM, "--out", tmp_path / "out", *options)
 
 
 @pytest.mark.parametrize("target", list(TARGETS))
@@ -102,8 +85,11 @@ def test_a_target_that_does_not_exist(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_a_compiler_that_is_missing_is_named_with_its_package(tmp_path: Path) -> None:
-    done = command(tmp_path, "--max-flash", "1000", path=str(tmp_path))
+def test_a_compiler_that_is_missing_is_named_with_its_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    done = command(tmp_path, "--max-flash", "1000")
     assert done.returncode == 2
     assert done.stderr.splitlines() == [
         "found no arm-none-eabi-gcc, which measures the sizes; "

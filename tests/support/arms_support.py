@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 from peers.arms import described
 
-from modelgen.description import Scalar, load
+from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
 from modelgen.evaluation import with_effect
 from modelgen.functions import Function, Model, Options, build_model
@@ -77,7 +77,9 @@ def standard_vector(made: Model, rng: np.random.Generator) -> np.ndarray:
         values |= {f"{s}{i + 1}": v for s, v in zip(symbols, tensor[np.triu_indices(3)], strict=True)}
         values |= {f"M{a}{i + 1}": mass * c for a, c in zip("XYZ", com, strict=True)}
         values[f"M{i + 1}"] = mass
-        values[f"IA{i + 1}"] = rng.uniform(1, 2) * joint.drive.typical_inertia
+        # A motor coordinate in increments or in radians before the gear.
+        scale = 1e-8 if isinstance(joint.drive, LeveredDrive) else 1e-4
+        values[f"IA{i + 1}"] = rng.uniform(1, 2) * scale
     return np.array([values.get(p.name, rng.uniform(0.01, 0.02)) for p in made.standard])
 
 

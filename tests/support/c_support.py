@@ -52,7 +52,7 @@ def sources(folder: Path) -> list[str]:
 
 
 def shared_library(folder: Path, arm: str, real: str, *, optimise: str = "-O0") -> Path:
-    """The arm's C as a library, by default unoptimised, since its compilation takes longer than all calls of a test.
+    """The arm's C as a library, unoptimised unless told: compiling takes longer than a test's calls.
 
     A contraction to fused operations would hide what the text says.
     """
