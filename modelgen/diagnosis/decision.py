@@ -12,7 +12,7 @@ from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit
 from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
 from modelgen.diagnosis.adequacy.stand_ins import Likeness, without_stand_ins
 from modelgen.diagnosis.adequacy.verdict import verdict_of
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, Candidate, Place, at_motor, candidates
+from modelgen.diagnosis.candidates.candidate import Candidate, Place, at_motor, candidates
 from modelgen.diagnosis.candidates.requested import asked
 from modelgen.diagnosis.equations.band import Equations
 from modelgen.diagnosis.equations.position_errors import feigned, harmless
@@ -69,7 +69,7 @@ def decide(
     pool: Sequence[Candidate] = [
         c
         for c in candidates(evaluator, rows)
-        if c.effect not in COMPLIANT or made.narrowed == 1.0 or at_motor(c.joint, rows)
+        if not c.elastic or made.narrowed == 1.0 or at_motor(c.joint, rows)
     ]
     pool = asked(pool, effects, rows, evaluator, baseline.base(made.theta))
     selection = forward_selection(

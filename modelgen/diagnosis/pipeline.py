@@ -10,9 +10,6 @@ from modelgen.dataset import Record, Settings, check_separate, last_quarter_out,
 from modelgen.dataset.processing.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import (
-    COMPLIANT,
-    LATER,
-    WARMING,
     Candidate,
     Place,
     at_links,
@@ -43,8 +40,9 @@ from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness
 from modelgen.diagnosis.selection.stepwise import threshold
 from modelgen.diagnosis.thresholds import PRACTICAL, practical
+from modelgen.effects import CATALOGUE, Family, Presence, Seen
 from modelgen.errors import InputError
-from modelgen.evaluation import Evaluator, places
+from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 from modelgen.jobs import HERE, Where, one_thread
 
@@ -210,29 +208,22 @@ def _named(
 def _absorbed(
     arm: Arm, rows: Sequence[Rows], selection: Selection, coarse: bool
 ) -> tuple[tuple[str, str], ...]:
-    """What these records could not show, whatever is there."""
-    found = []
+    """What these records could not show, whatever is there; what concerns all of them first."""
+    n, moved = rows[0].effort.shape[1], any(r.prepared.input is not None for r in rows)
+    unsided = [
+        j for j in range(1, n + 1) if moved and not at_motor(j, rows) and (coarse or not at_links(j, rows))
+    ]
+    still = [j + 1 for j in range(n) if not any(r.moving[:, j].any() for r in rows)]
+    seen = Seen(cold(rows), tuple(still), tuple(unsided), coarse)
     named = {c.trial.candidate.effect for c in selection.causes}
-    if LATER not in named:
-        found.append(
-            (LATER, "a payload that is there in all training records is a part of the last link's parameters")
-        )
-    if WARMING not in named and not cold(rows):
-        found.append(
-            (WARMING, "a record begins in the middle of a log: how warm the drives were is not known")
-        )
-    if "drive_gain_error" not in named and len(arm.coordinates) == 1:
-        found.append(("drive_gain_error", "the torque constant of a single joint scales all its parameters"))
-    still = [n + 1 for n in range(rows[0].effort.shape[1]) if not any(r.moving[:, n].any() for r in rows)]
-    known = [j for j in places(arm, COMPLIANT[0]) if at_motor(j, rows) or (at_links(j, rows) and not coarse)]
-    behind = [j for j in places(arm, COMPLIANT[0]) if j not in known]
-    if behind and any(r.prepared.input is not None for r in rows):
-        joints = "joint " + ", ".join(str(j) for j in behind)
-        reason = (
-            "is too coarse to show it"
-            if coarse
-            else "has no drive, or was measured now at the motor, now at the link"
-        )
-        found += [(name, f"the position of {joints} {reason}") for name in COMPLIANT]
-    found += [("coulomb_friction", f"joint {n} does not move in the training records") for n in still]
-    return tuple(found)
+    presences = [Presence.LATER, Presence.FADING, Presence.ALWAYS]
+    order = sorted(
+        CATALOGUE.values(),
+        key=lambda e: (
+            presences.index(e.presence),
+            not e.exact,
+            e.family is not Family.ELASTIC,
+            e.simpler is not None,
+        ),
+    )
+    return tuple((e.name, reason) for e in order for reason in e.hidden(arm, seen, e.name in named))

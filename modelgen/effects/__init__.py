@@ -14,6 +14,7 @@ from modelgen.effects.base import (
     Values,
 )
 from modelgen.effects.catalogue import CATALOGUE, known_effects
+from modelgen.effects.traits import Family, Presence, Seen, Shows
 from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "Definition",
     "DescriptionEffect",
     "Effect",
+    "Family",
     "InputEffect",
     "InputVariables",
     "LinkEffect",
@@ -32,6 +34,9 @@ __all__ = [
     "Part",
     "Point",
     "PointVariables",
+    "Presence",
+    "Seen",
+    "Shows",
     "Swing",
     "Values",
     "Variables",

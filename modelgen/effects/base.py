@@ -5,56 +5,41 @@ points of a link, `BodyEffect` those of a body that swings on a link, a `Descrip
 description says, an `InputEffect` stands between the input and the effort that comes of it. Forces are
 positive where they oppose the input. They are linear in their linear parameters, whose columns of the
 regressor are derivatives; all other parameters are fixed by the description. States advance by `step`.
+What a diagnosis asks of an effect besides is in `Traits`; each kind sets what it implies.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar
 
 import sympy as sp
 
 from modelgen.description.objects import Arm
+from modelgen.effects.parameters import ANY, POSITIVE, Parameter, Values, at
+from modelgen.effects.traits import Numbers, Traits
 from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
-Values = Mapping[str, sp.Expr]  # of an effect's parameters, by name
-ANY = (-float("inf"), float("inf"))
-POSITIVE = (1e-12, float("inf"))
+__all__ = [
+    "ANY",
+    "POSITIVE",
+    "BodyEffect",
+    "Definition",
+    "DescriptionEffect",
+    "Effect",
+    "InputEffect",
+    "LinkEffect",
+    "Parameter",
+    "Point",
+    "Swing",
+    "Values",
+    "at",
+]
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter of an effect.
-
-    unit: {f} stands for the unit of the generalised force, {x} for that of the coordinate. symbol: its
-    name among the standard parameters, before the joint's number (linear parameters only). default:
-    None where the description must give a value for a nonlinear parameter. bounds: sensible values.
-    grid: where a diagnosis begins to look for the value of a nonlinear parameter, in units of `scale`:
-    "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time" (the record's
-    length), "stiffness" (largest effort over the span) or "1". turns: an angle, whose grid goes once round
-    in equal steps, above zero; a value less a turn is the same.
-    """
-
-    name: str
-    unit: str
-    text: str
-    symbol: str = ""
-    default: float | None = None
-    bounds: tuple[float, float] = (0.0, float("inf"))
-    scale: str = "1"
-    grid: tuple[float, ...] = ()
-    turns: bool = False
-
-
-def at(**values: float) -> Mapping[str, float]:
-    """Values of parameters by name, for `Definition.shown`."""
-    return MappingProxyType(values)
-
-
-class Definition(ABC):
+class Definition(Traits):
     """One entry of the catalogue: what every kind of effect has.
 
     scope: whether it stands at a "joint", at the "arm", or at "either". confused_with: effects that
@@ -62,17 +47,14 @@ class Definition(ABC):
     docs/effects.md, in the units of the motor coordinates [rad, N m].
     """
 
-    name: ClassVar[str]
     text: ClassVar[str]
     reference: ClassVar[str]
     scope: ClassVar[str] = "joint"
     side: ClassVar[str] = "joint"  # whose coordinate {x} and {f} are units of: "joint" or "motor"
-    linear: ClassVar[tuple[Parameter, ...]] = ()
-    nonlinear: ClassVar[tuple[Parameter, ...]] = ()
     states: ClassVar[tuple[str, ...]] = ()
     confused_with: ClassVar[tuple[str, ...]] = ()
     experiment: ClassVar[str] = ""
-    shown: ClassVar[Mapping[str, float]] = at()
+    caveat: ClassVar[str] = ""  # what its values depend on besides the arm, a sentence after a blank
     seen_over: ClassVar[str] = "velocity"  # what shows it best: velocity, position, acceleration or time
 
     def values(self, given: Mapping[str, float]) -> dict[str, float]:
@@ -85,11 +67,6 @@ class Definition(ABC):
         """Of `states`, those that it has with these values of its parameters; all for most."""
         return cls.states
 
-    @classmethod
-    def accepted(cls) -> tuple[Parameter, ...]:
-        """The parameters that a description may set."""
-        return (*cls.linear, *cls.nonlinear)
-
 
 class Effect(Definition):
     """A generalised force over one coordinate: a law and its description, nothing else.
@@ -101,6 +78,11 @@ class Effect(Definition):
 
     place: ClassVar[str] = "motor"
     side: ClassVar[str] = "motor"
+
+    @classmethod
+    def coupled(cls, values: Numbers) -> tuple[int, float] | None:
+        """Of a pair, the other joint and the ratio."""
+        return (round(values["other"]), values.get("ratio", 1.0)) if cls.place == "pair" else None
 
     @abstractmethod
     def law(self, x: Variables, p: Values) -> sp.Expr:
@@ -191,7 +173,17 @@ class BodyEffect(Definition):
 
 
 class DescriptionEffect(Definition):
-    """A departure of the arm from its description: the model is that of the changed description."""
+    """A departure of the arm from its description: the model is that of the changed description.
+
+    It follows from the arm's own equations; at one joint, it goes into the parameters that all share.
+    """
+
+    exact: ClassVar[bool] = True
+
+    @classmethod
+    def judged_at(cls, number: int | None, values: Numbers, n: int) -> list[int]:
+        """All joints show what is wrong with one."""
+        return list(range(n))
 
     @abstractmethod
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
@@ -200,6 +192,8 @@ class DescriptionEffect(Definition):
 
 class InputEffect(Definition):
     """What the drive makes of its input, coordinate by coordinate, in the unit of the input."""
+
+    needs_effort: ClassVar[bool] = True
 
     @abstractmethod
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:

@@ -10,11 +10,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from modelgen.diagnosis.adequacy.lack_of_fit import place
-from modelgen.diagnosis.candidates.candidate import COMPLIANT
 from modelgen.diagnosis.extended.findings import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Family
 from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
 from modelgen.report.experiment import described, picture
 from modelgen.report.figures import Sketch
@@ -138,7 +137,7 @@ def harms(d: Diagnosis) -> list[str]:
     return [
         f"With {c.effect} at {_place(c.joint)} the error on the test record is {-c.share.gain:.1f} % larger "
         f"({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that record."
-        f"{_ORIGINS.get(c.effect, '')}"
+        f"{CATALOGUE[c.effect].caveat}"
         for c in d.causes
         if c.share.high < 0.0
     ]
@@ -152,7 +151,7 @@ def assumptions(d: Diagnosis) -> list[str]:
         "it. A value under drive_inertia in the description is taken instead."
         for number, e in d.inertias.items()
     ]
-    compliant = {c.joint for c in d.causes if c.effect in COMPLIANT}
+    compliant = {c.joint for c in d.causes if CATALOGUE[c.effect].family is Family.ELASTIC}
     unknown = [
         f"The drive's inertia at {_place(number)} is not told from the link's: the extended model "
         "cannot be simulated, nor its forward dynamics used, until the description gives "
@@ -161,12 +160,6 @@ def assumptions(d: Diagnosis) -> list[str]:
         if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
     return taken + unknown
-
-
-# What the values of a cause depend on besides the arm.
-_ORIGINS = {
-    "torque_ripple": " Its phase does only where both logs count positions from the same zero.",
-}
 
 
 def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:

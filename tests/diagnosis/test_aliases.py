@@ -12,7 +12,7 @@ from modelgen.effects import CATALOGUE, known_effects
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
-SEARCHED = tuple(p for p in CATALOGUE["nonlinear_viscous_friction"].nonlinear if p.grid)
+SEARCHED = CATALOGUE["nonlinear_viscous_friction"].searched()
 
 
 @pytest.mark.parametrize(("name", "same"), [("gravity_link2", ["nonlinear_viscous_friction"]), ("ur10e", [])])

@@ -8,7 +8,8 @@ from arms_support import base_vector, standard_vector
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
-from modelgen.diagnosis.candidates.columns import payload, sensitivities
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.columns import slopes
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
@@ -42,9 +43,10 @@ def test_a_secant_is_the_whole_change(error: float) -> None:
     motion = Motion(TIMES, *swing(TIMES, 1))
     current = own.inputs(motion, base)
     change = current / (1 + error) - current
-    column = sensitivities("drive_gain_error", 1, motion, own, base, ("error",), {"error": error})[:, :, 0]
+    cause = Candidate("drive_gain_error", 1)
+    column = slopes(cause, {"error": error}, motion, own, base)[:, :, 0]
     np.testing.assert_allclose(error * column, change, atol=1e-9 * np.abs(change).max())
-    slope = sensitivities("drive_gain_error", 1, motion, own, base, ("error",), {})[:, :, 0]
+    slope = slopes(cause, {}, motion, own, base)[:, :, 0]
     assert np.abs(error * slope - change).max() > 0.15 * np.abs(change).max()
 
 
@@ -55,7 +57,7 @@ def test_a_payload_where_it_was_found_has_its_inertia() -> None:
     mass, x, y = 3.0, 0.4, -0.2
     torque = mass * ((x**2 + y**2) * ddq + GRAVITY * (x * np.cos(q) - y * np.sin(q)))
     place = {"mass": mass, "x": x, "y": y, "z": 0.1}
-    columns = payload(1, Motion(TIMES, q, dq, ddq), own, base, place)
+    columns = slopes(Candidate("payload_change", 1), place, Motion(TIMES, q, dq, ddq), own, base)
     found = columns @ np.array([mass, mass * x, mass * y, mass * 0.1])
     np.testing.assert_allclose(found, torque / (RATIO * CONSTANT), atol=1e-8 * np.abs(found).max())
 

@@ -27,7 +27,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_rows_count_where_the_coupling_turns(folder: Path) -> None:
     arm = load(folder / "arms.yaml")["arm"]
     prepared = prepare(read(str(folder / "train_a.csv"), arm))
-    found = turning(prepared, 2, {"other": 1.0, "ratio": -1.0})
+    found = turning(prepared, 2, other=1, ratio=-1.0)
     speed = (prepared.dq[:, 1] - prepared.dq[:, 0])[prepared.rows]
     assert (found[:, 0] == found[:, 1]).all()
     assert np.abs(speed[~found[:, 0]]).max() < np.abs(speed[found[:, 0]]).min() + 1e-12

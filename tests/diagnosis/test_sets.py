@@ -12,7 +12,7 @@ from hidden.running import diagnosed_here
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
-from modelgen.diagnosis.selection.stepwise import lesser_rivals, needed_behind, no_power
+from modelgen.diagnosis.selection.stepwise import imitated, lesser_rivals, needed_behind
 from modelgen.diagnosis.thresholds import RATHER
 from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.effects import CATALOGUE
@@ -72,7 +72,7 @@ def test_a_power_of_the_speed_at_the_end_of_its_range_gives_way_to_friction_near
             values={"exponent": exponent},
         )
         pair = trial, passed
-        return no_power(pair, [pair, (beside, passed)])
+        return imitated(pair, [pair, (beside, passed)])
 
     assert gives_way(0.3, tried("presliding", 1052.0))
     assert gives_way(0.301, tried("stribeck_friction", 20.0))

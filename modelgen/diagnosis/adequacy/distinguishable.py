@@ -15,8 +15,8 @@ from scipy.linalg import subspace_angles
 
 from modelgen.base_parameters.numeric_rank import random_states
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import LATER, PERIODIC, STEPS, Candidate, Values
-from modelgen.diagnosis.candidates.columns import of_part, sensitivities
+from modelgen.diagnosis.candidates.candidate import Candidate, Values
+from modelgen.diagnosis.candidates.columns import of_part, slopes
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
@@ -24,7 +24,7 @@ from modelgen.diagnosis.selection.compliance import alternatives
 from modelgen.diagnosis.selection.history import COARSE
 from modelgen.diagnosis.thresholds import RATHER
 from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.effects import CATALOGUE
+from modelgen.effects import Presence
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
@@ -83,11 +83,12 @@ def _span(
     c: Candidate, values: Values, evaluator: Evaluator, motion: Motion, base: Array, q: Array
 ) -> Array | None:
     """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
-    if CATALOGUE[c.effect].held(c.fixed) or c.effect in (LATER, PERIODIC):  # states follow one another
+    effect = c.definition  # states follow one another
+    if effect.held(c.fixed) or effect.presence is Presence.LATER or effect.periodic:
         return None
     try:
-        if c.effect in STEPS:
-            table = sensitivities(c.effect, c.joint, motion, evaluator, base, c.names, {})
+        if c.curved:
+            table = slopes(c, {**c.fixed, **values}, motion, evaluator, base)
         else:
             (table,) = of_part(c, [evaluator.columns(c.effect, c.joint, motion, {**c.fixed, **values}, base)])
     except (InputError, ValueError):

@@ -17,6 +17,7 @@ from modelgen.diagnosis.selection.cause import Cause, Selection, together
 from modelgen.diagnosis.selection.history import STANDS_IN
 from modelgen.diagnosis.thresholds import CLEAN, PRACTICAL
 from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.effects import Shows
 from modelgen.numeric import Array
 
 BESIDE = 7.0  # delta BIC beside a cause, from which a shape may take its place
@@ -33,7 +34,6 @@ SEARCHED = 8.0  # delta BIC that each further cause costs, as one of some sixty 
 LEAST = 2 / 3  # of what repeats, explained
 MOST = 1 / 2  # of what repeats in the part of the period that shows most, left
 PLAIN = 250.0  # delta BIC; play gave 500 to 2800
-ROUGH = "backlash"
 PLAINLY = 1.5  # times the threshold in a part, where a cause falls by what is left elsewhere
 MUCH = 0.1  # of the residuals' power that repeats: below, the joint is explained
 
@@ -144,7 +144,8 @@ def doubtful(selection: Selection, rows: Sequence[Rows]) -> list[Cause]:
     clearly = any(t.statistic > PLAINLY * t.threshold for t in parts)
     doubted = []
     for cause in selection.causes:
-        if cause.trial.candidate.effect == ROUGH and cause.delta_bic > PLAIN:
+        rough = Shows.IMPACTS in cause.trial.candidate.definition.shows
+        if rough and cause.delta_bic > PLAIN:
             continue
         joints = cause.trial.candidate.joints(system.n)
         little = much[joints].any() and last[joints].sum() > (1 - LEAST) * first[joints].sum()

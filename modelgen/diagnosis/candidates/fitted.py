@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import (
-    COMPLIANT,
-    LATER,
-    STEPS,
-    WEIGHING,
-    Candidate,
-    Values,
-)
+from modelgen.diagnosis.candidates.candidate import Candidate, Values
 from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty
 from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.evidence.system import System
-from modelgen.effects import CATALOGUE, described
+from modelgen.effects import described
 from modelgen.errors import InputError
 from modelgen.evaluation import with_effect
 from modelgen.numeric import Array
@@ -50,25 +42,12 @@ class FittedCandidate:
     def parameters(self) -> dict[str, float]:
         """All values: fixed, searched and estimated."""
         estimated = named(self.candidate, self.gain.values)
-        return physical(self.candidate, {**self.candidate.fixed, **self.values, **estimated})
+        return self.candidate.definition.physical({**self.candidate.fixed, **self.values, **estimated})
 
 
 def named(candidate: Candidate, values: Array) -> dict[str, float]:
     """Estimated values (k,) by the parameters of their columns."""
     return dict(zip(candidate.names, (float(v) for v in values), strict=False))
-
-
-def physical(candidate: Candidate, found: dict[str, float]) -> dict[str, float]:
-    """The effect's own parameters from those of its columns."""
-    if candidate.effect in COMPLIANT:
-        play = {"play": found["play"]} if "play" in found else {}
-        return {**play, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
-    if candidate.effect == LATER and found.get("mass"):
-        mass = found["mass"]
-        return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
-    if candidate.effect == WEIGHING:
-        return {**found, "base_angle": math.remainder(found["base_angle"], math.tau)}
-    return found
 
 
 def beside(trial: FittedCandidate, system: System) -> Evidence | None:
@@ -80,17 +59,16 @@ def beside(trial: FittedCandidate, system: System) -> Evidence | None:
 def sensible(trial: FittedCandidate, arm: Arm) -> bool:
     """Whether something is left where values may not be negative, and the arm admits them."""
     c, found = trial.candidate, trial.parameters
-    bounds = {p.name: p.bounds for p in CATALOGUE[c.effect].accepted()}
+    bounds = {p.name: p.bounds for p in c.definition.accepted()}
     if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
         return False
     if beyond_plausible(c, found, arm):
         return False
-    if c.effect in STEPS:
+    if c.curved:
         try:
             described(with_effect(arm, c.effect, c.joint, found))
         except InputError:
             return False
-    if c.effect in COMPLIANT:
+    if c.elastic:
         return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
-    limited = [v for v, above in zip(trial.gain.values, c.positive, strict=True) if above]
-    return not limited or max(limited) > 0 or c.effect == WEIGHING
+    return not c.definition.vanishes(named(c, trial.gain.values))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, Candidate, at_links
+from modelgen.diagnosis.candidates.candidate import Candidate, at_links
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.candidates.search import Columns, Search
 from modelgen.jobs import Where, forked
@@ -23,10 +23,10 @@ def fit_pool(
     groups: dict[object, list[int]] = {}
     for k, candidate in enumerate(pool):
         # behind a link's own position play is tried where an elastic joint was
-        both = candidate.effect in COMPLIANT and at_links(candidate.joint, search.rows)
+        both = candidate.elastic and at_links(candidate.joint, search.rows)
         groups.setdefault(candidate.joint if both else candidate.place, []).append(k)
     # what takes longest first: no processor waits for it at the end
-    jobs = sorted(groups.values(), key=lambda places: pool[places[0]].effect not in COMPLIANT)
+    jobs = sorted(groups.values(), key=lambda places: not pool[places[0]].elastic)
 
     def job(number: int) -> tuple[list[FittedCandidate | None], Columns]:
         before = set(search.renewed)

@@ -8,12 +8,12 @@ from difflib import get_close_matches
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import LATER, PERIODIC, Candidate, Place, grid_unit
+from modelgen.diagnosis.candidates.candidate import Candidate, Place, first_values
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.equations.checks import _of_effects, _weights
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.thresholds import APART, LARGE, LEAST, OWN
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Presence
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
@@ -33,9 +33,9 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], evaluator: Evalu
     of_effects = _of_effects(model)
     for r in rows[1:]:
         pair = [rows[0], r]
-        payload = candidate_columns(Candidate(LATER, None), {}, pair, evaluator, base)
+        later = [candidate_columns(c, {}, pair, evaluator, base) for c in coming_later(arm)]
         own = [np.zeros((len(rows[0].effort), n, len(of_effects))), r.columns[:, :, of_effects]]
-        parts = [[x.columns for x in pair], own, *([] if payload is None else [payload])]
+        parts = [[x.columns for x in pair], own, *(made for made in later if made is not None)]
         table = [np.concatenate([part[k] for part in parts], axis=2) for k in range(2)]
         both = rmse(pair, table, weighted_fit(pair, table))
         each = [rmse([x], [x.columns], weighted_fit([x], [x.columns])) for x in pair]
@@ -50,6 +50,16 @@ def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], evaluator: Evalu
                 f"{names}: no one model of {arm.name} fits both, at joint {joints} it leaves {ratio:.1f} "
                 "times what a model of each leaves; expected records of one arm, their columns in one order"
             )
+
+
+def coming_later(arm: Arm) -> list[Candidate]:
+    """What may come between two records, with all its parameters."""
+    return [
+        Candidate(name, place)
+        for name, effect in CATALOGUE.items()
+        if effect.presence is Presence.LATER
+        for place in ([None] if effect.scope != "joint" else range(1, len(arm.coordinates) + 1))
+    ]
 
 
 def asked(
@@ -114,12 +124,10 @@ def _shows(c: Candidate, rows: Sequence[Rows], evaluator: Evaluator, base: Array
     share = moving_share(rows)
     if c.joint is not None and share[c.joint - 1] <= LEAST:
         return False
-    if c.effect == PERIODIC:
+    if c.definition.periodic:
         return True
-    values = {}
-    for p in c.searched[:1]:
-        values[p.name] = grid_unit(p.scale, c.effect, c.joint, rows, evaluator) * p.grid[len(p.grid) // 2]
-    made = candidate_columns(c, values, rows, evaluator, base)
+    values = first_values(c, rows, evaluator)
+    made = None if values is None else candidate_columns(c, values, rows, evaluator, base)
     if made is None:
         return False
     weights = _weights(rows)

@@ -6,23 +6,21 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import (
-    COMPLIANT,
-    CURVED,
-    PERIODIC,
     Candidate,
     Values,
     at_links,
-    gap_instead,
     grid_unit,
+    richer_instead,
     search_of,
 )
 from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging
 from modelgen.diagnosis.candidates.fitted import WHOLLY, FittedCandidate, named
+from modelgen.diagnosis.candidates.periodogram import waves
 from modelgen.diagnosis.candidates.prior_odds import prior_penalty
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
@@ -78,10 +76,11 @@ class Search:
         if found is not None and self.aged and found.gain.delta_bic >= WORTH:
             self.fresh = True
             found = self._trial(candidate)
-        if found is None or found.gain.delta_bic < WORTH or candidate.effect not in CURVED:
+        if found is None or found.gain.delta_bic < WORTH or not candidate.curved:
             return found
         for _ in range(SECANTS):
-            before, found = found, self._at(candidate, {}, 0.0, found.parameters) or found
+            before, extra = found, float(len(found.values))
+            found = self._at(candidate, found.values, extra, found.parameters) or found
             if abs(found.gain.delta_bic - before.gain.delta_bic) < SETTLED:
                 break
         return found
@@ -92,16 +91,16 @@ class Search:
         self.renewed |= columns.keys()
 
     def _trial(self, candidate: Candidate) -> FittedCandidate | None:
-        if candidate.effect == PERIODIC:
+        if candidate.definition.periodic:
             return self._periodic(candidate)
-        if candidate.effect in COMPLIANT:
+        if candidate.elastic:
             if at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
                 return None  # what is left of one looks like the other
             found = self._compliant(candidate)
-            gap = None if found is None else gap_instead(candidate, self.rows, self.evaluator)
+            richer = [] if found is None else richer_instead(candidate, self.rows, self.evaluator)
             # impacts of a loose link look elastic; the other way round they do not
-            other = None if gap is None else self._compliant(gap)
-            return None if found and other and ahead(other, found) else found
+            others = [other for other in map(self._compliant, richer) if other is not None]
+            return None if found and any(ahead(other, found) for other in others) else found
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
@@ -161,26 +160,21 @@ class Search:
     def _compliant(self, candidate: Candidate) -> FittedCandidate | None:
         """A scan over the first value, then a section over each in turn."""
         search = search_of(candidate, self.rows)
-        kinds = {"play": "span", "stiffness": "stiffness"}
         units = {
-            name: grid_unit(
-                kinds.get(name, "1"), candidate.effect, candidate.joint, self.rows, self.evaluator
-            )
-            for name in search
+            p.name: grid_unit(p.scale, candidate.effect, candidate.joint, self.rows, self.evaluator)
+            for p in search
         }
         if not all(unit > 0 for unit in units.values()):
             return None
         extra = float(len(search))
-        start = {name: units[name] * grid[0] for name, grid in search.items()}
-        (first, grid), *_ = search.items()
-        scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in grid]
+        start = {p.name: units[p.name] * p.grid[len(p.grid) // 2] for p in search}
+        first = search[0].name
+        scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in search[0].grid]
         best = _best([self._if_whole(t) for t in scanned]) or self._between(scanned, first, extra)
         if best is None or best.gain.delta_bic < WORTH:
             return best
         for turn in range(ROUNDS):
-            for name in ("relaxation", "stiffness", "play"):
-                if name not in search:
-                    continue
+            for name in (p.name for p in reversed(search)):
                 reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
 
                 def at(x: float, name: str = name, held: FittedCandidate = best) -> FittedCandidate | None:
@@ -298,31 +292,3 @@ def golden(
 def _best(trials: Sequence[FittedCandidate | None]) -> FittedCandidate | None:
     there = [t for t in trials if t is not None]
     return max(there, key=lambda t: t.gain.delta_bic) if there else None
-
-
-def waves(residual: Array, position: Array, speed: Array, cutoff: float, count: int = 4) -> list[float]:
-    """Wave numbers [rad per motor unit] at which a residual repeats with the motor's position, best first.
-
-    residual, position, speed: (M,). A periodogram over position (Lomb 1976), of waves that pass slower
-    than the cut-off [Hz] for a tenth of the rows at least.
-    """
-    if len(residual) < 20 or np.ptp(position) <= 0:
-        return []
-    span = float(np.ptp(position))
-    slow = float(np.quantile(np.abs(speed), 0.1))
-    step = np.pi / span
-    highest = 2 * np.pi * cutoff / max(slow, 1e-9 * span)
-    grid = step * np.arange(3, min(4000, max(8, int(highest / step))))
-    power = np.concatenate(
-        [
-            np.abs(np.exp(1j * np.outer(part, position)) @ residual) ** 2
-            for part in np.array_split(grid, max(1, len(grid) // 200))
-        ]
-    )
-    order: list[Any] = []
-    for k in np.argsort(power)[::-1]:
-        if all(abs(k - other) > 2 for other in order):
-            order.append(k)
-        if len(order) == count:
-            break
-    return [float(grid[k]) for k in order]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,12 +12,12 @@ from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rest import moving_samples
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.prior import Unknowns, estimated
+from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
 __all__ = ["Array", "Rows", "rows_of"]
-COUPLING = "transmission_coupling"
 
 
 @dataclass(frozen=True)
@@ -107,12 +106,12 @@ def rows_of(
     return Rows(prepared, effort, columns, moving & good, known)
 
 
-def turning(prepared: Prepared, joint: int, values: Mapping[str, float]) -> NDArray[np.bool_]:
+def turning(prepared: Prepared, joint: int, other: int, ratio: float) -> NDArray[np.bool_]:
     """(M, n), rows at which a coupling moves, as far as the equations of its two joints are concerned.
 
-    joint: number of the coordinate it belongs to, from 1. values: of its `other` and `ratio`.
+    joint, other: numbers of the coordinates, from 1; ratio: turns of the first per turn of the other.
     """
-    one, other, ratio = joint - 1, round(values["other"]) - 1, values["ratio"]
+    one, other = joint - 1, other - 1
     gates = prepared.settings.gates
     own = replace(prepared.settings, gates=(gates[one] + abs(ratio) * gates[other],))
     speed = prepared.dq[:, [one]] + ratio * prepared.dq[:, [other]]
@@ -128,6 +127,7 @@ def of_arm(arm: Arm, prepared: Prepared) -> NDArray[np.bool_]:
         return found
     for number, i in enumerate(arm.coordinates, start=1):
         for used in arm.joints[i].effects:
-            if used.name == COUPLING:
-                found &= turning(prepared, number, {"ratio": 1.0, **used.values})
+            pair = CATALOGUE[used.name].coupled(used.values)
+            if pair is not None:
+                found &= turning(prepared, number, *pair)
     return found

@@ -15,6 +15,7 @@ from modelgen.dataset import drives_of
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
 from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.diagnosis.experiment.trajectory import Proposal
+from modelgen.effects import CATALOGUE, Shows
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds, ranges, speeds
 from modelgen.excitation.settings import Settings
@@ -25,17 +26,6 @@ DURATION = 30.0  # s of a motion
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9)  # of the speed limit
 SMALL, SLOW = 0.05, 0.05  # amplitude over the range, peak speed over its limit
 PAYLOAD = 0.5  # of the last link's mass
-LOADED = ("load_dependent_friction", "position_dependent_friction", "torque_constant_saturation")
-READING = 1.0  # s of a current at rest
-# What is read, the parameters that claim it, and a reading's standard deviation in their unit.
-READINGS: Mapping[str, tuple[str, tuple[str, ...], float]] = {
-    "encoder_offset": ("the angle at an index mark or a hard stop, to 0.1 deg", ("offset",), 1.7e-3),
-    "base_tilt": ("the base with an inclinometer, to 0.1 deg", ("x", "y", "z"), 1.7e-3),
-    "lever_geometry": ("the lever's lengths, to 0.5 mm", ("l1", "l2", "length"), 5e-4),
-    "payload_change": ("what the last link carries on a balance, to 10 g", ("mass",), 0.01),
-}
-COMPLIANT = "the joint's angle to 0.1 mrad at the link, the motor held, the link pushed both ways"
-SEEN = 1e-4  # rad, of that reading
 
 
 @dataclass(frozen=True)
@@ -58,7 +48,7 @@ def tests(
             if rows is not None:
                 evidence = least(judge.evidence(members, [rows]))
                 found += [] if evidence is None else [Test(text, evidence)]
-    loaded = _loaded(stage) if any(h.candidate.effect in LOADED for h in members) else None
+    loaded = _loaded(stage) if any(Shows.LOAD in h.candidate.definition.shows for h in members) else None
     if loaded is not None and proposal is not None:
         heavier = stage.rows(proposal.q, loaded)
         if heavier is not None:
@@ -82,21 +72,21 @@ def readings(
     """Of what causes claim: (effect, joint, values of its parameters)."""
     found = []
     for effect, joint, values in claims:
+        reading = CATALOGUE[effect].reading
+        if reading is None:
+            continue
         place = "" if joint is None else f"joint {joint}: "
-        if effect in READINGS:
-            text, names, spread = READINGS[effect]
-            size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in names)))
-            found.append(Test(f"{place}read {text} (the cause claims {size:.2g})", (size / spread) ** 2))
-        elif effect == "friction_offset" and joint is not None:
-            size = abs(values.get("offset", 0.0)) / drives_of(stage.arm)[joint - 1].torque_constant
+        size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in reading.names)))
+        if reading.std is not None:
+            evidence = (size / reading.std) ** 2
+        elif joint is None:
+            continue
+        else:
+            size /= drives_of(stage.arm)[joint - 1].torque_constant
             noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.sizes[joint - 1])
-            rows = max(1.0, READING * stage.prepared[0].rate * float(judge.shares[joint - 1]))
-            text = f"{place}read the current at rest with the motor switched off, for {READING:g} s"
-            said = f"{text} (an offset of the sensor of {size:.2g}; none with asymmetric friction)"
-            found.append(Test(said, rows * float(np.log1p((size / noise) ** 2))))
-        elif effect == "backlash" and joint is not None:
-            play = values.get("play", 0.0)
-            found.append(Test(f"{place}read {COMPLIANT} (a gap of {play:.2g})", (play / SEEN) ** 2))
+            rows = max(1.0, reading.duration * stage.prepared[0].rate * float(judge.shares[joint - 1]))
+            evidence = rows * float(np.log1p((size / noise) ** 2))
+        found.append(Test(f"{place}read {reading.text} ({reading.claim.format(size)})", evidence))
     return found
 
 

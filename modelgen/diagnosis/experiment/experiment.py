@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import LATER, WARMING
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.experiment.bench_tests import Test, least, readings, tests
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
@@ -17,7 +16,7 @@ from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.diagnosis.experiment.trajectory import PERIODS, Progress, Proposal, propose
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.thresholds import RATHER
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Presence
 from modelgen.jobs import HERE, Where
 from modelgen.numeric import Array
 
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from modelgen.diagnosis.extended.findings import NamedCause
 
 MEMBERS = 4  # of a set that a trajectory is looked for
-UNSUITED = (LATER, WARMING)  # show between records, not within a motion
 STEM = "next_experiment"
 
 
@@ -87,7 +85,8 @@ def next_experiment(
         claims = [(*t.candidate.place, t.parameters) for t in trials]
         before = [hypothesis(c.trial) for c in found if c is not cause]
         judge = Discriminator(system, stage.evaluator, stage.base, before)
-        suited = [t for t in trials if t.candidate.effect not in UNSUITED][:MEMBERS]
+        # what comes or fades shows between records, not within a motion
+        suited = [t for t in trials if t.candidate.definition.presence is Presence.ALWAYS][:MEMBERS]
         members = tuple(hypothesis(t) for t in suited) if len(suited) > 1 else ()
         proposal = propose(stage, judge, members, period, progress, where) if members else None
         bench = readings(stage, judge, claims)

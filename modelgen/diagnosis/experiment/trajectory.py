@@ -14,7 +14,7 @@ import numpy as np
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
 from modelgen.diagnosis.experiment.motions import Setup
-from modelgen.effects import CATALOGUE
+from modelgen.effects import Shows
 from modelgen.errors import InputError
 from modelgen.excitation.problem import SIGNALS, Problem, problem
 from modelgen.excitation.random_motion import feasible, shrunk
@@ -30,7 +30,6 @@ PERIODS = 3  # to be run
 FIRST_STEP = 0.3  # of the coefficients' size
 GROWTH, DECAY = 1.5, 0.84  # of a step that succeeded, or not: a fifth should (Rechenberg 1973)
 MARGIN = 0.01  # of every limit
-FAST = ("torque_ripple", "stribeck_friction")  # change within less than samples that are left out
 Progress = Callable[[str, int, int], None]
 
 
@@ -66,9 +65,9 @@ def propose(
     runs = [as_run(stage, p, k) for k in range(len(stage.prepared))]
     starts = [z for z in runs if z is not None] + [scaled(z, factor) for z in drawn for factor in SCALES]
 
-    asked = any(h.candidate.effect in FAST for h in members)
-    effects = [h.candidate.effect for h in (*members, *judge.before)]
-    stepped = any(CATALOGUE[e].states for e in effects) or bool(stage.model.states)
+    asked = any(Shows.BRIEFLY in h.candidate.definition.shows for h in members)
+    effects = [h.candidate.definition for h in (*members, *judge.before)]
+    stepped = any(e.states for e in effects) or bool(stage.model.states)
     seen = stage if asked or stepped else stage.coarse
 
     def value(z: Array) -> float:

@@ -12,7 +12,6 @@ from collections.abc import Collection, Mapping, Sequence
 
 from modelgen.base_parameters.drive_inertia import INERTIA
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import COMPLIANT
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.selection.cause import Cause, Selection
@@ -40,7 +39,7 @@ def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Es
         known = nominal_links(model)
     except InputError:
         return {}
-    compliant = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
+    compliant = {c.trial.candidate.joint for c in causes if c.trial.candidate.elastic}
     symbols, units = model.arm.symbols, {p.name: p.unit for p in model.standard}
     found = {}
     for drive in model.grouping.drives:
@@ -90,7 +89,7 @@ def refound(
     """
     trials = [c.trial for c in selection.causes]
     for k, trial in enumerate(trials):
-        if trial.candidate.effect in COMPLIANT and trial.candidate.joint in numbers:
+        if trial.candidate.elastic and trial.candidate.joint in numbers:
             others = [t for t in trials if t is not trial]
             starts = [trial.values]
             if "stiffness" in trial.values:  # which a gap behind a link's own position has not

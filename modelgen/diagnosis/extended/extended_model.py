@@ -9,14 +9,13 @@ import numpy as np
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.band import rows_twice
 from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.selection.cause import Selection
-from modelgen.effects import described
+from modelgen.effects import CATALOGUE, Family, Presence, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, build_model
@@ -67,12 +66,12 @@ def extended(arm: Arm, before: FittedModel, selection: Selection, train: Sequenc
     first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
     start = None if train[0].input is None else first
     seen = [_seen_by(p, bigger) for p in train]
-    if any(effect in COMPLIANT for effect, _, _ in causes):
+    if any(CATALOGUE[effect].family is Family.ELASTIC for effect, _, _ in causes):
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
     own = rows_twice(Evaluator(bigger), model, seen, known, start)
     if (
-        any(effect == LATER for effect, _, _ in causes)
+        any(CATALOGUE[effect].presence is Presence.LATER for effect, _, _ in causes)
         and own[0].columns.shape == before.rows[0].columns.shape
     ):
         own = [before.rows[0], *own[1:]]  # the first record is without it
@@ -82,7 +81,7 @@ def extended(arm: Arm, before: FittedModel, selection: Selection, train: Sequenc
 def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
     """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
     record = prepared.record
-    if not any(u.name == "lever_geometry" for j in arm.joints for u in j.effects) or not any(
+    if not any(CATALOGUE[u.name].rereads for j in arm.joints for u in j.effects) or not any(
         record.motor_side
     ):
         return prepared
@@ -131,7 +130,7 @@ def residuals(
     old = (test.effort - test.columns @ before.theta) * test.gain
     if not selection.causes:
         return old, old
-    if any(c.trial.candidate.effect == LATER for c in selection.causes):
+    if any(c.trial.candidate.definition.presence is Presence.LATER for c in selection.causes):
         table = [test.columns]
         for cause in selection.causes:
             found = columns_of(cause.trial, test, evaluator, base)
@@ -149,7 +148,8 @@ def columns_of(trial: FittedCandidate, test: Rows, evaluator: Evaluator, base: A
     there. base: of `evaluator`'s arm.
     """
     # a payload that came between the records stays
-    records = [test, test] if trial.candidate.effect == LATER else [test]
+    later = trial.candidate.definition.presence is Presence.LATER
+    records = [test, test] if later else [test]
     found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, evaluator, base)
     return None if found is None else found[-1]
 

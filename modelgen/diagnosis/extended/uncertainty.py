@@ -16,7 +16,6 @@ from itertools import pairwise
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import COMPLIANT
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
@@ -59,7 +58,7 @@ def valued(selection: Selection) -> Selection:
     causes = []
     for cause, own in zip(selection.causes, _columns_of(selection), strict=True):
         trial, values = cause.trial, selection.system.theta[own]
-        if trial.candidate.effect not in COMPLIANT:  # which are as they were simulated
+        if not trial.candidate.elastic:  # which are as they were simulated
             values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
             trial = replace(trial, gain=replace(trial.gain, values=values))
         causes.append(replace(cause, trial=trial))
@@ -82,7 +81,7 @@ def deviations(selection: Selection, evaluator: Evaluator) -> list[dict[str, flo
     slopes = [_slopes(c, rows, evaluator, base) for c in selection.causes]
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
     places = _columns_of(selection)
-    compliant = [c.trial.candidate.effect in COMPLIANT for c in selection.causes]
+    compliant = [c.trial.candidate.elastic for c in selection.causes]
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     whole = covariance_of(system, together if together[0].shape[2] else (), held)
     searched, found = len(system.theta), []
@@ -97,7 +96,7 @@ def deviations(selection: Selection, evaluator: Evaluator) -> list[dict[str, flo
 def _slopes(cause: Cause, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> list[Array]:
     """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
     trial = cause.trial
-    theta = np.ones(1) if trial.candidate.effect in COMPLIANT else trial.gain.values
+    theta = np.ones(1) if trial.candidate.elastic else trial.gain.values
     parts: list[list[Array]] = [[] for _ in rows]
     for name, value in trial.values.items():
         step = STEP * (abs(value) or 1.0)

@@ -16,7 +16,7 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, ELASTIC, GAP, Candidate, Values
+from modelgen.diagnosis.candidates.candidate import Candidate, Values
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
 from modelgen.diagnosis.candidates.search import ahead
@@ -81,10 +81,10 @@ def refined(
     another one: what is left of that looks like the next. where: processes among which they are shared.
     """
     others = [c.trial for c in causes]
-    if any(t.candidate.effect in COMPLIANT for t in others):
+    if any(t.candidate.elastic for t in others):
         return []
     left = sorted(trials, key=lambda t: -t.gain.delta_bic)
-    while left and left[0].candidate.effect in COMPLIANT:
+    while left and left[0].candidate.elastic:
         joint = left[0].candidate.joint
         there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
         better = _better(there, [_Beside(rows, others, t, evaluator) for t in there], where)
@@ -92,7 +92,7 @@ def refined(
         found = [replace(t, gain=gain) for t, gain in zip(better, gains, strict=True) if gain]
         if found:
             return [t for t in found if sensible(t, evaluator.arm)]
-        left = [t for t in left if t.candidate.effect not in COMPLIANT or t.candidate.joint != joint]
+        left = [t for t in left if not t.candidate.elastic or t.candidate.joint != joint]
     return []
 
 
@@ -115,25 +115,24 @@ def _better(
 
 
 def member(first: Judged, eligible: Sequence[Judged]) -> Judged:
-    """The elastic joint or the gap at the place of one of them that comes first; else that one.
+    """The first, or of the two laws at its place one of which is the other's limit the one that is there.
 
-    An elastic joint, which is a gap of no width, unless the gap's evidence is certainly more, or what it
-    carries to rows that were not seen. eligible: most evidence first.
+    The simpler one, an elastic joint, which is a gap of no width, unless the other's evidence is certainly
+    more, or what it carries to rows that were not seen. eligible: most evidence first.
     """
-    there: dict[str, Judged] = {}
-    for trial, by in eligible:
-        if trial.candidate.joint == first[0].candidate.joint:
-            there.setdefault(trial.candidate.effect, (trial, by))
-    if first[0].candidate.effect not in COMPLIANT or not there.keys() >= {*COMPLIANT}:
+    other = next((pair for pair in eligible if alternatives(first[0].candidate, pair[0].candidate)), None)
+    if other is None:
         return first
-    elastic, gap = there[ELASTIC], there[GAP]
-    wide = ahead(gap[0], elastic[0]) or gap[1].gain > SIMPLER * elastic[1].gain
-    return gap if wide else elastic
+    plain = first[0].candidate.definition is other[0].candidate.definition.simpler
+    simpler, richer = (first, other) if plain else (other, first)
+    more = ahead(richer[0], simpler[0]) or richer[1].gain > SIMPLER * simpler[1].gain
+    return richer if more else simpler
 
 
 def alternatives(one: Candidate, other: Candidate) -> bool:
-    """Whether they are an elastic joint and a gap at the same place."""
-    return one.joint == other.joint and {one.effect, other.effect} == {*COMPLIANT}
+    """Whether they are laws at the same place, one of them the other's limit: a gap and an elastic joint."""
+    laws = one.definition, other.definition
+    return one.joint == other.joint and (laws[0].simpler is laws[1] or laws[1].simpler is laws[0])
 
 
 def _starts(trial: FittedCandidate) -> list[dict[str, float]]:

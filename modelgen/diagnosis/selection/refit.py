@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, CURVED
 from modelgen.diagnosis.candidates.columns import candidate_columns, unchanging
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
 from modelgen.diagnosis.candidates.prior_odds import prior_penalty
@@ -66,13 +65,13 @@ def _anew(
 ) -> FittedCandidate:
     """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
     c = trial.candidate
-    if c.effect in COMPLIANT or unchanging(c, evaluator) or (values[np.array(c.positive)] < 0).any():
+    if c.elastic or unchanging(c, evaluator) or (values[np.array(c.positive)] < 0).any():
         return trial
     after = replace(
         trial,
         gain=replace(trial.gain, values=values),
         prior_penalty=prior_penalty(c, named(c, values), evaluator.arm),
     )
-    around = after.parameters if c.effect in CURVED else {}
+    around = after.parameters if c.curved else {}
     found = candidate_columns(c, {**trial.values, **around}, rows, evaluator, base)
     return trial if found is None else replace(after, columns=found, around=around)

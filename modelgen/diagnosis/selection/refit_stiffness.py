@@ -14,13 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import ELASTIC
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.selection.cause import Selection
 from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.effects import Shows
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 from modelgen.regression.weighted import weighted_fit
@@ -33,7 +33,9 @@ LEAST, MOST = 0.2, 5.0  # times what was simulated, that count of what is found 
 def refit_stiffness(selection: Selection, rows: Sequence[Rows], evaluator: Evaluator) -> Selection:
     """The selection with the stiffness of its elastic joints found anew; as it was where that has no end."""
     causes = selection.causes
-    elastic = [k for k, c in enumerate(causes) if c.trial.candidate.effect == ELASTIC]
+    laws = [c.trial.candidate for c in causes]
+    # what rattles is found beside the parameters as it is selected: of its share nothing follows
+    elastic = [k for k, c in enumerate(laws) if c.elastic and Shows.IMPACTS not in c.definition.shows]
     if not elastic:
         return selection
     own = rows[0].columns.shape[2]

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, POWER, Candidate, without_rests
+from modelgen.diagnosis.candidates.candidate import Candidate, without_rests
 from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
 from modelgen.diagnosis.candidates.pool import fit_pool
 from modelgen.diagnosis.candidates.search import Columns, Search
@@ -48,8 +48,6 @@ from modelgen.numeric import Array
 
 FORM = 0.03  # of its evidence, between play and elasticity: a real gear has the form of neither
 ALIKE = 0.7  # of the gain that one joint promises alone: what is in all drives alike promises as much there
-NEAR_REST = ("presliding", "stribeck_friction")  # what friction does near rest
-END = 1.05  # times the least exponent that is searched
 MOST = 4  # causes, or two for each joint where these are more
 Report = Callable[[str, int, int], None]
 
@@ -79,7 +77,7 @@ def forward_selection(
     turns: History = []
     for turn in range(max(MOST, 2 * rows[0].effort.shape[1])):
         noisy = not (steps or _harmless(rows, blur, system)) and correlated(system)
-        elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.effect in COMPLIANT}
+        elastic = {c.trial.candidate.joint for c in causes if c.trial.candidate.elastic}
         search = Search(system, rows, evaluator, rows[0].baseline.base(system.theta[:p]), known, elastic)
         taken = {c.trial.candidate.place for c in causes}
         left = [c for c in pool if c.place not in taken]
@@ -93,7 +91,7 @@ def forward_selection(
             if noisy and not judged.refused and not instrumented(t, system):
                 together = with_causes(rows, [*(c.trial for c in causes), t])
                 # behind an elastic joint a link swings otherwise in every period, as errors do
-                if t.candidate.effect not in COMPLIANT or correlated(System(rows, together, periods)):
+                if not t.candidate.elastic or correlated(System(rows, together, periods)):
                     judged = replace(judged, refused="positions")
             weighed.append((t, judged))
         passed = [pair for pair in weighed if not pair[1].refused]
@@ -219,18 +217,17 @@ def at_one_joint(
     )
 
 
-def no_power(
+def imitated(
     pair: tuple[FittedCandidate, Judgement], others: Sequence[tuple[FittedCandidate, Judgement]]
 ) -> bool:
-    """Whether a power of the speed is at the least exponent that is searched, where it is dry friction that
-    is lower near rest, and what friction does near rest is there by a law of its own.
+    """Whether it looks like what shows elsewhere, as the least power of the speed does like dry friction that
+    is lower near rest, and a law of that is there at its joint.
     """
-    c, values = pair[0].candidate, pair[0].values
-    if c.effect != POWER or "exponent" not in values:
-        return False
-    (least,) = (p.grid[0] for p in c.searched if p.name == "exponent")
-    there = any(t.candidate.effect in NEAR_REST and t.candidate.joint == c.joint for t, _ in others)
-    return values["exponent"] < END * least and there
+    c = pair[0].candidate
+    where = c.definition.imitates(pair[0].values)
+    return where is not None and any(
+        where in t.candidate.definition.shows and t.candidate.joint == c.joint for t, _ in others
+    )
 
 
 def _given_way(
@@ -239,7 +236,7 @@ def _given_way(
     """Why what passed every gate is not what is there; empty for most."""
     if at_one_joint(pair, passed):
         return "one joint"
-    return "near rest" if no_power(pair, passed) else ""
+    return "near rest" if imitated(pair, passed) else ""
 
 
 def correlated(system: System) -> bool:

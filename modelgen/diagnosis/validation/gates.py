@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import COMPLIANT, LATER, WARMING
+from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.position_errors import feigned, repeating_errors
 from modelgen.diagnosis.equations.rows import Rows
@@ -20,7 +20,8 @@ from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.thresholds import PRACTICAL, practical
 from modelgen.diagnosis.validation.agreement import agreement
 from modelgen.diagnosis.validation.cross_validation import Split, folds, left_unseen
-from modelgen.diagnosis.validation.form_error import EXACT, FLUID, Forms, with_causes
+from modelgen.diagnosis.validation.form_error import Forms, with_causes
+from modelgen.effects import Family, Presence, Shows
 from modelgen.numeric import Array
 from modelgen.regression.weighted import moving_rows, rmse, stacked, weighted_fit
 
@@ -32,13 +33,8 @@ CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by ch
 AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
 HARDLY = 0.1  # of the power of play in the record that shows it most
 WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
-DELAY = "time_delay"
-PLACED = "position_dependent_friction"  # a law of the position, which says nothing of places beyond the fit's
 SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
 DRAWN = 1.5  # times what a draw of errors of the positions could feign, those that are there may by chance
-# What errors of the positions look like most: these must gain all of it where the rest is fitted anew.
-FEIGNABLE = (*COMPLIANT, DELAY, LATER)
-REVERSING = ("presliding", "stribeck_friction")  # show where a delay shows most
 
 
 @dataclass(frozen=True)
@@ -77,8 +73,8 @@ class Gates:
         self.last = last
         self.old = with_causes(rows, before)
         self.counts = moving_rows(rows)
-        known = (*EXACT, *FLUID)
-        own = [] if last else [t.candidate.joint for t in before if t.candidate.effect not in known]
+        formed = [t.candidate for t in before if not _known_form(t.candidate)]
+        own = [] if last else [c.joint for c in formed]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[Split, Array] = {}
         self.forms = Forms(rows, before, system)
@@ -101,17 +97,18 @@ class Gates:
         """
         new = with_causes(self.rows, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
-        halves = trial.candidate.effect == LATER or self._somewhere(trial)
-        split = Split(halves, (trial.candidate.joint or 1) - 1 if trial.candidate.effect == PLACED else None)
+        effect = trial.candidate.definition
+        halves = effect.presence is Presence.LATER or self._somewhere(trial)
+        split = Split(halves, (trial.candidate.joint or 1) - 1 if Shows.PLACES in effect.shows else None)
         whole, again = np.stack([self._without(split), self._with(new, split)], axis=1)
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
         least = np.full(len(places), practical(self._least(trial), self.narrowed))
-        least = np.maximum(least, self.forms.least(trial.candidate.effect)[places])
+        least = np.maximum(least, self.forms.least(trial.candidate)[places])
         could = feigned(self.blur[places], (again[0] / self._tried(split))[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
-        doubtful = not self.system.noise_known or trial.candidate.effect in FEIGNABLE
+        doubtful = not self.system.noise_known or _feignable(trial.candidate)
         strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
         anew = strict & (refitted >= np.maximum(least, DRAWN * could))
         if strict.all() and not anew.any():
@@ -135,12 +132,12 @@ class Gates:
         return Judgement(float(gains[anew | carried].max()), hoped, shut)
 
     def _somewhere(self, trial: FittedCandidate) -> bool:
-        """Whether a record does not show the cause. Play shows where its gap is crossed: beside that a record
-        has of it what the rest of the model takes up, and no more.
+        """Whether a record does not show the cause. What shows in moments, as play does where its gap is
+        crossed, has beside them what the rest of the model takes up, and no more.
         """
         if not all(c[r.moving].any() for r, c in zip(self.rows, trial.columns, strict=True)):
             return True
-        if trial.candidate.effect != "backlash":
+        if Shows.IMPACTS not in trial.candidate.definition.shows:
             return False
         shows = [replace(r, effort=c[:, :, 0]) for r, c in zip(self.rows, trial.columns, strict=True)]
         sizes = np.maximum(self.system.sizes, 1e-150)
@@ -158,21 +155,18 @@ class Gates:
     def _least(self, trial: FittedCandidate) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
         c = trial.candidate
-        if c.effect in (DELAY, *REVERSING) and self._beside(REVERSING, c.joint):
-            return STICKING
-        if c.effect == DELAY and self._beside(COMPLIANT, c.joint):
-            return STICKING
-        if c.effect in REVERSING and self._beside((DELAY,), c.joint):
-            return DELAYED
+        if _reverses(c):
+            before = [o for o in (t.candidate for t in self.before) if _at_one_place(c, o)]
+            if any(_reverses(o) and not _lags(o) for o in before):
+                return STICKING
+            if _lags(c) and any(o.elastic for o in before):
+                return STICKING
+            if not _lags(c) and any(_reverses(o) for o in before):
+                return DELAYED
         evidence = trial.gain.delta_bic / self.system.price
         if not self.system.coloured:
             return MORE if evidence < FAINT[1] else PRACTICAL
         return float(np.interp(evidence, FAINT, (MORE, PRACTICAL)))
-
-    def _beside(self, effects: tuple[str, ...], joint: int | None) -> bool:
-        """Whether one of them was taken at the joint, or one of the two is everywhere."""
-        there = {t.candidate.joint for t in self.before if t.candidate.effect in effects}
-        return bool(there) and (joint is None or None in there or joint in there)
 
     def _tried(self, split: Split) -> Array:
         """How many rows (n,) are tried, at least one."""
@@ -223,15 +217,43 @@ def _gains(sums: Array) -> Array:
     return np.where(sums[0] > 0, 100.0 * (1.0 - np.sqrt(sums[1] / np.maximum(sums[0], 1e-300))), 0.0)
 
 
+def _known_form(c: Candidate) -> bool:
+    """Whether joints of others are not those to which the form of this one may leave some."""
+    return c.definition.exact or c.definition.family is Family.FLUID
+
+
+def _feignable(c: Candidate) -> bool:
+    """Whether errors of the positions look like it most: what comes late, and what differs between records.
+
+    It must gain all of it where the rest is fitted anew.
+    """
+    return c.elastic or _lags(c) or c.definition.presence is Presence.LATER
+
+
+def _reverses(c: Candidate) -> bool:
+    return Shows.REVERSALS in c.definition.shows
+
+
+def _lags(c: Candidate) -> bool:
+    """Whether it shows at reversals because what it moves comes late, not by friction near rest."""
+    return _reverses(c) and Shows.NEAR_REST not in c.definition.shows
+
+
+def _at_one_place(one: Candidate, other: Candidate) -> bool:
+    """Whether they are at one joint, or one of them everywhere."""
+    return one.joint == other.joint or one.joint is None or other.joint is None
+
+
 def instrumented(trial: FittedCandidate, system: System) -> bool:
     """Whether the cause shows where errors of the positions are kept out: its estimate by instruments is not
     zero, or it does not repeat as they do.
     """
-    if trial.candidate.effect == WARMING:  # passes while errors of the positions repeat with the excitation
+    presence = trial.candidate.definition.presence
+    if presence is Presence.FADING:  # passes while errors of the positions repeat with the excitation
         return True
-    if trial.candidate.effect == LATER:  # does not repeat
+    if presence is Presence.LATER:  # does not repeat
         return False
-    if trial.candidate.effect in COMPLIANT:  # searched for over what makes a filter of any errors
+    if trial.candidate.elastic:  # searched for over what makes a filter of any errors
         return False
     table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
     pairs = Pairs(system.rows, table, system.periods, system.sizes)

@@ -9,12 +9,16 @@ where the links are.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
+from modelgen.description.objects import Arm
 from modelgen.effects.base import POSITIVE, Effect, Parameter, Values, at
+from modelgen.effects.traits import Added, Family, Numbers, Reading, Seen, Shows
 from modelgen.effects.variables import Variables
+from modelgen.numeric import Array
 
 STIFFNESS = Parameter(
     "stiffness",
@@ -23,6 +27,16 @@ STIFFNESS = Parameter(
     bounds=POSITIVE,
 )
 DAMPING = Parameter("damping", "{f} s/{x}", "damping between drive and link", default=0.0)
+# What is searched for: stiffness in units of the efforts and the motion, and damping over stiffness.
+STIFFNESSES = (3.0, 8.0, 20.0, 50.0, 120.0, 300.0, 800.0, 3000.0)
+HARD = 200.0  # of a spring in which something else shows first
+RELAXATION = Parameter("relaxation", "s", "damping over stiffness", grid=(0.02,))
+RINGS = replace(RELAXATION, grid=(0.005,))  # behind a link's own position the drive rings within less
+
+
+def stiffness(*grid: float) -> Parameter:
+    """Stiffness as it is searched for."""
+    return replace(STIFFNESS, scale="stiffness", grid=grid)
 
 
 class Compliance(Effect):
@@ -34,6 +48,46 @@ class Compliance(Effect):
 
     place = "transmission"
     states = ("lag", "rate")
+    family = Family.ELASTIC
+    needs_effort = True
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """Where it is not known which position was measured."""
+        there = [arm.joints[arm.coordinates[n - 1]].effects for n in seen.unsided]
+        unsided = [
+            n for n, uses in zip(seen.unsided, there, strict=True) if all(u.name != cls.name for u in uses)
+        ]
+        if not unsided:
+            return []
+        reason = "has no drive, or was measured now at the motor, now at the link"
+        joints = "joint " + ", ".join(str(n) for n in unsided)
+        return [f"the position of {joints} {'is too coarse to show it' if seen.coarse else reason}"]
+
+    @classmethod
+    def estimated(cls) -> tuple[str, ...]:
+        """The share of what is simulated that the records have: it is in proportion to no parameter."""
+        return ("share",)
+
+    @classmethod
+    def sought(cls, behind_link: bool) -> tuple[Parameter, ...]:
+        """Stiffness, relaxation, and what else has a grid; behind a link's own position no law but a linear
+        spring and a gap is simulated.
+        """
+        return () if behind_link else (stiffness(*STIFFNESSES), RELAXATION, *cls.searched())
+
+    @classmethod
+    def slopes(cls, names: Sequence[str], values: Numbers, added: Added) -> Array:
+        """All that it does with these values, (N, n, 1)."""
+        return added(cls.physical(values))[:, :, None]
+
+    @classmethod
+    def physical(cls, found: Numbers) -> dict[str, float]:
+        """Damping from the relaxation."""
+        own = {
+            p.name: found[p.name] for p in cls.nonlinear if p.name in found and p not in (STIFFNESS, DAMPING)
+        }
+        return {**own, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
 
     @abstractmethod
     def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
@@ -86,6 +140,12 @@ class JointFlexibility(Compliance):
     text = "elastic transmission between drive and link"
     reference = "Spong 1987"
     nonlinear = (STIFFNESS, DAMPING)
+
+    @classmethod
+    def sought(cls, behind_link: bool) -> tuple[Parameter, ...]:
+        """Stiffness and relaxation."""
+        return stiffness(*STIFFNESSES), RINGS if behind_link else RELAXATION
+
     confused_with = ("backlash", "time_delay")
     experiment = "a chirp up to the resonance, with encoders on motor and link"
     shown = at(stiffness=4000.0, damping=60.0)
@@ -109,14 +169,30 @@ class Backlash(Compliance):
             "width of the gap, from contact to contact",
             bounds=POSITIVE,
             scale="span",
-            grid=(3e-4, 1e-3, 3e-3, 1e-2, 3e-2),
+            grid=(3e-4, 8e-4, 2e-3, 4e-3, 1e-2, 3e-2),
         ),
         STIFFNESS,
         DAMPING,
     )
+    shows = frozenset({Shows.IMPACTS})
+    simpler = JointFlexibility
     confused_with = ("joint_flexibility", "presliding", "time_delay")
+    reading = Reading(
+        "the joint's angle to 0.1 mrad at the link, the motor held, the link pushed both ways",
+        ("play",),
+        1e-4,
+        claim="a gap of {:.2g}",
+    )
     experiment = "a motion that reverses the load, with encoders on motor and link"
     shown = at(play=0.01, stiffness=30000.0, damping=300.0)
+
+    @classmethod
+    def sought(cls, behind_link: bool) -> tuple[Parameter, ...]:
+        """The gap first; behind a link's own position alone, since it shows at its edges alone."""
+        play = cls.nonlinear[0]
+        if behind_link:
+            return (replace(play, grid=(3e-4, 1e-3, 3e-3, 6e-3, 1.2e-2)),)
+        return play, stiffness(HARD), RELAXATION
 
     def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:
         """stiffness times what the stretch exceeds the gap by."""

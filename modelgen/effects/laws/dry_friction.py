@@ -6,12 +6,16 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
-from modelgen.effects.laws.velocity_friction import SMOOTHING, direction
+from modelgen.description.objects import Arm
+from modelgen.effects.base import ANY, POSITIVE, Parameter, Values, at
+from modelgen.effects.laws.velocity_friction import SMOOTHING, Friction, direction
+from modelgen.effects.traits import Presence, Seen, Shows
 from modelgen.effects.variables import Variables
 
+RISE = 2e-3  # s: long before what a band of some ten Hz shows
 
-class StribeckFriction(Effect):
+
+class StribeckFriction(Friction):
     """Dry friction that falls from its value near rest to the Coulomb level."""
 
     name = "stribeck_friction"
@@ -27,9 +31,17 @@ class StribeckFriction(Effect):
             scale="speed",
             grid=(0.01, 0.02, 0.04, 0.08, 0.16, 0.3),
         ),
-        Parameter("exponent", "1", "shape of the fall", default=2.0, bounds=(0.5, 4.0)),
+        Parameter(
+            "exponent",
+            "1",
+            "shape of the fall",
+            default=2.0,
+            bounds=(0.5, 4.0),
+            forms=(1.0, 2.0),  # Bo and Pavelescu 1982; Armstrong-Helouvry 1991
+        ),
         SMOOTHING,
     )
+    shows = frozenset({Shows.NEAR_REST, Shows.REVERSALS, Shows.BRIEFLY})
     confused_with = ("presliding", "backlash", "nonlinear_viscous_friction", "time_delay")
     experiment = "slow constant speeds around the Stribeck velocity, both directions"
     shown = at(magnitude=0.1, velocity=8.0)
@@ -41,7 +53,7 @@ class StribeckFriction(Effect):
         return p["magnitude"] * sp.exp(-power) * direction(x.velocity, p["smoothing"])
 
 
-class LoadDependentFriction(Effect):
+class LoadDependentFriction(Friction):
     """Dry friction in proportion to the load that the transmission carries."""
 
     name = "load_dependent_friction"
@@ -57,9 +69,12 @@ class LoadDependentFriction(Effect):
             "time in which the load follows the force that moves the links; 0: it is their weight alone",
             default=0.0,
             bounds=(0.0, 1.0),
+            structural=True,
+            forms=(None, RISE),
         ),
     )
     states = ("load",)
+    shows = frozenset({Shows.LOAD})
     confused_with = ("position_dependent_friction", "drive_gain_error")
     experiment = "the same path with two payloads"
     shown = at(coefficient=0.15)
@@ -83,7 +98,7 @@ class LoadDependentFriction(Effect):
         return {} if load is None else {"load": x.carried + (load - x.carried) * sp.exp(-dt / p["rise"])}
 
 
-class PositionDependentFriction(Effect):
+class PositionDependentFriction(Friction):
     """Dry friction that changes along the joint's range."""
 
     name = "position_dependent_friction"
@@ -95,6 +110,7 @@ class PositionDependentFriction(Effect):
         Parameter("curvature", "{f}", "the same per square of the joint coordinate", "FQ", bounds=ANY),
     )
     nonlinear = (SMOOTHING,)
+    shows = frozenset({Shows.PLACES, Shows.LOAD})
     confused_with = ("load_dependent_friction",)
     experiment = "small reversals at many places of the range, with and without payload"
     shown = at(slope=0.04, curvature=0.02)
@@ -105,7 +121,7 @@ class PositionDependentFriction(Effect):
         return size * direction(x.velocity, p["smoothing"])
 
 
-class FrictionWarmUp(Effect):
+class FrictionWarmUp(Friction):
     """Friction in excess of the warm drive's.
 
     Friction itself warms the drive: power in proportion to speed, as that of dry friction, against losses in
@@ -129,13 +145,29 @@ class FrictionWarmUp(Effect):
             scale="time",
             grid=(0.05, 0.1, 0.2, 0.4, 0.8, 1.6),
         ),
-        Parameter("speed", "{x}/s", "mean speed at which the heat settles at 1", bounds=POSITIVE),
+        Parameter(
+            "speed",
+            "{x}/s",
+            "mean speed at which the heat settles at 1",
+            bounds=POSITIVE,
+            scale="speed",
+            grid=(1.0,),
+        ),
         SMOOTHING,
     )
     states = ("heat",)
+    parts = (("dry",), ("viscous",))
+    presence = Presence.FADING
+    needs_effort = True
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
     shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=25.0)
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """Where drives were warmed before."""
+        text = "a record begins in the middle of a log: how warm the drives were is not known"
+        return [] if named or seen.whole else [text]
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """(1 - heat) (FCW sign(v) + FVW v); time dheat/dt = |v| / speed - heat, 0 at a record's begin."""
@@ -148,7 +180,7 @@ class FrictionWarmUp(Effect):
         return {"heat": settled + (x.state["heat"] - settled) * sp.exp(-dt / p["time"])}
 
 
-class Presliding(Effect):
+class Presliding(Friction):
     """Dry friction that builds up over a distance after each reversal."""
 
     name = "presliding"
@@ -166,6 +198,7 @@ class Presliding(Effect):
         ),
     )
     states = ("bend",)
+    shows = frozenset({Shows.NEAR_REST, Shows.REVERSALS})
     confused_with = ("stribeck_friction", "backlash", "time_delay")
     experiment = "reversals of small amplitude, at several amplitudes and speeds"
     shown = at(magnitude=0.1, distance=6.0)

@@ -6,11 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
 import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values, at
+from modelgen.effects.traits import Added, Family, Numbers, Presence, Reading, Seen
 from modelgen.effects.variables import PointVariables
+from modelgen.numeric import Array
 
 # Gauss-Legendre quadrature with five points on [0, 1]: (place, weight)
 _NODES = tuple(
@@ -23,10 +26,16 @@ _NODES = tuple(
         (1, 0.9061798459386640, 0.2369268850561891),
     )
 )
+PLACE = 1e-3  # m, step of the slopes by a payload's place
 STILL = 1e-12  # [m^2/s^2] added under the root of a speed squared, so that its slope exists at rest
 TIP = tuple(
     Parameter(
-        f"tip_{axis}", "m", f"{axis} of the end of a link that carries no other", default=0.0, bounds=ANY
+        f"tip_{axis}",
+        "m",
+        f"{axis} of the end of a link that carries no other",
+        default=0.0,
+        bounds=ANY,
+        structural=True,
     )
     for axis in "xyz"
 )
@@ -36,6 +45,7 @@ class Strips(LinkEffect):
     """Forces along the line of a link, by quadrature."""
 
     nonlinear = TIP
+    family = Family.FLUID
 
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
@@ -103,9 +113,52 @@ class PayloadChange(LinkEffect):
         Parameter("y", "m", "its place in the link's frame", default=0.0, bounds=ANY),
         Parameter("z", "m", "its place in the link's frame", default=0.0, bounds=ANY),
     )
+    parts = (("mass", "moment_x"),)  # held along the last link
+    exact = True
+    presence = Presence.LATER
     confused_with = ("friction_warm_up", "base_tilt")
+    reading = Reading("what the last link carries on a balance, to 10 g", ("mass",), 0.01)
     experiment = "weigh it, or compare records with and without"
     shown = at(mass=1.0, x=0.5)
+
+    @classmethod
+    def estimated(cls) -> tuple[str, ...]:
+        """Mass and first moments, of which its force is a sum."""
+        return "mass", "moment_x", "moment_y", "moment_z"
+
+    @classmethod
+    def slopes(cls, names: Sequence[str], values: Numbers, added: Added) -> Array:
+        """Changes of the inputs with mass and first moments of what the last link carries.
+
+        values: mass and place of what was found; its second moments are as if it were all there. At the
+        link's origin where there is none.
+        """
+        place = {a: values.get(a, 0.0) if values.get("mass", 0.0) > 0 else 0.0 for a in "xyz"}
+
+        def of(**moved: float) -> Array:
+            return added({"mass": 1.0, **place, **moved})
+
+        moments = []
+        for a in "xyz":
+            ahead, behind = (of(**{a: place[a] + d}) for d in (PLACE, -PLACE))
+            moments.append((ahead - behind) / (2 * PLACE))
+        mass = of() - sum(place[a] * moment for a, moment in zip("xyz", moments, strict=True))
+        columns = dict(zip(cls.estimated(), (mass, *moments), strict=True))
+        return np.stack([columns[name] for name in names], axis=2)
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """One that is always there."""
+        text = "a payload that is there in all training records is a part of the last link's parameters"
+        return [] if named else [text]
+
+    @classmethod
+    def physical(cls, found: Numbers) -> dict[str, float]:
+        """Its place from the first moments."""
+        mass = found.get("mass")
+        if not mass:
+            return dict(found)
+        return {"mass": mass, **{a: found.get(f"moment_{a}", 0.0) / mass for a in "xyz"}}
 
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """The joint's own, the last one for the whole arm."""
@@ -120,6 +173,12 @@ class PayloadChange(LinkEffect):
         return p["mass"] * x.acceleration
 
 
+def _turn(axis: str) -> Parameter:
+    """One of the base's."""
+    text, bounds = f"turn about {axis} of the base", (-math.pi, math.pi)
+    return Parameter(axis, "rad", text, default=0.0, bounds=bounds, step=1e-4, usual=0.03)
+
+
 class BaseTilt(DescriptionEffect):
     """The base stands at an angle to where the description has it."""
 
@@ -128,12 +187,10 @@ class BaseTilt(DescriptionEffect):
     text = "base turned about its x, then its y axis, against the described direction of gravity"
     reference = "Ayusawa, Venture and Nakamura 2014"
     scope = "arm"
-    nonlinear = (
-        Parameter("x", "rad", "turn about x of the base", default=0.0, bounds=(-math.pi, math.pi)),
-        Parameter("y", "rad", "turn about y of the base", default=0.0, bounds=(-math.pi, math.pi)),
-        Parameter("z", "rad", "turn about z of the base", default=0.0, bounds=(-math.pi, math.pi)),
-    )
+    nonlinear = (_turn("x"), _turn("y"), _turn("z"))
+    overlooked = (10.0, 0.0)
     confused_with = ("encoder_offset", "friction_offset", "spring")
+    reading = Reading("the base with an inclinometer, to 0.1 deg", ("x", "y", "z"), 1.7e-3)
     experiment = "an inclinometer, or a second mounting of the base"
     shown = at(z=0.05)
 

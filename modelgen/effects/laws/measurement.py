@@ -9,7 +9,11 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
+from modelgen.effects.traits import Family, Reading, Seen, Shows, joint_of
 from modelgen.effects.variables import InputVariables
+from modelgen.symbolic import number as figure
+
+MEASURED = 0.03  # of a length, as drawings and tapes leave it
 
 
 class EncoderOffset(DescriptionEffect):
@@ -19,10 +23,19 @@ class EncoderOffset(DescriptionEffect):
     seen_over = "position"
     text = "true coordinate of the joint less the reading"
     reference = "Hollerbach, Khalil and Gautier 2016"
-    nonlinear = (Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY),)
+    nonlinear = (
+        Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY, step=1e-4, usual=0.02),
+    )
     confused_with = ("base_tilt", "spring", "friction_offset")
+    reading = Reading("the angle at an index mark or a hard stop, to 0.1 deg", ("offset",), 1.7e-3)
     experiment = "an index mark or a hard stop"
     shown = at(offset=0.03)
+
+    @classmethod
+    def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
+        """Of an angle; how far a slide may be off depends on its size."""
+        slides = number is not None and joint_of(arm, number).type == "prismatic"
+        return {} if slides else super().usual(arm, number)
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """Frame and lever turned by the offset."""
@@ -33,6 +46,11 @@ class EncoderOffset(DescriptionEffect):
         return _with(arm, joint, theta=old.theta + offset, drive=old.drive.shifted(offset))
 
 
+def _length(name: str, text: str) -> Parameter:
+    """An error of one of a lever's lengths."""
+    return Parameter(name, "m", text, default=0.0, bounds=ANY, step=1e-6)
+
+
 class LeverGeometry(DescriptionEffect):
     """Lengths of a lever that differ from the described ones."""
 
@@ -41,13 +59,27 @@ class LeverGeometry(DescriptionEffect):
     text = "true lengths of the lever less the described ones"
     reference = "Leborne, Creuze, Chemori and Brignone 2018"
     nonlinear = (
-        Parameter("l1", "m", "true l1 less the described one", default=0.0, bounds=ANY),
-        Parameter("l2", "m", "true l2 less the described one", default=0.0, bounds=ANY),
-        Parameter("length", "m", "true actuator length less the described one", default=0.0, bounds=ANY),
+        _length("l1", "true l1 less the described one"),
+        _length("l2", "true l2 less the described one"),
+        _length("length", "true actuator length less the described one"),
     )
+    parts = (("l1",), ("l2",), ("length",))
+    rereads = True
+    overlooked = (5.0, 0.03)  # m, by which a length between pivots may be off however short it is
     confused_with = ("encoder_offset", "position_dependent_friction", "actuator_mass")
+    reading = Reading("the lever's lengths, to 0.5 mm", ("l1", "l2", "length"), 5e-4)
     experiment = "`modelgen calibrate`, or static holds over the whole stroke"
     shown = at(l2=0.001)
+
+    @classmethod
+    def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
+        """A share of each length."""
+        actuator = None if number is None else joint_of(arm, number).drive.actuator
+        if actuator is None:
+            return {}
+        lengths = (actuator.l1, actuator.l2, *actuator.length)
+        l1, l2, shortest, longest = (figure(x, arm.symbols) for x in lengths)
+        return {"l1": MEASURED * l1, "l2": MEASURED * l2, "length": MEASURED * (shortest + longest) / 2}
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """The lever with its true lengths; its stroke ends where they no longer close."""
@@ -66,10 +98,27 @@ class DriveGainError(DescriptionEffect):
     seen_over = "position"
     text = "relative error of one joint's torque constant"
     reference = "Gautier and Briot 2014"
-    nonlinear = (Parameter("error", "1", "true over described torque constant, less 1", bounds=(-0.9, 9.0)),)
+    nonlinear = (
+        Parameter(
+            "error",
+            "1",
+            "true over described torque constant, less 1",
+            bounds=(-0.9, 9.0),
+            step=1e-4,
+            usual=0.1,
+        ),
+    )
+    needs_effort = True
     confused_with = ("load_dependent_friction", "torque_constant_saturation")
     experiment = "a run with a known payload"
     shown = at(error=0.1)
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """At a single joint."""
+        if named or len(arm.coordinates) > 1:
+            return []
+        return ["the torque constant of a single joint scales all its parameters"]
 
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """The drive with its true torque constant."""
@@ -89,8 +138,15 @@ class TorqueConstantSaturation(InputEffect):
     text = "torque constant that falls with the square of the current"
     reference = "Gautier and Briot 2014"
     nonlinear = (
-        Parameter("coefficient", "1/A^2", "fall of the torque constant by current squared", bounds=POSITIVE),
+        Parameter(
+            "coefficient",
+            "1/A^2",
+            "fall of the torque constant by current squared",
+            bounds=POSITIVE,
+            step=1e-8,
+        ),
     )
+    shows = frozenset({Shows.LOAD})
     confused_with = ("nonlinear_viscous_friction", "load_dependent_friction", "drive_gain_error")
     experiment = "a known payload at rest, light and heavy"
     shown = at(coefficient=0.002)
@@ -115,7 +171,18 @@ class TimeDelay(InputEffect):
     text = "time by which the effort comes after the logged input"
     reference = "Swevers, Verdonck and De Schutter 2007"
     scope = "either"
-    nonlinear = (Parameter("delay", "s", "time from the logged input to its effort", bounds=(-1.0, 1.0)),)
+    nonlinear = (
+        Parameter(
+            "delay",
+            "s",
+            "time from the logged input to its effort",
+            bounds=(-1.0, 1.0),
+            step=1e-4,
+            usual=0.005,
+        ),
+    )
+    family = Family.FRICTION  # it looks like what sticking does at reversals
+    shows = frozenset({Shows.REVERSALS})
     states = ("lagged",)
     confused_with = ("joint_flexibility", "presliding", "stribeck_friction")
     experiment = "the cross-correlation of a chirp, or a loop-back of the signal"

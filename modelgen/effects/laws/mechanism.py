@@ -5,10 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
 import sympy as sp
 
+from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, Swing, Values, at
+from modelgen.effects.traits import Family, Numbers, Shows, joint_of
 from modelgen.effects.variables import BodyVariables, Variables
+from modelgen.symbolic import number as figure
+from modelgen.transmission import of_joint
+
+HEAVY = 0.3  # of the mass of all links, of one actuator
 
 
 class DriveInertia(Effect):
@@ -44,6 +51,7 @@ class Spring(Effect):
         Parameter("preload", "{f}", "force at q = 0, that is -stiffness times rest", "KO", bounds=ANY),
     )
     rest = Parameter("rest", "{x}", "coordinate at rest", bounds=ANY)
+    family = Family.SPRING
     confused_with = ("friction_offset", "base_tilt", "encoder_offset")
     experiment = "static holds over the whole range"
     shown = at(stiffness=8.0, preload=-4.0)
@@ -84,9 +92,22 @@ class TorqueRipple(Effect):
         Parameter("harmonic", "1", "waves in a revolution", bounds=POSITIVE),
         Parameter("revolution", "{x}", "a revolution [2 pi rad]", default=2 * math.pi, bounds=POSITIVE),
     )
+    periodic = True
+    caveat = " Its phase does only where both logs count positions from the same zero."
+    shows = frozenset({Shows.BRIEFLY})
     confused_with = ("position_dependent_friction", "lever_geometry")
     experiment = "slow constant speed, and the spectrum over the motor's angle"
     shown = at(sine=0.05, cosine=0.0, harmonic=0.25)
+
+    @classmethod
+    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
+        """A revolution of the motor; where that is not counted in rad, a unit of its coordinate."""
+        assert number is not None
+        drive = of_joint(arm, joint_of(arm, number))
+        turns = (
+            drive.unit in ("rad", "unit rad") if drive.driven else joint_of(arm, number).type != "prismatic"
+        )
+        return [{"revolution": 2 * np.pi if turns else 1.0}]
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """RS sin(phase) + RC cos(phase), phase = 2 pi harmonic x / revolution."""
@@ -116,12 +137,22 @@ class TransmissionCoupling(Effect):
         Parameter("dry", "{f}", "its Coulomb friction", "FCC"),
     )
     nonlinear = (
-        Parameter("other", "1", "number of the other joint's coordinate", bounds=(1.0, 1000.0)),
-        Parameter("ratio", "1", "turns per turn of the other joint", default=1.0, bounds=ANY),
+        Parameter(
+            "other", "1", "number of the other joint's coordinate", bounds=(1.0, 1000.0), structural=True
+        ),
+        Parameter(
+            "ratio", "1", "turns per turn of the other joint", default=1.0, bounds=ANY, structural=True
+        ),
     )
     confused_with = ("fluid_drag",)
     experiment = "the two joints moved one at a time, then together"
     shown = at(inertia=0.0, viscous=2.0, dry=4.0, other=1.0)
+
+    @classmethod
+    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
+        """With every joint before this one, in either direction."""
+        assert number is not None
+        return [{"other": float(k), "ratio": r} for k in range(1, number) for r in (1.0, -1.0)]
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """IC a + FVC v + FCC sign(v) at the coordinate of the coupling."""
@@ -156,9 +187,37 @@ class ActuatorMass(BodyEffect):
             turns=True,
         ),
     )
+    parts = (("inertia", "moment_x"), ("moment_x",))
+    overlooked = (10.0, 0.0)
     confused_with = ("lever_geometry", "drive_inertia", "spring")
     experiment = "static holds over the stroke, then fast and slow runs"
     shown = at(inertia=0.05, moment_x=0.3, moment_y=0.1)
+
+    @classmethod
+    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
+        """Where its base is shows only if other joints turn the link that carries it."""
+        return [{}] if _carried(arm, number) else [{"base_angle": 0.0}]
+
+    @classmethod
+    def subsets(cls, arm: Arm, number: int | None) -> tuple[tuple[str, ...], ...]:
+        """Where its base is says also where its weight points."""
+        return cls.parts if _carried(arm, number) else super().subsets(arm, number)
+
+    @classmethod
+    def vanishes(cls, estimated: Numbers) -> bool:
+        """It shows by its weight alone where its inertia is lost in noise."""
+        return False
+
+    @classmethod
+    def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
+        """A rod of a part of the links' mass."""
+        actuator = None if number is None else joint_of(arm, number).drive.actuator
+        mass = HEAVY * sum(link.mass for link in arm.links if link is not None)
+        if actuator is None or not mass > 0:
+            return {}
+        longest = figure(actuator.length[1], arm.symbols)
+        moment = mass * longest / 2
+        return {"inertia": mass * longest**2 / 3, "moment_x": moment, "moment_y": moment}
 
     def swing(self, x: BodyVariables, p: Values) -> Swing:
         """From the base, at the distance l1 from the joint, to the lever's end, at l2."""
@@ -184,3 +243,13 @@ class ActuatorMass(BodyEffect):
     def potential(self, x: BodyVariables, p: Values) -> sp.Expr:
         """-g (first moment)."""
         return -(p["moment_x"] * x.gravity[0] + p["moment_y"] * x.gravity[1])
+
+
+def _carried(arm: Arm, number: int | None) -> bool:
+    """Whether other joints move the link before this one."""
+    if number is None:
+        return False
+    before = joint_of(arm, number).antecedent
+    while before is not None and before not in arm.coordinates:
+        before = arm.joints[before].antecedent
+    return before is not None

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import sympy as sp
 
+from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, Effect, Parameter, Values, at
+from modelgen.effects.traits import Family, Numbers, Reading, Seen, Shows
 from modelgen.effects.variables import Variables
 
 SMOOTHING = Parameter(
@@ -12,12 +16,21 @@ SMOOTHING = Parameter(
     "{x}/s",
     "velocity over which the sign is smoothed by tanh; 0 keeps the sign",
     default=0.0,
+    structural=True,
 )
+AT_REST = 1.0  # s, over which a current is read
+NEAR_REST = 1.05  # times the least exponent that is searched: a power below it is dry friction
 
 
 def direction(velocity: sp.Expr, smoothing: sp.Expr) -> sp.Expr:
     """sign(velocity), smoothed by tanh where `smoothing` is positive; sign(0) = 0."""
     return sp.sign(velocity) if smoothing == 0 else sp.tanh(velocity / smoothing)
+
+
+class Friction(Effect):
+    """A law of friction over the joint's own motion, of a form that is that of no joint to the last."""
+
+    family = Family.FRICTION
 
 
 class ViscousFriction(Effect):
@@ -48,6 +61,11 @@ class CoulombFriction(Effect):
     shown = at(magnitude=0.1)
     nonlinear = (SMOOTHING,)
 
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """At rest."""
+        return [f"joint {n} does not move in the training records" for n in seen.still]
+
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FC sign(v)."""
         return p["magnitude"] * direction(x.velocity, p["smoothing"])
@@ -60,7 +78,14 @@ class FrictionOffset(Effect):
     seen_over = "position"
     text = "constant force while moving: asymmetric Coulomb friction or an offset of the current"
     reference = "Khalil and Dombre 2002"
+    exact = True
     confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")
+    reading = Reading(
+        f"the current at rest with the motor switched off, for {AT_REST:g} s",
+        ("offset",),
+        duration=AT_REST,
+        claim="an offset of the sensor of {:.2g}; none with asymmetric friction",
+    )
     experiment = "the current with the motor switched off, and constant speeds in both directions"
     shown = at(offset=0.05)
     linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=ANY),)
@@ -90,7 +115,7 @@ class AsymmetricViscousFriction(Effect):
         return p["coefficient"] * sp.Abs(x.velocity)
 
 
-class NonlinearViscousFriction(Effect):
+class NonlinearViscousFriction(Friction):
     """Viscous friction that is not in proportion to speed."""
 
     name = "nonlinear_viscous_friction"
@@ -106,11 +131,25 @@ class NonlinearViscousFriction(Effect):
             bounds=(0.1, 4.0),
             grid=(0.3, 0.6, 1.6, 2.0, 3.0),
         ),
-        Parameter("scale", "{x}/s", "speed to which the power is referred", default=1.0, bounds=POSITIVE),
+        Parameter(
+            "scale",
+            "{x}/s",
+            "speed to which the power is referred",
+            default=1.0,
+            bounds=POSITIVE,
+            scale="speed",
+            grid=(1.0,),
+        ),
     )
     confused_with = ("stribeck_friction", "fluid_drag", "torque_constant_saturation")
     experiment = "constant speeds up to the highest"
     shown = at(coefficient=0.1, exponent=0.6, scale=100.0)
+
+    @classmethod
+    def imitates(cls, values: Numbers) -> Shows | None:
+        """At the least power it is dry friction that is lower near rest."""
+        least = cls.nonlinear[0].grid[0]
+        return Shows.NEAR_REST if values.get("exponent", math.inf) < NEAR_REST * least else None
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FN |v / scale|^exponent sign(v)."""
