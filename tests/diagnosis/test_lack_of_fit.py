@@ -62,6 +62,20 @@ def test_a_short_contact_is_found_and_placed() -> None:
         assert by_kind[PART] > 1.2 * by_kind[WHOLE]
 
 
+def test_a_little_in_every_phase_is_found_in_all_rows_together() -> None:
+    """Where no part shows it as clearly. Means over periods have the noise's variance over their number."""
+    size, found = 0.5, []
+    for k in range(10):
+        made = system(k, size * default_rng([5, k]).normal(size=PERIOD))
+        fit, by_kind = lack_of_fit(made), ratios(made)
+        assert fit is not None
+        assert fit.found
+        assert fit.worst.kind == WHOLE
+        assert by_kind[WHOLE] > 1.2 * by_kind[PART]
+        found.append(fit.by_joint[0])
+    assert np.mean(found) == pytest.approx(1.0 + PERIODS * size**2, rel=0.1)
+
+
 @pytest.mark.parametrize("colour", [0.0, 0.7])
 def test_noise_alone_is_not_found(colour: float) -> None:
     """At a nominal 0.1 % for all tests of a kind together, not once in sixty."""
