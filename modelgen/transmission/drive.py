@@ -47,7 +47,7 @@ class Drive(ABC):
     runtime: ClassVar[tuple[str, ...]] = ()  # figures that can be inputs of the generated code
     typical_inertia: ClassVar[float] = 1e-4  # at the motor coordinate, in its unit, of a self-test's arm
 
-    if TYPE_CHECKING:  # fields of the classes
+    if TYPE_CHECKING:  # fields that each kind has behind its figures
 
         @property
         def torque_constant(self) -> float:
