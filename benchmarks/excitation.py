@@ -13,7 +13,8 @@ import numpy as np
 
 from modelgen.description import load
 from modelgen.effects import known_effects
-from modelgen.excitation import Settings, excite, random_conditions
+from modelgen.excitation import excite, random_conditions
+from modelgen.options import ExcitationOptions
 from modelgen.resources import shipped_arms
 
 
@@ -21,7 +22,7 @@ def main(count: int, starts: int) -> None:
     """Print both."""
     arm = load(shipped_arms(), known_effects())["ariane4"]
     begin = time.perf_counter()
-    found = excite(arm, Settings(starts=starts))
+    found = excite(arm, ExcitationOptions(starts=starts))
     middle = time.perf_counter()
     conditions = random_conditions(found.problem, count, seed=1)
     end = time.perf_counter()

@@ -18,6 +18,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -111,10 +112,19 @@ def reference(package: str) -> str:
     options, names = "   :members:\n", [module.__name__]
     if hasattr(module, "__all__"):
         options += "   :imported-members:\n"
+        elsewhere = [name for name in module.__all__ if _home(module, name) not in (None, package)]
+        if elsewhere:
+            options += f"   :exclude-members: {', '.join(elsewhere)}\n"
     elif hasattr(module, "__path__"):
         names += modules(package)
     text = "".join(f".. automodule:: {name}\n{options}\n" for name in names)
     return f"# modelgen.{package}\n\n```{{eval-rst}}\n{text}```\n"
+
+
+def _home(module: ModuleType, name: str) -> str | None:
+    """The package with a page of its own that an object comes from; None where there is none."""
+    parts = str(getattr(getattr(module, name), "__module__", "")).split(".")
+    return parts[1] if parts[0] == "modelgen" and len(parts) > 1 and parts[1] in PACKAGES else None
 
 
 def modules(package: str) -> Iterator[str]:

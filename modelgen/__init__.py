@@ -1,3 +1,3 @@
 """From a description of an arm to its dynamic model: C99, CasADi and NumPy."""
 
-__version__ = "0.1.0"
+from modelgen.version import __version__ as __version__

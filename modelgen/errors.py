@@ -1,7 +1,9 @@
-"""The one exception that a user's mistake raises, and where in the file the mistake is."""
+"""The one exception that a user's mistake raises, where in the file the mistake is, and what comes near."""
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -28,3 +30,17 @@ class InputError(Exception):
         self.message = message
         self.where = where
         super().__init__(f"{where}: {message}" if where else message)
+
+
+def suggest(name: str, options: Iterable[str]) -> str:
+    """The nearest of the names that exist, and all of them where there are few or none comes near."""
+    known = list(options)
+    if not known:
+        return ""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if not near:
+        near = [known_name for known_name in known if known_name.lower() == name.lower()]
+    listed = "available: " + ", ".join(known)
+    if near:
+        return f", did you mean '{near[0]}'?" + (f" ({listed})" if len(known) <= 12 else "")
+    return f", {listed}"

@@ -1,4 +1,4 @@
-"""TODO."""
+"""A regressor's columns by C that is compiled here, several samples at once."""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-from pathlib import Path
 
 import numpy as np
 from ruamel.yaml import YAML
@@ -14,15 +13,15 @@ from modelgen.calibration.lever import Lever
 from modelgen.description import Arm
 
 
-def calibrated_yaml(file: Path, arm: Arm, joint: int, lever: Lever) -> str:
-    """The arm's part of its description file with the lever of coordinate `joint` (from 1) as found.
+def calibrated_yaml(arm: Arm, joint: int, lever: Lever) -> str:
+    """The arm's part of its description with the lever of coordinate `joint` (from 1) as found.
 
     Where the joint has limits of position they become those of the stroke, which the description demands
     to agree. Comments and order stay.
     """
     yaml = YAML()
     yaml.width = 110
-    whole = yaml.load(file.read_text(encoding="utf-8"))
+    whole = yaml.load(arm.document)
     entry: CommentedMap = whole["arms"][arm.name]
     own: CommentedMap = entry["joints"][arm.coordinates[joint - 1]]
     drive: CommentedMap = own["drive"]

@@ -8,11 +8,12 @@ from modelgen.description.context import Context
 from modelgen.description.document import Node
 from modelgen.description.inertials import read_inertial
 from modelgen.description.joints import KnownEffects, coordinate_kind, read_effects, read_joint
-from modelgen.description.messages import describe, suggest
+from modelgen.description.messages import describe
 from modelgen.description.names import arm_name_problem, symbol_name_problem
 from modelgen.description.objects import Arm, Inertial
 from modelgen.description.schema import ArmModel, Document
 from modelgen.description.transforms import read_base, read_tools
+from modelgen.errors import suggest
 
 
 def build(document: Document, root: Node, known_effects: KnownEffects | None) -> dict[str, Arm]:

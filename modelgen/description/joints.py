@@ -9,9 +9,10 @@ from typing import TypeAlias
 from modelgen.description.context import Context, show
 from modelgen.description.document import Steps
 from modelgen.description.drives import read_drive, within_reach
-from modelgen.description.messages import describe, suggest
+from modelgen.description.messages import describe
 from modelgen.description.objects import EffectUse, Joint, Limits
 from modelgen.description.schema import EffectEntry, JointModel
+from modelgen.errors import suggest
 from modelgen.transmission import Drive
 
 DEFAULT_EFFECTS = ("viscous_friction", "coulomb_friction", "drive_inertia")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -38,4 +39,5 @@ def loads(
         document = Document.model_validate(root.plain())
     except ValidationError as error:
         raise first_mistake(root, error) from None
-    return build(document, root, known_effects)
+    arms = build(document, root, known_effects)
+    return {name: replace(arm, document=text) for name, arm in arms.items()}

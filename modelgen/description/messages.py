@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
 from typing import Any
 
 from pydantic import ValidationError
 
 from modelgen.description.document import Node, Steps, one_line
-from modelgen.errors import InputError
+from modelgen.errors import InputError, suggest
 from modelgen.transmission import KINDS
 
 _EXPECTED = {
@@ -42,20 +41,6 @@ def describe(value: Any) -> str:
             return "a mapping"
         case _:
             return type(value).__name__
-
-
-def suggest(name: str, options: Iterable[str]) -> str:
-    """The nearest of the names that exist, and all of them where there are few or none comes near."""
-    known = list(options)
-    if not known:
-        return ""
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    if not near:
-        near = [known_name for known_name in known if known_name.lower() == name.lower()]
-    listed = "available: " + ", ".join(known)
-    if near:
-        return f", did you mean '{near[0]}'?" + (f" ({listed})" if len(known) <= 12 else "")
-    return f", {listed}"
 
 
 def label(path: Steps) -> str:

@@ -123,6 +123,7 @@ class Arm:
     `effects` are those of the whole arm. `base` is world <- base frame, None where that is the world; gravity
     is given in the base frame. `tools` are named frames on links.
     `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
+    `document` is the text of the description that the arm was read from, in YAML.
     """
 
     name: str
@@ -137,6 +138,7 @@ class Arm:
     base: Transform | None = field(default=None, metadata=OPTIONAL)
     tools: tuple[Tool, ...] = field(default=(), metadata=OPTIONAL)
     where: Location | None = field(default=None, compare=False)
+    document: str = field(default="", compare=False, repr=False)
 
     @property
     def coordinates(self) -> tuple[int, ...]:

@@ -8,9 +8,9 @@ import numpy as np
 
 from modelgen.description.context import Context
 from modelgen.description.document import Steps
-from modelgen.description.messages import suggest
 from modelgen.description.objects import Tool, Transform
 from modelgen.description.schema import ArmModel, TransformModel
+from modelgen.errors import suggest
 
 # A matrix given with fewer digits than that is no rotation.
 ORTHOGONAL = 1e-6

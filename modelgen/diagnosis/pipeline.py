@@ -51,7 +51,7 @@ FREE_CUTOFF = 10.0  # Hz, for free motions
 SAMPLES = 12.0  # per period of the cut-off, at least
 
 
-def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | None) -> list[Record]:
+def records(arm: Arm, train: Sequence[str], test: Sequence[str], mapping: Path | str | None) -> list[Record]:
     """Training records, the last is the test record; a single training record gives two.
 
     Raises InputError where records overlap, are missing, or do not fit the arm.

@@ -1,4 +1,4 @@
-"""TODO."""
+"""What several stages of the diagnosis decide by."""
 
 from __future__ import annotations
 

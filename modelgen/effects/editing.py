@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -16,12 +15,12 @@ from modelgen.effects.placement import Found, admitted, extended_arm
 __all__ = ["Found", "extended_arm", "extended_yaml", "with_torque_constants"]
 
 
-def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
-    """The arm's part of its description file with the causes' effects; comments and order stay.
+def extended_yaml(arm: Arm, causes: Sequence[Found]) -> str:
+    """The arm's part of its description with the causes' effects; comments and order stay.
 
     Where an effect stands there already, its values are replaced.
     """
-    whole, entry = _read(file, arm)
+    whole, entry = _read(arm)
     for effect, joint, values in causes:
         added: Any = effect
         given = admitted(effect, values)
@@ -43,9 +42,9 @@ def extended_yaml(file: Path, arm: Arm, causes: Sequence[Found]) -> str:
     return _written(whole, arm, entry)
 
 
-def with_torque_constants(file: Path, arm: Arm, values: Mapping[int, float]) -> str:
-    """The arm's part of its description file with other torque constants, by number of the coordinate."""
-    whole, entry = _read(file, arm)
+def with_torque_constants(arm: Arm, values: Mapping[int, float]) -> str:
+    """The arm's part of its description with other torque constants, by number of the coordinate."""
+    whole, entry = _read(arm)
     for number, value in values.items():
         joint = entry["joints"][arm.coordinates[number - 1]]
         # the drive may be that of other joints as well: this one gets its own
@@ -57,9 +56,9 @@ def with_torque_constants(file: Path, arm: Arm, values: Mapping[int, float]) -> 
     return _written(whole, arm, entry)
 
 
-def _read(file: Path, arm: Arm) -> tuple[CommentedMap, CommentedMap]:
+def _read(arm: Arm) -> tuple[CommentedMap, CommentedMap]:
     """The description, and the arm's part of it."""
-    whole = _yaml().load(file.read_text(encoding="utf-8"))
+    whole = _yaml().load(arm.document)
     return whole, whole["arms"][arm.name]
 
 

@@ -1,4 +1,4 @@
-"""TODO."""
+"""Where an effect can stand, and the arm that has it."""
 
 from __future__ import annotations
 

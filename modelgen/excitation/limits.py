@@ -10,8 +10,8 @@ import numpy as np
 from modelgen.dataset import drives_of
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.excitation.settings import Settings
 from modelgen.numeric import Array
+from modelgen.options import ExcitationOptions
 from modelgen.transmission import of_joint
 
 
@@ -25,7 +25,7 @@ class Bound:
     high: float
 
 
-def bounds(arm: Arm, settings: Settings) -> tuple[list[Bound], list[str]]:
+def bounds(arm: Arm, settings: ExcitationOptions) -> tuple[list[Bound], list[str]]:
     """All limits of the arm, and remarks on those that were assumed.
 
     Raises InputError for a joint without a speed limit, and for a prismatic one without a range.

@@ -16,10 +16,10 @@ from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.fourier import Basis, basis
 from modelgen.excitation.limits import Bound, bounds, ranges, speeds
-from modelgen.excitation.settings import Box, Settings
 from modelgen.functions import build_model
 from modelgen.functions.nominal import nominal_base
 from modelgen.numeric import Array
+from modelgen.options import Box, ExcitationOptions
 
 GRID = 24  # samples per period of the highest harmonic, in the optimisation
 MARGIN = 0.01  # of every limit, left for what happens between the samples
@@ -37,7 +37,7 @@ class Problem:
     constraints: what each limits.
     """
 
-    settings: Settings
+    settings: ExcitationOptions
     basis: Basis
     exact: ca.Function
     motion: ca.Function
@@ -93,7 +93,7 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
     return ca.Function("mapped", given, [ca.densify(x) for x in function.map(count).call(given)])
 
 
-def problem(arm: Arm, settings: Settings) -> Problem:
+def problem(arm: Arm, settings: ExcitationOptions) -> Problem:
     """The problem of one arm.
 
     Raises InputError where a limit is missing that nothing can stand for, where the arm has effects with
@@ -124,7 +124,7 @@ def problem(arm: Arm, settings: Settings) -> Problem:
     )
 
 
-def smooth(arm: Arm, settings: Settings) -> ca.Function:
+def smooth(arm: Arm, settings: ExcitationOptions) -> ca.Function:
     """As `exact` of the arm's problem, with the signs of dry friction smoothed: what has derivatives."""
     limits, _ = bounds(arm, settings)
     return _functions(_smoothed(arm, speeds(arm, limits, "motor")), limits, settings).sample
@@ -139,7 +139,7 @@ class _Functions:
     nominal: bool
 
 
-def _functions(arm: Arm, limits: Sequence[Bound], settings: Settings) -> _Functions:
+def _functions(arm: Arm, limits: Sequence[Bound], settings: ExcitationOptions) -> _Functions:
     model = build_model(arm)
     if model.states:
         raise InputError(

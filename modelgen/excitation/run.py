@@ -13,10 +13,10 @@ from modelgen.errors import InputError
 from modelgen.excitation.optimisation import Optimiser, merit
 from modelgen.excitation.problem import SIGNALS, Problem, problem, smooth
 from modelgen.excitation.random_motion import feasible
-from modelgen.excitation.settings import Settings
 from modelgen.excitation.spectrum import condition
 from modelgen.jobs import Where, run
 from modelgen.numeric import Array
+from modelgen.options import ExcitationOptions
 
 Progress = Callable[[int, int], None]
 
@@ -43,7 +43,7 @@ class Excitation:
     values: tuple[float, ...]
 
 
-def excite(arm: Arm, settings: Settings, progress: Progress | None = None) -> Excitation:
+def excite(arm: Arm, settings: ExcitationOptions, progress: Progress | None = None) -> Excitation:
     """The best trajectory of all starts; the same wherever they run, in any number of processes.
 
     Raises InputError for settings that make no trajectory, missing limits, limits that exclude each
@@ -86,7 +86,7 @@ def random_conditions(p: Problem, count: int, seed: int) -> Array:
     return np.array([condition(p.observation(feasible(p, rng), t)[0]) for _ in range(count)])
 
 
-_kept: list[tuple[tuple[str | bytes | Settings, ...], Optimiser]] = []
+_kept: list[tuple[tuple[str | bytes | ExcitationOptions, ...], Optimiser]] = []
 
 
 def _one(start: tuple[Problem, ca.Function, int]) -> Array | None:

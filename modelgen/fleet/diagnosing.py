@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from modelgen.description import Arm, load
-from modelgen.description.messages import suggest
-from modelgen.diagnosis.pipeline import diagnose, records
-from modelgen.diagnosis.result import Diagnosis, rounded, to_json
-from modelgen.effects import known_effects
-from modelgen.errors import InputError
+from modelgen.api.description import load_arms
+from modelgen.api.diagnosis import Diagnosis, diagnose
+from modelgen.description import Arm
+from modelgen.diagnosis.result import rounded
+from modelgen.errors import InputError, suggest
 from modelgen.fleet.store import Row, fingerprint, keep, written
 from modelgen.fleet.units import Unit
-from modelgen.report.writing import write
+from modelgen.options import DiagnosisOptions
 
 CRASHED = "the process ended: out of memory, or a crash"
 
@@ -39,7 +38,7 @@ def done(job: Job) -> Row:
         try:
             made_of = fingerprint(unit)
             d = _diagnosed(unit)
-            write(d, Path(unit.path(unit.description)), new, code=job.code)
+            d.write(new, code=job.code)
             row |= _found(d)
             row["report"] = f"units/{unit.name}/report.html"
         except InputError as error:
@@ -68,15 +67,14 @@ def blank(unit: Unit) -> Row:
 
 
 def _diagnosed(unit: Unit) -> Diagnosis:
-    arm = _arm(unit)
-    mapping = None if unit.mapping is None else Path(unit.path(unit.mapping))
+    mapping = None if unit.mapping is None else unit.path(unit.mapping)
     train, test = ([unit.path(spec) for spec in specs] for specs in (unit.train, unit.test))
-    found = records(arm, train, test, mapping)
-    return diagnose(arm, found, cutoff=unit.cutoff, period=unit.period)
+    options = DiagnosisOptions(mapping=mapping, cutoff=unit.cutoff, period=unit.period, processes=1)
+    return diagnose(_arm(unit), train, test, options)
 
 
 def _arm(unit: Unit) -> Arm:
-    arms = load(unit.path(unit.description), known_effects())
+    arms = load_arms(unit.path(unit.description))
     if unit.arm is None:
         if len(arms) != 1:
             raise InputError(
@@ -96,7 +94,7 @@ def _short(message: str, unit: Unit) -> str:
 
 def _found(d: Diagnosis) -> Row:
     """A diagnosis as a flat row: lists by cause, by joint, by parameter."""
-    said = to_json(d)
+    said = d.to_json()
     fit, error = said["lack_of_fit"], said["error"]
     gains = [g for g in error["gain_percent"] if g is not None]
     return {

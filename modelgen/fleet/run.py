@@ -6,27 +6,64 @@ import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from modelgen.api.results import Shown, Table
 from modelgen.errors import InputError
 from modelgen.fleet import store
 from modelgen.fleet.diagnosing import Job, crashed, done
-from modelgen.fleet.overview import overview
+from modelgen.fleet.overview import WORDS, causes, overview, verdicts
 from modelgen.fleet.store import Row
 from modelgen.fleet.table import NAME, library, write_table
 from modelgen.fleet.units import Unit
 from modelgen.jobs import Where, run
 
 PAGE = "overview.html"
+SHOWN = 10  # failures and causes that are printed
 CODE = "generated"  # the folder that --code adds to a unit's
 Progress = Callable[[int, int], None]
 
 
-@dataclass(frozen=True)
-class Fleet:
-    """rows: one per unit, in their order. kept: how many of them are of an earlier call."""
+@dataclass(frozen=True, repr=False)
+class Fleet(Shown):
+    """rows: one per unit, in their order. kept: how many of them are of an earlier call. out: the folder."""
 
     rows: list[Row]
     kept: int
+    out: Path
+
+    def to_json(self) -> dict[str, Any]:
+        """Counts, failures, and where table and page are."""
+        counts = verdicts(self.rows)
+        named = sorted(causes(self.rows).items(), key=lambda item: (-item[1], item[0][0], item[0][1] or 0))
+        return {
+            "units": len(self.rows),
+            "kept": self.kept,
+            "verdicts": {key: counts[key] for key in WORDS},
+            "causes": [{"effect": effect, "joint": joint, "units": n} for (effect, joint), n in named],
+            "failed": [{"unit": r["unit"], "error": r["error"]} for r in self.rows if r.get("error")],
+            "cpu_seconds": round(sum(r.get("cpu_seconds") or 0.0 for r in self.rows), 1),
+            "table": str(self.out / NAME),
+            "overview": str(self.out / PAGE),
+        }
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen fleet`."""
+        said = self.to_json()
+        rows = [
+            [c["effect"], "arm" if c["joint"] is None else str(c["joint"]), str(c["units"])]
+            for c in said["causes"][:SHOWN]
+        ]
+        columns = {"cause": "left", "joint": "left", "units": "right"}
+        tables = [Table("", columns, rows)] if rows else []
+        return [repr(self), *tables, f"table: {said['table']}", f"overview: {said['overview']}"]
+
+    def __repr__(self) -> str:
+        said = self.to_json()
+        kept = f", {said['kept']} of them from before" if said["kept"] else ""
+        counts = ", ".join(f"{n} {WORDS[key]}" for key, n in said["verdicts"].items() if n)
+        units = "1 unit" if said["units"] == 1 else f"{said['units']} units"
+        return f"{units}{kept}: {counts}"
 
 
 def diagnose_fleet(
@@ -83,7 +120,7 @@ def _diagnosed(
     ordered = [rows[u.name] for u in units]
     write_table(ordered, out / NAME)
     _write(out / PAGE, overview(ordered))
-    return Fleet(ordered, kept)
+    return Fleet(ordered, kept, out)
 
 
 def _prepare(out: Path) -> None:

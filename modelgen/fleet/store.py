@@ -11,10 +11,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from modelgen import __version__
 from modelgen.dataset.reading.specs import parse
 from modelgen.errors import InputError
 from modelgen.fleet.units import Unit
+from modelgen.version import __version__
 
 FORM = 1  # of the rows: another number makes every unit anew
 ROW = "unit.json"

@@ -1,4 +1,4 @@
-"""TODO."""
+"""A function of expressions alone, with no description around it."""
 
 from __future__ import annotations
 

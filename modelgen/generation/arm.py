@@ -7,7 +7,6 @@ import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
-from modelgen import __version__
 from modelgen.backends import PRINTERS, Provenance
 from modelgen.backends.c import c_symbols
 from modelgen.description.objects import Arm
@@ -18,6 +17,7 @@ from modelgen.generation.canonical import description_hash
 from modelgen.generation.folders import ARTEFACTS, MARK
 from modelgen.generation.sizes import size_rows
 from modelgen.packaging import packaging_files
+from modelgen.version import __version__
 
 
 @dataclass(frozen=True)

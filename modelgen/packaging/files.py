@@ -6,12 +6,12 @@ import json
 import re
 from collections.abc import Iterable, Sequence
 
-from modelgen import __version__
 from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import render
 from modelgen.functions.objects import Model
 from modelgen.packaging.readme import readme
 from modelgen.packaging.self_test import self_test
+from modelgen.version import __version__
 
 _TEMPLATES = {
     "CMakeLists.txt": "package/CMakeLists.txt.j2",

@@ -19,10 +19,10 @@ from modelgen.report.experiment import NAMES, plans
 from modelgen.report.figures import Pen
 
 
-def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:
+def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:
     """diagnosis.json, report.html, the extended description and its code into `out`: whole, or nothing.
 
-    file: the description that is extended. code: False leaves the code out. pen: draws the
+    code: False leaves the code out. pen: draws the
     pictures, a new one in this process by default. Raises InputError.
     """
     trials = [c.trial for c in d.selection.causes]
@@ -34,7 +34,7 @@ def write(d: Diagnosis, file: Path, out: Path, *, code: bool = True, pen: Pen | 
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
-        extended = extended_yaml(file, d.arm, [*described_by(d.inertias), *causes])
+        extended = extended_yaml(d.arm, [*described_by(d.inertias), *causes])
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
         if code:
             values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}

@@ -1,8 +1,8 @@
-"""Values of the command line: one for all joints, one by joint, joints and where they are locked."""
+"""Values by joint, as text or as numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,19 +11,24 @@ from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 
-def by_joint(option: str, text: str, names: Sequence[str]) -> Array:
-    """(n,) values from "20 deg" (all joints alike) or "20 deg, 0.1, ..." (one for each), in rad, m."""
-    parts = [part.strip() for part in text.split(",")] if text.strip() else ["0"]
-    if len(parts) not in (1, len(names)):
+def by_joint(option: str, given: str | float | Sequence[float], names: Sequence[str]) -> Array:
+    """(n,) values [rad, m] from "20 deg" (for all joints), "20 deg, 0.1, ..." (for each), or numbers."""
+    if isinstance(given, str):
+        parts = [part.strip() for part in given.split(",")] if given.strip() else ["0"]
+        values = [_value(option, part) if len(parts) in (1, len(names)) else 0.0 for part in parts]
+    else:
+        values = np.atleast_1d(np.asarray(given, dtype=float)).tolist()
+    if len(values) not in (1, len(names)):
         raise InputError(
-            f"{option}: found {len(parts)} values, expected 1 or {len(names)}: {', '.join(names)}"
+            f"{option}: found {len(values)} values, expected 1 or {len(names)}: {', '.join(names)}"
         )
-    values = [_value(option, part) for part in parts]
     return np.array(values * len(names) if len(values) == 1 else values)
 
 
-def locks(given: Sequence[str]) -> dict[str, float]:
-    """{joint: coordinate} from "j2=0", "j3=20 deg"."""
+def locks(given: Sequence[str] | Mapping[str, float]) -> dict[str, float]:
+    """{joint: coordinate} from "j2=0", "j3=20 deg", or as it stands."""
+    if isinstance(given, Mapping):
+        return {name: float(value) for name, value in given.items()}
     found: dict[str, float] = {}
     for text in given:
         name, equals, value = text.partition("=")
@@ -33,9 +38,11 @@ def locks(given: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def numbers(option: str, text: str) -> list[float]:
-    """Numbers between commas."""
-    return [_value(option, part.strip()) for part in text.split(",")] if text.strip() else []
+def numbers(option: str, given: str | float | Sequence[float]) -> list[float]:
+    """Numbers between commas, or as they stand."""
+    if not isinstance(given, str):
+        return [float(x) for x in np.atleast_1d(np.asarray(given, dtype=float))]
+    return [_value(option, part.strip()) for part in given.split(",")] if given.strip() else []
 
 
 def _value(option: str, text: str) -> float:

@@ -6,10 +6,13 @@ from architecture.house import circles, file_graph, files, floors, imports, room
 
 # Lowest first. Each name is a module or a package.
 ORDER = (
-    "__init__",
+    "version",
     "errors",
     "thresholds",
     "numeric",
+    "progress",
+    "files",
+    "options",
     "resources",
     "jobs",
     "figures",
@@ -35,7 +38,9 @@ ORDER = (
     "identification",
     "diagnosis",
     "report",
+    "api",
     "fleet",
+    "__init__",
     "cli",
     "__main__",
 )
@@ -126,7 +131,7 @@ def test_every_module_has_its_place_in_the_order() -> None:
         ("modelgen.errors", "def f():\n    from modelgen import graph"),
         ("modelgen.model", "if TYPE_CHECKING:\n    from modelgen.generation import write"),
         ("modelgen.model", "importlib.import_module('modelgen.backends.c')"),
-        ("modelgen", "from modelgen.errors import InputError"),
+        ("modelgen.api.model", "from modelgen import build_model"),
         ("modelgen.diagnosis.evidence.noise", "from modelgen.diagnosis.selection import stepwise"),
         ("modelgen.diagnosis.equations.rows", "from ..pipeline import diagnose"),
     ],
@@ -147,7 +152,8 @@ def test_an_import_that_runs_up_is_seen_in_the_file_of_a_package() -> None:
         ("modelgen.backends.c", "from modelgen.backends.casadi import text"),
         ("modelgen.backends.c", "from . import casadi"),
         ("modelgen.graph", "import sympy\nfrom dataclasses import dataclass"),
-        ("modelgen.graph", "from modelgen import __version__"),
+        ("modelgen.graph", "from modelgen.version import __version__"),
+        ("modelgen", "from modelgen.api.model import build_model"),
         ("modelgen.graph", "from modelgen_extras.cli import main"),
     ],
 )

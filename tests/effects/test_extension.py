@@ -25,7 +25,7 @@ def test_a_list_of_effects_that_joints_share(tmp_path: Path, joint: int) -> None
     file.write_text(TEXT, encoding="utf-8")
     (arm,) = load(file, known_effects()).values()
     cause = ("spring", joint, {"stiffness": 2.0, "preload": 0.1})
-    file.write_text(extended_yaml(file, arm, [cause]), encoding="utf-8")
+    file.write_text(extended_yaml(arm, [cause]), encoding="utf-8")
     (again,) = load(file, known_effects()).values()
     found = [[use.name for use in j.effects] for j in again.joints]
     plain = ["viscous_friction", "coulomb_friction"]

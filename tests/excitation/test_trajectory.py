@@ -14,10 +14,11 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.cli.app import app
 from modelgen.description import Limits
 from modelgen.errors import InputError
-from modelgen.excitation import Excitation, Settings, box, excite, random_conditions
+from modelgen.excitation import Excitation, excite, random_conditions
 from modelgen.functions.nominal import nominal_base
+from modelgen.options import ExcitationOptions, box
 
-PAPER = Settings(starts=2, iterations=40, processes=1)
+PAPER = ExcitationOptions(starts=2, iterations=40, processes=1)
 
 
 @cache
@@ -77,8 +78,8 @@ def test_the_optimum_beats_every_random_trajectory() -> None:
 def test_a_d_optimal_trajectory_has_the_larger_determinant() -> None:
     arm = ARMS["gravity_arm"]
     common = {"period": 10.0, "velocity": 3.0, "starts": 2, "processes": 1}
-    plain = excite(arm, Settings(**common))
-    better = excite(arm, Settings(criterion="d_optimal", **common))
+    plain = excite(arm, ExcitationOptions(**common))
+    better = excite(arm, ExcitationOptions(criterion="d_optimal", **common))
 
     def determinant(e: Excitation) -> float:
         y = evaluated(e, "regressor", e.signals["q"], e.signals["dq"], e.signals["ddq"])
@@ -89,7 +90,7 @@ def test_a_d_optimal_trajectory_has_the_larger_determinant() -> None:
 
 
 def test_a_trajectory_at_rest_starts_and_ends_without_speed_and_acceleration() -> None:
-    e = excite(ARMS["screw_axis"], Settings(period=10.0, rest=True, starts=1, processes=1))
+    e = excite(ARMS["screw_axis"], ExcitationOptions(period=10.0, rest=True, starts=1, processes=1))
     for name in ("dq", "ddq"):
         assert np.abs(e.signals[name][0]).max() < 1e-9 * np.abs(e.signals[name]).max()
 
@@ -99,7 +100,7 @@ def test_a_current_limit_holds_with_nominal_parameters(coordinates: str) -> None
     """A motor of 10 A that a short period would ask for more."""
     e = excite(
         ARMS["screw_axis"],
-        Settings(period=2.0, rate=100.0, starts=1, processes=1, coordinates=coordinates),
+        ExcitationOptions(period=2.0, rate=100.0, starts=1, processes=1, coordinates=coordinates),
     )
     values = np.array(list(nominal_base(model("screw_axis")).values()))
     current = evaluated(e, "inverse_dynamics", e.signals["q"], e.signals["dq"], e.signals["ddq"], values)
@@ -111,19 +112,19 @@ def test_a_current_limit_holds_with_nominal_parameters(coordinates: str) -> None
 
 def test_a_floor_is_kept() -> None:
     """Both links of the planar arm stay on one side of a line; without the box they do not."""
-    settings = Settings(period=10.0, velocity=3.0, starts=1, iterations=30, processes=1)
+    settings = ExcitationOptions(period=10.0, velocity=3.0, starts=1, iterations=30, processes=1)
 
     def lowest(e: Excitation) -> float:
         return float((0.538534 * np.cos(e.signals["q"][:, 0])).min())  # x of the second link's frame
 
     assert lowest(excite(ARMS["gravity_arm"], settings)) < 0.2
-    floor = Settings(**{**settings.__dict__, "boxes": (box("j2=0.2:,:,:"),)})
+    floor = ExcitationOptions(**{**settings.__dict__, "boxes": (box("j2=0.2:,:,:"),)})
     assert lowest(excite(ARMS["gravity_arm"], floor)) >= 0.2
 
 
 def test_processes_make_no_difference() -> None:
     arm, common = ARMS["gravity_link2"], {"period": 5.0, "velocity": 2.0, "starts": 2, "iterations": 10}
-    one, two = (excite(arm, Settings(**common, processes=k)) for k in (1, 2))
+    one, two = (excite(arm, ExcitationOptions(**common, processes=k)) for k in (1, 2))
     assert (one.z == two.z).all()
     assert one.values == two.values
 
@@ -136,7 +137,9 @@ def test_a_worker_keeps_no_other_arm_in_mind() -> None:
         joints = list(arm.joints)
         joints[i] = replace(joints[i], limits=Limits(velocity=speed))
         slow = replace(arm, joints=tuple(joints))
-        one, two = (excite(slow, Settings(period=5.0, starts=2, iterations=10, processes=k)) for k in (1, 2))
+        one, two = (
+            excite(slow, ExcitationOptions(period=5.0, starts=2, iterations=10, processes=k)) for k in (1, 2)
+        )
         assert (one.z == two.z).all()
         assert np.abs(two.signals["dq"]).max() <= speed
 
@@ -187,6 +190,6 @@ def test_bad_input_is_one_line_and_nothing_is_written(
 
 
 def test_limits_that_exclude_each_other_are_refused() -> None:
-    settings = Settings(period=5.0, velocity=2.0, starts=1, processes=1, boxes=(box("j2=2:3,:,:"),))
+    settings = ExcitationOptions(period=5.0, velocity=2.0, starts=1, processes=1, boxes=(box("j2=2:3,:,:"),))
     with pytest.raises(InputError, match="exclude each other"):
         excite(ARMS["gravity_arm"], settings)

@@ -50,7 +50,7 @@ def cluster(folder: Path, workers: int = 2, failures: int = 3) -> Iterator[str]:
     tests = Path(__file__).resolve().parents[1]
     environment = {
         **os.environ,
-        "PYTHONPATH": f"{tests.parent}{os.pathsep}{tests}",
+        "PYTHONPATH": os.pathsep.join(map(str, (tests.parent, tests, tests / "support"))),
         "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(failures),
     }
     dask = [sys.executable, "-m", "dask"]

@@ -15,7 +15,8 @@ from modelgen.dataset.mapping.schema import ColumnModel, JointModel
 from modelgen.dataset.objects import Reader
 from modelgen.description import Arm
 from modelgen.description.document import Steps
-from modelgen.description.messages import describe, suggest
+from modelgen.description.messages import describe
+from modelgen.errors import suggest
 from modelgen.numeric import Array
 
 

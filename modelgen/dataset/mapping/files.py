@@ -14,8 +14,8 @@ from modelgen.dataset.mapping import units
 from modelgen.dataset.mapping.schema import Document
 from modelgen.description.document import Node, Steps, parse, read_text
 from modelgen.description.expressions import ExpressionError, evaluate
-from modelgen.description.messages import describe, first_mistake, mistake, suggest
-from modelgen.errors import InputError
+from modelgen.description.messages import describe, first_mistake, mistake
+from modelgen.errors import InputError, suggest
 from modelgen.numeric import Array
 
 HOLDS = ("following", "previous", "instant")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,11 +39,12 @@ class Spec:
         return digest.hexdigest()
 
 
-def parse(text: str) -> Spec:
+def parse(log: str | os.PathLike[str]) -> Spec:
     """`FILE` or `FILE@t0:t1`; t0 or t1 may be left out. Raises InputError.
 
     A file whose own name has the form FILE@a:b is taken as a file.
     """
+    text = os.fspath(log)
     match = _PART.fullmatch(text)
     if match is None or _exists(text):
         return Spec(text, Path(text))

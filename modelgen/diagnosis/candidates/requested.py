@@ -1,4 +1,4 @@
-"""TODO."""
+"""Candidates that the user asks for by name, and whether the records can show them."""
 
 from __future__ import annotations
 

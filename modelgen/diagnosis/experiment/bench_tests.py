@@ -18,9 +18,9 @@ from modelgen.diagnosis.experiment.trajectory import Proposal
 from modelgen.effects import CATALOGUE, Shows
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds, ranges, speeds
-from modelgen.excitation.settings import Settings
 from modelgen.functions.nominal import about_origin, grouped
 from modelgen.numeric import Array
+from modelgen.options import ExcitationOptions
 
 DURATION = 30.0  # s of a motion
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9)  # of the speed limit
@@ -93,7 +93,7 @@ def readings(
 def _motions(stage: Setup, k: int) -> Iterator[tuple[str, Array]]:
     """Text and positions (N, n) of motions of coordinate k alone, the others at their middles."""
     try:
-        limits, _ = bounds(stage.arm, Settings())
+        limits, _ = bounds(stage.arm, ExcitationOptions())
         middle, half = ranges(stage.arm, limits, "joint")
         speed = float(speeds(stage.arm, limits, "joint")[k])
     except InputError:

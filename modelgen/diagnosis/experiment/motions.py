@@ -15,9 +15,9 @@ from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.excitation.limits import bounds
-from modelgen.excitation.settings import Settings
 from modelgen.functions import Model
 from modelgen.numeric import Array
+from modelgen.options import ExcitationOptions
 
 HARMONICS = 5
 FEWEST = 2  # samples of a slow motion from one row to the next
@@ -58,12 +58,12 @@ class Setup:
         rest = next(k for k in range(min(FEWEST, factor), factor + 1) if factor % k == 0)
         return replace(self, every=factor // rest)
 
-    def settings(self, period: int | None, seed: int = 0) -> Settings:
+    def settings(self, period: int | None, seed: int = 0) -> ExcitationOptions:
         """Of the excitation. period: samples in that of the training records."""
         rate = 1.0 / self.step
         length = USUAL if period is None else period * self.step
         samples = round(float(np.clip(length, SHORTEST, LONGEST)) * rate)
-        return Settings(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
+        return ExcitationOptions(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
 
     def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
         """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged."""
@@ -90,7 +90,7 @@ class Setup:
 
     def overload(self, q: Array, dq: Array, ddq: Array) -> float:
         """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
-        limits = [b for b in bounds(self.arm, Settings())[0] if b.signal in ("input", "effort")]
+        limits = [b for b in bounds(self.arm, ExcitationOptions())[0] if b.signal in ("input", "effort")]
         if not limits:
             return 0.0
         given = self.evaluator.inputs(Motion(self.times(len(q)), q, dq, ddq), self.base)

@@ -1,4 +1,4 @@
-"""TODO."""
+"""Causes, values and errors as they are reported."""
 
 from __future__ import annotations
 

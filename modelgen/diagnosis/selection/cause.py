@@ -1,4 +1,4 @@
-"""TODO."""
+"""A named cause, and what the selection has come to."""
 
 from __future__ import annotations
 

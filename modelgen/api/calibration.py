@@ -1,0 +1,133 @@
+"""A lever's geometry from motor counts and measured angles."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from modelgen.api.logs import Log, listed
+from modelgen.api.results import Named, Result, Table
+from modelgen.calibration import Calibration as Found
+from modelgen.calibration import Estimate, calibrated_yaml
+from modelgen.calibration.workflow import calibrate_log, data, picture
+from modelgen.description import Arm, loads
+from modelgen.effects import known_effects
+from modelgen.options import CalibrationOptions, changed
+
+
+class Calibration(Result):
+    """The geometry of a lever as described and as found.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm as described.
+    found : modelgen.calibration.Calibration
+        What the calibration gives back.
+
+    Attributes
+    ----------
+    arm : Arm
+        The arm as described.
+    parameters : Named of Estimate
+        Lengths [m], motor coordinates and offset [rad] by name: before, value, std, unit.
+    """
+
+    def __init__(self, arm: Arm, found: Found) -> None:
+        self.arm, self.found = arm, found
+        self.parameters: Named[Estimate] = Named({e.name: e for e in found.estimates})
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: calibration.json.
+
+        Returns
+        -------
+        dict
+            Errors of the angle [rad] before and after, parameters of the lever.
+        """
+        return data(self.arm, self.found)
+
+    def files(self) -> Mapping[str, str]:
+        """Text of every file that `modelgen calibrate` writes.
+
+        Returns
+        -------
+        mapping of str to str
+            Text by name.
+
+        Raises
+        ------
+        InputError
+            Where the description with the lever as found could not be read.
+        """
+        c, name = self.found, f"{self.arm.name}_calibrated.yaml"
+        described = calibrated_yaml(self.arm, c.joint, c.after)
+        loads(described, name, known_effects())  # what is written must be readable
+        return {
+            "calibration.json": json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n",
+            name: described,
+            "calibration.svg": picture(c),
+        }
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen calibrate`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        c = self.found
+        parts: list[str | Table] = [
+            f"{self.arm.name}, joint {c.joint}: "
+            f"RMSE of the angle {c.rms_before:.4g} -> {c.rms_after:.4g} rad "
+            f"({c.improvement_percent:.1f} % better), {len(c.motor)} samples"
+        ]
+        if c.after.rev != c.before.rev:
+            left = c.candidates[c.before.rev]
+            parts.append(f"rev is {c.after.rev:+d}: the other branch leaves {left:.4g} rad")
+        rows = [[e.name, f"{e.before:.6g}", f"{e.value:.6g}", f"{e.std:.2g}", e.unit] for e in c.estimates]
+        sides = {"": "left", "described": "right", "calibrated": "right", "std": "right", "unit": "left"}
+        return [*parts, Table("", sides, rows), *(f"not determined: {words}" for words in c.weak)]
+
+    def __repr__(self) -> str:
+        c = self.found
+        errors = f"RMSE {c.rms_before:.4g} -> {c.rms_after:.4g} rad"
+        return f"Calibration of {self.arm.name}, joint {c.joint}: {errors}"
+
+
+def calibrate(
+    arm: Arm, joint: int, log: Log, options: CalibrationOptions | None = None, **changes: Any
+) -> Calibration:
+    """Fit a lever's geometry to motor counts and measured joint angles.
+
+    Parameters
+    ----------
+    arm : Arm
+        An arm with a levered drive.
+    joint : int
+        The coordinate, from 1.
+    log : log
+        A log with t [s], qm<joint> [motor unit] and the measured q<joint> [rad]; N samples.
+    options : CalibrationOptions, optional
+        How well the lengths are known.
+    **changes
+        Fields of the options, by name.
+
+    Returns
+    -------
+    Calibration
+        Lengths [m], offset [rad] and branch, with standard deviations.
+
+    Raises
+    ------
+    InputError
+        For a joint without a lever, missing columns, and data that determine nothing.
+
+    References
+    ----------
+    Beck and Arnold, Parameter Estimation in Engineering and Science, 1977, chapter 6.
+    """
+    (one,) = listed([log], "log")
+    return Calibration(arm, calibrate_log(arm, joint, one, changed(options or CalibrationOptions(), changes)))

@@ -1,0 +1,39 @@
+"""Arms from their description."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from modelgen.description import Arm, load
+from modelgen.effects import known_effects
+from modelgen.resources import shipped_arms
+
+
+def load_arms(path: Path | str | None = None) -> dict[str, Arm]:
+    """Read the description of arms.
+
+    Parameters
+    ----------
+    path : Path or str, optional
+        A description in YAML (docs/index.md). Default: arms.yaml in the current folder where there is one,
+        else the arms that modelgen ships.
+
+    Returns
+    -------
+    dict of str to Arm
+        The arms by name, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        At the first mistake, with its line and column.
+    """
+    return load(description_file(path), known_effects())
+
+
+def description_file(path: Path | str | None) -> Path:
+    """The file that is read: the given one, arms.yaml here, or the one that modelgen ships."""
+    if path is not None:
+        return Path(path)
+    here = Path("arms.yaml")
+    return here if here.exists() else shipped_arms()

@@ -1,0 +1,241 @@
+"""What a model lacks, from logs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isnan
+from pathlib import Path
+from typing import Any
+
+from modelgen.api.logs import Log, listed
+from modelgen.api.results import Named, Shown, Table
+from modelgen.description import Arm, loads
+from modelgen.diagnosis.extended.drive_inertia import described_by
+from modelgen.diagnosis.extended.findings import Estimate, NamedCause
+from modelgen.diagnosis.pipeline import diagnose as diagnose_records
+from modelgen.diagnosis.pipeline import records
+from modelgen.diagnosis.result import Diagnosis as Found
+from modelgen.diagnosis.result import to_json
+from modelgen.effects import known_effects
+from modelgen.effects.editing import extended_yaml
+from modelgen.errors import InputError
+from modelgen.jobs import Where
+from modelgen.options import DiagnosisOptions, changed
+from modelgen.progress import Progress, silent
+from modelgen.report.diagnosis import assumptions, harms, sketches, unnamed
+from modelgen.report.experiment import followed
+from modelgen.report.figures import Pen
+from modelgen.report.writing import write
+
+
+class Diagnosis(Shown):
+    """What the model of an arm gets wrong in logs, and the model extended by it.
+
+    Parameters
+    ----------
+    found : modelgen.diagnosis.result.Diagnosis
+        What the diagnosis gives back.
+    pen : Pen, optional
+        It draws the pictures.
+
+    Attributes
+    ----------
+    arm : Arm
+        The arm as described.
+    verdict : str
+        "named", "nothing_missing", "outside_catalogue" or "cannot_tell".
+    reason : str
+        Why, in words.
+    causes : tuple of NamedCause
+        What is named: effect, joint (from 1; None for the whole arm), parameters, evidence.
+    suspects : tuple
+        What has evidence and failed a check that decides. There are none yet: it is empty.
+    parameters : Named of Estimate
+        Base parameters (p,) of the extended arm by name: value, std, unit.
+    """
+
+    def __init__(self, found: Found, pen: Pen | None = None) -> None:
+        self.found, self._pen = found, pen
+        self.arm: Arm = found.arm
+        self.verdict, self.reason = found.verdict, found.reason
+        self.causes: tuple[NamedCause, ...] = found.causes
+        self.suspects: tuple[NamedCause, ...] = ()
+        self.parameters: Named[Estimate] = Named(found.parameters)
+
+    @property
+    def extended_arm(self) -> Arm:
+        """The arm with the causes, as <arm>_extended.yaml describes it."""
+        d = self.found
+        trials = [c.trial for c in d.selection.causes]
+        causes = [(*t.candidate.place, t.parameters) for t in trials]
+        text = extended_yaml(d.arm, [*described_by(d.inertias), *causes])
+        return loads(text, f"{d.arm.name}_extended.yaml", known_effects())[d.arm.name]
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: diagnosis.json.
+
+        Returns
+        -------
+        dict
+            Verdict, causes, lack of fit, errors on the test log, next experiment.
+        """
+        return to_json(self.found)
+
+    def write(self, folder: Path | str, *, code: bool = True) -> None:
+        """Write the files of `modelgen diagnose` into a folder, all of them or none.
+
+        Parameters
+        ----------
+        folder : Path or str
+            It gets diagnosis.json, report.html with its pictures, <arm>_extended.yaml, and the extended
+            model's code in `generated`.
+        code : bool
+            False leaves the code out.
+
+        Raises
+        ------
+        InputError
+            Where the folder cannot be written.
+        """
+        write(self.found, Path(folder), code=code, pen=self._pen)
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen diagnose`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        d = self.found
+        parts: list[str | Table] = [sentence(d)]
+        rows = [_row(c) for c in d.causes]
+        if rows:
+            headings = (
+                "cause",
+                "joint",
+                "parameters",
+                "delta BIC",
+                "gain %",
+                "on test %",
+                "or perhaps",
+                "the same as",
+            )
+            parts.append(Table("", dict.fromkeys(headings, "left"), rows, ("cause",)))
+        e = d.errors
+        errors = [
+            [
+                str(j + 1),
+                f"{e.before[j]:.4g}",
+                f"{e.after[j]:.4g}",
+                f"{e.gain[j]:.1f}",
+                f"{e.low[j]:.1f} to {e.high[j]:.1f}",
+            ]
+            for j in range(len(e.before))
+        ]
+        columns = dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right")
+        parts.append(Table(f"error on the test record [{e.unit}]", columns, errors))
+        parts += [*harms(d), *assumptions(d)]
+        if d.next_experiment is not None:
+            parts.append(f"next: {followed(d.next_experiment)}")
+        return parts
+
+    def __repr__(self) -> str:
+        return f"Diagnosis of {self.arm.name}: {self.verdict}. {sentence(self.found)}"
+
+
+def diagnose(
+    arm: Arm,
+    train: Log | Sequence[Log],
+    test: Log | Sequence[Log],
+    options: DiagnosisOptions | None = None,
+    *,
+    progress: Progress = silent,
+    **changes: Any,
+) -> Diagnosis:
+    """Name what the model gets wrong in logs, extend it by the cause, and measure the gain.
+
+    Parameters
+    ----------
+    arm : Arm
+        An arm with n coordinates and p base parameters.
+    train : log or sequence of logs
+        Training logs: paths, "FILE@t0:t1" [s], records, or tables of columns. A single one is split in two.
+    test : log
+        The log that nothing but the final errors looks at.
+    options : DiagnosisOptions, optional
+        Band, period, effects to ask for.
+    progress : callable, optional
+        It is told what is done, how much of it, and of how much.
+    **changes
+        Fields of the options, by name.
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, causes, extended arm; errors by joint (n,) in the unit of the logs' efforts.
+
+    Raises
+    ------
+    InputError
+        For logs that cannot be read, overlap or cannot answer.
+
+    References
+    ----------
+    The sources of each step are in docs/diagnosis_method.md.
+    """
+    chosen = changed(options or DiagnosisOptions(), changes)
+    return diagnosed(arm, listed(train, "train"), listed(test, "test"), chosen, progress)
+
+
+def diagnosed(
+    arm: Arm,
+    train: Sequence[Log],
+    test: Sequence[Log],
+    options: DiagnosisOptions,
+    progress: Progress = silent,
+    pen: Pen | None = None,
+) -> Diagnosis:
+    """The same with a pen that begins to draw before the experiment is looked for. Raises InputError."""
+    wanted = [_place(text) for text in options.effects]
+    progress("reading", 0, None)
+    found = diagnose_records(
+        arm,
+        records(arm, train, test, options.mapping),
+        cutoff=options.cutoff,
+        period=options.period,
+        progress=progress,
+        experiment=options.experiment,
+        effects=wanted,
+        where=Where(options.processes),
+        known=None if pen is None else lambda found: pen.give(sketches(found)),
+    )
+    return Diagnosis(found, pen)
+
+
+def sentence(d: Found) -> str:
+    """The verdict for a person."""
+    if d.verdict == "named":
+        said = [f"{c.effect} {'of the arm' if c.joint is None else f'at joint {c.joint}'}" for c in d.causes]
+        gains = d.errors.gain[~(d.errors.gain != d.errors.gain)]
+        best = max(gains, default=0.0)
+        gained = f"{best:.1f} % less error" if best > 0.0 else "no less error"
+        return f"The model lacks {' and '.join(said)}: {gained} on the test record with it."
+    return f"{unnamed(d)} {d.reason[0].upper()}{d.reason[1:]}."
+
+
+def _place(text: str) -> tuple[str, int | None]:
+    """Effect and joint of NAME or NAME:JOINT. Raises InputError."""
+    name, colon, joint = text.partition(":")
+    if colon and not joint.isdecimal():
+        raise InputError(f"--effect {text}: found '{joint}', expected a joint from 1, as in {name}:2")
+    return name, int(joint) if colon else None
+
+
+def _row(c: NamedCause) -> list[str]:
+    values = ", ".join(f"{n} {e.value:.4g} {e.unit}".rstrip() for n, e in c.parameters.items())
+    rivals = ", ".join(f"{e} {j or 'arm'}" for e, j, _ in c.ambiguous_with)
+    same = ", ".join(f"{e} {j or 'arm'}" for e, j in c.aliases)
+    gains = f"{c.cross_gain:.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:.1f}"
+    place = "arm" if c.joint is None else str(c.joint)
+    return [c.effect, place, values, f"{c.delta_bic:.1f}", *gains, rivals, same]

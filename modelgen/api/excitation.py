@@ -1,0 +1,150 @@
+"""Trajectories that determine the base parameters well."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from modelgen.api.results import Result, Table
+from modelgen.description import Arm
+from modelgen.excitation import Excitation as Found
+from modelgen.excitation import excite as optimise
+from modelgen.excitation.writing import data, files
+from modelgen.files import check_folder, write_together
+from modelgen.numeric import Array
+from modelgen.options import ExcitationOptions, changed
+from modelgen.progress import Progress, silent
+
+
+class Excitation(Result):
+    """A trajectory of one period, of N samples of n joints.
+
+    Parameters
+    ----------
+    found : modelgen.excitation.Excitation
+        What the optimisation gives back.
+
+    Attributes
+    ----------
+    arm : Arm
+        The arm as described.
+    t : ndarray
+        (N,) times [s]; the period's end is left out.
+    signals : mapping of str to ndarray
+        (N, n) each: q, dq, ddq in joint coordinates [rad, m], qm, dqm, ddqm in motor coordinates, input
+        [A; N m, N], effort [N m, N]; the latter two are NaN without nominal parameters.
+    condition : float
+        Condition number of the observation matrix with columns of unit norm.
+    """
+
+    def __init__(self, found: Found) -> None:
+        self.found = found
+        self.arm: Arm = found.arm
+        self.t: Array = found.t
+        self.signals: Mapping[str, Array] = found.signals
+        self.condition = found.condition
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: figures and coefficients of the trajectory.
+
+        Returns
+        -------
+        dict
+            Condition numbers, limits used, coefficients of the Fourier series by joint.
+        """
+        return data(self.found)
+
+    def files(self, stem: str = "trajectory") -> Mapping[str, str]:
+        """Text of every file that `modelgen excite` writes.
+
+        Parameters
+        ----------
+        stem : str
+            What their names begin with.
+
+        Returns
+        -------
+        mapping of str to str
+            Text by name: the trajectory, the set-points, JSON and a picture.
+        """
+        return files(self.found, stem)
+
+    def write(self, folder: Path | str, stem: str = "trajectory") -> None:
+        """Write the files of the command into a folder, all of them or none.
+
+        Parameters
+        ----------
+        folder : Path or str
+            It is made where it does not exist.
+        stem : str
+            What the names of the files begin with.
+
+        Raises
+        ------
+        InputError
+            Where the folder cannot be written.
+        """
+        out = Path(folder)
+        check_folder("--out", out)
+        write_together("--out", out, self.files(stem))
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen excite`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        e, made = self.found, self.to_json()
+        reached = made["condition_numbers_of_starts"]
+        rows = [[name, f"{100 * share:.1f}"] for name, share in e.usage.items()]
+        return [
+            *(f"note: {remark}" for remark in made["remarks"]),
+            f"{e.arm.name}: condition number {e.condition:.4g} with columns of unit norm ({e.raw:.3g} in the "
+            f"parameters' own units), {made['base_parameters']} base parameters, {made['samples']} samples",
+            f"starts: {len(reached)}, from {reached[0]:.4g} to {reached[-1]:.4g}",
+            Table("limits", {"limit": "left", "used %": "right"}, rows),
+        ]
+
+    def __repr__(self) -> str:
+        period = self.found.problem.settings.period
+        return f"Excitation of {self.arm.name}: condition number {self.condition:.4g}, period {period:g} s"
+
+
+def excite(
+    arm: Arm, options: ExcitationOptions | None = None, *, progress: Progress = silent, **changes: Any
+) -> Excitation:
+    """Compute a trajectory that determines the base parameters well, within the arm's limits.
+
+    Parameters
+    ----------
+    arm : Arm
+        An arm whose joints have limits of position and velocity.
+    options : ExcitationOptions, optional
+        Period, harmonics, criterion, boxes.
+    progress : callable, optional
+        It is told how many starts are done, and of how many.
+    **changes
+        Fields of the options, by name.
+
+    Returns
+    -------
+    Excitation
+        The best trajectory of all starts, in joint and motor coordinates.
+
+    Raises
+    ------
+    InputError
+        For options that make no trajectory, and limits that are missing or exclude each other.
+
+    References
+    ----------
+    Swevers, Ganseman, Tukel, De Schutter and Van Brussel, Optimal robot excitation and identification, 1997.
+    """
+    chosen = changed(options or ExcitationOptions(), changes)
+    chosen.checked()
+    text = f"{arm.name}: starts"
+    progress(text, 0, chosen.starts)
+    return Excitation(optimise(arm, chosen, lambda done, total: progress(text, done, total)))

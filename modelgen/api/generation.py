@@ -1,0 +1,188 @@
+"""Generated code of arms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from modelgen.api.model import total
+from modelgen.api.results import Shown, Table
+from modelgen.description import Arm
+from modelgen.errors import InputError, suggest
+from modelgen.functions.parameters_file import values_beside, values_of
+from modelgen.generation import TARGETS, Budget, GeneratedArm, Report
+from modelgen.generation import generate as generate_folders
+from modelgen.options import GenerationOptions, ModelOptions, changed
+from modelgen.progress import Progress, silent
+
+
+class Generated(Shown):
+    """What was generated or checked.
+
+    Parameters
+    ----------
+    report : modelgen.generation.Report
+        What the generation gives back.
+    budget : Budget, optional
+        The limits that it was held against.
+
+    Attributes
+    ----------
+    arms : sequence of GeneratedArm
+        By arm: files, operation counts, numbers of parameters.
+    drift : sequence of Drift
+        Files that differ from what would be generated; of a check alone.
+    excess : sequence of Excess
+        Functions above the budget; nothing is written then.
+    """
+
+    def __init__(self, report: Report, budget: Budget | None = None) -> None:
+        self.arms, self.drift, self.excess = report.arms, report.drift, report.excess
+        self.budget = budget
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: what `modelgen generate --json` prints.
+
+        Returns
+        -------
+        dict
+            Arms with their functions' operation counts and files, and drift.
+        """
+        return {
+            "arms": [_arm_data(arm) for arm in self.arms],
+            "drift": [{"path": str(drift.path), "kind": drift.kind} for drift in self.drift],
+        }
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen generate`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        rows = [
+            [
+                arm.name,
+                str(arm.joints),
+                f"{arm.standard_parameters} → {arm.base_parameters}",
+                ", ".join(_costs(arm.operations)),
+                str(len(arm.files) + len(arm.artefacts)),
+            ]
+            for arm in self.arms
+        ]
+        columns = {
+            "arm": "left",
+            "joints": "right",
+            "parameters\nstandard → base": "right",
+            "operations (mul + add + neg), base/standard parameters": "left",
+            "files": "right",
+        }
+        return [Table("", columns, rows)]
+
+    def __repr__(self) -> str:
+        arms = ", ".join(arm.name for arm in self.arms)
+        files = sum(len(arm.files) + len(arm.artefacts) for arm in self.arms)
+        said = f", {len(self.drift)} differ" if self.drift else ""
+        return f"Generated {arms}: {files} files{said}"
+
+
+def generate(
+    arms: Arm | Sequence[Arm],
+    out: Path | str = "generated",
+    options: ModelOptions | None = None,
+    generation: GenerationOptions | None = None,
+    *,
+    parameters: Path | str | Mapping[str, Any] | None = None,
+    check: bool = False,
+    progress: Progress = silent,
+) -> Generated:
+    """Write C99 and CasADi functions of arms, one folder per arm.
+
+    Parameters
+    ----------
+    arms : Arm or sequence of Arm
+        As `load_arms` gives them.
+    out : Path or str
+        The folder that gets one folder per arm.
+    options : ModelOptions, optional
+        How the functions are made.
+    generation : GenerationOptions, optional
+        Artefacts, budgets, processes.
+    parameters : Path, str or mapping, optional
+        Values of the only arm's base parameters to be folded in: <arm>_parameters.yaml, names with numbers,
+        or the parameters of an identification. Default: <arm>_parameters.yaml beside the description,
+        where there is one.
+    check : bool
+        Compare with what is there and write nothing.
+    progress : callable, optional
+        It is told the name of each arm that is done, how many are done, and of how many.
+
+    Returns
+    -------
+    Generated
+        Operation counts, and what differs where it was a check.
+
+    Raises
+    ------
+    InputError
+        For an arm without a model, names that collide, and a folder that cannot be written.
+    """
+    chosen, more = options or ModelOptions(), generation or GenerationOptions()
+    wanted = [arms] if isinstance(arms, Arm) else list(arms)
+    budget = _budget(more)
+    own = values_beside(wanted, chosen) if parameters is None else {}
+    if parameters is not None:
+        chosen = changed(chosen, {"identified": values_of(parameters, [arm.name for arm in wanted])})
+    done = 0
+
+    def told(name: str) -> None:
+        nonlocal done
+        done += 1
+        progress(name, done, len(wanted))
+
+    progress("generating", 0, len(wanted))
+    report = generate_folders(
+        wanted,
+        Path(out),
+        chosen,
+        check=check,
+        artefacts=[name for name, asked in (("casadi", more.casadi), ("plant", more.casadi_plant)) if asked],
+        budget=budget,
+        processes=more.processes,
+        identified=own,
+        progress=told,
+    )
+    return Generated(report, budget)
+
+
+def _budget(o: GenerationOptions) -> Budget | None:
+    """The budget, None where nothing is limited. Raises InputError for a target that does not exist."""
+    if o.target not in TARGETS:
+        raise InputError(f"--target: found '{o.target}'{suggest(o.target, TARGETS)}")
+    nothing = o.max_flash is None and o.max_stack is None
+    return None if nothing else Budget(o.target, o.max_flash, o.max_stack)
+
+
+def _costs(operations: Mapping[str, Mapping[str, int]]) -> list[str]:
+    """A function and its twin for the standard parameters share an entry."""
+    costs = []
+    for name, counts in operations.items():
+        twin = operations.get(f"{name}_standard")
+        if twin is not None:
+            costs.append(f"{name} {total(counts)}/{total(twin)}")
+        elif name.removesuffix("_standard") not in operations or name == name.removesuffix("_standard"):
+            costs.append(f"{name} {total(counts)}")
+    return costs
+
+
+def _arm_data(arm: GeneratedArm) -> dict[str, Any]:
+    return {
+        "arm": arm.name,
+        "joints": arm.joints,
+        "standard_parameters": arm.standard_parameters,
+        "base_parameters": arm.base_parameters,
+        "functions": arm.operations,
+        "files": sorted({**arm.files, **arm.artefacts}),
+    }

@@ -1,0 +1,183 @@
+"""Parameters from logs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+from modelgen.api.logs import Log, listed
+from modelgen.api.results import Named, Result, Table
+from modelgen.dataset import spectra_svg
+from modelgen.description import Arm
+from modelgen.effects.editing import with_torque_constants
+from modelgen.functions.parameters_file import parameters_yaml
+from modelgen.identification import Estimate, Validation
+from modelgen.identification.workflow import Outcome, identify_logs
+from modelgen.options import IdentificationOptions, changed
+from modelgen.progress import Progress, silent
+from modelgen.report.identification import models, page, predictions, table
+
+
+class Identification(Result):
+    """Base parameters with their uncertainty, and how they do on test logs.
+
+    Parameters
+    ----------
+    outcome : modelgen.identification.workflow.Outcome
+        What the identification gives back.
+
+    Attributes
+    ----------
+    arm : Arm
+        The arm, with the torque constants that were found where gains are estimated.
+    parameters : Named of Estimate
+        Base parameters (p,) by name: value, std, unit.
+    test : Validation or None
+        Errors on the test logs by joint: rmse (n,) in `unit`, nrmse_percent (n,).
+    """
+
+    def __init__(self, outcome: Outcome) -> None:
+        self.outcome = outcome
+        self.arm: Arm = outcome.found.arm
+        self.parameters: Named[Estimate] = Named({e.name: e for e in outcome.found.estimates})
+        self.test: Validation | None = outcome.found.test
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: identification.json.
+
+        Returns
+        -------
+        dict
+            Parameters, errors on the test logs, condition number, verdict.
+        """
+        return self.outcome.data
+
+    def files(self) -> Mapping[str, str]:
+        """Text of every file that `modelgen identify` writes.
+
+        Returns
+        -------
+        mapping of str to str
+            Text by name.
+        """
+        return self._files
+
+    @cached_property
+    def _files(self) -> dict[str, str]:
+        o, found, data = self.outcome, self.outcome.found, self.outcome.data
+        name, spectra = found.arm.name, spectra_svg(o.first)
+        files = {
+            "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
+            f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
+            "spectra.svg": spectra,
+            "report.html": page(found, o.others, data["verdict"], data["processing"], spectra),
+        }
+        if found.test is not None:
+            files["test.svg"] = predictions(found.test, o.others)
+        if found.gains:
+            constants = {g.joint: g.value for g in found.gains}
+            files[f"{name}_identified.yaml"] = with_torque_constants(found.arm, constants)
+        return files
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen identify`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        o, found = self.outcome, self.outcome.found
+        rows = [
+            [
+                e.name,
+                f"{e.value:.5g}",
+                "" if e.std is None else f"{e.std:.2g}",
+                "" if e.relative is None else f"{e.relative:.1f}",
+                e.unit,
+                "yes" if e.essential else "left out" if e.dropped else "no",
+            ]
+            for e in found.estimates
+        ]
+        headings = ("parameter", "value", "std", "std %", "unit", "essential")
+        parts: list[str | Table] = [Table("", dict.fromkeys(headings, "right"), rows)]
+        if found.gains:
+            rows = [
+                [str(g.joint), f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}"] for g in found.gains
+            ]
+            columns = dict.fromkeys(("joint", "described", "found", "std"), "right")
+            parts.append(Table("torque constants", columns, rows))
+        if found.test is not None:
+            parts += _test_tables(found.test, o)
+        if o.folds is not None:
+            heads = {"held out": "left"} | {f"joint {j + 1}": "right" for j in range(len(o.folds.rmse))}
+            rows = [[name, *(f"{x:.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
+            rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
+            title = "NRMSE % of parts of the training records, each held out in its turn"
+            parts.append(Table(title, heads, rows))
+        return [*parts, *o.data["processing"], o.data["verdict"]]
+
+    def __repr__(self) -> str:
+        errors = ""
+        if self.test is not None:
+            errors = f", test NRMSE {', '.join(f'{x:.1f}' for x in self.test.nrmse_percent)} %"
+        return f"Identification of {self.arm.name}: {len(self.parameters)} base parameters{errors}"
+
+
+def identify(
+    arm: Arm,
+    train: Log | Sequence[Log],
+    test: Log | Sequence[Log] = (),
+    options: IdentificationOptions | None = None,
+    *,
+    progress: Progress = silent,
+    **changes: Any,
+) -> Identification:
+    """Find the base parameters from logs, with their uncertainty, and validate them on other logs.
+
+    Parameters
+    ----------
+    arm : Arm
+        An arm with n coordinates and p base parameters.
+    train : log or sequence of logs
+        Training logs: paths, "FILE@t0:t1" [s], records, or tables of columns.
+    test : log or sequence of logs
+        Logs that are not fitted. Without one a single training log is split in two.
+    options : IdentificationOptions, optional
+        Method, processing, torque constants.
+    progress : callable, optional
+        It is told what is done, how much of it, and of how much (None where that is not known).
+    **changes
+        Fields of the options, by name.
+
+    Returns
+    -------
+    Identification
+        Parameters (p,) in SI units of the standard parameters they stand for, errors by joint (n,).
+
+    Raises
+    ------
+    InputError
+        For logs that cannot be read, overlap or move too little, and options that do not go together.
+
+    References
+    ----------
+    Gautier, Dynamic identification of robots with power model, 1997. Janot, Vandanjon and Gautier, A generic
+    instrumental variable approach for industrial robot identification, 2014.
+    """
+    chosen = changed(options or IdentificationOptions(), changes)
+    return Identification(identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress))
+
+
+def _test_tables(test: Validation, o: Outcome) -> list[str | Table]:
+    rows = [[str(j + 1), a, test.unit[j], b] for j, (a, b) in enumerate(table(test))]
+    columns = dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right")
+    parts: list[str | Table] = [Table("test records", columns, rows)]
+    if o.others:
+        heads = {"model": "left"} | {f"joint {j + 1} [{unit}]": "right" for j, unit in enumerate(test.unit)}
+        rows = [[name, *cells] for name, cells in models(test, o.others)]
+        title = "RMSE on the test records (NRMSE %), and what the described drives change"
+        parts.append(Table(title, heads, rows))
+    return parts

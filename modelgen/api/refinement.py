@@ -1,0 +1,138 @@
+"""Parameters tuned until the simulated motion is the measured one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from modelgen.api.logs import Log, listed
+from modelgen.api.results import Named, Result, Table
+from modelgen.description import Arm
+from modelgen.functions.parameters_file import parameters_yaml
+from modelgen.identification.output_error.refine import Refined
+from modelgen.identification.output_error.refine import Refinement as Found
+from modelgen.identification.refinement import picture, refine_logs, to_json
+from modelgen.options import RefinementOptions, changed
+from modelgen.progress import Progress, silent
+
+
+class Refinement(Result):
+    """Refined base parameters, and the simulated motion before and after.
+
+    Parameters
+    ----------
+    found : modelgen.identification.output_error.refine.Refinement
+        What the refinement gives back.
+
+    Attributes
+    ----------
+    arm : Arm
+        The arm as described.
+    parameters : Named of Refined
+        Base parameters (p,) by name: start, value, std (None where held), unit.
+    converged : bool
+        Whether the last step lowered the cost by less than it is worth.
+    """
+
+    def __init__(self, found: Found) -> None:
+        self.found = found
+        self.arm: Arm = found.plant.arm
+        self.parameters: Named[Refined] = Named({x.name: x for x in found.parameters})
+        self.converged = found.converged
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: refinement.json.
+
+        Returns
+        -------
+        dict
+            Parameters and scores by joint, before and after.
+        """
+        return to_json(self.found)
+
+    def files(self) -> Mapping[str, str]:
+        """Text of every file that `modelgen refine` writes.
+
+        Returns
+        -------
+        mapping of str to str
+            Text by name.
+        """
+        name = self.arm.name
+        return {
+            "refinement.json": json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n",
+            f"{name}_parameters.yaml": parameters_yaml(
+                name, {x.name: x.value for x in self.found.parameters}
+            ),
+            "refinement.svg": picture(self.found),
+        }
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and tables of `modelgen refine`.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        rows = [
+            [x.name, f"{x.start:.5g}", f"{x.value:.5g}", "held" if x.std is None else f"{x.std:.2g}", x.unit]
+            for x in self.found.parameters
+        ]
+        keys = ("f_gof_before", "f_gof", "rmse_before", "rmse")
+        joints = [
+            [str(j["joint"]), *(f"{j[k]:.4g}" for k in keys), j["unit"]] for j in self.to_json()["joints"]
+        ]
+        headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
+        parameters = dict.fromkeys(("parameter", "start", "value", "std", "unit"), "right")
+        return [
+            Table("", parameters, rows),
+            Table("simulated motion", dict.fromkeys(headings, "right"), joints),
+        ]
+
+    def __repr__(self) -> str:
+        free = sum(x.std is not None for x in self.found.parameters)
+        after = ", ".join(f"{x:.1f}" for x in self.found.after.f_gof)
+        return f"Refinement of {self.arm.name}: {free} parameters tuned, F_gof {after} %"
+
+
+def refine(
+    arm: Arm,
+    log: Log | Sequence[Log],
+    options: RefinementOptions | None = None,
+    *,
+    progress: Progress = silent,
+    **changes: Any,
+) -> Refinement:
+    """Tune base parameters until the simulated motion is the measured one, with or without efforts.
+
+    Parameters
+    ----------
+    arm : Arm
+        An arm with n coordinates.
+    log : log or sequence of logs
+        Measured motions: paths, "FILE@t0:t1" [s], records, or tables of columns.
+    options : RefinementOptions, optional
+        Which parameters are free, and where they start.
+    progress : callable, optional
+        It is told the step.
+    **changes
+        Fields of the options, by name.
+
+    Returns
+    -------
+    Refinement
+        Base parameters, scores by joint (n,) [%, rad, m].
+
+    Raises
+    ------
+    InputError
+        For unknown parameters, values that the motion does not tell apart, and simulations that do not run.
+
+    References
+    ----------
+    Bock, Recent advances in parameter identification techniques for ODE, 1983.
+    """
+    chosen = changed(options or RefinementOptions(), changes)
+    return Refinement(refine_logs(arm, listed(log, "log"), chosen, progress))

@@ -1,0 +1,80 @@
+"""A calibration from a log to a lever, and what it says as data and as a picture."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from modelgen.calibration.fit import Calibration, calibrate
+from modelgen.calibration.lever import lever_of
+from modelgen.dataset import read_columns
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.figures import COLOURS, figure, svg
+from modelgen.options import CalibrationOptions
+
+
+def calibrate_log(arm: Arm, joint: int, log: Any, options: CalibrationOptions | None = None) -> Calibration:
+    """The lever of `joint` (from 1) from a log with t [s], qm<joint> [motor unit] and q<joint> [rad].
+
+    Raises InputError for a joint without a lever, missing columns, and data that determine nothing.
+    """
+    o = options or CalibrationOptions()
+    lever = lever_of(arm, joint)
+    columns = read_columns(log, (f"qm{joint}", f"q{joint}"))
+    motor, measured = columns[f"qm{joint}"], columns[f"q{joint}"]
+    try:
+        return calibrate(lever, joint, motor, measured, o.length_std)
+    except InputError as error:
+        raise InputError(f"{log}: {error}") from None
+
+
+def data(arm: Arm, c: Calibration) -> dict[str, Any]:
+    """calibration.json."""
+
+    def number(x: float) -> float | None:
+        return x if np.isfinite(x) else None
+
+    return {
+        "schema": 1,
+        "arm": arm.name,
+        "joint": c.joint,
+        "samples": len(c.motor),
+        "rmse": {
+            "unit": "rad",
+            "before": number(c.rms_before),
+            "before_best_offset": number(c.rms_shifted),
+            "after": c.rms_after,
+            "improvement_percent": number(c.improvement_percent),
+        },
+        "rev": {
+            "before": c.before.rev,
+            "value": c.after.rev,
+            "rmse": {str(rev): x for rev, x in sorted(c.candidates.items())},
+        },
+        "parameters": [
+            {"name": e.name, "before": e.before, "value": e.value, "std": e.std, "unit": e.unit}
+            for e in c.estimates
+        ],
+        "samples_per_independent_one": c.correlation,
+        "not_determined": list(c.weak),
+    }
+
+
+def picture(c: Calibration) -> str:
+    """Measured angle and the errors of both levers over the motor coordinate, as SVG."""
+    order = np.argsort(c.motor, kind="stable")
+    x = c.motor[order]
+    made, axes = figure(2, 1, (7.0, 5.0))
+    angle, error = axes[0][0], axes[1][0]
+    angle.plot(x, np.degrees(c.measured[order]), ".", ms=2, color=COLOURS[4], label="measured")
+    for lever, name, colour in ((c.before, "as described", COLOURS[0]), (c.after, "calibrated", COLOURS[1])):
+        q = lever.angle(x)
+        angle.plot(x, np.degrees(q), color=colour, label=name)
+        error.plot(x, np.degrees(c.measured[order] - q), ".", ms=2, color=colour, label=name)
+    angle.set_ylabel(f"q{c.joint} [deg]")
+    error.set_ylabel("error [deg]")
+    error.set_xlabel(f"qm{c.joint} [motor unit]")
+    angle.legend()
+    return svg(made)

@@ -1,0 +1,74 @@
+"""Values of base parameters as they are given: a file of modelgen identify, names with numbers, estimates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.options import ModelOptions
+
+
+def values_of(given: Path | str | Mapping[str, Any] | None, arms: Sequence[str]) -> dict[str, float]:
+    """Values by name. given: <arm>_parameters.yaml, or names with numbers or estimates (their `value`).
+
+    arms: names of the arms that they are for; a file names its own. Raises InputError where it cannot be
+    read or does not fit.
+    """
+    if given is None:
+        return {}
+    if isinstance(given, str | Path):
+        return read_values(f"--parameters {given}", Path(given), arms)
+    return {name: float(getattr(value, "value", value)) for name, value in given.items()}
+
+
+def values_beside(arms: Sequence[Arm], options: ModelOptions) -> dict[str, dict[str, float]]:
+    """By arm, the values of the <arm>_parameters.yaml that lie beside the description.
+
+    They belong to the arm as described: with parts left out, or gains of each row's own, none is taken.
+    Raises InputError for a file that does not fit.
+    """
+    if options.without or options.gains == "row_wise":
+        return {}
+    files = {
+        arm.name: Path(arm.where.file).parent / f"{arm.name}_parameters.yaml"
+        for arm in arms
+        if arm.where is not None
+    }
+    return {name: read_values(str(file), file, [name]) for name, file in files.items() if file.is_file()}
+
+
+def read_values(who: str, file: Path, arms: Sequence[str]) -> dict[str, float]:
+    """Values by name of <arm>_parameters.yaml. who: how messages name the file. Raises InputError."""
+    try:
+        data = YAML(typ="safe", pure=True).load(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{who}: {(error.strerror or str(error)).lower()}") from error
+    except (UnicodeDecodeError, YAMLError) as error:
+        raise InputError(f"{who}: cannot be read as YAML ({type(error).__name__})") from error
+    values = data.get("parameters") if isinstance(data, dict) else None
+    if not isinstance(values, dict) or not all(
+        isinstance(k, str) and type(v) in (int, float) for k, v in values.items()
+    ):
+        raise InputError(f"{who}: expected 'parameters:' with a number by each name")
+    infinite = [k for k, v in values.items() if not isfinite(v)]
+    if infinite:
+        raise InputError(f"{who}: {infinite[0]} is {values[infinite[0]]}, expected a finite number")
+    if list(arms) != [data.get("arm")]:
+        raise InputError(
+            f"{who}: belongs to the arm '{data.get('arm')}', found {', '.join(arms)}; "
+            f"give --arm {data.get('arm')}"
+        )
+    return {k: float(v) for k, v in values.items()}
+
+
+def parameters_yaml(arm: str, values: Mapping[str, float]) -> str:
+    """The text of <arm>_parameters.yaml."""
+    lines = "".join(f"  {name}: {value:.12g}\n" for name, value in values.items())
+    return f"schema: 1\narm: {arm}\nparameters:\n{lines}"

@@ -1,0 +1,252 @@
+"""An identification from logs to parameters: whole or streamed, validated on test records or on parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from modelgen.dataset import (
+    Chosen,
+    Prepared,
+    Record,
+    Settings,
+    Stream,
+    check_separate,
+    choose,
+    described,
+    gather,
+    parse,
+    prepare,
+    read,
+    split,
+)
+from modelgen.dataset import preset as processing
+from modelgen.dataset.processing.periods import period_of, with_whole_rows
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.functions import Options
+from modelgen.functions.options import prepared as reduced
+from modelgen.identification.folds import Folds, folds
+from modelgen.identification.identify import METHODS, Instruments, identify
+from modelgen.identification.objects import Identification
+from modelgen.identification.output import errors, to_json
+from modelgen.identification.simulated_instruments import Tracking
+from modelgen.identification.streamed import identify_streamed
+from modelgen.identification.without_drives import Alternative, without_drives
+from modelgen.options import IdentificationOptions
+from modelgen.progress import Progress, silent
+from modelgen.simulation.tables import reference_of
+from modelgen.simulation.values import numbers
+
+STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streamed
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """others: models beside the identification. first: a training record, for the spectra. chosen: settings
+    of the processing. folds: parts of the training records held out in turn.
+    """
+
+    found: Identification
+    others: Sequence[Alternative]
+    first: Prepared
+    chosen: Chosen
+    folds: Folds | None = None
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """identification.json."""
+        beside = [{"model": o.name, **errors(o.test)} for o in self.others]
+        return (
+            to_json(self.found)
+            | {"cutoff_hz": self.chosen.cutoff, "processing": described(self.first)}
+            | ({"without_drives": beside} if beside else {})
+            | ({} if self.folds is None else {"folds": self._folds(self.folds)})
+        )
+
+    @staticmethod
+    def _folds(folds: Folds) -> dict[str, Any]:
+        return {
+            "parts": [{"test": name, **errors(test)} for name, test in folds.parts],
+            "rmse": folds.rmse.tolist(),
+            "nrmse_percent": folds.nrmse_percent.tolist(),
+        }
+
+
+def identify_logs(
+    arm: Arm,
+    train: Sequence[Any],
+    test: Sequence[Any] = (),
+    options: IdentificationOptions | None = None,
+    progress: Progress = silent,
+) -> Outcome:
+    """Base parameters of the arm from training logs, validated on test logs.
+
+    Without test logs a single training record is split in two. Logs above 512 MB are read block by block.
+    Raises InputError for options that do not go together, and as `gather` and `identify` do.
+    """
+    o = options or IdentificationOptions()
+    chosen = Options(without=o.without, gains=o.gains)
+    _check(chosen, o, test)
+    progress("reading", 0, None)
+    made = _streamed if o.stream or _size(train) > STREAMED else _whole
+    return made(arm, chosen, o, train, test, progress)
+
+
+def _size(logs: Sequence[Any]) -> int:
+    """Bytes of the files among the logs."""
+    paths = [parse(log).path for log in logs if isinstance(log, str)]
+    return sum(path.stat().st_size for path in paths if path.is_file())
+
+
+def _check(options: Options, o: IdentificationOptions, test: Sequence[Any]) -> None:
+    """Raises InputError for options that make no sense, before the logs are read."""
+    if "drives" in options.without:
+        raise InputError("--without drives: the input is the drives' own; expected --without effects")
+    if o.cutoff is not None and o.preset != "default":
+        raise InputError(f"--cutoff {o.cutoff:g}: --preset {o.preset} has its own, expected one of both")
+    if o.method not in METHODS:
+        raise InputError(f"--method: found '{o.method}', expected {', '.join(METHODS)}")
+    if o.bandwidth is not None and not 0 < o.bandwidth < float("inf"):
+        raise InputError(f"--bandwidth: found {o.bandwidth:g}, expected more than 0 Hz")
+    if o.compare_drives and o.folds is not None and not test:
+        raise InputError("--compare-drives: compares errors on test records, expected --test LOG")
+    if o.folds is not None and o.payload:
+        raise InputError("--folds: parts of a record with a payload, and without; expected no --payload")
+    if options.gains == "row_wise" and (o.instrument == "simulated" or o.reference is not None):
+        raise InputError("--gains row_wise: rows without a common scale cannot be simulated")
+
+
+def _settings(o: IdentificationOptions) -> Callable[[float], Settings]:
+    """What the options ask of the processing, for a rate [Hz]."""
+    if o.preset == "default":
+        return lambda rate: Settings(cutoff=o.cutoff)
+    return lambda rate: processing(o.preset, rate)
+
+
+def _whole(
+    arm: Arm,
+    options: Options,
+    o: IdentificationOptions,
+    train: Sequence[Any],
+    test: Sequence[Any],
+    progress: Progress,
+) -> Outcome:
+    """All records at once."""
+    if o.folds is not None and not test:
+        training = [read(spec, arm, o.mapping) for spec in train]
+        testing: list[Record] = []
+    else:
+        training, testing = gather(train, test, arm, o.mapping)
+    if not testing and o.folds is None:
+        if len(training) > 1:
+            raise InputError("found no test record, expected one: --test LOG")
+        one, two = split(training[0])
+        training, testing = [one], [two]
+    asked = _settings(o)(1 / training[0].step)
+    chosen = with_whole_rows(choose(training, asked), [period_of(x, None) for x in training])
+    progress("identifying", 0, None)
+    fitted, held = [[prepare(x, chosen) for x in part] for part in (training, testing)]
+    payloads = _payloads(o.payload, [*train, *test])
+    tracking = Tracking(
+        reduced(arm, options),
+        o.control,
+        None if o.reference is None else reference_of(len(arm.coordinates), o.reference),
+        o.bandwidth,
+    )
+
+    def identified(train: Sequence[Prepared], test: Sequence[Prepared]) -> Identification:
+        return identify(
+            train,
+            arm,
+            options,
+            test=test,
+            method=o.method,
+            physical=o.consistent,
+            instruments=Instruments(o.instrument, tracking),
+            essential_only=o.essential,
+            payloads=payloads,
+        )
+
+    found = identified(fitted, held)
+    others: tuple[Alternative, ...] = ()
+    if o.compare_drives:
+        progress("identifying without the drives", 0, None)
+        others = without_drives(training, testing, found.arm, chosen, found, payloads)
+    parts: Folds | None = None
+    if o.folds is not None:
+        progress(f"holding out each of {o.folds} parts", 0, None)
+        parts = folds(training, o.folds, chosen, identified)
+    return Outcome(found, others, fitted[0], chosen, parts)
+
+
+def _payloads(
+    given: Sequence[str] | Mapping[str | int, float | Sequence[float]], logs: Sequence[Any]
+) -> dict[int, list[float]]:
+    """Mass [kg] and, if wanted, x, y, z [m] by number of the log, training logs first.
+
+    given: LOG=M[,X,Y,Z] each, or logs (by what they were given as, or by number) with their values.
+    """
+    pairs: list[tuple[str, str | float | Sequence[float], str]]
+    if isinstance(given, Mapping):
+        pairs = [(str(log), values, f"{log}") for log, values in given.items()]
+    else:
+        pairs = [(text.rpartition("=")[0], text.rpartition("=")[2], text) for text in given]
+    named = [log if isinstance(log, str) else getattr(log, "name", str(k)) for k, log in enumerate(logs)]
+    found: dict[int, list[float]] = {}
+    for log, values, text in pairs:
+        places = [k for k, name in enumerate(named) if log in (name, str(parse(name).path))]
+        if isinstance(given, Mapping) and not places and log.isdecimal() and int(log) < len(named):
+            places = [int(log)]
+        if not log or not places:
+            raise InputError(
+                f"--payload {text}: expected LOG=KG or LOG=KG,X,Y,Z with one of the logs {', '.join(named)}"
+            )
+        mass = numbers("--payload", values)
+        if not mass or mass[0] <= 0:
+            raise InputError(f"--payload {text}: expected a mass above 0 kg")
+        found |= dict.fromkeys(places, mass)
+    return found
+
+
+def _streamed(
+    arm: Arm,
+    options: Options,
+    o: IdentificationOptions,
+    train: Sequence[Any],
+    test: Sequence[Any],
+    progress: Progress,
+) -> Outcome:
+    """The same block by block; the first block stands for the record in pictures."""
+    for name, asked in (
+        ("--gains estimated", options.gains == "estimated"),
+        ("--payload", o.payload),
+        ("--essential", o.essential),
+        ("--compare-drives", o.compare_drives),
+        ("--folds", o.folds),
+        ("--instrument", o.instrument != "auto"),
+    ):
+        if asked:
+            raise InputError(f"{name}: needs all rows at once, found a streamed log; give a part, FILE@t0:t1")
+    if not test:
+        raise InputError("a streamed log is not split: found no test record, expected --test LOG")
+    check_separate(train, test)
+    head = Stream(train[0], arm, None, o.mapping)
+    first = head.settled(_settings(o)(1 / head.axis.step))
+    chosen = first.settings
+    streams = [first, *(Stream(spec, arm, chosen, o.mapping) for spec in train[1:])]
+    testing: list[Prepared] = [prepare(read(spec, arm, o.mapping), chosen) for spec in test]
+    doing = f"identifying, {sum(s.samples for s in streams):,} samples"
+    progress(doing, 0, None)
+    found = identify_streamed(
+        streams,
+        arm,
+        options,
+        test=testing,
+        method=o.method,
+        physical=o.consistent,
+        progress=lambda done, total: progress(doing, done, total),
+    )
+    return Outcome(found, (), next(iter(streams[0])), chosen)

@@ -1,0 +1,54 @@
+"""What may be chosen about the functions of an arm."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+
+from modelgen.errors import InputError, suggest
+from modelgen.options.field import documented, option
+
+GAINS = ("known", "estimated", "row_wise")
+PARTS = ("drives", "effects")
+
+
+@documented(fields_beside={"identified": "Values of the base parameters by name, to be folded in."})
+@dataclass(frozen=True)
+class ModelOptions:
+    """How the functions of an arm are made; see docs/theory.md for the drive gains.
+
+    Raises InputError for a part that cannot be left out, and for gains that do not exist.
+    """
+
+    without: frozenset[str] = option(
+        frozenset(), "Leave out drives, effects or both: drives,effects.", "PARTS", kind=str
+    )
+    gains: str = option("known", "Drive gains: known, estimated, or scaled row by row.", choices=GAINS)
+    runtime_geometry: bool = option(False, "Lever geometry, offsets and symbols become an input.")
+    sincos: bool = option(
+        False, "Sines and cosines of the joint angles become inputs.", flags=["--sincos-inputs"]
+    )
+    jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
+    identified: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "without", parts_of(self.without))
+        check_gains(self.gains)
+
+
+def parts_of(given: str | Collection[str]) -> frozenset[str]:
+    """Parts to leave out, from "drives,effects" or their names. Raises InputError for others."""
+    words = given.split(",") if isinstance(given, str) else given
+    parts = [word.strip() for word in words if word.strip()]
+    for part in parts:
+        if part not in PARTS:
+            raise InputError(
+                f"--without: found '{part}', expected {' or '.join(PARTS)}{suggest(part, PARTS)}"
+            )
+    return frozenset(parts)
+
+
+def check_gains(gains: str) -> None:
+    """Raises InputError for a mode of the drive gains that does not exist."""
+    if gains not in GAINS:
+        raise InputError(f"--gains: found '{gains}', expected {', '.join(GAINS)}{suggest(gains, GAINS)}")
