@@ -38,6 +38,12 @@ def shipped_sizes() -> Path | None:
         return None
 
 
+def default_effects() -> tuple[str, ...]:
+    """Names of the effects of a driven joint whose description lists none."""
+    text = (files("modelgen") / "effects" / "defaults.txt").read_text(encoding="utf-8")
+    return tuple(text.split())
+
+
 def _find(name: str) -> Path:
     package = Path(str(files("modelgen")))
     checkout = package.parent

@@ -12,14 +12,12 @@ from collections.abc import Sequence
 from modelgen.base_parameters.objects import BaseParameter, Contained
 from modelgen.model.equations import Equations
 
-INERTIA = "drive_inertia"
-
 
 def contained(equations: Equations, base: Sequence[BaseParameter]) -> tuple[Contained, ...]:
     """All of the arm's."""
     result = []
     for effect in equations.effects:
-        if effect.effect.name != INERTIA or effect.joint is None:
+        if not effect.effect.of_rotor or effect.joint is None:
             continue
         ((parameter, symbol),) = effect.parameters
         nominal = effect.nominal.get(parameter.name)

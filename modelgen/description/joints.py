@@ -13,9 +13,10 @@ from modelgen.description.messages import describe
 from modelgen.description.objects import EffectUse, Joint, Limits
 from modelgen.description.schema import EffectEntry, JointModel
 from modelgen.errors import suggest
+from modelgen.resources import default_effects
 from modelgen.transmission import Drive
 
-DEFAULT_EFFECTS = ("viscous_friction", "coulomb_friction", "drive_inertia")
+DEFAULT_EFFECTS = default_effects()
 
 KnownEffects: TypeAlias = Mapping[str, Collection[str]]
 

@@ -19,7 +19,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.parameters import ANY, POSITIVE, Parameter, Values, at
-from modelgen.effects.traits import Numbers, Traits
+from modelgen.effects.traits import Numbers, Traits, joint_of
 from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
 __all__ = [
@@ -194,6 +194,11 @@ class InputEffect(Definition):
     """What the drive makes of its input, coordinate by coordinate, in the unit of the input."""
 
     needs_effort: ClassVar[bool] = True
+
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """At a drive."""
+        return number is None or joint_of(arm, number).drive.driven
 
     @abstractmethod
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:

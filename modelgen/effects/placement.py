@@ -7,14 +7,10 @@ from dataclasses import replace
 
 from modelgen.description import Arm
 from modelgen.description.objects import EffectUse
-from modelgen.effects import CATALOGUE, DescriptionEffect, InputEffect
-from modelgen.effects.laws.environment import AddedMass, FluidDrag
-from modelgen.effects.laws.measurement import LeverGeometry
-from modelgen.effects.laws.mechanism import ActuatorMass
+from modelgen.effects import CATALOGUE, InputEffect
 
 # effect, number of the coordinate from 1 or None for the whole arm, values of its parameters
 Found = tuple[str, int | None, Mapping[str, float]]
-_LEVERS = (LeverGeometry, ActuatorMass)
 
 
 def extended_arm(arm: Arm, causes: Sequence[Found]) -> Arm:
@@ -38,51 +34,21 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
 def places(arm: Arm, name: str) -> list[int | None]:
     """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
 
-    An effect that may stand at either is offered for the whole arm.
+    One that may stand at either is offered for the whole arm; between inputs and efforts also for one of
+    several joints alone.
     """
     effect = CATALOGUE[name]
-    if name == "time_delay":
-        return _of_delay(arm)
-    if effect.scope != "joint":
-        there = any(use.name == name for use in arm.effects)
-        if issubclass(effect, FluidDrag | AddedMass) and not _tips_known(arm):
-            return []
-        return [] if there else [None]
-    found: list[int | None] = []
-    for number, index in enumerate(arm.coordinates, 1):
-        joint = arm.joints[index]
-        if any(use.name == name for use in joint.effects):
-            continue
-        if issubclass(effect, _LEVERS) and joint.drive.actuator is None:
-            continue
-        driven = joint.drive.driven
-        if name == "drive_gain_error" and not driven:
-            continue
-        if issubclass(effect, InputEffect) and not driven:
-            continue
-        if name == "transmission_coupling" and len(arm.coordinates) < 2:
-            continue
-        found.append(number)
-    return found
-
-
-def _of_delay(arm: Arm) -> list[int | None]:
-    """Of one driven joint's input, or of all."""
-    if any(use.name == "time_delay" for use in arm.effects):
-        return []
-    found: list[int | None] = [None]
-    for number, index in enumerate(arm.coordinates, 1):
-        joint = arm.joints[index]
-        there = any(use.name == "time_delay" for use in joint.effects)
-        if joint.drive.driven and not there:
-            found.append(number)
-    return found if len(found) != 2 else [None]
-
-
-def _tips_known(arm: Arm) -> bool:
-    """Whether the links that carry no other have nominal inertials, from which their end is taken."""
-    carrying = {joint.antecedent for joint in arm.joints}
-    return all(link is not None for i, link in enumerate(arm.links) if i not in carrying)
+    everywhere = any(use.name == name for use in arm.effects)
+    whole: list[int | None] = [None] if not everywhere and effect.stands_at(arm, None) else []
+    alone: list[int | None] = [
+        number
+        for number, index in enumerate(arm.coordinates, 1)
+        if all(use.name != name for use in arm.joints[index].effects) and effect.stands_at(arm, number)
+    ]
+    if effect.scope == "joint":
+        return alone
+    several = issubclass(effect, InputEffect) and effect.scope == "either" and len(alone) != 1
+    return [*whole, *alone] if several and whole else whole
 
 
 def with_effect(arm: Arm, name: str, joint: int | None, values: Mapping[str, float]) -> Arm:
@@ -103,8 +69,3 @@ def _with(uses: Sequence[EffectUse], use: EffectUse) -> tuple[EffectUse, ...]:
     if all(u.name != use.name for u in uses):
         return (*uses, use)
     return tuple(use if u.name == use.name else u for u in uses)
-
-
-def changes_description(name: str) -> bool:
-    """Whether the effect is a departure of the arm from its description."""
-    return issubclass(CATALOGUE[name], DescriptionEffect)

@@ -97,6 +97,7 @@ class Traits(ABC):
     periodic: it repeats with its coordinate, `harmonic` times in a `revolution`, two of its parameters; the
         waves are read off a periodogram.
     rereads: with it the joint is elsewhere at the same reading of its motor.
+    of_rotor: its parameter is the inertia of the drive itself, before what lies between drive and link.
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
     simpler: the law of the catalogue that this one comes to at a limit of its values.
@@ -114,6 +115,7 @@ class Traits(ABC):
     needs_effort: ClassVar[bool] = False
     periodic: ClassVar[bool] = False
     rereads: ClassVar[bool] = False
+    of_rotor: ClassVar[bool] = False
     overlooked: ClassVar[tuple[float, float]] = (math.inf, 0.0)
     reading: ClassVar[Reading | None] = None
     simpler: ClassVar[type[Traits] | None] = None
@@ -122,6 +124,23 @@ class Traits(ABC):
     def accepted(cls) -> tuple[Parameter, ...]:
         """The parameters that a description may set."""
         return (*cls.linear, *cls.nonlinear)
+
+    # -- where it stands, and what it does there --------------------------------------------
+
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """Whether the arm admits it there."""
+        return True
+
+    @classmethod
+    def delays(cls, values: Numbers) -> float | None:
+        """Time [s] by which the effort comes after its input, where that is all it does."""
+        return None
+
+    @classmethod
+    def scales(cls, values: Numbers) -> float | None:
+        """Factor that it puts on the joint's input, where that is all it does."""
+        return None
 
     # -- how its values are found -----------------------------------------------------------
 

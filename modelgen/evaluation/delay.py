@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.description.objects import Arm
+from modelgen.effects import CATALOGUE
 from modelgen.numeric import Array
 
 
@@ -13,10 +14,11 @@ def acting(arm: Arm, t: Array, given: Array) -> Array:
     uses = [(u, list(range(given.shape[1]))) for u in arm.effects]
     uses += [(u, [n]) for n, i in enumerate(arm.coordinates) for u in arm.joints[i].effects]
     for use, columns in uses:
-        if use.name == "time_delay":  # what was commanded a delay ago acts now
+        delay = CATALOGUE[use.name].delays(use.values)
+        if delay is not None:  # what was commanded a delay ago acts now
             given = given.copy()
             for k in columns:
-                given[:, k] = np.interp(t - use.values["delay"], t, given[:, k])
+                given[:, k] = np.interp(t - delay, t, given[:, k])
     return given
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
-from modelgen.effects import CATALOGUE, Definition, Parameter, described
-from modelgen.effects.placement import changes_description, with_effect
+from modelgen.effects import CATALOGUE, Definition, DescriptionEffect, InputEffect, described
+from modelgen.effects.placement import with_effect
 from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.changed_description import Changed, Changes, Variations
 from modelgen.evaluation.delay import acting, added
@@ -36,8 +36,6 @@ from modelgen.numeric import Array
 
 Values = Mapping[str, float]
 REMEMBERED = 40  # results that do not depend on an effect's own values
-# Not free: they choose the form of the law, or where it acts.
-_FIXED = ("other", "smoothing", "tip_x", "tip_y", "tip_z", "ratio", "delay", "rise")
 
 
 class Evaluator:
@@ -61,14 +59,6 @@ class Evaluator:
     def n(self) -> int:
         """Number of coordinates."""
         return len(self.arm.coordinates)
-
-    def linear(self, effect: str) -> tuple[Parameter, ...]:
-        """Its linear parameters: `columns` has one column for each."""
-        return CATALOGUE[effect].linear
-
-    def nonlinear(self, effect: str) -> tuple[Parameter, ...]:
-        """Its other parameters."""
-        return CATALOGUE[effect].nonlinear
 
     def needs_load(self, effect: str, joint: int | None, values: Values) -> bool:
         """Whether its columns depend on the arm's base parameters."""
@@ -117,10 +107,13 @@ class Evaluator:
             return given
         function = self._function(model, "effective_input")
         states = np.zeros((len(given), max(1, len(model.states))))
-        for k, name in enumerate(model.states):
-            if name.startswith("time_delay_"):  # the lag was undone by the shift
-                joint = int(name.rsplit("_", 1)[1]) - 1
-                states[:, k] = given[:, self.arm.coordinates.index(joint)]
+        for e in self._own.effects:
+            values = dict.fromkeys((p.name for p in e.effect.nonlinear), 0.0)
+            lags = e.states.values() if e.effect.delays(values) is not None else []
+            for symbol in lags:  # undone by the shift
+                assert e.joint is not None
+                k = model.states.index(symbol.name)
+                states[:, k] = given[:, self.arm.coordinates.index(e.joint)]
         known = {"input": given, "state": states}
         return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
 
@@ -156,7 +149,7 @@ class Evaluator:
         stand there.
         """
         e = self._of_effect(effect, joint, values)
-        names = [p.name for p in self.linear(effect)]
+        names = [p.name for p in CATALOGUE[effect].linear]
         if e not in self._columns:
             function, places = columns_of(e)
             self._columns[e] = NumpyFunction(function), places
@@ -172,21 +165,15 @@ class Evaluator:
     ) -> Array:
         """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
         definition = CATALOGUE[effect]
-        if effect == "time_delay":
-            return added(motion.t, self.inputs(motion, parameters), values["delay"], joint)
-        if effect == "drive_gain_error" and joint is not None and self._proportional:
+        delay, factor = definition.delays(values), definition.scales(values)
+        if delay is not None:
+            return added(motion.t, self.inputs(motion, parameters), delay, joint)
+        if factor is not None and joint is not None and self._proportional:
             self._changed(effect, joint, values)  # where the arm admits it
             inputs = self.inputs(motion, parameters)
-            return np.asarray(inputs * (1 / (1 + values["error"]) - 1) * (np.arange(self.n) == joint - 1))
-        if changes_description(effect) or effect == "torque_constant_saturation":
-            changed = self._changed(effect, joint, values)
-            read = joint is not None and motion.motor_side and motion.motor_side[joint - 1]
-            if effect == "lever_geometry" and joint is not None and read:
-                seen = reread(motion, described(self.arm), changed.arm, joint)
-                return self._inputs_of(changed, seen, parameters) - self.inputs(motion, parameters)
-            found = self._inputs_of(changed, motion, parameters) - self.inputs(motion, parameters)
-            turned = np.subtract(changed.arm.gravity, self._own.arm.gravity)
-            return found + self._hidden_weight(motion, turned) if turned.any() else found
+            return np.asarray(inputs * (factor - 1) * (np.arange(self.n) == joint - 1))
+        if issubclass(definition, DescriptionEffect | InputEffect):
+            return self._by_change(definition, joint, motion, values, parameters)
         if definition.linear:
             weights = np.array([values.get(p.name, 0.0) for p in definition.linear])
             columns = self.columns(effect, joint, motion, values, parameters)
@@ -201,6 +188,24 @@ class Evaluator:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
         return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
+
+    def _by_change(
+        self,
+        definition: type[Definition],
+        joint: int | None,
+        motion: Motion,
+        values: Values,
+        parameters: Array,
+    ) -> Array:
+        """Inputs (N, n) of the arm with the effect, less those of the arm without."""
+        changed = self._changed(definition.name, joint, values)
+        read = joint is not None and motion.motor_side and motion.motor_side[joint - 1]
+        if definition.rereads and joint is not None and read:
+            seen = reread(motion, described(self.arm), changed.arm, joint)
+            return self._inputs_of(changed, seen, parameters) - self.inputs(motion, parameters)
+        found = self._inputs_of(changed, motion, parameters) - self.inputs(motion, parameters)
+        turned = np.subtract(changed.arm.gravity, self._own.arm.gravity)
+        return found + self._hidden_weight(motion, turned) if turned.any() else found
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
@@ -264,8 +269,8 @@ class Evaluator:
     def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
         """Equations of the arm with this effect alone, what is not fixed left free."""
         definition: type[Definition] = CATALOGUE[effect]
-        free = tuple(p.name for p in definition.nonlinear if p.name not in _FIXED)
-        fixed = {name: value for name, value in values.items() if name in _FIXED}
+        free = tuple(p.name for p in definition.nonlinear if not p.structural)
+        fixed = {p.name: values[p.name] for p in definition.nonlinear if p.structural and p.name in values}
         key = (effect, joint, tuple(sorted(fixed.items())))
         if key not in self._equations:
             alone = with_effect(self.arm.without_effects(), effect, joint, fixed)

@@ -19,7 +19,7 @@ from scipy import signal
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters import Grouping
 from modelgen.description.objects import Arm
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Family
 from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.motion import Motion
 from modelgen.evaluation.programs import at_motors, links_alone
@@ -47,7 +47,7 @@ def led_by(arm: Arm, motion: Motion) -> list[tuple[str, int, dict[str, float]]]:
         for number, index in enumerate(arm.coordinates, 1)
         if at_link(motion, number)
         for use in arm.joints[index].effects
-        if _compliant(use.name)
+        if CATALOGUE[use.name].family is Family.ELASTIC
     ]
 
 
@@ -55,7 +55,7 @@ def rigid(arm: Arm) -> Arm:
     """The arm without elastic joints and play."""
     joints = []
     for joint in arm.joints:
-        kept = tuple(use for use in joint.effects if not _compliant(use.name))
+        kept = tuple(use for use in joint.effects if CATALOGUE[use.name].family is not Family.ELASTIC)
         joints.append(replace(joint, effects=kept))
     return replace(arm, joints=tuple(joints))
 
@@ -71,11 +71,6 @@ def lagging(states: Array, e: Equations, before: Motion, after: Motion) -> Array
             lag, rate = (names.index(symbol.name) for symbol in effect.states.values())
             found[:, lag], found[:, rate] = (after.q - before.q)[:, n], (after.dq - before.dq)[:, n]
     return found
-
-
-def _compliant(name: str) -> bool:
-    """Whether an effect lies between a drive and its link."""
-    return getattr(CATALOGUE[name], "place", "") == "transmission"
 
 
 class LinkSide:

@@ -11,8 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from modelgen.dataset import Chosen, Record, prepare
-from modelgen.description import Arm, DirectDrive
+from modelgen.description import DEFAULT_EFFECTS, Arm, DirectDrive
 from modelgen.description.objects import EffectUse, geometry_symbol
+from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.identification.identify import identify
@@ -84,7 +85,7 @@ def geared(arm: Arm) -> Arm:
         middle = 0.5 * (span[0] + span[1])
         falling = float(transmission.k1().subs(transmission.q, middle).subs(known)) < 0
         ratio = (stroke[1] - stroke[0]) / (span[1] - span[0])
-        friction = tuple(EffectUse(name) for name in ("viscous_friction", "coulomb_friction"))
+        friction = tuple(EffectUse(name) for name in DEFAULT_EFFECTS if not CATALOGUE[name].of_rotor)
         joints[i] = replace(
             joint,
             drive=DirectDrive(math.copysign(ratio, -1.0 if falling else 1.0), joint.drive.torque_constant),

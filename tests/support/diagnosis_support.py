@@ -11,6 +11,7 @@ from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
 from modelgen.diagnosis.equations.prior import Unknowns
 from modelgen.diagnosis.equations.rows import Rows
+from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
 from modelgen.numeric import Array
@@ -48,7 +49,7 @@ def record(effect: str | None, joint: int, size: float, seed: int, name: str) ->
     if effect is not None:
         values = {"velocity": 8.0, "magnitude": size, "coefficient": size, "stiffness": size, "harmonic": 2.0}
         values |= {"sine": size, "cosine": 0.0, "preload": 0.0, "offset": size}
-        own = {p.name for p in (*evaluator.linear(effect), *evaluator.nonlinear(effect))}
+        own = {p.name for p in (*CATALOGUE[effect].linear, *CATALOGUE[effect].nonlinear)}
         known = {k: v for k, v in values.items() if k in own}
         given = given + evaluator.contribution(effect, joint, motion, known, base)
     given = given + 0.03 * np.sqrt((given**2).mean(axis=0)) * random.normal(size=given.shape)

@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
-from modelgen.base_parameters.drive_inertia import INERTIA
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import best_beside
 from modelgen.diagnosis.selection.refit_stiffness import with_trials
+from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, extended_arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -60,7 +60,9 @@ def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Es
 
 def described_by(values: Mapping[int, Estimate]) -> list[Found]:
     """Inertia of drives by coordinate (from 1) as what a description is extended by."""
-    return [(INERTIA, number, {"inertia": e.value}) for number, e in values.items()]
+    rotor = next(effect for effect in CATALOGUE.values() if effect.of_rotor)
+    (inertia,) = rotor.linear
+    return [(rotor.name, number, {inertia.name: e.value}) for number, e in values.items()]
 
 
 def split_drive_inertia(

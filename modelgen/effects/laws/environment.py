@@ -47,6 +47,12 @@ class Strips(LinkEffect):
     nonlinear = TIP
     family = Family.FLUID
 
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """Where the links that carry no other have nominal inertials, from which their end is taken."""
+        carrying = {joint.antecedent for joint in arm.joints}
+        return all(link is not None for i, link in enumerate(arm.links) if i not in carrying)
+
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
         return [Point(fraction=place, part=weight) for place, weight in _NODES]

@@ -9,7 +9,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
-from modelgen.effects.traits import Family, Reading, Seen, Shows, joint_of
+from modelgen.effects.traits import Family, Numbers, Reading, Seen, Shows, joint_of
 from modelgen.effects.variables import InputVariables
 from modelgen.symbolic import number as figure
 
@@ -72,6 +72,11 @@ class LeverGeometry(DescriptionEffect):
     shown = at(l2=0.001)
 
     @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """At a lever."""
+        return number is not None and joint_of(arm, number).drive.actuator is not None
+
+    @classmethod
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
         """A share of each length."""
         actuator = None if number is None else joint_of(arm, number).drive.actuator
@@ -112,6 +117,16 @@ class DriveGainError(DescriptionEffect):
     confused_with = ("load_dependent_friction", "torque_constant_saturation")
     experiment = "a run with a known payload"
     shown = at(error=0.1)
+
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """At a drive."""
+        return number is not None and joint_of(arm, number).drive.driven
+
+    @classmethod
+    def scales(cls, values: Numbers) -> float | None:
+        """Where nothing else bends the input."""
+        return 1 / (1 + values["error"])
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
@@ -187,6 +202,11 @@ class TimeDelay(InputEffect):
     confused_with = ("joint_flexibility", "presliding", "stribeck_friction")
     experiment = "the cross-correlation of a chirp, or a loop-back of the signal"
     shown = at(delay=0.02)
+
+    @classmethod
+    def delays(cls, values: Numbers) -> float | None:
+        """Along a motion that is known it is a pure delay."""
+        return values["delay"]
 
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:
         """The input of a first-order lag that has the delay for its time constant."""

@@ -28,6 +28,7 @@ class DriveInertia(Effect):
     seen_over = "acceleration"
     text = "inertia of motor, gears and screw, at the motor coordinate"
     reference = "Leborne, Creuze, Chemori and Brignone 2018, (16)"
+    of_rotor = True
     linear = (Parameter("inertia", "{f} s^2/{x}", "inertia of the drive", "IA"),)
     confused_with = ("actuator_mass",)
     experiment = "fast and slow runs of the same path"
@@ -149,6 +150,11 @@ class TransmissionCoupling(Effect):
     shown = at(inertia=0.0, viscous=2.0, dry=4.0, other=1.0)
 
     @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """Beside another joint."""
+        return len(arm.coordinates) > 1
+
+    @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
         """With every joint before this one, in either direction."""
         assert number is not None
@@ -192,6 +198,11 @@ class ActuatorMass(BodyEffect):
     confused_with = ("lever_geometry", "drive_inertia", "spring")
     experiment = "static holds over the stroke, then fast and slow runs"
     shown = at(inertia=0.05, moment_x=0.3, moment_y=0.1)
+
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """At a lever."""
+        return number is not None and joint_of(arm, number).drive.actuator is not None
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
