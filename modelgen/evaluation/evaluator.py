@@ -223,8 +223,6 @@ class Evaluator:
     def _bare(self) -> Links:
         return Links(self.arm, self.base)
 
-    # -- inside -----------------------------------------------------------------------------
-
     @cached_property
     def _proportional(self) -> bool:
         """Whether all inputs are efforts over torque constants: no drive bends them."""
