@@ -35,7 +35,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What a calibration found.
+    """Result of a calibration.
 
     before, after: the lever as described and as found. rms: of the angle errors [rad]; `shifted` is that of
     the lever as described with the best constant added. candidates: rev to rms. correlation: samples
@@ -58,7 +58,7 @@ class Calibration:
 
     @property
     def improvement_percent(self) -> float:
-        """Of the RMS error."""
+        """Improvement of the RMS error in percent."""
         return 100 * (1 - self.rms_after / self.rms_before) if self.rms_before > 0 else 0.0
 
 

@@ -66,7 +66,7 @@ class Stream:
 
     @cached_property
     def settings(self) -> Chosen:
-        """As used, every choice made."""
+        """The settings as used, with every choice made."""
         return choose(self._head, self._asked)
 
     @property
@@ -137,7 +137,7 @@ class Stream:
 
 
 class _Content:
-    """What a log's columns hold, block after block."""
+    """Contents of a log's columns, block after block."""
 
     def __init__(self, stream: Stream) -> None:
         self.stream, self.source = stream, stream._source

@@ -1,4 +1,4 @@
-"""What an effect that the arm does not have would add to its inputs along a recorded motion."""
+"""Evaluation of an arm's model, and of effects that it may have besides, along a recorded motion."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ class Recent(Generic[T]):
         self._found: dict[Hashable, tuple[object, T]] = {}
 
     def __call__(self, key: Hashable, make: Callable[[], T], held: object = None) -> T:
-        """What `make` gives. held: kept with it, where the key is no more than its place in memory."""
+        """Result of `make`. held: object that is kept with it, where the key is its place in memory alone."""
         if key not in self._found:
             if len(self._found) >= self._most:
                 del self._found[next(iter(self._found))]
@@ -29,5 +29,5 @@ class Recent(Generic[T]):
         return self._found[key][1]
 
     def along(self, what: Hashable, motion: Motion, parameters: Array, make: Callable[[], T]) -> T:
-        """The same of a motion and parameters."""
+        """Result for a motion and parameters."""
         return self((what, id(motion), np.asarray(parameters).tobytes()), make, motion)

@@ -23,7 +23,7 @@ def acting(arm: Arm, t: Array, given: Array) -> Array:
 
 
 def added(t: Array, now: Array, delay: float, joint: int | None) -> Array:
-    """What a delay [s] adds to inputs (N, n): of coordinate `joint` (from 1), None: of all."""
+    """Change of inputs (N, n) by a delay [s] of coordinate `joint` (from 1), None: of all."""
     later = np.column_stack([np.interp(t + delay, t, x) for x in now.T]) - now
     if joint is not None:
         later[:, [k for k in range(now.shape[1]) if k != joint - 1]] = 0.0

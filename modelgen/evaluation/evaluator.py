@@ -124,7 +124,7 @@ class Evaluator:
 
     @cached_property
     def link_side(self) -> LinkSide:
-        """Of drives whose links' positions were measured."""
+        """Drives whose links' positions were measured."""
         return LinkSide(
             self._own, self.base, self._links, partial(gain, self.arm), partial(leverage, self.arm)
         )
@@ -163,7 +163,7 @@ class Evaluator:
     def contribution(
         self, effect: str, joint: int | None, motion: Motion, values: Values, parameters: Array
     ) -> Array:
-        """What an effect with these values of all its parameters adds to the inputs, (N, n)."""
+        """Inputs that an effect with these values of all its parameters adds, (N, n)."""
         definition = CATALOGUE[effect]
         delay, factor = definition.delays(values), definition.scales(values)
         if delay is not None:

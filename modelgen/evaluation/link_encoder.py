@@ -95,7 +95,7 @@ class LinkSide:
         self._recent: Recent[Array] = Recent(KEPT * len(e.arm.coordinates))
 
     def added(self, joint: int, motion: Motion, values: dict[str, float], parameters: Array) -> Array:
-        """What an elastic joint, or with `play` a gap, adds to the inputs, (N, n). joint: from 1.
+        """Inputs that an elastic joint, or with `play` a gap, adds, (N, n). joint: from 1.
 
         Nothing where the gap would keep the link loose most of the time.
         """
@@ -128,7 +128,7 @@ class LinkSide:
         return replace(motion, q=tables[0], dq=tables[1], ddq=tables[2])
 
     def led(self, motion: Motion, parameters: Array) -> Array:
-        """What the arm's own elastic joints and play behind measured links add to the inputs, (N, n)."""
+        """Inputs that the arm's own elastic joints and play behind measured links add, (N, n)."""
         found = np.zeros(motion.q.shape)
         for _, joint, values in led_by(self._arm, motion):
             found += self.added(joint, motion, values, parameters)

@@ -41,7 +41,7 @@ def given_for(
     loads: Array | None = None,
     states: Array | None = None,
 ) -> dict[str, Array]:
-    """What a function takes along a motion, by name; loads and states are zero where they are not given."""
+    """Arguments of a function along a motion, by name; loads and states are zero where they are not given."""
     count, n = motion.q.shape
     known = {
         "q": motion.q,

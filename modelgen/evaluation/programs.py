@@ -45,7 +45,7 @@ def loads_of(arm: Arm, base: Grouping) -> Function:
 
 
 def at_motors(e: Equations, base: Grouping) -> Function:
-    """What the effects at the motors add to the inputs, with the base parameters of `e`'s own arm."""
+    """Inputs that the effects at the motors add, with the base parameters of `e`'s own arm."""
     values = base_values(e, base, apart=e.arm.coordinates)
     forces = EffectForces(e, Rates(e.vector("dq"), e.vector("ddq")), values)
     return bare("at_motors", e, len(base.base), forces.at_motors())
@@ -103,7 +103,7 @@ def links_alone(
 
 
 class Links:
-    """Of one arm. base: the grouping that its base parameters (p,) are of."""
+    """Inputs of one arm's links. base: the grouping of its base parameters (p,)."""
 
     def __init__(self, arm: Arm, base: Grouping) -> None:
         self._arm, self._base = arm, base

@@ -171,7 +171,7 @@ class Series:
 
 
 class _Compiled:
-    """In C."""
+    """Steps in compiled C."""
 
     def __init__(self, rest: Function) -> None:
         step = casadi_function(rest)
@@ -203,7 +203,7 @@ def _library(source: str) -> ctypes.CDLL:
 
 
 class _Interpreted:
-    """By CasADi's virtual machine."""
+    """Steps by CasADi's virtual machine."""
 
     def __init__(self, rest: Function) -> None:
         self._step, self._free = casadi_function(rest), rest.arguments[2].size

@@ -1,4 +1,4 @@
-"""What an upright arm hides of its links, and shows once gravity is turned.
+"""Weight of links that an upright arm hides, and that shows once gravity is turned.
 
 No record of an arm whose first axis is vertical tells the first moments of its first link, nor any mass that
 the grouping gives to others; a base that leans makes them weigh on the first joint. The base parameters
@@ -28,7 +28,7 @@ NOTHING = 1e-12  # of the largest parameter
 
 
 class HiddenWeight:
-    """Of one arm. base: the grouping whose parameters are known from records."""
+    """Hidden weight of one arm. base: the grouping whose parameters are known from records."""
 
     def __init__(self, arm: Arm, base: Grouping) -> None:
         self.arm = described(arm)

@@ -81,7 +81,7 @@ def better(problem: Problem, a: Array | None, b: Array | None) -> Array | None:
 
 
 def merit(problem: Problem, z: Array) -> float:
-    """What is to be small: the condition number, or minus the logarithm of the determinant."""
+    """Merit, which is minimised: the condition number, or minus the logarithm of the determinant."""
     w, _ = problem.observation(z, problem.at_rate())
     if problem.settings.criterion == "cond":
         return condition(w)

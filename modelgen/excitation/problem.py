@@ -29,7 +29,7 @@ SIGNALS = ("q", "dq", "ddq", "qm", "dqm", "ddqm", "input", "effort")
 
 @dataclass(frozen=True)
 class Problem:
-    """What the optimiser and the random search need; it can be sent to other processes.
+    """Functions that the optimiser and the random search need; they can be sent to other processes.
 
     exact: (x, dx, ddx) of one sample to (regressor^T (p, n), constraints), which are scaled to lie in
     [-1, 1]. motion: (x, dx, ddx) to all of SIGNALS. middle, half: (n,) ranges of the coordinates that the
@@ -125,7 +125,7 @@ def problem(arm: Arm, settings: ExcitationOptions) -> Problem:
 
 
 def smooth(arm: Arm, settings: ExcitationOptions) -> ca.Function:
-    """As `exact` of the arm's problem, with the signs of dry friction smoothed: what has derivatives."""
+    """The problem of `exact` with the signs of dry friction smoothed, so that it has derivatives."""
     limits, _ = bounds(arm, settings)
     return _functions(_smoothed(arm, speeds(arm, limits, "motor")), limits, settings).sample
 

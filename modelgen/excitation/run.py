@@ -1,4 +1,4 @@
-"""From an arm to its excitation trajectory: many starts in parallel, the best one kept."""
+"""An arm's excitation trajectory: many starts in parallel, the best one kept."""
 
 from __future__ import annotations
 

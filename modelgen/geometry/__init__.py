@@ -1,4 +1,4 @@
-"""Where frames lie and how they turn: modified DH in the expression graph."""
+"""Position and orientation of frames: modified DH in the expression graph."""
 
 from modelgen.geometry.frames import Frame, Frames
 from modelgen.geometry.runtime import with_geometry_symbols

@@ -67,7 +67,7 @@ class Trigonometry:
 
 @lru_cache(maxsize=1024)
 def _turned(angle: sp.Expr, symbol: sp.Symbol) -> tuple[bool, Scalar] | None:
-    """Of +-(symbol + constant), whether the sign is plus, and the constant; None for any other angle."""
+    """Sign (whether plus) and constant of +-(symbol + constant); None for any other angle."""
     slope = sp.diff(angle, symbol)
     if slope not in (1, -1):
         return None

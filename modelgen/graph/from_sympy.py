@@ -1,4 +1,4 @@
-"""From SymPy, in which transmissions and effects are written, to the graph."""
+"""Expressions of SymPy, in which transmissions and effects are written, become nodes of the graph."""
 
 from __future__ import annotations
 

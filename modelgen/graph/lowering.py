@@ -1,4 +1,4 @@
-"""From a graph to a straight-line program: order, signs, and which values get a name.
+"""A graph becomes a straight-line program: order, signs, and which values get a name.
 
 The program is what every backend prints, so the operations that it counts are those that run.
 """

@@ -136,7 +136,7 @@ def _linearised(
 
 
 def _of_parameters(solution: Solution, p: int) -> Solution:
-    """Without the gains; the precision is that with the gains free."""
+    """The solution without the gains; its precision is the one with the gains free."""
     a, c, g = solution.precision[:p, :p], solution.precision[:p, p:], solution.precision[p:, p:]
     return replace(
         solution,

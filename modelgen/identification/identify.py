@@ -36,7 +36,7 @@ Simulated = Callable[[Prepared, Mapping[str, float]], Prepared]
 
 @dataclass(frozen=True)
 class Instruments:
-    """Where instruments come from. source: one of INSTRUMENTS. simulated: of the model under its controller.
+    """Source of the instruments. source: one of INSTRUMENTS. simulated: of the model under control.
 
     "auto" takes other periods where the motion repeats, and for the method "iv" the simulation else.
     """
@@ -252,7 +252,7 @@ def concluded(
 
 
 def joints_of(model: Model) -> list[int]:
-    """By base parameter, the number of the last coordinate in whose row it stands."""
+    """Number of the last coordinate whose row contains each base parameter, (p,)."""
     last = [0] * len(model.grouping.base)
     for row, column in zip(model.packed.rows, model.packed.columns, strict=True):
         last[column] = max(last[column], row + 1)

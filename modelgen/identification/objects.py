@@ -1,4 +1,4 @@
-"""What an identification gives back."""
+"""Results of an identification."""
 
 from __future__ import annotations
 

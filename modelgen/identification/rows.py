@@ -18,7 +18,7 @@ SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
 
 
 class Rows:
-    """What records say about a model's parameters, row by row.
+    """Rows of a model's regressor for records, with the efforts.
 
     joint, parameter: (c,), places in the regressor of the c columns that are computed; those of a joint
     stand side by side, at `of_joint`. With a C compiler, columns that depend on the motion alone are computed

@@ -41,7 +41,7 @@ def identify_streamed(
     physical: bool = False,
     progress: Progress | None = None,
 ) -> Identification:
-    """As `identify`, with memory that does not depend on the samples; method "ols" or "wls".
+    """Identify as `identify` does, with memory that does not depend on the samples; method "ols" or "wls".
 
     progress: called with the number of blocks done and of all. Raises InputError as `identify` does, and for
     a method or an effect that needs all rows at once.

@@ -52,7 +52,7 @@ def verdict(found: Identification) -> str:
 
 
 def experiment(wanting: Sequence[Estimate]) -> list[str]:
-    """What would show the parameters, joint after joint."""
+    """Experiments that would show the parameters, joint after joint."""
     found: dict[str, set[int]] = {}
     for e in wanting:
         name = e.standard or e.name

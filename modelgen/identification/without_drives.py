@@ -43,7 +43,7 @@ def without_drives(
     found: Identification,
     payloads: Mapping[int, Sequence[float]] | None = None,
 ) -> tuple[Alternative, ...]:
-    """What models without the drives' dynamics predict of the test records, by the method of `found`.
+    """Predictions of the test records by models without the drives' dynamics, by the method of `found`.
 
     payloads: as for `identify`.
 

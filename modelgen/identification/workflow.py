@@ -120,7 +120,7 @@ def _check(options: Options, o: IdentificationOptions, test: Sequence[Any]) -> N
 
 
 def _settings(o: IdentificationOptions) -> Callable[[float], Settings]:
-    """What the options ask of the processing, for a rate [Hz]."""
+    """Settings of the processing that the options ask for, at a rate [Hz]."""
     if o.preset == "default":
         return lambda rate: Settings(cutoff=o.cutoff)
     return lambda rate: processing(o.preset, rate)
@@ -219,7 +219,7 @@ def _streamed(
     test: Sequence[Any],
     progress: Progress,
 ) -> Outcome:
-    """The same block by block; the first block stands for the record in pictures."""
+    """Identify block by block; the first block stands for the record in pictures."""
     for name, asked in (
         ("--gains estimated", options.gains == "estimated"),
         ("--payload", o.payload),

@@ -27,7 +27,7 @@ _turn = threading.Lock()
 def run(
     function: Callable[[T], R], items: Sequence[T], address: str, lost: Callable[[T], R] | None
 ) -> Iterator[tuple[int, R]]:
-    """As modelgen.jobs.run, on the workers of the scheduler at `address`."""
+    """Run jobs as modelgen.jobs.run does, on the workers of the scheduler at `address`."""
     distributed = _library()
     # It reports every worker that is lost; what that means for the jobs is said here.
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
@@ -144,4 +144,4 @@ def _in_turn(function: Callable[[T], R], item: T) -> R:
 
 
 def _ready(_: None) -> None:
-    """What the first job on a worker does: it has modelgen then."""
+    """First job on a worker, after which it has loaded modelgen."""

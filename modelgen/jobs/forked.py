@@ -24,7 +24,7 @@ MOST = 2000  # jobs whose numbers a pipe holds
 def forked(
     job: Callable[[int], T], count: int, where: Where, told: Callable[[int], None] | None = None
 ) -> list[T]:
-    """job(0) to job(count - 1), in this order, by this process and forks of it on its other processors.
+    """Results of job(0) to job(count - 1), in order, by this process and forks on the other processors.
 
     Whoever is free takes the next one. Jobs must not depend on another one. What a fork did not answer,
     because it was killed say, is done here. told: called with the number of every job that starts here.
@@ -77,7 +77,7 @@ def _started(job: Callable[[int], Any], numbers: int) -> tuple[Any, Connection]:
 
 
 def _help(job: Callable[[int], Any], numbers: int, answers: Connection) -> None:
-    """What a fork does. An error is left to the process that asked, which meets it again."""
+    """Work of a fork. It leaves an error to the process that asked, which meets it again."""
     ignore_interrupt()
     found: dict[int, Any] = {}
     with suppress(Exception):

@@ -27,7 +27,7 @@ ONE_THREAD = dict.fromkeys(
 def run(
     function: Callable[[T], R], items: Sequence[T], processes: int, lost: Callable[[T], R] | None
 ) -> Iterator[tuple[int, R]]:
-    """As modelgen.jobs.run, with that many processes."""
+    """Run jobs as modelgen.jobs.run does, with that many processes."""
     waiting = list(range(len(items)))
     if processes == 1 and lost is None:
         for k in waiting:

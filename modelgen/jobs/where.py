@@ -1,4 +1,4 @@
-"""Where jobs run."""
+"""The place where jobs run."""
 
 from __future__ import annotations
 

@@ -156,7 +156,7 @@ def _source() -> str:
 
 
 def _pointers(inputs: Sequence[Array]) -> tuple[ctypes.Array[ctypes.c_void_p], int, list[Array]]:
-    """Where each number's samples begin, how many samples there are, and the arrays that hold them."""
+    """Addresses of each number's samples, how many samples there are, and the arrays that hold them."""
     table = [np.ascontiguousarray(part.T, dtype=np.float64) for part in inputs]
     samples = table[0].shape[1]
     places = [part.ctypes.data + 8 * samples * k for part in table for k in range(len(part))]

@@ -58,7 +58,7 @@ static inline lanes_t m_pow(lanes_t x, lanes_t y) { EACH(pow, BOTH); }
 
 
 def plain_text(count: int) -> str:
-    """The same of `count` columns that are given."""
+    """Text for `count` columns that are given."""
     return (
         f"{_HEAD}enum {{ INPUTS = {count}, COLUMNS = {count} }};\n"
         "static void columns(const lanes_t x[], lanes_t out[])\n{\n"

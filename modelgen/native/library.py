@@ -78,7 +78,7 @@ def _version(tool: str) -> str:
 
 @cache
 def _processor(tool: str) -> str:
-    """What the compiler takes this processor to have, as its predefined macros."""
+    """Features that the compiler assumes of this processor, as its predefined macros."""
     command = [tool, "-march=native", "-dM", "-E", "-x", "c", os.devnull]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 

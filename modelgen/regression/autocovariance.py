@@ -46,7 +46,7 @@ def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequ
 
 
 def autocovariance(parts: Sequence[Array], count: int) -> Array:
-    """Of one joint's residuals by lag; parts (M,), zero where a row does not count; `count` rows that do."""
+    """Autocovariance of one joint by lag; parts (M,), zero where a row does not count; `count` rows do."""
     order = min(ORDER, count // 20)
     return np.array(
         [sum(float(e[lag:] @ e[: len(e) - lag]) for e in parts) for lag in range(order + 1)]
@@ -85,7 +85,7 @@ def _meat(x: Sequence[Sequence[Array]], noise: Sequence[Array]) -> tuple[Array, 
 def _taken(
     x: Sequence[Sequence[Array]], noise: Sequence[Array], bread: Array, count: Sequence[int]
 ) -> list[Array]:
-    """What the fit takes off each joint's autocovariance: lags of G - E[e e'],
+    """Share of each joint's autocovariance that the fit takes: lags of G - E[e e'],
 
     e = noise - X B sum(X' noise).
     """

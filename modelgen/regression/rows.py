@@ -1,4 +1,4 @@
-"""What least squares needs of a record."""
+"""The part of a record that least squares needs."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ _SHOWN = 12  # candidates of a turn
 
 
 def harms(d: Diagnosis) -> list[str]:
-    """What to know of causes that make the test record worse."""
+    """Warnings about causes that make the test record worse."""
     return [
         f"With {c.effect} at {_place(c.joint)} the error on the test record is {-c.share.gain:.1f} % larger "
         f"({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that record."
@@ -144,7 +144,7 @@ def harms(d: Diagnosis) -> list[str]:
 
 
 def assumptions(d: Diagnosis) -> list[str]:
-    """What was taken from the description, since no record tells it, and what would have to be."""
+    """Values taken from the description because no record shows them, and those that are missing there."""
     taken = [
         f"The drive's inertia at {_place(number)} is taken as {e.value:.3g} {e.unit}, what was identified "
         "of drive and link together beyond the link's nominal inertials: stiffness and play are found with "
@@ -212,7 +212,7 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
 
 
 def _share(c: NamedCause) -> str:
-    """What the cause does to the error on the test record; empty where that is not known."""
+    """Effect of the cause on the error of the test record; empty where it is not known."""
     s = c.share
     if np.isnan(s.gain):
         return ""
@@ -233,7 +233,7 @@ def _fit(d: Diagnosis) -> str:
 
 
 def _where(d: Diagnosis) -> str:
-    """Of what repeats most."""
+    """Place of the part that repeats most."""
     f = d.lack_of_fit
     assert f is not None
     found = place(f, d.selection.system.rows)

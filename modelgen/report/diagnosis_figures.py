@@ -53,7 +53,7 @@ def measured_efforts(held: Rows) -> Array:
 
 
 def units_of(d: Diagnosis) -> list[str]:
-    """Of the efforts that are left over, by joint."""
+    """Units of the residual efforts, by joint."""
     if d.test.prepared.input is not None:
         return list(d.test.prepared.effort_unit) or ["A"] * len(d.arm.coordinates)
     joints = [d.arm.joints[i] for i in d.arm.coordinates]
@@ -62,12 +62,12 @@ def units_of(d: Diagnosis) -> list[str]:
 
 
 def _position_units(d: Diagnosis) -> list[str]:
-    """Of the joint coordinates."""
+    """Units of the joint coordinates."""
     return ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
 
 
 def _against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
-    """What the leftovers of the test record are shown against: (M, n) each, and its units by joint."""
+    """Abscissae for the residuals of the test record: (M, n) each, and their units by joint."""
     p, positions = d.test.prepared, _position_units(d)
     n = len(positions)
     driven = zip(drives_of(d.arm), positions, strict=True)
@@ -86,7 +86,7 @@ def _against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
 
 
 def residuals(d: Diagnosis) -> dict[str, Sketch]:
-    """What is left over against speed, position, load, motor angle and time, before and after."""
+    """Residuals against speed, position, load, motor angle and time, before and after."""
     held = d.test
     n, efforts = held.effort.shape[1], units_of(d)
     pictures = {}
@@ -171,5 +171,5 @@ def replayed(d: Diagnosis) -> Sketch | None:
 
 
 def inline(text: str) -> Markup:
-    """From the svg element on, which stands in the page as it is."""
+    """The picture from its svg element on, which stands in the page as it is."""
     return Markup(text[text.index("<svg") :])

@@ -86,7 +86,7 @@ def table(test: Validation) -> list[tuple[str, str]]:
 
 
 def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, list[str]]]:
-    """By model, RMSE, NRMSE in %, and by how much the arm as described is below it in %, joint by joint."""
+    """RMSE and NRMSE in % by model, and by how much the arm as described is below it in %, joint by joint."""
     rows = [(AS_DESCRIBED, [f"{a} ({b})" for a, b in table(test)])]
     for other in others:
         change = 100.0 * (test.rmse / np.maximum(other.test.rmse, 1e-300) - 1.0)
@@ -116,5 +116,5 @@ def _elapsed(t: Array) -> tuple[Array, NDArray[np.intp]]:
 
 
 def _cut(values: Array, breaks: NDArray[np.intp]) -> Array:
-    """With nan where a record ends, so that no line joins it with the next."""
+    """Put nan where a record ends, so that no line joins it with the next."""
     return np.insert(values, breaks, np.nan)

@@ -120,7 +120,7 @@ class Adaptive:
         low: Array,
         high: Array,
     ) -> Phase:
-        """From t until a contact changes its mode, a coordinate leaves low..high, or to the end."""
+        """Integrate from t until a contact changes its mode, a coordinate leaves its range, or to the end."""
         events: list[Callable[[float, Array], float]] = [
             self._margin(k, t, u, modes) for k in range(len(modes))
         ]

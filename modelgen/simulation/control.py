@@ -19,7 +19,7 @@ from modelgen.simulation.plant import Plant
 
 @dataclass(frozen=True)
 class Reference:
-    """What a controller shall follow: t (S,) [s], q (S, n) [rad, m]; a cubic spline in between."""
+    """Motion that a controller shall follow: t (S,) [s], q (S, n) [rad, m]; a cubic spline in between."""
 
     t: Array
     q: Array

@@ -35,7 +35,7 @@ Modes = tuple[int, ...]  # of every contact: 1 or -1 sliding, 0 sticking
 
 @dataclass(frozen=True)
 class Slip:
-    """What a simulation needs of an arm.
+    """Functions of an arm that a simulation of dry friction needs.
 
     model: the arm without smoothing of dry friction. contacts: (c, n), a contact's velocity is its row times
     dq. names: of the contacts. accelerations: outputs free (n), then dry (n x c, row by row), of q, dq,

@@ -12,7 +12,7 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Scores:
-    """By joint, (n,). f_gof [%], mae and rmse [rad, m]."""
+    """Scores by joint, (n,): f_gof [%], mae and rmse [rad, m]."""
 
     f_gof: Array
     mae: Array

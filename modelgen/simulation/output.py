@@ -23,7 +23,7 @@ def units(p: Plant) -> list[str]:
 
 
 def facts(p: Plant, found: Trajectory) -> dict[str, Any]:
-    """Where the motion ended, when it came to rest, what became of its energy."""
+    """Facts of a motion: where it ended, when it came to rest, what became of its energy."""
     moving = np.flatnonzero((found.dq != 0).any(axis=1))
     last = int(moving[-1]) if len(moving) else -1
     rest = last + 1 < len(found.t)

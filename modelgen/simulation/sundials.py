@@ -89,7 +89,7 @@ class Sundials(Adaptive):
         return self._margins(t + h, self._step(t, h, y, u, modes), u, modes, low, high)[m]
 
     def _margins(self, t: float, y: Array, u: Array, modes: Modes, low: Array, high: Array) -> list[float]:
-        """Of every contact, then of the range of q: positive while nothing changes."""
+        """Margins of every contact, then of the range of q, positive while nothing changes."""
         n = self.plant.n
         s = hold(*self.terms(t, y, u), self.rows, modes) if 0 in modes else np.zeros(len(modes))
         found = [

@@ -52,7 +52,7 @@ class Simulated:
 
     @cached_property
     def data(self) -> dict[str, Any]:
-        """What --json prints."""
+        """Plain data that --json prints."""
         if self.trajectory is not None:
             return facts(self.plant, self.trajectory)
         return _scored(self)

@@ -55,7 +55,7 @@ class Drive(ABC):
 
         @property
         def limits(self) -> MotorLimits:
-            """In the motor coordinate."""
+            """Limits in the motor coordinate."""
 
     def __init_subclass__(cls) -> None:
         """A class with a name is a kind of drive."""
@@ -109,7 +109,7 @@ class Drive(ABC):
 
     @property
     def title(self) -> str:
-        """In a few words."""
+        """The kind in a few words."""
         return f"{self.name} drive"
 
     @property
@@ -119,14 +119,14 @@ class Drive(ABC):
 
     @property
     def decides_motor(self) -> str:
-        """What of the drive may be wrong where a log leaves the motor's range, in words; "" for nothing."""
+        """Figures that may be wrong where a log leaves the motor's range, in words; "" for none."""
         return f"the drive's {', '.join(self.figures())}" if self.figures() else ""
 
     # -- its figures ----------------------------------------------------------------------
 
     @classmethod
     def figures(cls) -> dict[str, Figure]:
-        """What the description gives, by name."""
+        """Figures that the description gives, by name."""
         return _figures(cls)
 
     def changed(self, change: Callable[[str, Scalar], Scalar], names: tuple[str, ...] | None = None) -> Self:

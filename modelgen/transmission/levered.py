@@ -123,7 +123,7 @@ class LeveredDrive(Drive):
         return min(self.motor), max(self.motor)
 
     def reach(self) -> Range:
-        """From the ends of the stroke, which must make triangles off the dead centres."""
+        """Reach between the ends of the stroke, which must make triangles off the dead centres."""
         l1, l2, low, high, first, last, rev, offset = self.numbers()
         if low == high:
             raise FigureError(f"both lengths are {low:g} m, expected a stroke", "length")
@@ -136,7 +136,7 @@ class LeveredDrive(Drive):
 
     @classmethod
     def refusal(cls, joint_type: str) -> str:
-        """What to take for a slide."""
+        """Why a slide refuses a lever, and what to take instead."""
         if joint_type == cls.joint_type:
             return ""
         return (

@@ -1,4 +1,4 @@
-"""What follows from q_m(q) of any drive, by differentiation and virtual work.
+"""Gain, inertia and friction terms of any drive follow from q_m(q) by differentiation and virtual work.
 
 dq_m = k1 dq and ddq_m = k1 ddq + k2 with k1 = dq_m/dq and k2 = k1' dq^2; the joint effort is K i with
 K = torque_constant k1.
@@ -82,7 +82,7 @@ class Transmission:
         return bool(self.k1().has(self.q))
 
     def _once(self, name: str, make: Callable[[], sp.Expr]) -> sp.Expr:
-        """What symbolic differentiation gives, made when first asked for."""
+        """A result of symbolic differentiation, made when first asked for."""
         if name not in self._kept:
             self._kept[name] = make()
         return self._kept[name]
@@ -109,12 +109,12 @@ class Transmission:
         return self._ranges[0]
 
     def motor_range(self) -> Range | None:
-        """The same in the motor coordinate."""
+        """Range of the motor coordinate."""
         return self._ranges[1]
 
     @cached_property
     def _ranges(self) -> tuple[Range | None, Range | None]:
-        """Where the description gives one, the other follows from q_m(q)."""
+        """Ranges of joint and motor: where the description gives one, the other follows from q_m(q)."""
         known = {geometry_symbol(name): value for name, value in self.symbols.items()}
         stroke = self._described.stroke()
         if stroke is not None:
@@ -128,7 +128,7 @@ class Transmission:
 
 
 class Described(Protocol):
-    """What has a drive: a joint of the description."""
+    """Anything with a drive: a joint of the description."""
 
     @property
     def drive(self) -> Drive:
@@ -136,7 +136,7 @@ class Described(Protocol):
 
 
 class Named(Protocol):
-    """What has named geometry: an arm of the description."""
+    """Anything with named geometry: an arm of the description."""
 
     @property
     def symbols(self) -> Mapping[str, float]:

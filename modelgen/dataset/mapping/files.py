@@ -40,14 +40,14 @@ class Foreign:
             raise self.error(f"found {describe(raw)}, expected a number: {error}", path) from None
 
     def positive(self, raw: float | str | None, path: Steps) -> float | None:
-        """As `number`, above zero; None where nothing is given."""
+        """Read a number above zero; None where nothing is given."""
         value = None if raw is None else self.number(raw, path)
         if value is not None and value <= 0.0:
             raise self.error(f"found {describe(raw)}, expected a number above 0", path)
         return value
 
     def unit(self, name: str, known: Mapping[str, Any], path: Steps) -> Any:
-        """What is known of a unit. Raises InputError with the units that there are."""
+        """Look up a unit. Raises InputError with the units that there are."""
         if name not in known:
             hint = ""
             if name == "counts" and "rev" in known:

@@ -1,1 +1,1 @@
-"""From a record to filtered rows with derivatives."""
+"""Processing: a record becomes filtered rows with derivatives."""

@@ -69,7 +69,7 @@ def _checked(record: Record, given: float, limits: DatasetThresholds) -> int | N
 
 
 def _differing(q: Array, lag: int) -> Array:
-    """By how much of their power positions (N, n) differ after a lag: (n,); noise does so after one."""
+    """Share of the power of positions (N, n) that differs after a lag, (n,); noise does after one."""
     power = np.maximum(2 * q.var(axis=0), 1e-300)
     return np.asarray(((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / power)
 

@@ -1,4 +1,4 @@
-"""From a record to what regressions are made of: filtered positions, derivatives, and one parallel filter.
+"""A record becomes what regressions are made of: filtered positions, derivatives, and one parallel filter.
 
 Regressor columns are evaluated at full rate from lightly filtered positions; the effort and all columns
 then pass the same low-pass filter and are decimated alike (Gautier, 1997, "Dynamic identification of

@@ -1,4 +1,4 @@
-"""What the filters do, as text and as a picture: spectra of positions and efforts, with the cut-offs."""
+"""Text and a picture show what the filters do: spectra of positions and efforts, with the cut-offs."""
 
 from __future__ import annotations
 

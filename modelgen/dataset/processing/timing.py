@@ -34,7 +34,7 @@ class Axis:
 
 @dataclass
 class Survey:
-    """What is learnt about the stamps of a log, block by block.
+    """Statistics of a log's stamps, gathered block by block.
 
     rate: of the uniform axis [Hz], gap: longest time without a sample [s], where they are prescribed.
     """

@@ -1,4 +1,4 @@
-"""What a record must be before anything is computed from it; each refusal says what to do."""
+"""Checks of a record before anything is computed from it; each refusal says what to do."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array,
 
 
 def check_length(file: str, samples: int, least: int) -> None:
-    """At least so many samples. Raises InputError."""
+    """Refuse a record with fewer samples. Raises InputError."""
     if samples < least:
         raise InputError(f"{file}: found {samples} samples, expected at least {least}")
 

@@ -13,7 +13,7 @@ from modelgen.numeric import Array
 
 
 class ParquetReader:
-    """A Parquet file of numeric columns. Raises InputError where it is none, or pyarrow is missing."""
+    """A Parquet file of numeric columns. Raises InputError where it is not, or pyarrow is missing."""
 
     by_column = True
 

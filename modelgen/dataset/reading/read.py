@@ -1,4 +1,4 @@
-"""From columns of a log to a Record: joint and motor coordinates, inputs, one uniform time axis."""
+"""Columns of a log become a Record: joint and motor coordinates, inputs, one uniform time axis."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ _PART = re.compile(r"(?P<file>.+)@(?P<begin>[^@:]*):(?P<end>[^@:]*)")
 
 @dataclass(frozen=True)
 class Spec:
-    """A file, or the samples of it with begin <= t < end [s]."""
+    """A file, or those of its samples with begin <= t < end [s]."""
 
     text: str
     path: Path

@@ -24,7 +24,7 @@ class Guess:
     states: Array
 
     def moved(self, step: Array, alpha: float) -> Guess:
-        """By alpha times a step (W, 2n)."""
+        """The parts moved by alpha times a step (W, 2n)."""
         return Guess(self.states + alpha * step)
 
 
@@ -94,7 +94,7 @@ def _motion(p: Prepared) -> tuple[int, int]:
 
 
 def _standing(part: Part) -> Part:
-    """Without the speed that noise gives joints at rest, which would tear them loose."""
+    """Take the speed that noise gives joints at rest away: it would tear them loose."""
     dq = part.dq.copy()
     slow = np.abs(dq) < 0.01 * np.abs(dq).max(axis=0)
     dq[slow] = 0.0

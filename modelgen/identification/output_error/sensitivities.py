@@ -111,7 +111,7 @@ class Sensitive:
         return np.asarray(free).ravel(), np.asarray(dry).reshape(self.plant.n, len(self.rows))
 
     def _margins(self, y: Array, p: Array, u: Array, t: float, modes: Modes) -> list[float]:
-        """Of every contact: positive while it keeps its mode."""
+        """Margins of every contact, positive while it keeps its mode."""
         v = self.rows @ y[self.plant.n :]
         s = hold(*self._at(y, p, u, t), self.rows, modes) if 0 in modes else v
         return [float(mode * v[c]) if mode else 1.0 - abs(float(s[c])) for c, mode in enumerate(modes)]

@@ -26,7 +26,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Linear:
-    """By part: errors (K, n), their columns by parameters (K, n, f) and by initial state (K, n, 2n), gaps
+    """Parts: errors (K, n), their columns by parameters (K, n, f) and by initial state (K, n, 2n), gaps
     of the intervals (W - 1, 2n), and how the states of the intervals follow: W times (offset, matrix)."""
 
     errors: list[Array]
@@ -153,7 +153,7 @@ class Fit:
         return found if np.isfinite(found) else np.inf
 
     def spread(self) -> Array:
-        """What a gap of the states counts, (2n,): speeds in terms of positions."""
+        """Weight of a gap of the states, (2n,): speeds in terms of positions."""
         q = np.concatenate([part.q - part.q.mean(axis=0) for part in self.parts])
         dq = np.concatenate([part.dq for part in self.parts])
         ratio = np.sqrt((q**2).mean(axis=0) / np.maximum((dq**2).mean(axis=0), 1e-12))
@@ -170,7 +170,7 @@ class Fit:
 
 
 def scored(every: Sequence[Part], runs: Sequence[Array]) -> Scores:
-    """Of all parts as one record."""
+    """Scores of all parts as one record."""
     return scores(np.concatenate([part.q for part in every]), np.concatenate(runs))
 
 
