@@ -63,7 +63,7 @@ class Changes:
         self._recent: Recent[Changed] = Recent(REMEMBERED)
 
     def __call__(self, effect: str, joint: int | None, values: Mapping[str, float]) -> Changed:
-        """The arm with the effect at coordinate number `joint`. Raises InputError where it refuses the values."""
+        """The arm with the effect at coordinate `joint`. Raises InputError where it refuses values."""
         key = effect, joint, tuple(sorted(values.items()))
         return self._recent(key, lambda: self._made(key, effect, joint, values))
 

@@ -75,7 +75,7 @@ class Frame:
         return turn_z(self.gamma, turn_x(self.alpha, turn_z(self.theta, v)))
 
     def to_antecedent_fixed(self, v: Vector) -> Vector:
-        """Like `to_antecedent`, without theta where the joint turns: for directions that a turn leaves alone."""
+        """Like `to_antecedent`, without theta where the joint turns: a turn leaves these directions alone."""
         turning = self.coordinate is not None and not self.prismatic
         return turn_z(self.gamma, turn_x(self.alpha, v if turning else turn_z(self.theta, v)))
 

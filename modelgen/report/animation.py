@@ -72,7 +72,7 @@ def lines(arm: Arm) -> list[list[int]]:
 
 
 def _tips(arm: Arm, reach: float) -> list[Array]:
-    """Tip of every link in its frame: twice as far as its centre of mass, or near where that is unknown."""
+    """Tips of links in their frames: twice as far as the centre of mass; a short line where it is unknown."""
     stub = np.array([0.15 * (reach or 1.0), 0.0, 0.0])
     return [stub if link is None or not any(link.com) else 2.0 * np.array(link.com) for link in arm.links]
 
