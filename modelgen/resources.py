@@ -1,4 +1,4 @@
-"""Where templates, CMake functions and shipped arms are: beside the package, or inside it when installed."""
+"""Templates, CMake functions and shipped arms lie beside the package, or inside it when installed."""
 
 from __future__ import annotations
 

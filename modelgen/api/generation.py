@@ -18,7 +18,7 @@ from modelgen.progress import Progress, silent
 
 
 class Generated(Shown):
-    """What was generated or checked.
+    """Results of a generation or of its check.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ class Shown(ABC):
 
 
 class Result(Shown):
-    """What is found from an arm and its logs."""
+    """Base of what functions find from an arm and its logs."""
 
     @abstractmethod
     def files(self) -> Mapping[str, str]:

@@ -64,7 +64,7 @@ def _inputs(term: Term) -> Iterator[tuple[str, int]]:
 
 
 def unset(function: Function) -> dict[str, list[int]]:
-    """By output, the elements that the program leaves zero."""
+    """Elements that the program leaves zero, by output."""
     written = {s.target for s in function.program.statements}
     return {
         output.name: [i for i in range(output.size) if (output.name, i) not in written]

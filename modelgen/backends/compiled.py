@@ -14,7 +14,7 @@ from modelgen.native.lanes import _HEAD
 
 
 class RegressorColumns(Columns):
-    """What a function computes of its output. elements: (c,), numbers of these elements, in order."""
+    """Selected columns of a regressor. elements: (c,), numbers of the computed elements, in order."""
 
     def __init__(self, function: Function) -> None:
         text, elements = text_of(function)
@@ -55,11 +55,11 @@ class _Lanes:
             count += argument.size
 
     def constant(self, value: float) -> str:
-        """In all lanes."""
+        """Set a constant in all lanes."""
         return f"K({float(value)!r})"
 
     def element(self, vector: str, index: int) -> str:
-        """Of the inputs one after the other."""
+        """Read an element of the inputs, which lie one after the other."""
         return f"x[{self.offsets[vector] + index}]"
 
     def temporary(self, number: int) -> str:

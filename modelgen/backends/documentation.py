@@ -1,4 +1,4 @@
-"""What the generated files say about a function: inputs, outputs, units, lengths, meaning."""
+"""Texts of the generated files about a function: inputs, outputs, units, lengths, meaning."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Section:
 
 
 def unit(text: str) -> str:
-    """A unit in brackets, nothing where there is none."""
+    """Write a unit in brackets, nothing where it is absent."""
     return f"[{text}]" if text else ""
 
 
@@ -36,7 +36,7 @@ def output_text(output: Output) -> str:
 
 
 def remarks(model: Model) -> list[str]:
-    """Where the arm's figures come from, and what its description left a note on."""
+    """Remarks on the source of the arm's figures, and the notes of its description."""
     texts = [f"Source of the figures: {model.arm.source}"] if model.arm.source else []
     texts += [f"Note: {note}" for note in model.arm.notes]
     return [line for text in texts for line in wrapped(plain(text), width=100).split("\n")]
@@ -53,7 +53,7 @@ def model_sections(model: Model) -> list[Section]:
 
 
 def function_sections(model: Model, function: Function) -> list[Section]:
-    """What a reader of one function needs: the elements of its inputs, the columns of its output."""
+    """Sections on one function: the elements of its inputs, the columns of its output."""
     sections = [Section("Coordinates", _numbered(coordinates(model)))]
     for argument in function.arguments:
         found = elements(model, function, argument)

@@ -1,4 +1,4 @@
-"""What the elements of a function's inputs are called, and which of them get a name in the code."""
+"""Names of the elements of a function's inputs, and which of them the code names."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def elements(model: Model, function: Function, argument: Argument) -> tuple[Elem
 
 
 def local_names(model: Model, function: Function) -> dict[str, tuple[Element | None, ...]]:
-    """By argument, the elements that the code reads under a name of their own, None for the others."""
+    """Elements that the code reads under a name of their own, by argument; None for the others."""
     taken = {output.name for output in function.outputs}
     result = {}
     for argument in function.arguments:

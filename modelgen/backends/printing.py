@@ -20,7 +20,7 @@ _BINARY = {
 
 
 class Dialect(Protocol):
-    """What the languages spell differently."""
+    """A dialect spells what differs between languages."""
 
     def constant(self, value: float) -> str:
         """A number, negative ones with their sign."""

@@ -1,4 +1,4 @@
-"""Where generated code comes from, as far as two machines agree on it: no date, no path."""
+"""Provenance of generated code, as far as two machines agree on it: no date, no path."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Provenance:
-    """What goes into the head of every generated file.
+    """Entries in the head of every generated file.
 
     `tool` is name and version, `description` the SHA-256 of the arm's canonical description, `options`
     what was asked for beside it.

@@ -121,7 +121,7 @@ def base_values(grouping: Grouping, standard: Sequence[float], symbols: dict[str
 
 
 def fluid_remarks(equations: Equations, grouping: Grouping) -> list[str]:
-    """What a fluid makes identifiable: volumes on their own, and those seen only with the mass.
+    """Remarks on what a fluid makes identifiable: volumes alone, and those seen only with the mass.
 
     Gravity sees M - density V, inertia sees M: where a first moment of the mass shows in the inertia
     as well, that of the volume can be told from it.

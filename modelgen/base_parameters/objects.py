@@ -1,4 +1,4 @@
-"""What a grouping is: base parameters as combinations of standard parameters."""
+"""A grouping states base parameters as combinations of standard parameters."""
 
 from __future__ import annotations
 

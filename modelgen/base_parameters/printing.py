@@ -32,7 +32,7 @@ def printed(terms: Sequence[tuple[str, Scalar]]) -> str:
 
 
 def for_reading(expression: str) -> str:
-    """The same with products set side by side: MX2 + d3 (M3 + M4)."""
+    """Write the combination with products set side by side: MX2 + d3 (M3 + M4)."""
     return expression.replace("**", "^").replace("*", " ")
 
 

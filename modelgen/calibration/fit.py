@@ -1,4 +1,4 @@
-"""Least squares of a lever's geometry, with what the angles cannot tell left to the lengths as measured.
+"""Least squares of a lever's geometry; what the angles leave open is taken from the lengths as measured.
 
 The joint angle is a function of three combinations of the four lengths (their common scale leaves it as it
 is) and of the offset. The lengths of the description, known to a few millimetres, enter as a Gaussian prior
@@ -208,7 +208,7 @@ def _spread(
 
 
 def _words(lever: Lever, direction: Array, never: bool) -> str:
-    """A combination (5,) of the values that the angles do not tell."""
+    """Write a combination (5,) of values that the angles leave open."""
     relative = direction[:4] / lever.values[:4]
     if abs(direction[4]) < 1e-6 and np.ptp(relative) < 1e-4 * np.abs(relative).max():
         return (

@@ -127,7 +127,7 @@ def _kind(f: Field[Any], known: Option) -> Any:
 
 
 def _value(f: Field[Any], given: Any) -> Any:
-    """What the dataclass takes for what Typer gives."""
+    """Convert a value of Typer's to the one that the dataclass takes."""
     known: Option = f.metadata[KEY]
     if known.inverted:
         return not given

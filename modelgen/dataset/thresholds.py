@@ -12,7 +12,7 @@ _CHOICE = "chosen by judgement on the example logs"
 
 @dataclass(frozen=True)
 class DatasetThresholds(Group):
-    """What decides about records: stamps, ranges, cut-offs, periods, rest. See docs/thresholds.md."""
+    """Thresholds of records: stamps, ranges, cut-offs, periods, rest. See docs/thresholds.md."""
 
     min_samples: int = entry(20, "samples", "A log with fewer samples is refused.", _GUARD)
     max_gap_periods: float = entry(

@@ -1,4 +1,4 @@
-"""From the checked structure to the frozen objects: everything that pydantic cannot know is checked here."""
+"""The checked structure becomes frozen objects; everything that pydantic cannot know is checked here."""
 
 from __future__ import annotations
 

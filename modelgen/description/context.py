@@ -1,4 +1,4 @@
-"""What every check of an arm needs: its place in the document, its symbols, and how to complain."""
+"""The context of an arm's checks: its place in the document, its symbols, and how to complain."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ class Context:
             raise self.error(f"found {found}, expected {expected}: {error}", steps) from None
 
     def number(self, raw: float | str, kind: str, steps: Steps) -> float:
-        """As `quantity`, a number alone."""
+        """Read a number as `quantity` does, without symbols."""
         return self.quantity(raw, kind, steps).value
 
     def numbers(self, raw: list[float | str], kind: str, steps: Steps) -> tuple[float, ...]:
-        """As `number`, for a list."""
+        """Read a list of numbers."""
         return tuple(self.number(value, kind, [*steps, i]) for i, value in enumerate(raw))
 
     def positive(self, raw: float | str | None, kind: str, steps: Steps) -> float | None:
@@ -66,7 +66,7 @@ class Context:
         return value
 
     def nonzero(self, raw: float | str, kind: str, steps: Steps) -> Quantity:
-        """As `quantity`, but 0 is an error."""
+        """Read a value as `quantity` does; 0 is an error."""
         quantity = self.quantity(raw, kind, steps)
         if quantity.value == 0.0:
             raise self.error("found 0, expected a value other than 0", steps)

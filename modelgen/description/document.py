@@ -68,7 +68,7 @@ class Node:
         return self.value
 
     def child(self, step: str | int) -> Node | None:
-        """The value under a key or an index, None where there is none."""
+        """Return the value under a key or an index, None where it is absent."""
         if isinstance(self.value, dict) and isinstance(step, str):
             return self.value.get(step)
         if isinstance(self.value, list) and isinstance(step, int) and step < len(self.value):

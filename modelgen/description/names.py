@@ -27,7 +27,7 @@ _ARGUMENTS = frozenset(
 
 
 def arm_name_problem(name: str) -> str | None:
-    """What is wrong with the name of an arm, None where it will do."""
+    """Say why an arm cannot have this name, None where it can."""
     if name in C_KEYWORDS:
         return f"'{name}' is a keyword of C or C++; it prefixes the generated functions, choose another name"
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
@@ -38,7 +38,7 @@ def arm_name_problem(name: str) -> str | None:
 
 
 def symbol_name_problem(name: str) -> str | None:
-    """What is wrong with the name of a geometry symbol, None where it will do."""
+    """Say why a geometry symbol cannot have this name, None where it can."""
     if name == "pi" or name in FUNCTIONS:
         return f"'{name}' is taken by the expressions themselves, choose another name"
     if name in UNITS:

@@ -1,4 +1,4 @@
-"""What an arm is, as frozen objects: geometry, drives, effects, limits, nominal inertials.
+"""Frozen objects describe an arm: geometry, drives, effects, limits, nominal inertials.
 
 Units are SI with radians; a motor coordinate is in the drive's own unit (rad, increments, ...).
 A `Scalar` is a number, or a SymPy expression in the arm's named geometry symbols.

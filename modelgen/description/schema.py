@@ -104,7 +104,7 @@ class DriveModel(Model):
 
 
 class MotorModel(DriveModel):
-    """What every motor has: its torque constant and its limits in its own coordinate."""
+    """Keys of every motor: its torque constant and its limits in its own coordinate."""
 
     torque_constant: Number
     motor_velocity: Number | None = Field(default=None, description="Largest motor speed [units/s].")
@@ -290,7 +290,7 @@ def json_schema(known_effects: Mapping[str, Collection[str]] | None = None) -> d
 
 
 def _close(schema: Any) -> None:
-    """Where names follow a pattern, no other names are allowed; pydantic leaves that open."""
+    """Forbid other names where names follow a pattern; pydantic leaves that open."""
     if isinstance(schema, dict):
         if "patternProperties" in schema:
             schema["additionalProperties"] = False

@@ -91,8 +91,8 @@ class Evaluator:
         return np.asarray(found).reshape(len(motion.t), self.n, -1)
 
     def unseen(self, motion: Motion, columns: Array, parameters: Array) -> Array:
-        """What of the inputs the regressor (N, n, p) does not contain: what elastic joints and play behind
-        motors do, (N, n).
+        """Inputs (N, n) that the regressor (N, n, p) leaves out: those of elastic joints and play behind
+        motors.
         """
         joints = [e.joint for e in self._own.effects if e.elastic and e.joint is not None]
         behind = [self.arm.coordinates.index(joint) + 1 for joint in joints]

@@ -165,9 +165,9 @@ class LinkSide:
         return np.asarray(np.convolve(found, np.ones(2 * reach + 1), mode="same") > 0.5)
 
     def _torque(self, joint: int, motion: Motion, parameters: Array) -> dict[str, Array]:
-        """Of a coordinate, (N,): gain; effort that moves the links, below the cut-off (`passed`), its slow
-        part (`steady`); effort that moves links and drive (`all`), and its slow part; inertia of the drive,
-        as effort per acceleration of the joint; `lever`, the drive's ratio over that in the middle.
+        """Series of a coordinate, (N,): gain; effort that moves the links, below the cut-off (`passed`), its
+        slow part (`steady`); effort that moves links and drive (`all`), and its slow part; inertia of the
+        drive, as effort per acceleration of the joint; `lever`, the drive's ratio over that in the middle.
         """
         made = self._recent.along(joint, motion, parameters, lambda: self._made(joint, motion, parameters))
         names = ("gain", "links", "passed", "steady", "all", "all_steady", "inertia", "lever")

@@ -32,7 +32,7 @@ def grouping(arm: Arm) -> Grouping:
 
 
 def inputs_of(e: Equations, base: Grouping) -> Function:
-    """Inputs of an arm, with the base parameters of another description of it: {q, dq, ddq, parameters}."""
+    """Program of an arm's inputs for another description's base parameters: {q, dq, ddq, parameters}."""
     values = base_values(e, base)
     dynamics = Dynamics(e, values)
     return bare("inputs", e, len(base.base), dynamics.inverse_dynamics(e.vector("dq"), e.vector("ddq")))

@@ -98,8 +98,8 @@ class Series:
         self.lags, self.rates = [lag for lag, _ in pairs], [rate for _, rate in pairs]
 
     def head(self, motion: Motion, parameters: Array) -> Array:
-        """What the steps need of every sample, (N, h); before them, where there are elastic transmissions,
-        what steps of all `SPANS` need of the first one and of one `BEGINNING` later.
+        """Values that the steps need of every sample, (N, h); before them, for elastic transmissions, those
+        that steps of all `SPANS` need of the first one and of one `BEGINNING` later.
         """
         whole = self._head(given_for(self.heads.function, motion, parameters), len(motion.t))
         if not self.lags:
@@ -184,11 +184,11 @@ class _Compiled:
         self._library.run.restype = self._library.settle.restype = None
 
     def run(self, head: Array, values: Array, state: Array) -> None:
-        """As `_Steps`."""
+        """Run the steps in compiled code."""
         self._library.run(*_given(head, state, head, values, state))
 
     def settle(self, head: Array, values: Array, state: Array, longest: Array) -> None:
-        """As `_Steps`."""
+        """Settle the states in compiled code."""
         self._library.settle(*_given(head, state, head, values, state, longest))
 
 
@@ -209,13 +209,13 @@ class _Interpreted:
         self._step, self._free = casadi_function(rest), rest.arguments[2].size
 
     def run(self, head: Array, values: Array, state: Array) -> None:
-        """As `_Steps`."""
+        """Run the steps one by one."""
         series = self._step.mapaccum("series", len(head), {"base": 4})
         free = np.tile(values[: self._free, None], (1, len(head)))
         state[1:] = np.array(series(state[0], head.T, free)).T
 
     def settle(self, head: Array, values: Array, state: Array, longest: Array) -> None:
-        """As `_Steps`."""
+        """Settle the states one step at a time."""
         for row in head:
             after = np.array(self._step(state, row, values[: self._free])).ravel()
             state += np.clip(after - state, -longest, longest)

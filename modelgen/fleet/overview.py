@@ -165,10 +165,10 @@ def _row(row: Row) -> dict[str, Any]:
 
 
 def _number(value: float | None, form: str) -> tuple[str, str]:
-    """As sorted, and as shown."""
+    """Return the number as sorted and as shown."""
     return ("", "") if value is None else (f"{value:.9g}", f"{value:{form}}")
 
 
 def _inline(text: str) -> Markup:
-    """From the svg element on, which stands in the page as it is."""
+    """Cut a picture down to its svg element, which stands in the page as it is."""
     return Markup(text[text.index("<svg") :])

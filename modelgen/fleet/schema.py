@@ -21,7 +21,7 @@ Specs = Annotated[list[Text], BeforeValidator(_listed), Field(min_length=1)]
 
 
 class Common(Model):
-    """What holds for all units, unless one says otherwise."""
+    """Keys that hold for all units, unless one says otherwise."""
 
     arms: Text | None = Field(default=None, description="Description of the arm in YAML.")
     arm: Text | None = Field(default=None, description="Which arm of it. Default: the only one.")

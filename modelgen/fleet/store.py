@@ -1,4 +1,4 @@
-"""What is kept of a unit: a folder that appears whole, with a row that says what it was made from."""
+"""The store keeps a folder per unit, which appears whole, with a row that says what it was made from."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Row = dict[str, Any]
 
 
 def folder(out: Path, name: str) -> Path:
-    """Where a unit's files are."""
+    """Return the folder of a unit's files."""
     return out / "units" / name
 
 
@@ -57,7 +57,7 @@ def kept(unit: Unit, out: Path) -> Row | None:
 
 
 def read(out: Path, name: str) -> dict[str, Any] | None:
-    """What a unit's folder says, None where there is none that can be read."""
+    """Read a unit's folder; None where it is absent or cannot be read."""
     try:
         found = json.loads((folder(out, name) / ROW).read_text(encoding="utf-8"))
         return found if found["form"] == FORM and {"fingerprint", "row"} <= found.keys() else None

@@ -1,4 +1,4 @@
-"""From expressions to a `Function`: inputs in contract order, ranges, guards, operation counts."""
+"""Expressions become a `Function`: inputs in contract order, ranges, guards, operation counts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Result = tuple[Output, Sequence[Expr]]
 
 @dataclass
 class Assembly:
-    """What the functions of one arm share.
+    """Parts that the functions of one arm share.
 
     real: equations with the frames as described. base: the same with the last links' frames at the
     foot of the common normal, where the base parameters live.
@@ -115,7 +115,7 @@ class Assembly:
         return tuple(result)
 
     def stroke_guards(self, inputs: Sequence[str], results: Sequence[Result]) -> list[tuple[Expr, int]]:
-        """With run-time geometry the program checks that each lever is on its stroke and on its side."""
+        """Guards for run-time geometry: each lever must be on its stroke and on its side."""
         if not self.options.runtime_geometry:
             return []
         graphs = {e.graph for _, expressions in results for e in expressions}

@@ -66,7 +66,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
 
 
 def _gain_remarks(options: Options, arm: Arm) -> list[str]:
-    """What the mode of the drive gains means for the parameters."""
+    """Remarks on what the mode of the drive gains means for the parameters."""
     driven = [f"gamma{n + 1}" for n, i in enumerate(arm.coordinates) if arm.joints[i].drive.driven]
     if options.gains == "estimated" and driven:
         return [

@@ -89,7 +89,7 @@ def about_origin(link: Inertial) -> Mapping[str, float]:
 
 
 def payload_standard(model: Model, payload: Sequence[float]) -> NDArray[np.float64]:
-    """What a point mass adds to the standard parameters (s,). payload: mass [kg] and, if wanted, x, y, z [m].
+    """Standard parameters (s,) that a point mass adds. payload: mass [kg] and, if wanted, x, y, z [m].
 
     It is carried by the last link, in its frame. Raises InputError for a negative mass, or other numbers.
     """
@@ -109,7 +109,7 @@ def payload_standard(model: Model, payload: Sequence[float]) -> NDArray[np.float
 
 
 def payload_base(model: Model, payload: Sequence[float]) -> NDArray[np.float64]:
-    """The same in base parameters (p,)."""
+    """Base parameters (p,) that a point mass adds."""
     return np.array(list(grouped(model, payload_standard(model, payload).tolist()).values()))
 
 

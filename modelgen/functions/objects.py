@@ -1,4 +1,4 @@
-"""What is emitted: functions as programs with named inputs and outputs, and the model they make up."""
+"""Objects that are emitted: functions as programs with named inputs and outputs, and their model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STATUS_INPUT = 4  # an input is not finite or beyond its bound
 
 
 def least_guarded(status: int) -> float:
-    """What a guarded value must be above for a function to go on."""
+    """Bounds that guarded values must exceed for a function to go on."""
     return SMALLEST_PIVOT if status == STATUS_PIVOT else 0.0
 
 

@@ -1,4 +1,4 @@
-"""What may be chosen about the functions of an arm."""
+"""Options of an arm's functions."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def values_of(given: Path | str | Mapping[str, Any] | None, arms: Sequence[str])
 
 
 def values_beside(arms: Sequence[Arm], options: ModelOptions) -> dict[str, dict[str, float]]:
-    """By arm, the values of the <arm>_parameters.yaml that lie beside the description.
+    """Values by arm, from the <arm>_parameters.yaml files that lie beside the description.
 
     They belong to the arm as described: with parts left out, or gains of each row's own, none is taken.
     Raises InputError for a file that does not fit.

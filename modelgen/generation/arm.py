@@ -83,7 +83,7 @@ def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> Generated
 
 
 def shown_options(options: Options) -> dict[str, str]:
-    """What was asked for beside the description, as the generated files state it."""
+    """Options beside the description, as the generated files state them."""
     shown = {}
     if options.without:
         shown["without"] = " and ".join(sorted(options.without))
@@ -102,7 +102,7 @@ def shown_options(options: Options) -> dict[str, str]:
 
 
 def _manifest(name: str, provenance: Provenance, files: Mapping[str, str]) -> str:
-    """Where the folder comes from and what it must hold. No date and no path: two machines agree on it."""
+    """Manifest of the folder: its origin and files, without date or path, so that machines agree on it."""
     content = {
         "arm": name,
         "tool": provenance.tool,

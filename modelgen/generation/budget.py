@@ -75,7 +75,7 @@ class Size:
 
 
 def excesses(arms: Sequence[GeneratedArm], budget: Budget) -> list[Excess]:
-    """What goes beyond the budget, arm after arm. Raises InputError as `sizes` does."""
+    """List what exceeds the budget, arm after arm. Raises InputError as `sizes` does."""
     found = []
     for arm in arms:
         for name, size in sizes(arm, TARGETS[budget.target]).items():

@@ -14,7 +14,7 @@ from modelgen.description.objects import Arm
 
 
 def canonical(arm: Arm) -> str:
-    """JSON of everything that the arm is; places in the file are no part of it."""
+    """Write the whole arm as JSON; places in the file are no part of it."""
     return json.dumps(_plain(arm), sort_keys=True, ensure_ascii=True, separators=(",", ":"))
 
 

@@ -1,4 +1,4 @@
-"""From arms to folders of generated code, or to the list of what has drifted from them."""
+"""Arms become folders of generated code, or a list of what has drifted from them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Drift:
 
 @dataclass(frozen=True)
 class Report:
-    """What was generated; `drift` is filled by a check alone, `excess` where a budget is given."""
+    """Results of a generation; a check alone fills `drift`, a budget alone `excess`."""
 
     arms: tuple[GeneratedArm, ...]
     drift: tuple[Drift, ...] = ()

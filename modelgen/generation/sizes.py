@@ -12,7 +12,7 @@ from modelgen.resources import shipped_sizes
 
 
 def code_digest(model: Model) -> str:
-    """SHA-256 of what the functions compute and in which order; folded-in parameters are no part of it."""
+    """SHA-256 of the functions' operations in their order; folded-in parameters are no part of it."""
     digest = hashlib.sha256()
     for function in model.functions:
         if not function.name.endswith("_identified"):

@@ -56,7 +56,7 @@ class Validation:
 
 @dataclass(frozen=True)
 class Identification:
-    """What the training records say about an arm, and how it does on the test records.
+    """Parameters that the training records give an arm, and its errors on the test records.
 
     gains: torque constants that were found; `arm` has them.
     """

@@ -1,4 +1,4 @@
-"""The same records identified by models that leave out the drives, or parts of them, for comparison.
+"""Models that leave out the drives, or parts of them, identify the same records, for comparison.
 
 Leborne, Creuze, Chemori and Brignone (2018), Table IV, compare the error of the current with and without the
 dynamics of the drives.

@@ -47,12 +47,12 @@ class EffectForces:
         return found
 
     def inputs(self) -> list[Expr]:
-        """What the effects add to the input, by coordinate."""
+        """Forces that the effects add to the input, by coordinate."""
         motor, joint = self.at_motors(), self._forces("others")
         return [motor[n] + joint[n] * drive.inverse_gain for n, drive in enumerate(self.e.drives)]
 
     def at_motors(self) -> list[Expr]:
-        """What those at the motors add to it."""
+        """Forces that the effects at the motors add to the input."""
         forces = self._forces("motor")
         return [
             forces[n] / self.graph.const(drive.transmission.torque_constant)
@@ -65,7 +65,7 @@ class EffectForces:
         return [motor[n] * drive.k1 + joint[n] for n, drive in enumerate(self.e.drives)]
 
     def masses(self, stored: bool = False) -> list[list[Expr]]:
-        """What the effects add to the mass matrix, n x n; `stored`: of what moves with the joints alone."""
+        """Mass matrix n x n that the effects add; `stored`: of the masses that move with the joints alone."""
         n = self.e.n
         total = [[self.graph.zero] * n for _ in range(n)]
         for effect in self.e.effects:
@@ -103,7 +103,7 @@ class EffectForces:
     # -- one part of an effect --------------------------------------------------------------
 
     def _parts(self, effect: AppliedEffect) -> list[Part]:
-        """Without the lines of links that have no length."""
+        """Leave out the lines of links that have no length."""
         return [p for p in effect.parts if not (p.point and p.point.place is None and self._short(p.joint))]
 
     def _short(self, link: int) -> bool:

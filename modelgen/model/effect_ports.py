@@ -1,4 +1,4 @@
-"""What the laws of an arm's effects may depend on, in its graph: their ports, and what few of them read."""
+"""Ports of effects in an arm's graph give all that their laws may depend on."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Ports:
         return origin_velocities(self.e.frames, rates.reference, [m.reference for m in self._motions])
 
     def of(self, effect: AppliedEffect, part: Part) -> Port:
-        """Where one part of an effect acts; not for what stands at an input."""
+        """Place at which one part of an effect acts; effects at an input have none."""
         x = part.variables
         if isinstance(x, PointVariables):
             return self._point_port(x, part)
@@ -139,7 +139,7 @@ class Ports:
         return Swinging(part.joint, cosine, sine, turn, bend, (pivot[0], pivot[1]), lift)
 
     def _place(self, part: Part, begin: Vector, span: Vector) -> Vector:
-        """In the frame of the link [m]."""
+        """Read a place in the frame of the link [m]."""
         point = part.point
         assert point is not None
         if point.place is None:

@@ -25,14 +25,14 @@ from modelgen.transmission import Transmission, of_joint
 
 
 class Drive:
-    """A coordinate's transmission in the graph; what of it is not made yet is made when it is asked for."""
+    """A coordinate's transmission in the graph; each part is made when it is first asked for."""
 
     def __init__(self, transmission: Transmission, convert: Callable[[sp.Expr], Expr]) -> None:
         self.transmission = transmission
         self._convert = convert
 
     def make(self) -> None:
-        """All of it, in the order of the printed code."""
+        """Make all parts, in the order of the printed code."""
         _ = self.motor, self.k1, self.slope, self.inverse_gain
 
     @cached_property
@@ -146,7 +146,7 @@ class Equations:
         return lags, rates
 
     def link_line(self, index: int) -> tuple[Vector, Vector]:
-        """Where a link begins and ends, in its frame [m]: at its origin as drawn, and at the next link's, or
+        """Ends of a link in its frame [m]: it begins at its origin as drawn, and at the next link's, or
         at the tip given for the last. A slide that it carries is taken where it stands at zero: the link is
         rigid.
         """
@@ -164,7 +164,7 @@ class Equations:
         return place[0], place[1], place[2] + self.scalars(self.arm.joints[index].lift)
 
     def _tip(self, index: int) -> Vector:
-        """Of a link that carries no other: given with the effect, or twice as far as its centre of mass."""
+        """Tip of a link that carries no other: as given, or twice as far as its centre of mass."""
         joint = self.arm.joints[index]
         for effect in self.effects:
             if effect.joint in (None, index) and "tip_x" in effect.values:

@@ -1,4 +1,4 @@
-"""Where links and tools are and how they move with the joints, in the world: the base frame of most arms."""
+"""Poses of links and tools and their Jacobians, in the world: the base frame of most arms."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def constant(graph: Graph, given: Transform) -> Pose:
 
 
 def tool_poses(frames: Frames) -> list[Pose]:
-    """The same of every tool of the arm."""
+    """Poses of every tool of the arm."""
     links = link_poses(frames) if frames.arm.tools else []
     poses = []
     for tool in frames.arm.tools:

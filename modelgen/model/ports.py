@@ -1,4 +1,4 @@
-"""Where the forces of effects act, and how much of each every coordinate feels (virtual work)."""
+"""Ports place the forces of effects and say how much of each every coordinate feels (virtual work)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Port:
 
 
 class Surroundings:
-    """What a law may know of the links beyond its own coordinate: the efforts and inertia there.
+    """Surroundings of a coordinate that a law may know of: the efforts and inertia beyond it.
 
     With `parameters`, link by link, they are computed; without, loads are the input "load", and what
     only the parameters tell does not exist.

@@ -137,7 +137,7 @@ class Regressor:
         return column
 
     def _hidden(self, i: int, k: int) -> tuple[list[tuple[int, Expr]], list[int]]:
-        """What eliminates parameter k: factors on the antecedent's columns, the link's other ones."""
+        """Factors that eliminate parameter k: on the antecedent's columns, and on the link's other ones."""
         if (i, k) not in self._eliminated:
             direction = dict(invariant_directions(self.kind(i)))[k]
             p = [self.graph.const(x) for x in direction]
@@ -201,13 +201,13 @@ class Regressor:
         return columns
 
     def _acceleration(self, i: int, point: Vector) -> Vector:
-        """Of a point fixed in the antecedent, in frame i [m/s^2]."""
+        """Acceleration of a point fixed in the antecedent, in frame i [m/s^2]."""
         frame = self.frames[i]
         parent = self.base if frame.antecedent is None else self.motions[frame.antecedent]
         return frame.to_link(add(parent.acceleration, times(parent.field, point)))
 
     def _velocities(self, i: int, slid: bool, back: int) -> dict[int, Vector]:
-        """Of the link's point per unit speed, in the axes of the frame `back` before it."""
+        """Velocities of the link's point per unit speed, in the axes of the frame `back` before it."""
         frame = self.frames[i]
         own = frame.coordinate
         point = frame.foot if slid else frame.origin

@@ -54,7 +54,7 @@ def invariant_directions(kind: str) -> list[tuple[int, list[int]]]:
 
 
 def invariant_volume_directions(kind: str) -> list[tuple[int, list[int]]]:
-    """The same for the four volume parameters."""
+    """Directions of the four volume parameters that change no force."""
     unit = [[int(i == k) for i in range(4)] for k in range(4)]
     hidden = {"revolute": (2, 3), "prismatic": (0, 1, 2)}.get(kind, (0, 1, 2, 3))
     return [(k, unit[k]) for k in hidden]

@@ -1,4 +1,4 @@
-"""What it takes to move one link: force and moment at the origin of its frame.
+"""Wrench that moves one link: force and moment at the origin of its frame.
 
 A link has ten standard parameters XX, XY, XZ, YY, YZ, ZZ (inertia tensor about the origin of frame
 j), MX, MY, MZ (first moments) and M, and in a fluid four more, VX, VY, VZ, V (first moments of the

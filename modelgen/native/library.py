@@ -21,7 +21,7 @@ _FAST = ("-std=gnu99", "-O3", "-march=native", "-ffp-contract=fast", "-fno-math-
 
 @cache
 def compiler() -> str | None:
-    """The C compiler of this machine: $CC, cc, gcc or clang; None where there is none."""
+    """Find the machine's C compiler: $CC, cc, gcc or clang; None where it has no compiler."""
     for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
         found = shutil.which(name) if name else None
         if found:

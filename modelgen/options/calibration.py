@@ -1,4 +1,4 @@
-"""What may be chosen about the calibration of a lever."""
+"""Options of the calibration of a lever."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ from modelgen.options.field import documented, option
 @documented()
 @dataclass(frozen=True)
 class CalibrationOptions:
-    """What is known of a lever beside the log."""
+    """Known values of a lever beside the log."""
 
     length_std: float = option(0.01, "How well the lengths of the description are known.", "M", unit="m")

@@ -1,4 +1,4 @@
-"""What may be chosen about an excitation trajectory."""
+"""Options of an excitation trajectory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COORDINATES = ("motor", "joint")
 
 @dataclass(frozen=True)
 class Box:
-    """Where the origin of a link's frame must stay: low and high of x, y, z [m] in base axes."""
+    """A box in which the origin of a link's frame must stay: low and high of x, y, z [m] in base axes."""
 
     link: str
     low: tuple[float, float, float]

@@ -16,7 +16,7 @@ KEY = "option"
 
 @dataclass(frozen=True)
 class Option:
-    """What is known of an option beside its default.
+    """An option's properties beside its default.
 
     text: its meaning, as --help prints it. metavar: placeholder of its value. flags: spellings, by default
     the field's name. kind: type of the text on the command line, by default that of the field. choices: the

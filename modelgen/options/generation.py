@@ -1,4 +1,4 @@
-"""What may be chosen about generated code, beside the functions."""
+"""Options of generated code, beside those of the functions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may be chosen about an identification."""
+"""Options of an identification."""
 
 from __future__ import annotations
 

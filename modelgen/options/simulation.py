@@ -1,4 +1,4 @@
-"""What may be chosen about simulated motions, and about their refinement."""
+"""Options of simulated motions and of their refinement."""
 
 from __future__ import annotations
 

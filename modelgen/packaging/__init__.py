@@ -1,4 +1,4 @@
-"""What makes a generated folder usable elsewhere: build files, its README, its self-test."""
+"""Packaging makes a generated folder usable elsewhere: build files, its README, its self-test."""
 
 from modelgen.packaging.files import packaging_files
 

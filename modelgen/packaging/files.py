@@ -1,4 +1,4 @@
-"""What build systems and people need of an arm's folder beside the code."""
+"""Files of an arm's folder that build systems and people need beside the code."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class Actuator:
         return (l1**2 + l2**2 - length**2) / (2 * l1 * l2)
 
     def direction(self, q: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        """From its base to its other end [m], along the line from the axis to the base and across it."""
+        """Vector from its base to its other end [m], along the line from axis to base and across it."""
         l1, l2, angle = sp.sympify(self.l1), sp.sympify(self.l2), self.angle(q)
         return l2 * sp.cos(angle) - l1, l2 * sp.sin(angle)
 

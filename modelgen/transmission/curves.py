@@ -44,8 +44,8 @@ def curves(transmission: Transmission) -> Curves:
 
 @lru_cache(maxsize=256)
 def curves_over_figures(transmission: Transmission) -> Curves:
-    """The same functions, compiled once for all figures of a kind that can be inputs: quick where they change
-    often.
+    """The functions of one transmission, compiled once for its kind with the figures as inputs: quick where
+    figures change often.
     """
     drive = transmission.drive
     if not drive.runtime:

@@ -1,4 +1,4 @@
-"""What a drive is: the motor coordinate q_m(q) in SymPy, and all that other parts ask of its kind."""
+"""A drive states the motor coordinate q_m(q) in SymPy, and all that other parts ask of its kind."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures of a drive: what the description gives of it, each with its unit and meaning."""
+"""Figures of a drive are the values that its description gives, each with its unit and meaning."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class FigureError(ValueError):
 
 @dataclass(frozen=True)
 class Figure:
-    """What a field of a drive is, in its annotation: `rod: Annotated[Scalar, Figure("length", "... [m].")]`.
+    """Annotation of a drive's field: `rod: Annotated[Scalar, Figure("length", "... [m].")]`.
 
     kind: "length" [m], "angle" [rad], "plain" (in the unit that `text` says) or "sign" (1 or -1). text: for
     the JSON Schema, with the unit in brackets. must: "positive", "nonzero" or "". pair: two values. symbolic:

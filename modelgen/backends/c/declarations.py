@@ -63,7 +63,7 @@ def function_text(model: Model, function: Function) -> FunctionText:
 
 
 def header_values(model: Model, functions: list[FunctionText]) -> dict[str, object]:
-    """What the template of the header needs beside the names."""
+    """Values that the template of the header needs beside the names."""
     macro = model.arm.name.upper()
     sizes = [
         ("N_JOINTS", len(model.arm.coordinates), "coordinates"),

@@ -43,7 +43,7 @@ def literal(arm: str, value: float) -> str:
 
 
 def destinations(function: Function) -> dict[str, tuple[str, int]]:
-    """By output, the array argument that holds it and where it begins there."""
+    """Array argument that holds each output, and where the output begins there."""
     if len(function.outputs) == 1:
         return {function.outputs[0].name: ("out", 0)}
     if not function.stacked:
@@ -80,7 +80,7 @@ class CDialect:
         self.zeros = [f"{arm}_zero({array}, {size});" for array, size in arrays(function).items()]
 
     def constant(self, value: float) -> str:
-        """As `literal`."""
+        """Write a number as a literal."""
         return literal(self.arm, value)
 
     def element(self, vector: str, index: int) -> str:
@@ -134,7 +134,7 @@ class CDialect:
         )
 
     def store(self, output: str, index: int, text: str) -> str:
-        """An element of the array that holds the output, checked before anything is made of it."""
+        """Store an element in the array that holds the output, checked before it is used."""
         array, offset = self.places[output]
         element = f"{array}[{offset + index}]"
         line = wrapped_code(f"{element} = {text};", INDENT, INDENT * 2)

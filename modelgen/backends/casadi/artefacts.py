@@ -1,4 +1,4 @@
-"""What CasADi itself makes of an arm's module: serialised functions, and a compiled plant with derivatives.
+"""CasADi makes these of an arm's module: serialised functions, and a compiled plant with derivatives.
 
 Both belong to the release of CasADi that made them. They are built beside the generated code, never
 committed, and left out of its manifest.
