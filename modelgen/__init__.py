@@ -1,3 +1,100 @@
-"""From a description of an arm to its dynamic model: C99, CasADi and NumPy."""
+"""From a description of an arm to its dynamic model: C99, CasADi and NumPy.
 
-from modelgen.version import __version__ as __version__
+What the command line can do a function can do: docs/python.md shows the way from a log to generated code. A
+name is imported when it is asked for.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from modelgen.errors import InputError
+from modelgen.version import __version__
+
+if TYPE_CHECKING:
+    from modelgen.api.calibration import Calibration, calibrate
+    from modelgen.api.description import load_arms
+    from modelgen.api.diagnosis import Diagnosis, diagnose
+    from modelgen.api.effects import EFFECTS
+    from modelgen.api.excitation import Excitation, excite
+    from modelgen.api.generation import Generated, generate
+    from modelgen.api.identification import Identification, identify
+    from modelgen.api.model import Model, build_model
+    from modelgen.api.refinement import Refinement, refine
+    from modelgen.api.simulation import Simulation, simulate
+    from modelgen.options import (
+        CalibrationOptions,
+        DiagnosisOptions,
+        ExcitationOptions,
+        GenerationOptions,
+        IdentificationOptions,
+        ModelOptions,
+        RefinementOptions,
+        SimulationOptions,
+    )
+
+__all__ = [
+    "EFFECTS",
+    "Calibration",
+    "CalibrationOptions",
+    "Diagnosis",
+    "DiagnosisOptions",
+    "Excitation",
+    "ExcitationOptions",
+    "Generated",
+    "GenerationOptions",
+    "Identification",
+    "IdentificationOptions",
+    "InputError",
+    "Model",
+    "ModelOptions",
+    "Refinement",
+    "RefinementOptions",
+    "Simulation",
+    "SimulationOptions",
+    "__version__",
+    "build_model",
+    "calibrate",
+    "diagnose",
+    "excite",
+    "generate",
+    "identify",
+    "load_arms",
+    "refine",
+    "simulate",
+]
+
+_HOMES = {
+    "modelgen.api.calibration": ("Calibration", "calibrate"),
+    "modelgen.api.description": ("load_arms",),
+    "modelgen.api.diagnosis": ("Diagnosis", "diagnose"),
+    "modelgen.api.effects": ("EFFECTS",),
+    "modelgen.api.excitation": ("Excitation", "excite"),
+    "modelgen.api.generation": ("Generated", "generate"),
+    "modelgen.api.identification": ("Identification", "identify"),
+    "modelgen.api.model": ("Model", "build_model"),
+    "modelgen.api.refinement": ("Refinement", "refine"),
+    "modelgen.api.simulation": ("Simulation", "simulate"),
+    "modelgen.options": (
+        "CalibrationOptions",
+        "DiagnosisOptions",
+        "ExcitationOptions",
+        "GenerationOptions",
+        "IdentificationOptions",
+        "ModelOptions",
+        "RefinementOptions",
+        "SimulationOptions",
+    ),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'modelgen' has no attribute '{name}'")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value  # asked for once
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
