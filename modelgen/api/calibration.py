@@ -129,5 +129,5 @@ def calibrate(
     ----------
     Beck and Arnold, Parameter Estimation in Engineering and Science, 1977, chapter 6.
     """
-    (one,) = listed([log], "log")
+    (one,) = listed(log, "log")
     return Calibration(arm, calibrate_log(arm, joint, one, changed(options or CalibrationOptions(), changes)))

@@ -5,6 +5,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.processing.spectra import described, spectra_svg
+from modelgen.dataset.reading.column_table import ColumnTable, Log, named
 from modelgen.dataset.reading.gathering import check_different, gather
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.sources import read_columns
@@ -15,7 +16,9 @@ from modelgen.dataset.thresholds import DatasetThresholds
 __all__ = [
     "PRESETS",
     "Chosen",
+    "ColumnTable",
     "DatasetThresholds",
+    "Log",
     "NumericDrive",
     "Prepared",
     "Record",
@@ -29,6 +32,7 @@ __all__ = [
     "drives_of",
     "gather",
     "last_quarter_out",
+    "named",
     "parse",
     "prepare",
     "preset",

@@ -17,6 +17,7 @@ from modelgen.dataset.processing.resampling import REACH
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.dataset.processing.timing import Axis, Survey
 from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.read import record_of
 from modelgen.dataset.reading.sources import open_source
 from modelgen.dataset.thresholds import USUAL
@@ -36,22 +37,22 @@ class Stream:
     Their rows, one block after the other, are those of the whole log prepared at once, and filtered columns
     agree with the whole's to 1e-9 of their size: neighbouring blocks overlap by `overlap` samples. A first
     pass finds the time axis and checks the log; where columns are read one by one (Parquet), only the time
-    is read then, and the others are checked block by block. spec, mapping: as in `read`. settings: None or
+    is read then, and the others are checked block by block. log, mapping: as in `read`. settings: None or
     unset values are chosen from the first quarter million samples. block: samples per block, at least. Raises
     InputError as `read` does. Iterate as often as needed; every iteration reads the file.
     """
 
     def __init__(
         self,
-        spec: str,
+        log: Log,
         arm: Arm,
         settings: Settings | Chosen | None = None,
         mapping: Path | str | None = None,
         block: int = 16_384,
     ) -> None:
-        self.spec, self.arm = spec, arm
         limits = USUAL if settings is None else settings.thresholds
-        self._source = open_source(spec, arm, mapping, limits)
+        self._source = open_source(log, arm, mapping, limits)
+        self.spec, self.arm = self._source.spec.text, arm
         self._asked, self._least = settings, block
         self.axis = self._survey()
         self.samples = self.axis.count

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.dataset import read_columns
+from modelgen.dataset import named, read_columns
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.simulation.control import Reference
@@ -31,6 +31,7 @@ def input_names(p: Plant) -> list[str]:
 
 
 def _table(option: str, log: Any, names: list[str]) -> tuple[Array, Array]:
+    log = named(log, option.removeprefix("--"))
     columns = read_columns(log, names)
     t, *rest = (np.asarray(columns[name], dtype=float) for name in names)
     if len(t) < 4 or not (np.diff(t) > 0).all() or not np.isfinite(np.array([t, *rest])).all():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.specs import check_separate
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -16,8 +17,8 @@ from modelgen.errors import InputError
 
 
 def gather(
-    train: Sequence[str],
-    test: Sequence[str],
+    train: Sequence[Log],
+    test: Sequence[Log],
     arm: Arm,
     mapping: Path | str | None = None,
     thresholds: DatasetThresholds = USUAL,

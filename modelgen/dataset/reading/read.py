@@ -12,6 +12,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -20,17 +21,21 @@ from modelgen.numeric import Array
 
 
 def read(
-    spec: str,
+    log: Log,
     arm: Arm,
     mapping: Path | str | None = None,
     thresholds: DatasetThresholds = USUAL,
 ) -> Record:
-    """The record that `FILE` or `FILE@t0:t1` names, in the arm's coordinates.
+    """The record that `FILE` or `FILE@t0:t1` names, or a table of columns holds, in the arm's coordinates.
 
     Columns are those of docs/logs.md, or what the mapping file makes of the log's own. Raises InputError
-    for anything that is missing, doubled, not finite, out of order, constant, too short or out of range.
+    for anything that is missing, doubled, not finite, out of order, constant, too short or out of range. A
+    record is given back as it is; one of another arm is refused.
     """
-    source = open_source(spec, arm, mapping, thresholds)
+    if isinstance(log, Record):
+        return _of_arm(log, arm)
+    source = open_source(log, arm, mapping, thresholds)
+    spec = source.spec.text
     blocks = list(source.blocks())
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
     checks.check_length(spec, len(table), thresholds.min_samples)
@@ -40,6 +45,19 @@ def read(
     checks.check_constant(spec, arm, source.signals.position, logged, "position")
     if record.input is not None:
         checks.check_constant(spec, arm, source.signals.effort, record.input, "effort")
+    return record
+
+
+def _of_arm(record: Record, arm: Arm) -> Record:
+    """A record of the arm's coordinates. Raises InputError."""
+    expected = [arm.joints[i].name for i in arm.coordinates]
+    given = record.arm
+    found = None if given is None else [given.joints[i].name for i in given.coordinates]
+    if record.n != len(expected) or found not in (None, expected):
+        here = f"{record.n} coordinates" + ("" if found is None else f" ({', '.join(found)})")
+        raise InputError(
+            f"{record.name}: found a record of {here}, expected {len(expected)} ({', '.join(expected)})"
+        )
     return record
 
 

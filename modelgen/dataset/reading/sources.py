@@ -11,8 +11,9 @@ import numpy as np
 from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.mapping.columns import MappedReader
 from modelgen.dataset.mapping.files import listed, load_mapping
-from modelgen.dataset.objects import Reader
+from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.reading.bags import BagReader
+from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.signals import Signals, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.reading.tables import open_table
@@ -70,25 +71,25 @@ class Source:
 
 
 def open_source(
-    text: str,
+    log: Log,
     arm: Arm,
     mapping: Path | str | None = None,
     thresholds: DatasetThresholds = USUAL,
 ) -> Source:
-    """The log that `FILE` or `FILE@t0:t1` names, opened. Raises InputError."""
-    spec = parse(text)
+    """The log that `FILE` or `FILE@t0:t1` names, or a table of columns, opened. Raises InputError."""
+    spec = parse(log)
     drives = drives_of(arm)
     if mapping is None:
-        reader = open_table(spec.path)
+        reader = opened(spec)
         if isinstance(reader, BagReader):
             raise InputError(
-                f"{text}: a bag needs a mapping file (--mapping) that names its columns: "
+                f"{spec.text}: a bag needs a mapping file (--mapping) that names its columns: "
                 + listed(reader.names)
             )
         signals = find_signals(spec.text, reader.names, arm, drives)
         return Source(spec, reader, signals, drives, thresholds=thresholds)
     foreign = load_mapping(mapping)
-    mapped = MappedReader(foreign, open_table(spec.path), arm, drives)
+    mapped = MappedReader(foreign, opened(spec), arm, drives)
     time = foreign.document.time
     return Source(
         spec,
@@ -104,18 +105,27 @@ def open_source(
     )
 
 
-def read_columns(text: str, names: Sequence[str]) -> dict[str, Array]:
+def opened(spec: Spec) -> Reader:
+    """The reader for a log. Raises InputError, also for a record, which has been read."""
+    if spec.held is None:
+        return open_table(spec.path)
+    if isinstance(spec.held, Record):
+        raise InputError(f"{spec.text}: found a record, expected a log as it was recorded")
+    return spec.held
+
+
+def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
     """Columns of a log by their own names, each (N,), without any check but that they are there.
 
     For logs that hold more than one arm's record does: motor counts and joint angles side by side, say.
     Raises InputError.
     """
-    spec = parse(text)
-    reader = open_table(spec.path)
+    spec = parse(log)
+    reader = opened(spec)
     wanted = tuple(dict.fromkeys(("t", *names)))
     absent = [name for name in wanted if name not in reader.names]
     if absent:
-        raise InputError(f"{text}: the column {absent[0]} is missing (found {', '.join(reader.names)})")
+        raise InputError(f"{spec.text}: the column {absent[0]} is missing (found {', '.join(reader.names)})")
     parts = []
     for block in reader.blocks(wanted, BLOCK):
         inside = (block[:, 0] >= spec.begin) & (block[:, 0] < spec.end)

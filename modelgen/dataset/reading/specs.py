@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.reading.column_table import ColumnTable, Log
 from modelgen.errors import InputError
 
 _PART = re.compile(r"(?P<file>.+)@(?P<begin>[^@:]*):(?P<end>[^@:]*)")
@@ -19,16 +20,23 @@ _PART = re.compile(r"(?P<file>.+)@(?P<begin>[^@:]*):(?P<end>[^@:]*)")
 
 @dataclass(frozen=True)
 class Spec:
-    """A file, or those of its samples with begin <= t < end [s]."""
+    """A file, or those of its samples with begin <= t < end [s]; or a log in memory, under its name."""
 
     text: str
     path: Path
     begin: float = -math.inf
     end: float = math.inf
+    held: Record | ColumnTable | None = None
 
     def content(self) -> str:
         """Hash of the bytes, of a folder's files. Raises InputError where it cannot be read."""
+        if isinstance(self.held, ColumnTable):
+            return self.held.content()
         digest = hashlib.sha256()
+        if self.held is not None:
+            for values in (self.held.t, self.held.q, self.held.input):
+                digest.update(b"" if values is None else values.tobytes())
+            return digest.hexdigest()
         files = sorted(p for p in self.path.rglob("*") if p.is_file()) if self.path.is_dir() else [self.path]
         for file in files:
             try:
@@ -39,11 +47,13 @@ class Spec:
         return digest.hexdigest()
 
 
-def parse(log: str | os.PathLike[str]) -> Spec:
+def parse(log: Log) -> Spec:
     """`FILE` or `FILE@t0:t1`; t0 or t1 may be left out. Raises InputError.
 
-    A file whose own name has the form FILE@a:b is taken as a file.
+    A file whose own name has the form FILE@a:b is taken as a file. A log in memory is whole.
     """
+    if isinstance(log, Record | ColumnTable):
+        return Spec(log.name, Path(log.name), held=log)
     text = os.fspath(log)
     match = _PART.fullmatch(text)
     if match is None or _exists(text):
@@ -84,7 +94,7 @@ def unreadable(path: Path, error: OSError | ValueError) -> InputError:
     return InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}")
 
 
-def check_separate(train: Sequence[str], test: Sequence[str]) -> None:
+def check_separate(train: Sequence[Log], test: Sequence[Log]) -> None:
     """Nothing may be trained on and tested on. Raises InputError.
 
     Two specifications overlap where their files are one, or have the same content, and their parts share
@@ -101,7 +111,8 @@ def check_separate(train: Sequence[str], test: Sequence[str]) -> None:
             other_role, other = chosen[j]
             if contents[i] != contents[j] or not _overlap(spec, other):
                 continue
-            same = "" if spec.path == other.path else " (the files have the same content)"
+            whose = "files" if spec.held is None and other.held is None else "logs"
+            same = "" if spec.path == other.path else f" (the {whose} have the same content)"
             raise InputError(
                 f"--{other_role} {other.text} and --{role} {spec.text} share samples{same}; "
                 + _advice([other.text])
@@ -112,7 +123,7 @@ def _overlap(a: Spec, b: Spec) -> bool:
     return max(a.begin, b.begin) < min(a.end, b.end)
 
 
-def _advice(texts: Sequence[str]) -> str:
+def _advice(texts: Sequence[Log]) -> str:
     file = parse(texts[0]).path if texts else Path("LOG")
     return (
         "one file can serve for both in parts that do not overlap, the last quarter held out, say: "

@@ -1,0 +1,106 @@
+"""Logs in memory: tables of columns by name, of whatever library."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from modelgen.dataset.objects import Record
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+
+class ColumnTable:
+    """Columns of N numbers by name; a missing value is NaN.
+
+    columns: a mapping, a data frame of pandas or polars, a table of pyarrow, or an array with fields. name:
+    what messages call it. Raises InputError where it is no such table.
+    """
+
+    by_column = True
+
+    def __init__(self, columns: Any, name: str) -> None:
+        self.name, self._columns = name, columns
+        # Duck typing: no library is imported for what is not one of its tables.
+        names = getattr(columns, "column_names", None)  # pyarrow
+        if names is None:
+            names = columns.keys() if isinstance(columns, Mapping) else getattr(columns, "columns", None)
+        if names is None:
+            names = getattr(getattr(columns, "dtype", None), "names", None)
+        if names is None or callable(names):
+            kind = type(columns).__name__
+            raise InputError(
+                f"{name}: found {kind}, expected a path, FILE@t0:t1, a record or a table of columns"
+            )
+        self.names: tuple[str, ...] = tuple(str(x) for x in names)
+        if not self.names:
+            raise InputError(f"{name}: the table has no columns, expected t, q1, i1 and so on")
+
+    def __str__(self) -> str:
+        return self.name
+
+    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+        """The wanted columns, `rows` at a time. Raises InputError for columns that are no numbers."""
+        columns = [self._column(name) for name in wanted]
+        lengths = {name: len(column) for name, column in zip(wanted, columns, strict=True)}
+        if len(set(lengths.values())) > 1:
+            found = ", ".join(f"{name} has {count}" for name, count in lengths.items())
+            raise InputError(f"{self.name}: the columns differ in length: {found} samples")
+        for begin in range(0, len(columns[0]), rows):
+            # Columns in order in memory, as the readers of files give them.
+            yield np.stack([column[begin : begin + rows] for column in columns]).T
+
+    def content(self) -> str:
+        """Hash of the names and numbers; a column of something else counts by its text."""
+        digest = hashlib.sha256()
+        for name in sorted(self.names):
+            digest.update(name.encode())
+            try:
+                digest.update(self._column(name).tobytes())
+            except InputError:
+                digest.update(repr(self._columns[name]).encode())
+        return digest.hexdigest()
+
+    def _column(self, name: str) -> Array:
+        """A column as numbers (N,). Raises InputError."""
+        column = self._columns[name]
+        if isinstance(column, np.ma.MaskedArray):
+            column = column.astype(float).filled(np.nan)
+        values = np.asarray(column)
+        if values.dtype.kind == "O":
+            values = _numbers(column, values)
+        if values.ndim != 1:
+            raise InputError(
+                f"{self.name}: found {values.ndim} dimensions in the column {name}, "
+                "expected one number per sample"
+            )
+        if values.dtype.kind not in "iuf":
+            hint = "; t is in seconds" if values.dtype.kind in "mM" else ""
+            raise InputError(
+                f"{self.name}: found {values.dtype} in the column {name}, expected numbers{hint}"
+            )
+        return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _numbers(column: Any, values: np.ndarray) -> np.ndarray:
+    """Objects as numbers, missing values as NaN; as they are where they are no numbers."""
+    try:
+        if hasattr(column, "isna"):  # pandas' missing value is no float
+            return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
+        return values.astype(float)
+    except (TypeError, ValueError):
+        return values
+
+
+Log: TypeAlias = str | os.PathLike[str] | Record | ColumnTable
+
+
+def named(log: Any, name: str) -> Log:
+    """A log as it is given; a table of columns gets the name that messages use. Raises InputError."""
+    if isinstance(log, str | Record | ColumnTable):
+        return log
+    return os.fspath(log) if isinstance(log, os.PathLike) else ColumnTable(log, name)

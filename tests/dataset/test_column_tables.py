@@ -1,0 +1,224 @@
+"""A log in memory is read as the file with the same numbers is, and refused with the same words."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas
+import pyarrow
+import pytest
+
+from modelgen.dataset import ColumnTable, Record, Stream, check_separate, named, parse, read, read_columns
+from modelgen.description import Arm, loads
+from modelgen.effects import known_effects
+from modelgen.errors import InputError
+
+ARM = """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  two:
+    joints:
+      - {name: a, alpha: 0, d: 0, r: 0, drive: {type: direct, ratio: 100, torque_constant: 0.05}}
+      - {name: b, alpha: pi/2, d: 0.3, r: 0, drive: {type: direct, ratio: 80, torque_constant: 0.05}}
+"""
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    return loads(ARM, "arms.yaml", known_effects())["two"]
+
+
+def columns(seed: int = 1, count: int = 400) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    t = np.arange(count) * 0.01
+    return {
+        "t": t,
+        "q1": np.sin(t + seed),
+        "q2": 0.5 * np.cos(2 * t),
+        "i1": rng.normal(size=count),
+        "i2": rng.normal(size=count),
+    }
+
+
+def file(folder: Path, table: dict[str, np.ndarray], name: str = "log.csv") -> str:
+    rows = np.stack(list(table.values()), axis=1)
+    text = io.StringIO()
+    np.savetxt(text, rows, delimiter=",", fmt="%.17g", header=",".join(table), comments="")
+    (folder / name).write_text(text.getvalue(), encoding="utf-8")
+    return str(folder / name)
+
+
+class LikePolars:
+    """Names as a list, columns that are no arrays: what polars gives."""
+
+    class Series:
+        def __init__(self, values: np.ndarray) -> None:
+            self._values = values
+
+        def __len__(self) -> int:
+            return len(self._values)
+
+        def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+            return np.asarray(self._values, dtype=dtype)
+
+    def __init__(self, table: dict[str, np.ndarray]) -> None:
+        self._table = table
+        self.columns = list(table)
+
+    def __getitem__(self, name: str) -> Series:
+        return self.Series(self._table[name])
+
+
+def fields(table: dict[str, np.ndarray]) -> np.ndarray:
+    return np.rec.fromarrays(list(table.values()), names=list(table))
+
+
+KINDS = {
+    "dict": dict,
+    "lists": lambda table: {name: values.tolist() for name, values in table.items()},
+    "pandas": pandas.DataFrame,
+    "pyarrow": pyarrow.table,
+    "polars": LikePolars,
+    "fields": fields,
+}
+
+
+def same(one: Record, other: Record) -> None:
+    for name in ("t", "q", "motor", "input", "gain"):
+        assert np.array_equal(getattr(one, name), getattr(other, name)), name
+    assert (one.effort_unit, one.hold, one.held) == (other.effort_unit, other.hold, other.held)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_table_is_read_as_its_file(kind: str, arm: Arm, tmp_path: Path) -> None:
+    table = columns()
+    found = read(named(KINDS[kind](table), "train[0]"), arm)
+    assert found.name == "train[0]"
+    same(found, read(file(tmp_path, table), arm))
+
+
+def test_a_mapping_file_renames_and_scales_the_columns_of_a_table(arm: Arm, tmp_path: Path) -> None:
+    table = columns()
+    foreign = {"ms": 1e3 * table["t"], "A": table["q1"], "B": np.degrees(table["q2"])}
+    foreign |= {"ia": table["i1"], "ib": table["i2"]}
+    mapping = tmp_path / "mapping.yaml"
+    mapping.write_text(
+        "schema: 1\ntime: {column: ms, unit: ms}\njoints:\n"
+        "  - {position: {column: A, unit: rad}, effort: {column: ia, unit: A}}\n"
+        "  - {position: {column: B, unit: deg}, effort: {column: ib, unit: A}}\n",
+        encoding="utf-8",
+    )
+    same(read(named(foreign, "log"), arm, mapping), read(file(tmp_path, foreign), arm, mapping))
+
+
+def test_uneven_time_is_resampled_as_in_a_file(arm: Arm, tmp_path: Path) -> None:
+    table = columns()
+    table["t"] = table["t"] + np.random.default_rng(2).uniform(-0.001, 0.001, len(table["t"]))
+    found = read(named(table, "log"), arm)
+    assert any("resampled" in remark for remark in found.remarks)
+    same(found, read(file(tmp_path, table), arm))
+
+
+def spoilt(table: dict[str, Any], how: str) -> dict[str, Any]:
+    if how == "missing":
+        del table["q2"]
+    elif how == "no time":
+        table["time"] = table.pop("t")
+    elif how == "not finite":
+        table["i2"][7] = np.nan
+    elif how == "backwards":
+        table["t"][9] = table["t"][7]
+    elif how == "constant":
+        table["q1"][:] = 1.0
+    elif how == "short":
+        table = {name: values[:3] for name, values in table.items()}
+    elif how == "gap":
+        table["t"][200:] += 5.0
+    return table
+
+
+@pytest.mark.parametrize("how", ["missing", "no time", "not finite", "backwards", "constant", "short", "gap"])
+def test_a_table_is_refused_with_the_words_for_its_file(how: str, arm: Arm, tmp_path: Path) -> None:
+    table = spoilt(columns(), how)
+    path = file(tmp_path, table)
+    with pytest.raises(InputError) as of_file:
+        read(path, arm)
+    with pytest.raises(InputError) as of_table:
+        read(named(table, "train[0]"), arm)
+    assert str(of_table.value).replace("train[0]", path) == str(of_file.value)
+
+
+@pytest.mark.parametrize(
+    ("log", "words"),
+    [
+        (3.0, "train[0]: found float, expected a path, FILE@t0:t1, a record or a table of columns"),
+        (np.zeros((3, 2)), "train[0]: found ndarray, expected a path"),
+        ({}, "train[0]: the table has no columns"),
+        (columns() | {"q1": np.zeros(3)}, "differ in length"),
+        (columns() | {"i1": ["a"] * 400}, "in the column i1, expected numbers"),
+        (columns() | {"i1": np.zeros((400, 2))}, "found 2 dimensions in the column i1"),
+        (columns() | {"t": np.arange(400).astype("datetime64[ms]")}, "expected numbers; t is in seconds"),
+    ],
+)
+def test_what_is_no_table_of_numbers_is_refused(log: Any, words: str, arm: Arm) -> None:
+    with pytest.raises(InputError) as refused:
+        read(named(log, "train[0]"), arm)
+    assert words in str(refused.value)
+
+
+def test_missing_values_of_every_library_are_not_finite(arm: Arm) -> None:
+    table = columns()
+    holes = [None, *table["i1"].tolist()[1:]]
+    for log in (
+        pandas.DataFrame(table | {"i1": pandas.array(holes, dtype="Float64")}),
+        pyarrow.table(table | {"i1": holes}),
+        table | {"i1": holes},
+        table | {"i1": np.ma.array(table["i1"], mask=[True] + [False] * 399)},
+    ):
+        with pytest.raises(InputError, match="found nan in the column i1 at t = 0 s"):
+            read(named(log, "log"), arm)
+
+
+def test_a_record_is_taken_as_it_is_and_refused_for_another_arm(arm: Arm) -> None:
+    record = read(named(columns(), "log"), arm)
+    assert read(record, arm) is record
+    other = loads(ARM.replace("name: b", "name: c"), "arms.yaml", known_effects())["two"]
+    with pytest.raises(InputError, match=r"log: found a record of 2 coordinates \(a, b\)"):
+        read(record, other)
+    with pytest.raises(InputError, match="expected a log as it was recorded"):
+        read_columns(record, ["q1"])
+
+
+def test_tables_with_the_same_numbers_overlap_whatever_they_are_made_of(arm: Arm) -> None:
+    one, two = named(columns(), "train"), named(pandas.DataFrame(columns()), "test")
+    with pytest.raises(InputError, match="--train train and --test test share samples"):
+        check_separate([one], [two])
+    with pytest.raises(InputError, match="share samples"):
+        check_separate([read(one, arm)], [read(two, arm)])
+    check_separate([one], [named(columns(2), "test")])
+    assert isinstance(one, ColumnTable)
+    assert parse(one).content() == parse(two).content()
+
+
+def test_a_streamed_table_gives_the_blocks_of_its_file(arm: Arm, tmp_path: Path) -> None:
+    table = columns(count=3000)
+    of_table = list(Stream(named(table, "log"), arm, block=512))
+    of_file = list(Stream(file(tmp_path, table), arm, block=512))
+    assert len(of_table) == len(of_file) > 1
+    for one, other in zip(of_table, of_file, strict=True):
+        assert np.array_equal(one.record.q, other.record.q)
+
+
+def test_a_table_imports_no_library_of_tables() -> None:
+    code = (
+        "import sys; from modelgen.dataset import named; named({'t': [0.0]}, 'log');"
+        "print([name for name in ('pandas', 'polars', 'pyarrow', 'xarray') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
