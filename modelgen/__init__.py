@@ -18,9 +18,12 @@ if TYPE_CHECKING:
     from modelgen.api.excitation import Excitation, excite
     from modelgen.api.generation import Generated, generate
     from modelgen.api.identification import Identification, identify
+    from modelgen.api.inspect import Inspection, inspect_log, read_log
     from modelgen.api.model import Model, build_model
     from modelgen.api.refinement import Refinement, refine
     from modelgen.api.simulation import Simulation, simulate
+    from modelgen.dataset import Record
+    from modelgen.description import Arm
     from modelgen.options import (
         CalibrationOptions,
         DiagnosisOptions,
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EFFECTS",
+    "Arm",
     "Calibration",
     "CalibrationOptions",
     "Diagnosis",
@@ -45,8 +49,10 @@ __all__ = [
     "Identification",
     "IdentificationOptions",
     "InputError",
+    "Inspection",
     "Model",
     "ModelOptions",
+    "Record",
     "Refinement",
     "RefinementOptions",
     "Simulation",
@@ -58,7 +64,9 @@ __all__ = [
     "excite",
     "generate",
     "identify",
+    "inspect_log",
     "load_arms",
+    "read_log",
     "refine",
     "simulate",
 ]
@@ -71,9 +79,12 @@ _HOMES = {
     "modelgen.api.excitation": ("Excitation", "excite"),
     "modelgen.api.generation": ("Generated", "generate"),
     "modelgen.api.identification": ("Identification", "identify"),
+    "modelgen.api.inspect": ("Inspection", "inspect_log", "read_log"),
     "modelgen.api.model": ("Model", "build_model"),
     "modelgen.api.refinement": ("Refinement", "refine"),
     "modelgen.api.simulation": ("Simulation", "simulate"),
+    "modelgen.dataset": ("Record",),
+    "modelgen.description": ("Arm",),
     "modelgen.options": (
         "CalibrationOptions",
         "DiagnosisOptions",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from html import escape
 from typing import Protocol
 
 from modelgen.description import Arm
@@ -53,6 +54,53 @@ class Record:
     def step(self) -> float:
         """Sampling period [s]."""
         return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Samples (N,) by the names of a log: t, q<n>, dq<n>, ddq<n>, i<n> or tau<n>, temperature<n>."""
+        tables = {"q": self.q, "dq": self.dq, "ddq": self.ddq, "temperature": self.temperature}
+        found = {"t": self.t}
+        for kind, table in tables.items():
+            found |= {} if table is None else {f"{kind}{k + 1}": table[:, k] for k in range(self.n)}
+        if self.input is not None:
+            found |= {f"{self._effort(k)}{k + 1}": self.input[:, k] for k in range(self.n)}
+        return found
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each of the columns."""
+        found = {"t": "s"}
+        for name in self.columns:
+            kind, number = name.rstrip("0123456789"), name.lstrip("abcdefghijklmnopqrstuvwxyz")
+            if number:
+                length = self._prismatic(int(number) - 1)
+                position = "m" if length else "rad"
+                effort = {"i": "A", "tau": "N" if length else "N m", "temperature": "deg C"}
+                rates = {"q": position, "dq": f"{position}/s", "ddq": f"{position}/s^2"}
+                found[name] = (effort | rates)[kind]
+        return found
+
+    def _effort(self, k: int) -> str:
+        if self.arm is None:
+            return "i" if self.effort_unit[k : k + 1] == ("A",) else "tau"
+        return "i" if self.arm.joints[self.arm.coordinates[k]].drive.driven else "tau"
+
+    def _prismatic(self, k: int) -> bool:
+        return self.arm is not None and self.arm.joints[self.arm.coordinates[k]].type == "prismatic"
+
+    def __repr__(self) -> str:
+        names = [name for name in self.columns if name != "t"]
+        time = f"{len(self.t)} samples from {self.t[0]:.6g} s to {self.t[-1]:.6g} s at {1 / self.step:.6g} Hz"
+        return f"Record {self.name}: {time}, {', '.join(names)}"
+
+    def _repr_html_(self) -> str:
+        units = self.units
+        rows = "".join(
+            f"<tr><td>{name}</td><td>{units[name]}</td><td>{x.min():.6g}</td><td>{x.max():.6g}</td></tr>"
+            for name, x in self.columns.items()
+        )
+        head = "<tr><th>column</th><th>unit</th><th>lowest</th><th>highest</th></tr>"
+        return f"<table><caption>{escape(repr(self))}</caption>{head}{rows}</table>"
 
     def part(self, begin: int, end: int, name: str = "") -> Record:
         """Samples begin to end (end excluded) as a record of their own."""

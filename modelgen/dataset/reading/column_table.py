@@ -69,7 +69,7 @@ class ColumnTable:
         """A column as numbers (N,). Raises InputError."""
         column = self._columns[name]
         if isinstance(column, np.ma.MaskedArray):
-            column = column.astype(float).filled(np.nan)
+            column = np.ma.filled(column.astype(float), np.nan)
         values = np.asarray(column)
         if values.dtype.kind == "O":
             values = _numbers(column, values)

@@ -1,0 +1,183 @@
+"""Logs as they are: a record, and what a log says about itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from modelgen.api.logs import Log, listed
+from modelgen.api.results import Shown, Table
+from modelgen.dataset import Record, read
+from modelgen.dataset.inspection import Channel, Inspected, inspect
+from modelgen.description import Arm
+
+
+class Inspection(Shown):
+    """What a log of N samples says about itself.
+
+    Parameters
+    ----------
+    found : modelgen.dataset.inspection.Inspected
+        What the inspection gives back.
+
+    Attributes
+    ----------
+    name : str
+        What the log was called.
+    samples : int
+        Number of samples N.
+    rate : float
+        One over the median time between samples [Hz].
+    jitter : float
+        Largest deviation of that time from its median, in medians.
+    period : float or None
+        Period of the motion [s], None where it does not repeat.
+    channels : tuple of Channel
+        By column: name, unit, low, high, resolution, share of repeated readings, missing readings.
+    """
+
+    def __init__(self, found: Inspected) -> None:
+        self.found = found
+        self.name, self.samples = found.name, found.samples
+        self.rate, self.jitter, self.period = found.rate, found.jitter, found.period
+        self.channels: tuple[Channel, ...] = found.channels
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data: the facts, null where there is none.
+
+        Returns
+        -------
+        dict
+            Samples, time [s], rate [Hz], jitter, period [s], channels.
+        """
+        x = self.found
+        return {
+            "log": x.name,
+            "samples": x.samples,
+            "begin_s": _number(x.begin),
+            "end_s": _number(x.end),
+            "rate_hz": _number(x.rate),
+            "jitter": _number(x.jitter),
+            "backwards": x.backwards,
+            "period_s": x.period,
+            "channels": [
+                {
+                    "name": c.name,
+                    "unit": c.unit or None,
+                    "low": _number(c.low),
+                    "high": _number(c.high),
+                    "resolution": c.resolution,
+                    "repeated": c.repeated,
+                    "missing": c.missing,
+                }
+                for c in x.channels
+            ],
+            "without_numbers": list(x.without_numbers),
+            "remarks": list(x.remarks),
+        }
+
+    def shown(self) -> Sequence[str | Table]:
+        """Lines and a table of the channels.
+
+        Returns
+        -------
+        sequence of str or Table
+            In the order in which they are printed.
+        """
+        x = self.found
+        parts: list[str | Table] = [self._headline()]
+        if x.backwards:
+            parts.append(f"time stands still or runs backwards {x.backwards} times")
+        if not math.isnan(x.rate):
+            parts.append("the motion does not repeat" if x.period is None else f"period {x.period:.6g} s")
+        rows = [
+            [
+                c.name,
+                c.unit,
+                f"{c.low:.6g}",
+                f"{c.high:.6g}",
+                "" if c.resolution is None else f"{c.resolution:.4g}",
+                f"{100 * c.repeated:.1f}",
+                str(c.missing or ""),
+            ]
+            for c in x.channels
+        ]
+        columns = {"column": "left", "unit": "left"}
+        columns |= dict.fromkeys(("lowest", "highest", "resolution", "repeated %", "missing"), "right")
+        parts.append(Table("", columns, rows))
+        if x.without_numbers:
+            parts.append(f"no numbers: {', '.join(x.without_numbers)}")
+        return [*parts, *(f"note: {remark}" for remark in x.remarks)]
+
+    def __repr__(self) -> str:
+        return f"Inspection of {self._headline()}"
+
+    def _headline(self) -> str:
+        x = self.found
+        if math.isnan(x.rate):
+            return f"{x.name}: {len(x.channels)} columns, no time t that runs"
+        jitter = f"time between samples varies by up to {x.jitter:.2g} periods"
+        time = f"{x.samples} samples from {x.begin:.6g} s to {x.end:.6g} s at {x.rate:.6g} Hz"
+        return f"{x.name}: {time}, {jitter}"
+
+
+def read_log(log: Log, arm: Arm, *, mapping: Path | str | None = None) -> Record:
+    """Read a log in the coordinates and units of an arm, through all checks.
+
+    Parameters
+    ----------
+    log : log
+        A path, "FILE@t0:t1" [s], or a table of columns: t [s], q<n> [rad, m] or qm<n> [motor unit], i<n> [A]
+        or tau<n> [N m, N], n from 1.
+    arm : Arm
+        An arm with n coordinates.
+    mapping : Path or str, optional
+        A mapping file that renames and scales the columns of a foreign log.
+
+    Returns
+    -------
+    Record
+        N samples on a uniform time axis: t (N,) [s], q (N, n) [rad, m], motor (N, n) [motor unit], input
+        (N, n) [A; N m, N without a drive]; `columns` and `units` have them by name. Every function that takes
+        logs takes it.
+
+    Raises
+    ------
+    InputError
+        For a log that cannot be read, and for columns that are missing, doubled, not finite or out of range.
+    """
+    (one,) = listed(log, "log")
+    return read(one, arm, mapping)
+
+
+def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None = None) -> Inspection:
+    """Say what is in a log: ranges, rate, jitter, resolution, repeated readings, period.
+
+    Parameters
+    ----------
+    log : log
+        A path, "FILE@t0:t1" [s], a record, or a table of columns. Stamps t are in s.
+    arm : Arm, optional
+        With it the columns are those that are read for the arm, in its units. Default: all columns as they
+        stand in the log.
+    mapping : Path or str, optional
+        A mapping file that renames and scales the columns of a foreign log; it needs the arm.
+
+    Returns
+    -------
+    Inspection
+        Facts of the log and of its columns; it prints as a line and shows as a table.
+
+    Raises
+    ------
+    InputError
+        For a log that cannot be opened, and with an arm for one that cannot be read for it.
+    """
+    (one,) = listed(log, "log")
+    return Inspection(inspect(one, arm, mapping))
+
+
+def _number(x: float) -> float | None:
+    return x if math.isfinite(x) else None

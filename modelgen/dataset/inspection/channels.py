@@ -1,0 +1,179 @@
+"""Columns of a log: ranges, resolution, repeated readings; its rate, and the period of its motion."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from modelgen.dataset.objects import Reader, Record
+from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.read import read
+from modelgen.dataset.reading.sources import BLOCK, open_source, opened
+from modelgen.dataset.reading.specs import Spec, parse
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+_POSITION = re.compile(r"qm?[1-9][0-9]*")
+_WHOLE = 0.01  # of a resolution, by which a multiple of it may miss a whole number
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A column of numbers. unit: empty where nobody has said it. low, high: of the finite readings.
+
+    resolution: what all differences of readings are multiples of, None where there is no such step.
+    repeated: share of the readings that equal the one before. missing: readings that are not finite.
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    resolution: float | None
+    repeated: float
+    missing: int
+
+
+@dataclass(frozen=True)
+class Inspected:
+    """samples: N. begin, end: first and last stamp [s]. rate: one over the median time between samples [Hz].
+
+    jitter: largest deviation of that time from its median, in medians. backwards: stamps that are not after
+    the one before. period: of the motion [s], None where it does not repeat. without_numbers: columns of
+    something else. These are NaN or None where the log has no column t.
+    """
+
+    name: str
+    samples: int
+    begin: float
+    end: float
+    rate: float
+    jitter: float
+    backwards: int
+    period: float | None
+    channels: tuple[Channel, ...]
+    without_numbers: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None) -> Inspected:
+    """A log as it is: without an arm all its columns, with an arm those that are read for it, in its units.
+
+    Raises InputError for a log that cannot be opened, and with an arm also as `read` does.
+    """
+    if isinstance(log, Record):
+        return _of_record(log)
+    if arm is not None:
+        return _of_record(read(log, arm, mapping), _raw(log, arm, mapping))
+    if mapping is not None:
+        raise InputError(f"{parse(log).text}: a mapping file makes columns of an arm, expected an arm too")
+    spec = parse(log)
+    columns, rest = _columns(spec, opened(spec))
+    t = columns.pop("t", None)
+    positions = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
+    found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
+    return Inspected(**{**vars(found), "without_numbers": rest})
+
+
+def _of_record(record: Record, t: Array | None = None) -> Inspected:
+    """The inspection of a record. t: stamps as logged [s], where they are known."""
+    units = record.units
+    channels = [_channel(k, units[k], x) for k, x in record.columns.items() if k != "t"]
+    found = _inspected(record.name, record.t if t is None else t, channels, [])
+    period = period_of(record, None)
+    seconds = None if period is None else period * record.step
+    return Inspected(**{**vars(found), "period": seconds, "remarks": record.remarks})
+
+
+def _raw(log: Log, arm: Arm, mapping: Path | str | None) -> Array:
+    """The stamps (N,) [s] as logged."""
+    blocks = list(open_source(log, arm, mapping).blocks(time_alone=True))
+    return np.concatenate(blocks)[:, 0]
+
+
+def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Columns of numbers of the part of a log, and names of the other columns. Raises InputError."""
+    names = tuple(dict.fromkeys(reader.names))
+    if "t" not in names and (spec.begin, spec.end) != (-math.inf, math.inf):
+        raise InputError(f"{spec.text}: the column t [s] is missing, expected one to cut a part by")
+    rest: tuple[str, ...] = ()
+    try:
+        table = _table(reader, names)
+    except InputError:
+        table, names, rest = _one_by_one(reader, names)
+    columns = dict(zip(names, table.T, strict=True))
+    if "t" in columns:
+        inside = (columns["t"] >= spec.begin) & (columns["t"] < spec.end)
+        columns = {name: values[inside] for name, values in columns.items()}
+    if not columns or not len(next(iter(columns.values()))):
+        raise InputError(f"{spec.text}: found no numbers")
+    return columns, rest
+
+
+def _one_by_one(reader: Reader, names: Sequence[str]) -> tuple[Array, tuple[str, ...], tuple[str, ...]]:
+    """Columns that are numbers (N, k), their names, and the names of the others."""
+    found: dict[str, Array] = {}
+    for name in names:
+        try:
+            found[name] = _table(reader, (name,))[:, 0]
+        except InputError:
+            continue
+    table = np.stack(list(found.values()), axis=1) if found else np.empty((0, 0))
+    return table, tuple(found), tuple(name for name in names if name not in found)
+
+
+def _table(reader: Reader, names: tuple[str, ...]) -> Array:
+    blocks = [block.copy() for block in reader.blocks(names, BLOCK)]
+    return np.concatenate(blocks) if blocks else np.empty((0, len(names)))
+
+
+def _inspected(
+    name: str, t: Array | None, channels: Sequence[Channel], positions: Sequence[Array]
+) -> Inspected:
+    nan = math.nan
+    if t is None or len(t) < 2 or not np.isfinite(t).all():
+        return Inspected(name, 0 if t is None else len(t), nan, nan, nan, nan, 0, None, tuple(channels))
+    steps = np.diff(t)
+    median = float(np.median(steps))
+    jitter = float(np.max(np.abs(steps - median)) / median) if median > 0.0 else nan
+    rate = 1.0 / median if median > 0.0 else nan
+    period = None
+    if positions and median > 0.0 and np.isfinite(positions).all():
+        q = np.stack(positions, axis=1)
+        lag = period_of(Record(name, t, q, q), None) if len(t) > 8 else None
+        period = None if lag is None else lag * float(t[-1] - t[0]) / (len(t) - 1)
+    backwards = int(np.count_nonzero(steps <= 0.0))
+    begin, end = float(t[0]), float(t[-1])
+    return Inspected(name, len(t), begin, end, rate, jitter, backwards, period, tuple(channels))
+
+
+def _channel(name: str, unit: str, values: Array) -> Channel:
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return Channel(name, unit, math.nan, math.nan, None, 0.0, len(values))
+    repeated = float(np.mean(np.diff(values) == 0.0)) if len(values) > 1 else 0.0
+    low, high = float(finite.min()), float(finite.max())
+    return Channel(name, unit, low, high, _resolution(finite), repeated, len(values) - len(finite))
+
+
+def _resolution(values: Array) -> float | None:
+    """The step that all differences of readings are multiples of, None where there is none."""
+    # Two decimal readings differ by rounding alone where they were one number.
+    smallest = 1e-12 * float(np.max(np.abs(values)))
+    steps = np.diff(np.unique(values))
+    steps = steps[steps > smallest]
+    if len(steps) < 2:
+        return None
+    step = float(steps.min())
+    multiples = steps / step
+    if np.max(np.abs(multiples - np.round(multiples))) > _WHOLE:
+        return None
+    # The mean over all steps has more digits than the smallest.
+    return float(steps.sum() / np.round(multiples).sum())

@@ -1,0 +1,113 @@
+"""What is said of a log is what was put into it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import modelgen as mg
+
+ARM = """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  mixed:
+    joints:
+      - {name: a, alpha: 0, d: 0, r: 0, drive: {type: direct, ratio: 100, torque_constant: 0.05}}
+      - {name: b, type: prismatic, alpha: 0, d: 0.3, r: 0, drive: {type: none}}
+"""
+STEP = 2 * math.pi / 4096
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> mg.Arm:
+    path = tmp_path_factory.mktemp("arm") / "arms.yaml"
+    path.write_text(ARM, encoding="utf-8")
+    return mg.load_arms(path)["mixed"]
+
+
+@pytest.fixture(scope="module")
+def log() -> dict[str, np.ndarray]:
+    """200 Hz, a period of 2 s, an encoder of 4096 lines, a current renewed every fourth sample."""
+    t = np.arange(1600) / 200
+    q = np.sin(np.pi * t) + 0.3 * np.sin(3 * np.pi * t)
+    current = np.repeat(np.cos(np.pi * t[::4]), 4)
+    return {
+        "t": t,
+        "q1": STEP * np.round(q / STEP),
+        "q2": 0.1 * np.cos(np.pi * t),
+        "i1": current,
+        "tau2": np.random.default_rng(1).normal(size=len(t)),
+    }
+
+
+@pytest.mark.parametrize("with_arm", [False, True])
+def test_what_was_put_into_a_log_is_found(with_arm: bool, arm: mg.Arm, log: dict[str, np.ndarray]) -> None:
+    found = mg.inspect_log(log, arm if with_arm else None)
+    assert found.samples == 1600
+    assert found.rate == pytest.approx(200)
+    assert found.jitter < 1e-9
+    assert found.period == pytest.approx(2.0, abs=0.006)
+    by_name = {c.name: c for c in found.channels}
+    assert list(by_name) == ["q1", "q2", "i1", "tau2"]
+    assert by_name["q1"].resolution == pytest.approx(STEP, rel=1e-9)
+    assert by_name["tau2"].resolution is None
+    assert by_name["i1"].repeated == pytest.approx(0.75, abs=0.01)
+    assert by_name["tau2"].repeated == 0.0
+    assert (by_name["q2"].low, by_name["q2"].high) == (log["q2"].min(), log["q2"].max())
+    units = {"q1": "rad", "q2": "m", "i1": "A", "tau2": "N"}
+    assert all(c.unit == (units[c.name] if with_arm else "") for c in found.channels)
+    assert "1600 samples" in repr(found)
+    assert len(repr(found)) < 200
+    assert "<table>" in found._repr_html_()
+
+
+def test_time_that_jitters_and_runs_backwards_is_said(log: dict[str, np.ndarray]) -> None:
+    t = log["t"].copy()
+    t[100] += 0.002
+    t[500] = t[498]
+    found = mg.inspect_log({"t": t, "q1": log["q1"]})
+    assert found.to_json()["backwards"] == 1
+    assert found.jitter == pytest.approx(2.0)  # from 498 to 500 and on to 501
+    found = mg.inspect_log({"t": np.delete(log["t"], [100, 101]), "q1": np.delete(log["q1"], [100, 101])})
+    assert found.jitter == pytest.approx(2.0)
+
+
+def test_a_file_is_said_to_hold_what_its_table_holds(tmp_path: Path, log: dict[str, np.ndarray]) -> None:
+    path = tmp_path / "log.csv"
+    rows = [",".join([*log, "mode"])]
+    table = np.stack(list(log.values()), axis=1)
+    rows += [",".join([*(repr(float(x)) for x in row), "auto"]) for row in table]
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    of_file, of_table = mg.inspect_log(path).to_json(), mg.inspect_log(log).to_json()
+    assert of_file.pop("without_numbers") == ["mode"]
+    assert of_table.pop("without_numbers") == []
+    assert of_file.pop("log") == str(path)
+    assert of_table.pop("log") == "log"
+    assert of_file == of_table
+    assert mg.inspect_log(f"{path}@2:4").samples == 400
+
+
+def test_a_log_without_time_and_one_that_is_missing(tmp_path: Path, arm: mg.Arm) -> None:
+    found = mg.inspect_log({"q1": [1.0, 2.0, 4.0]})
+    assert found.to_json()["rate_hz"] is None
+    assert found.channels[0].high == 4.0
+    with pytest.raises(mg.InputError, match="there is no such log"):
+        mg.inspect_log(tmp_path / "absent.csv")
+    with pytest.raises(mg.InputError, match="expected an arm too"):
+        mg.inspect_log({"q1": [1.0]}, mapping="mapping.yaml")
+
+
+def test_the_columns_of_a_record_are_a_log(arm: mg.Arm, log: dict[str, np.ndarray]) -> None:
+    record = mg.read_log(log, arm)
+    assert record.units == {"t": "s", "q1": "rad", "q2": "m", "i1": "A", "tau2": "N"}
+    again = mg.read_log(record.columns, arm)
+    for name, values in record.columns.items():
+        assert np.array_equal(values, again.columns[name])
+        assert np.array_equal(values, log[name]) or name == "t"
+    assert len(repr(record)) < 200
+    assert "<table>" in record._repr_html_()
+    assert mg.inspect_log(record, arm).to_json() == mg.inspect_log(log, arm).to_json()
