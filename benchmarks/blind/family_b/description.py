@@ -40,7 +40,9 @@ def arms_text(world: World, plan: Plan, rng: np.random.Generator) -> str:
             f"        limits: {{{_limits(world, axis)}}}",
             f"        drive: {_drive(world, plan, axis)}",
         ]
-        lines.append(f"        effects: [{', '.join(world.effects[number - 1])}]")
+        lines.append(
+            f"        effects: [{', '.join(_law(world, plan, axis, e) for e in world.effects[number - 1])}]"
+        )
     if plan.links is not None:
         lines.append("    links:")
         for number, axis in enumerate(world.axes, start=1):
@@ -74,6 +76,14 @@ def _limits(world: World, axis: int) -> str:
     speed = 2 * world.speed[axis]
     rates = f"velocity: {speed:.3f}, acceleration: {8 * speed:.3f}"
     return f"position: [{low:.6f}, {high:.6f}], {rates}, effort: {effort:.2f}"
+
+
+def _law(world: World, plan: Plan, axis: int, effect: str) -> str:
+    if effect != "stribeck_friction":
+        return effect
+    joint = world.joints[axis]
+    speed = joint["sped"] * unit(world, plan, axis)
+    return f"{{stribeck_friction: {{velocity: {speed!r}, exponent: {joint['shape']!r}}}}}"
 
 
 def _drive(world: World, plan: Plan, axis: int) -> str:

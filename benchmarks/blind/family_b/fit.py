@@ -65,6 +65,10 @@ def _equations(world: World, plan: Plan, taken: Record) -> dict[int, tuple[Array
             "coulomb_friction": np.sign(speed),
             "drive_inertia": g * a[:, axis] + gg * v[:, axis] ** 2,
         }
+        if joint.get("sped"):
+            own["stribeck_friction"] = np.exp(-(np.abs(speed / joint["sped"]) ** joint["shape"])) * np.sign(
+                speed
+            )
         moves = np.abs(v[:, axis]) > STICKS * np.abs(v[:, axis]).max()  # dry friction is unknown elsewhere
         x = np.zeros((len(shared) + sum(count), len(q)))
         x[: len(shared)] = shared[:, :, axis] / (g * joint["kt"])

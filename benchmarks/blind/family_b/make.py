@@ -30,6 +30,8 @@ DIRECT = ("backlash", "joint_flexibility")  # the plant's levers are stiff
 LAST = ("drive_inertia",)  # at the first joint it is one with the link's inertia
 NOT_FIRST = ("drive_gain_error",)
 LOST = ("joint_flexibility", "backlash", "presliding")
+FALLING = ("stribeck_friction", "presliding")  # not where another law of this kind is known
+KNOWN = 0.25  # share of the arms with a known Stribeck friction
 RUN_ON = 0.3  # share of the cases of warm-up whose records follow each other without a pause
 TRIES = 8  # runs of the plant in search of a strength
 CLOSE = 0.03  # share of s - 1 to which a size is met
@@ -73,6 +75,8 @@ def _make(seed: int, attempt: int, kind: str, size: float | None, setting: str) 
     if kind == "payload_change":
         plan = replace(plan, train=max(plan.train, 2))
     world = worlds.draw(rng, _shape(rng, kind))
+    if kind not in FALLING and rng.random() < KNOWN:
+        world = worlds.striking(rng, world)
     hidden = _hide(rng, world, plan, kind)
     noise_seed = int(rng.integers(2**31))
     angles = [command(world, plan, noise_seed, k) for k in range(plan.train + 1)]

@@ -88,10 +88,11 @@ def draw(rng: np.random.Generator, setting: str) -> Plan:
     repeating = setting != "ordinary" and not (setting == "mixed" and rng.random() < 0.4)
     if repeating:
         seconds = period * max(2, int(seconds / period))
+    coarsest = 12 if setting == "mixed" else 16 if rate <= 100 else 15
     if side == "motor":
         bits = tuple(int(b) for b in rng.integers(12, 18, 3))
     else:
-        bits = tuple(int(b) for b in rng.integers(16 if rate <= 100 else 15, 21, 3))
+        bits = tuple(int(b) for b in rng.integers(coarsest, 21, 3))
     return Plan(
         train=train,
         rate=rate,

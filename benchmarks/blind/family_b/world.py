@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from blind.case import Array
-from blind.family_b.equations import lumped, still
+from blind.family_b.equations import lumped, motor, still
 
 GRAVITY = 9.81
 SHAPES = ("planar", "spatial", "planar_levered", "spatial_levered")
@@ -189,3 +189,19 @@ def _lever(rng: np.random.Generator, middle: float) -> dict[str, float]:
         "length0": rounded(ends[0], 5),
         "per_rad": float(rng.choice([0.002, 0.004, 0.005])) / (2 * math.pi),
     }
+
+
+def striking(rng: np.random.Generator, world: World) -> World:
+    """The same arm whose dry friction falls with the speed at one joint, as its user knows."""
+    number = int(rng.integers(1, len(world.axes) + 1))
+    axis = world.axes[number - 1]
+    joint = world.joints[axis]
+    gear = abs(float(motor(joint, world.centre[axis : axis + 1])[1][0]))
+    values = {
+        "excess": world.scale[axis] * rng.uniform(0.1, 0.3),
+        "sped": rounded(gear * world.speed[axis] * rng.uniform(0.05, 0.2), 3),
+        "shape": float(rng.choice([1.0, 2.0])),
+    }
+    effects = list(world.effects)
+    effects[number - 1] = (*effects[number - 1], "stribeck_friction")
+    return replace(world.joint(number, **values), effects=tuple(effects))
