@@ -50,7 +50,7 @@ def judged(said: dict[str, Any], answer: dict[str, Any]) -> Verdict:
     spent = answer.get("cpu_s")
     if "diagnosis" not in answer:
         verdict = "refused" if "refused" in answer else "failed"
-        return Verdict(not hidden and verdict == "refused", (), False, hidden, 0, verdict, None, spent)
+        return Verdict(False, (), False, hidden, 0, verdict, None, spent)
     found = answer["diagnosis"]
     right = [c for c in found["causes"] if hidden and _is(truth, c)]
     wrong = [c for c in found["causes"] if c not in right]

@@ -57,6 +57,7 @@ def test_causes_of_lost_motion_are_siblings() -> None:
 
 def test_a_failure_is_never_exact() -> None:
     assert not judge.judged(truth(None), {"failed": "Traceback"}).exact
+    assert not judge.judged(truth(None), {"refused": "no"}).exact
     assert judge.judged(truth("spring", 1), {"refused": "no"}).missed
 
 

@@ -138,6 +138,7 @@ def _without(effect: str, number_of: str) -> Maker:
 JOINT_LAWS: dict[str, Maker] = {
     "viscous_friction": _without("viscous_friction", "viscous"),
     "coulomb_friction": _without("coulomb_friction", "coulomb"),
+    "drive_inertia": _without("drive_inertia", "inertia"),
     "friction_offset": _law("friction_offset", "constant torque", _offset),
     "asymmetric_viscous_friction": _law("asymmetric_viscous_friction", "torque by |speed|", _skew),
     "stribeck_friction": _law(
