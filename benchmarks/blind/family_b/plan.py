@@ -11,6 +11,7 @@ SETTINGS = ("four", "two", "ordinary", "lost_motion", "mixed")
 RATES = (50, 100, 125, 200, 250, 500, 1000)
 TIMINGS = ("instant", "previous", "following", "late", "early")
 FINEST = 17  # bits of a turn, of encoders at a motor
+NOISE = (0.02, 0.15)  # of a sixth of the current's limit, about the current that flows
 EVERY_TWIST = 0.15  # share of the cases of "mixed" with repeated readings
 
 
@@ -102,7 +103,7 @@ def draw(rng: np.random.Generator, setting: str) -> Plan:
         bits=(bits[0], bits[1], bits[2]),
         timing=timing,
         lag=float(np.round(rng.uniform(0.2e-3, 3e-3), 5)),
-        noise=float(rng.uniform(0.01, 0.05)),
+        noise=float(np.exp(rng.uniform(*np.log(NOISE)))),
         repeats=repeats,
         on_and_on=False,
         links=float(rng.choice([0.0, 0.05, 0.15])) if rng.random() < 0.7 else None,
