@@ -46,7 +46,7 @@ PACKAGES = (
     "jobs",
 )
 GUIDES = {
-    "Start": ["tutorial", "theory"],
+    "Start": ["tutorial", "python", "theory"],
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
     "What a model lacks": ["diagnosing", "effects", "fleet", "case-studies", "diagnosis_method"],
