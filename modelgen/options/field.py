@@ -85,9 +85,18 @@ def documented(*, fields_beside: Mapping[str, str] | None = None) -> Callable[[t
 
 
 def changed(options: T, changes: Mapping[str, Any]) -> T:
-    """Options with other values. Raises InputError for a name that there is not."""
+    """Options with other values; whole numbers become floats where the field is one, as on the command line.
+
+    Raises InputError for a name that there is not.
+    """
     known = [f.name for f in fields(options)]  # type: ignore[arg-type]
     for name in changes:
         if name not in known:
             raise InputError(f"found the option '{name}'{suggest(name, known)}")
-    return replace(options, **changes)  # type: ignore[type-var]
+    made = replace(options, **changes)  # type: ignore[type-var]
+    whole = {
+        f.name: float(value)
+        for f in fields(made)  # type: ignore[arg-type]
+        if f.type in ("float", "float | None") and type(value := getattr(made, f.name)) is int
+    }
+    return replace(made, **whole) if whole else made  # type: ignore[type-var]
