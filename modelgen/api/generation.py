@@ -55,7 +55,7 @@ class Generated(Shown):
         }
 
     def shown(self) -> Sequence[str | Table]:
-        """Lines and tables of `modelgen generate`.
+        """The table of `modelgen generate`, a line of at most 80 columns per arm.
 
         Returns
         -------
@@ -67,7 +67,7 @@ class Generated(Shown):
                 arm.name,
                 str(arm.joints),
                 f"{arm.standard_parameters} → {arm.base_parameters}",
-                ", ".join(_costs(arm.operations)),
+                str(total(arm.operations["inverse_dynamics"])),
                 str(len(arm.files) + len(arm.artefacts)),
             ]
             for arm in self.arms
@@ -76,10 +76,22 @@ class Generated(Shown):
             "arm": "left",
             "joints": "right",
             "parameters\nstandard → base": "right",
-            "operations (mul + add + neg), base/standard parameters": "left",
+            "inverse dynamics\nmul + add + neg": "right",
             "files": "right",
         }
-        return [Table("", columns, rows)]
+        return [Table("", columns, rows, ("arm",))]
+
+    def details(self) -> Table:
+        """Operations of every function, as `modelgen generate --verbose` prints them.
+
+        Returns
+        -------
+        Table
+            By arm; a function and its twin for the standard parameters share an entry.
+        """
+        rows = [[arm.name, ", ".join(_costs(arm.operations))] for arm in self.arms]
+        heading = "operations (mul + add + neg), base/standard parameters"
+        return Table("", {"arm": "left", heading: "left"}, rows, ("arm",))
 
     def __repr__(self) -> str:
         arms = ", ".join(arm.name for arm in self.arms)

@@ -61,10 +61,11 @@ def refused(done: "Done | subprocess.CompletedProcess[str]") -> str:
 
 
 def test_generate_prints_a_table_and_writes_the_arms(tmp_path: Path, checkout: Path) -> None:
-    done = outside("generate", "--arm", "rx90", "--arm", "gravity_arm", cwd=tmp_path, checkout=checkout)
+    arms = "--arm", "rx90", "--arm", "gravity_arm"
+    done = outside("generate", *arms, "--verbose", cwd=tmp_path, checkout=checkout)
     assert done.returncode == 0, done.stderr
     assert sorted(p.name for p in (tmp_path / "generated").iterdir()) == ["gravity_arm", "rx90"]
-    (row,) = [line for line in done.stdout.splitlines() if line.strip().startswith("rx90")]
+    row, _ = [line for line in done.stdout.splitlines() if line.strip().startswith("rx90")]
     assert row.split()[:5] == ["rx90", "6", "78", "→", "52"]
     assert int(row.split()[-1]) == len(content(tmp_path / "generated" / "rx90"))
     cost = {
@@ -75,6 +76,10 @@ def test_generate_prints_a_table_and_writes_the_arms(tmp_path: Path, checkout: P
     assert f"jacobian {cost['jacobian']}" in text
     assert "\x1b" not in done.stdout + done.stderr
     assert done.stderr == ""
+    longest = max(SHIPPED, key=len)
+    short = call("generate", "--arm", "rx90", "--arm", longest, cwd=tmp_path, checkout=checkout).stdout
+    assert max(map(len, short.splitlines())) <= 80
+    assert [line.split()[0] for line in short.splitlines() if " → " in line][1:] == ["rx90", longest]
 
 
 def test_generated_files_depend_neither_on_the_hash_seed_nor_on_processes(

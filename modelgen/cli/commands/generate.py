@@ -17,6 +17,7 @@ OnlyArms = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
 ]
 OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
+Verbose = Annotated[bool, typer.Option("--verbose", help="Operations of every function too.")]
 Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
 
 
@@ -31,12 +32,13 @@ def generate(
     options: ModelOptions,
     generation: GenerationOptions,
     parameters: Parameters = None,
+    verbose: Verbose = False,
     as_json: Json = False,
 ) -> None:
     """Write C99 and CasADi functions of every arm, with identified parameters folded in where given."""
     from modelgen.api.generation import generate as generated
     from modelgen.cli.arms import selected
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, print_table, progress_bar
 
     file, found = selected(arms, arm or [])
     with progress_bar() as progress:
@@ -47,6 +49,8 @@ def generate(
         for note in one.notes:
             typer.echo(f"{file}: {one.name}: {note}", err=True)
     print_result(result, as_json=as_json)
+    if verbose and not as_json:
+        print_table(result.details())
     if result.excess and result.budget is not None:
         for above in result.excess:
             typer.echo(
