@@ -49,8 +49,15 @@ GUIDES = {
     "Start": ["tutorial", "python", "theory"],
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
-    "What a model lacks": ["diagnosing", "effects", "fleet", "case-studies", "diagnosis_method"],
-    "Working on modelgen": ["architecture", "glossary"],
+    "What a model lacks": [
+        "diagnosing",
+        "effects",
+        "fleet",
+        "case-studies",
+        "diagnosis_method",
+        "thresholds",
+    ],
+    "Working on modelgen": ["architecture", "glossary", "thresholds"],
 }
 
 

@@ -10,8 +10,8 @@ from typing import Any
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
 from modelgen.description import Arm, loads
-from modelgen.diagnosis.extended.drive_inertia import described_by
-from modelgen.diagnosis.extended.findings import Estimate, NamedCause
+from modelgen.diagnosis.extended import Estimate, NamedCause
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose as diagnose_records
 from modelgen.diagnosis.pipeline import records
 from modelgen.diagnosis.result import Diagnosis as Found
@@ -66,9 +66,7 @@ class Diagnosis(Shown):
     def extended_arm(self) -> Arm:
         """The arm with the causes, as <arm>_extended.yaml describes it."""
         d = self.found
-        trials = [c.trial for c in d.selection.causes]
-        causes = [(*t.candidate.place, t.parameters) for t in trials]
-        text = extended_yaml(d.arm, [*described_by(d.inertias), *causes])
+        text = extended_yaml(d.arm, d.added)
         return loads(text, f"{d.arm.name}_extended.yaml", known_effects())[d.arm.name]
 
     def to_json(self) -> dict[str, Any]:
@@ -164,7 +162,7 @@ def diagnose(
     test : log
         The log that nothing but the final errors looks at.
     options : DiagnosisOptions, optional
-        Band, period, effects to ask for.
+        Band, period, effects to ask for, thresholds.
     progress : callable, optional
         It is told what is done, how much of it, and of how much.
     **changes
@@ -178,7 +176,7 @@ def diagnose(
     Raises
     ------
     InputError
-        For logs that cannot be read, overlap or cannot answer.
+        For logs that cannot be read, overlap or cannot answer, and for a threshold that there is not.
 
     References
     ----------
@@ -198,14 +196,16 @@ def diagnosed(
 ) -> Diagnosis:
     """The same with a pen that begins to draw before the experiment is looked for. Raises InputError."""
     wanted = [_place(text) for text in options.effects]
+    thresholds = USUAL.with_values(options.thresholds)
     progress("reading", 0, None)
     found = diagnose_records(
         arm,
-        records(arm, train, test, options.mapping),
+        records(arm, train, test, options.mapping, thresholds.dataset),
         cutoff=options.cutoff,
         period=options.period,
         progress=progress,
         experiment=options.experiment,
+        thresholds=thresholds,
         effects=wanted,
         where=Where(options.processes),
         known=None if pen is None else lambda found: pen.give(sketches(found)),

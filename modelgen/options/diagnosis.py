@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from modelgen.options.field import documented, option
 
 
-@documented()
+@documented(
+    fields_beside={"thresholds": "Other values of thresholds by name, as docs/thresholds.md lists them."}
+)
 @dataclass(frozen=True)
 class DiagnosisOptions:
     """How a model's gaps are looked for in logs; see docs/diagnosing.md."""
@@ -34,3 +36,4 @@ class DiagnosisOptions:
     processes: int | None = option(
         None, "Processes. Default: one per processor.", "N", ["-j", "--jobs"], least=1
     )
+    thresholds: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)

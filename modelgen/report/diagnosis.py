@@ -9,10 +9,9 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.diagnosis.adequacy.lack_of_fit import place
-from modelgen.diagnosis.extended.findings import NamedCause
+from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
+from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
 from modelgen.effects import CATALOGUE, Family
 from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
 from modelgen.report.experiment import described, picture
@@ -164,8 +163,8 @@ def assumptions(d: Diagnosis) -> list[str]:
 
 def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
     """Heading and rows of every turn that had candidates."""
-    headings = ["Candidates", *["Candidates, with what was taken before"] * len(d.selection.turns)]
-    ranked = zip(headings, map(_ranked, d.selection.turns), strict=False)
+    headings = ["Candidates", *["Candidates, with what was taken before"] * len(d.ranking)]
+    ranked = zip(headings, map(_ranked, d.ranking), strict=False)
     return [(heading, rows) for heading, rows in ranked if rows]
 
 
@@ -236,7 +235,7 @@ def _where(d: Diagnosis) -> str:
     """Place of the part that repeats most."""
     f = d.lack_of_fit
     assert f is not None
-    found = place(f, d.selection.system.rows)
+    found = d.lack_of_fit_part
     joint = f"joint {f.worst.joint + 1}"
     return joint if found is None else f"{joint}, {found[0]} from {found[1]:.2f} to {found[2]:.2f} s"
 

@@ -6,7 +6,7 @@ import numpy as np
 from markupsafe import Markup
 
 from modelgen.dataset.drives import drives_of
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.figures import COLOURS
 from modelgen.numeric import Array

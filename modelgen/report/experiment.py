@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.diagnosis.experiment.experiment import STEM, Experiment, differences
-from modelgen.diagnosis.experiment.trajectory import PERIODS
+from modelgen.diagnosis.experiment import STEM, Experiment, differences
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.excitation.writing import set_points, trajectory
 from modelgen.figures import COLOURS
@@ -23,7 +22,7 @@ def followed(e: Experiment) -> str:
     by_trajectory = e.proposal is not None and e.best.startswith("run ")
     figure = e.evidence if by_trajectory else first
     if by_trajectory and figure is not None:
-        figure *= e.periods / PERIODS
+        figure *= e.periods / e.run
     said = "" if figure is None else f"; expected delta BIC {figure:.3g}"
     return f"{e.best}{said}"
 
@@ -65,7 +64,7 @@ def picture(e: Experiment) -> Sketch:
     axes[0, 0].legend(loc="upper right", fontsize=7)
     period = made.problem.settings.period
     t = rows.prepared.t
-    shown = (t >= period) & (t < 2 * period) if PERIODS > 1 else np.ones(len(t), dtype=bool)
+    shown = (t >= period) & (t < 2 * period) if e.run > 1 else np.ones(len(t), dtype=bool)
     for axis, (text, joint, left, noise) in zip(axes[1:, 0], pairs, strict=True):
         axis.axhspan(-noise, noise, color="#dddddd", label="noise")
         axis.plot(t[shown] - t[shown][0], left[shown], color=COLOURS[1])
@@ -84,9 +83,9 @@ def _trajectory(e: Experiment) -> str:
     text = (
         f"{STEM}.csv holds a period of {s.period:.4g} s, {STEM}_set_points.csv the same for a position "
         f"controller in motor coordinates; {100 * used:.0f} % of the tightest limit is used. The evidence is "
-        f"that of {PERIODS} periods with the noise of the training records"
+        f"that of {e.run} periods with the noise of the training records"
     )
-    text += "." if e.periods == PERIODS else f"; {e.periods} tell the causes apart."
+    text += "." if e.periods == e.run else f"; {e.periods} tell the causes apart."
     if e.assumed:
         text += f" Not in the description, taken from the training records: {', '.join(e.assumed)}."
     return text

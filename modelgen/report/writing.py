@@ -7,7 +7,6 @@ import shutil
 from pathlib import Path
 
 from modelgen.description import load
-from modelgen.diagnosis.extended.drive_inertia import described_by
 from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
@@ -25,8 +24,6 @@ def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None)
     code: False leaves the code out. pen: draws the
     pictures, a new one in this process by default. Raises InputError.
     """
-    trials = [c.trial for c in d.selection.causes]
-    causes = [(*t.candidate.place, t.parameters) for t in trials]
     name = d.arm.name
     new, there = out / ".new", out.exists()  # on the file system of `out`, whatever that is
     pen, wanted = pen or Pen(), sketches(d)
@@ -34,7 +31,7 @@ def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None)
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
-        extended = extended_yaml(d.arm, [*described_by(d.inertias), *causes])
+        extended = extended_yaml(d.arm, d.added)
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
         if code:
             values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}

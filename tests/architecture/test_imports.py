@@ -47,7 +47,7 @@ ORDER = (
 # The same of the diagnosis.
 STAGES = (
     "__init__",
-    "thresholds",
+    "options",
     "equations",
     "evidence",
     "candidates",

@@ -5,6 +5,7 @@ from typing import cast
 
 import numpy as np
 import pytest
+from diagnosis_support import equations_of
 from numpy.random import default_rng
 from scipy.signal import lfilter
 
@@ -33,7 +34,7 @@ def judged(seed: int, sizes: tuple[float, ...], *, unlike: bool = False) -> floa
         shown = 0.0 * cause if unlike and k else cause
         columns.append(np.stack([*base, shown], axis=1)[:, None, :])
     parts = [([row], [k]) for k, row in enumerate(rows)]
-    return agreement(parts, rows, columns, 3, [PERIOD] * len(rows))
+    return agreement(parts, equations_of(rows, [PERIOD] * len(rows)), columns, 3)
 
 
 @pytest.mark.parametrize("count", [2, 3])

@@ -8,6 +8,8 @@ import pytest
 from modelgen.description import load
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.effects import CATALOGUE, known_effects
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
@@ -27,5 +29,7 @@ def test_drag_of_a_single_joint_is_friction_with_the_square_of_its_speed(
         Candidate("fluid_drag", None),
     ]
     base = np.ones(len(model.grouping.base))
-    (found,) = aliases([Candidate("fluid_drag", None)], pool, Evaluator(arm), model, base)
+    (found,) = aliases(
+        [Candidate("fluid_drag", None)], pool, Equations(model, Evaluator(arm), [], [], USUAL), base
+    )
     assert [c.effect for c in found] == same

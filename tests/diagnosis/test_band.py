@@ -8,11 +8,11 @@ from diagnosis_support import ARM, COUNT, coarse, three
 
 from modelgen.dataset import Record, prepare
 from modelgen.dataset.processing.periods import period_of
-from modelgen.diagnosis.equations.band import Equations, bands
+from modelgen.diagnosis.equations import Band, Study, bands, settings_for
 from modelgen.diagnosis.equations.position_errors import repeating_errors
 from modelgen.diagnosis.equations.rows import rows_of
-from modelgen.diagnosis.pipeline import diagnose, settings_for
-from modelgen.diagnosis.thresholds import practical
+from modelgen.diagnosis.options.thresholds import USUAL, in_band
+from modelgen.diagnosis.pipeline import diagnose
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
@@ -20,34 +20,34 @@ EXACT = three("friction_offset", 1, 0.15, seed=8)
 SEEN = [coarse(r) for r in EXACT]
 
 
-def made(records: list[Record], narrower: bool = True) -> Equations:
+def made(records: list[Record], narrower: bool = True) -> Band:
     lengths = [period_of(r, None) for r in records[:-1]]
-    settings, model = settings_for(records, None), build_model(ARM)
-    return next(bands(model, Evaluator(ARM), records, lengths, settings, narrower=narrower))
+    settings, model = settings_for(records, None, USUAL), build_model(ARM)
+    return next(bands(Study(model, Evaluator(ARM), records, lengths, settings, USUAL, narrower)))
 
 
 def test_coarse_positions_alone_narrow_the_band() -> None:
     exact, seen, wide = made(EXACT), made(SEEN), made(SEEN, narrower=False)
-    assert exact.narrowed == wide.narrowed == 1.0
+    assert exact.equations.narrowed == wide.equations.narrowed == 1.0
     assert exact.chosen.cutoff == wide.chosen.cutoff == 18.0
-    assert seen.narrowed == pytest.approx(18.0 / seen.chosen.cutoff)
-    assert seen.narrowed > 2.0
+    assert seen.equations.narrowed == pytest.approx(18.0 / seen.chosen.cutoff)
+    assert seen.equations.narrowed > 2.0
     # Errors of the positions lose more than what is white: power of accelerations grows as f^5.
-    assert (seen.blur < wide.blur / seen.narrowed**2).all()
+    assert (seen.equations.blur < wide.equations.blur / seen.equations.narrowed**2).all()
 
 
 def test_no_more_than_the_blur_comes_of_the_errors() -> None:
     """Against the same equations of positions without errors."""
     seen, evaluator, model = made(SEEN), Evaluator(ARM), build_model(ARM)
     total, count = np.zeros(2), np.zeros(2)
-    for record, rows in zip(EXACT, seen.rows, strict=False):
+    for record, rows in zip(EXACT, seen.equations.rows, strict=False):
         exact = replace(prepare(record, seen.chosen), awake=rows.prepared.awake)  # of the same samples
         true = rows_of(evaluator, model, exact, seen.theta, rows.baseline)
         left = (true.effort - rows.effort) - (true.columns - rows.columns) @ seen.theta
         total += (left**2 * rows.moving).sum(axis=0)
         count += rows.moving.sum(axis=0)
-    assert (0.2 * seen.blur < total / count).all()
-    assert (total / count < 1.5 * seen.blur).all()
+    assert (0.2 * seen.equations.blur < total / count).all()
+    assert (total / count < 1.5 * seen.equations.blur).all()
 
 
 def test_a_cause_that_the_usual_band_loses_is_named_alone() -> None:
@@ -64,18 +64,18 @@ def test_the_gain_that_counts_is_the_same_cause_in_white_noise() -> None:
     for narrowed in (1.0, 2.0, 5.0):
         in_usual = 100 * (1 - np.sqrt(noise / (noise + cause)))
         in_narrow = 100 * (1 - np.sqrt(noise / narrowed / (noise / narrowed + cause)))
-        assert practical(in_usual, narrowed) == pytest.approx(in_narrow)
+        assert in_band(in_usual, narrowed) == pytest.approx(in_narrow)
 
 
 def test_errors_of_steps_repeat_with_the_motion() -> None:
     seen = made(SEEN)
-    assert repeating_errors(seen.rows, seen.periods).all()
+    assert repeating_errors(seen.equations).all()
     random = np.random.default_rng(3)
     shaken = [
         coarse(replace(r, q=r.q + np.array([0.0, COUNT]) * random.normal(size=r.q.shape))) for r in EXACT
     ]
     other = made(shaken)
-    assert list(repeating_errors(other.rows, other.periods)) == [True, False]
-    assert not repeating_errors(other.rows, [None, None]).any()
+    assert list(repeating_errors(other.equations)) == [True, False]
+    assert not repeating_errors(replace(other.equations, periods=[None, None])).any()
     exact = made(EXACT)
-    assert not repeating_errors(exact.rows, exact.periods).any()
+    assert not repeating_errors(exact.equations).any()

@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
-from diagnosis_support import BARE, UNUSED
+from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 
 from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, with_causes
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System, covariance
+from modelgen.diagnosis.evidence.system import covariance
 from modelgen.diagnosis.selection.backward import backward_elimination
 from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.validation.form_error import with_causes
 from modelgen.numeric import Array
 
 LONG = 1500
@@ -30,7 +29,7 @@ def kept(effects: tuple[str, ...], sizes: tuple[float, ...], seed: int) -> list[
     random = default_rng([11, seed])
     made = [record(random, np.array(sizes)) for _ in range(2)]
     rows = [r for r, _ in made]
-    before = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+    before = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
     causes = []
     for k, effect in enumerate(effects):
         columns = [own[:, k, None, None] for _, own in made]
@@ -39,8 +38,8 @@ def kept(effects: tuple[str, ...], sizes: tuple[float, ...], seed: int) -> list[
         causes.append(
             Cause(FittedCandidate(Candidate(effect, 1), {}, columns, gain), gain.delta_bic, 5.0, 5.0)
         )
-    system = System(rows, with_causes(rows, [c.trial for c in causes]), before.periods)
-    found, final = backward_elimination(causes, rows, system, 15.0, None, 1.0)
+    system = system_of(rows, with_causes(before.equations, [c.trial for c in causes]), before.periods)
+    found, final = backward_elimination(causes, system, 15.0)
     assert final.columns[0].shape[2] == 3 + len(found)
     return [c.trial.candidate.effect for c in found]
 
@@ -68,7 +67,7 @@ def test_the_covariance_is_the_scatter_of_estimates() -> None:
     estimates, stated = [], []
     for seed in range(40):
         rows = [record(default_rng([5, seed, k]), np.zeros(0))[0] for k in range(2)]
-        system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+        system = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
         estimates.append(np.linalg.lstsq(system.white.matrix, system.white.right, rcond=None)[0])
         stated.append(np.sqrt(np.diag(covariance(system))))
     np.testing.assert_allclose(np.std(estimates, axis=0), np.mean(stated, axis=0), rtol=0.35)

@@ -12,6 +12,7 @@ from hidden.judging import FOUND
 from hidden.running import run_here
 
 from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.options.thresholds import ValidationThresholds
 from modelgen.diagnosis.validation.cross_validation import Split, folds
 
 # A wave of friction over the joint, tried as a parabola on records that pass different parts of it.
@@ -32,6 +33,9 @@ def test_the_cause_and_nothing_else_is_named(case: Case, tmp_path: Path) -> None
     assert outcome.result == FOUND, outcome
 
 
+MOST = ValidationThresholds().max_records_one_by_one
+
+
 def at(q: list[float]) -> Rows:
     prepared: Any = SimpleNamespace(q=np.array(q)[:, None], rows=np.arange(len(q)))
     return Rows(prepared, np.zeros((len(q), 1)), np.zeros((len(q), 1, 0)), np.ones((len(q), 1), bool), BARE)
@@ -43,6 +47,6 @@ def test_a_law_of_the_position_is_tried_where_its_fit_has_been() -> None:
     def tried(rows: list[Rows], split: Split) -> list[list[bool]]:
         return [list(r.moving[:, 0]) for _, (part, _) in folds(rows, split) for r in part]
 
-    assert tried([one, other], Split(within=0)) == [[False, True, True], [True, False, True]]
-    assert tried([one, other], Split()) == [[True] * 3] * 2
-    assert tried([one, far], Split(within=0)) == [[False] * 3, [False] * 2]
+    assert tried([one, other], Split(MOST, within=0)) == [[False, True, True], [True, False, True]]
+    assert tried([one, other], Split(MOST)) == [[True] * 3] * 2
+    assert tried([one, far], Split(MOST, within=0)) == [[False] * 3, [False] * 2]

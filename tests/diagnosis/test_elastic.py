@@ -8,6 +8,7 @@ from hidden.recovery import reachable
 
 from modelgen.description import load
 from modelgen.diagnosis.equations.rows import motion_of
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose, records
 from modelgen.evaluation import Evaluator
 
@@ -18,7 +19,7 @@ def test_the_extended_arm_recovers_what_the_joint_costs(tmp_path: Path) -> None:
     make(SOFT, tmp_path)
     arm = load(tmp_path / "arms.yaml")["arm"]
     train, test = [str(tmp_path / f"train_{x}.csv") for x in "ab"], str(tmp_path / "test.csv")
-    found = diagnose(arm, records(arm, train, [test], None), experiment=False)
+    found = diagnose(arm, records(arm, train, [test], None, USUAL.dataset), experiment=False)
     assert [(c.effect, c.joint) for c in found.causes] == [("joint_flexibility", 2)]
     before, after = found.errors.before[1], found.errors.after[1]
     floor = reachable(SOFT, tmp_path)[1]

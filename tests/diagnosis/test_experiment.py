@@ -18,14 +18,13 @@ from modelgen.description import Arm, load
 from modelgen.diagnosis.candidates.candidate import Candidate, candidates
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.candidates.search import Search
-from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.equations import Equations, estimated, rows_twice, settings_for
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
 from modelgen.diagnosis.experiment.experiment import Experiment
-from modelgen.diagnosis.experiment.motions import Setup, stage
-from modelgen.diagnosis.experiment.trajectory import MARGIN, Proposal, propose, worth
-from modelgen.diagnosis.pipeline import settings_for
+from modelgen.diagnosis.experiment.motions import Setup, setup
+from modelgen.diagnosis.experiment.trajectory import Proposal, propose, worth
+from modelgen.diagnosis.options.thresholds import USUAL, ExperimentThresholds
 from modelgen.effects import known_effects
 from modelgen.evaluation import Evaluator
 from modelgen.excitation.problem import problem
@@ -78,19 +77,19 @@ class Scene:
 
     def trials(self, records: list[Record]) -> tuple[list[FittedCandidate], System, Setup]:
         """Both members fitted to the records."""
-        chosen = choose(records, settings_for(records, None))
+        chosen = choose(records, settings_for(records, None, USUAL))
         prepared = [prepare(r, chosen) for r in records]
-        rows = rows_twice(self.evaluator, self.model, prepared, estimated(self.model))
+        rows = rows_twice(self.evaluator, self.model, prepared, estimated(self.model, USUAL.equations))
         period = round(PERIOD / records[0].step)
         periods = [period // chosen.factor if period % chosen.factor == 0 else None for _ in records]
-        system = System(rows, [r.columns for r in rows], periods)
-        base = rows[0].baseline.base(system.theta)
-        search = Search(system, rows, self.evaluator, base)
-        pool = {(c.effect, c.joint): c for c in candidates(self.evaluator, rows)}
+        equations = Equations(self.model, self.evaluator, rows, periods, USUAL)
+        system = System(equations)
+        search = Search(system)
+        pool = {(c.effect, c.joint): c for c in candidates(equations)}
         found = [search.trial(pool[place]) for place in self.pair]
         assert found[0] is not None
         assert found[1] is not None
-        return [found[0], found[1]], system, stage(self.arm, self.model, self.evaluator, prepared, base)
+        return [found[0], found[1]], system, setup(self.arm, equations, system.base)
 
 
 @dataclass(frozen=True)
@@ -128,14 +127,16 @@ def judged(scene: Scene, true: int) -> tuple[list[FittedCandidate], Setup, Discr
     return (
         found,
         planned,
-        Discriminator(System(system.rows, named, system.periods), scene.evaluator, planned.base),
+        Discriminator(System(system.equations, named), system.equations, planned.base),
     )
 
 
 def proposed(scene: Scene, true: int) -> tuple[float, Proposal]:
     """Evidence that the record of the scene gives for the truth, and the trajectory proposed after it."""
     found, planned, judge = judged(scene, true)
-    result = propose(planned, judge, [hypothesis(t) for t in found], round(PERIOD / planned.step))
+    result = propose(
+        planned, judge, [hypothesis(t, ExperimentThresholds()) for t in found], round(PERIOD / planned.step)
+    )
     assert result is not None
     return beyond(found, true), result
 
@@ -163,12 +164,12 @@ def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: 
     if beside:
         law = Candidate("stribeck_friction", 1, {"exponent": 1.0})
         there = Hypothesis(law, {"velocity": 5.0}, np.array([1.0]), ())
-        judge = Discriminator(judge.system, judge.evaluator, judge.base, [there])
-    members = [hypothesis(t) for t in found]
+        judge = Discriminator(judge.system, judge.equations, judge.base, [there])
+    members = [hypothesis(t, ExperimentThresholds()) for t in found]
     p = problem(planned.arm, planned.settings(round(PERIOD / planned.step)))
     rng = default_rng(3)
     assert planned.coarse.every == 6
-    for z in (feasible(p, rng, MARGIN) for _ in range(5)):
+    for z in (feasible(p, rng, ExperimentThresholds().limit_margin) for _ in range(5)):
         every, sixth = (worth(s, judge, members, p, z) for s in (planned, planned.coarse))
         assert sixth == pytest.approx(every, rel=0.15)
 
@@ -195,7 +196,7 @@ def test_a_trajectory_that_tells_too_little_is_run_more_often(tmp_path: Path) ->
     _, found = proposed(Scene(case.pair, case.magnitudes, tmp_path), case.true)
     for evidence, periods in ((5.0, 9), (40.0, 3)):
         table = np.array([[np.nan, evidence], [evidence + 1.0, np.nan]])
-        planned = Experiment((), (), replace(found, evidence=table), (), ())
+        planned = Experiment((), (), replace(found, evidence=table), (), (), USUAL)
         assert planned.periods == periods
         assert f"{periods} times over" in planned.best
 

@@ -13,6 +13,7 @@ from witness.free_swings import Link
 
 from modelgen.cli.app import app
 from modelgen.description import Arm, load
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose, records
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import known_effects
@@ -41,7 +42,7 @@ def swings(link: Link, folder: Path, count: float) -> tuple[list[str], str]:
 
 def diagnosed(arm: Arm, link: Link, folder: Path, count: float = 0.0) -> Diagnosis:
     train, test = swings(link, folder, count)
-    return diagnose(arm, records(arm, train, [test], None))
+    return diagnose(arm, records(arm, train, [test], None, USUAL.dataset))
 
 
 def test_nothing_is_named_where_the_arm_is_as_described(arm: Arm, tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_support import BARE, UNUSED
+from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.optimize import lsq_linear
 
@@ -12,7 +12,6 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import not_negative
-from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.validation.gates import Gates, Judgement
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
@@ -32,11 +31,11 @@ def gains(random: Generator, size: float) -> tuple[float, float, float]:
     """Expected and measured gain [%] from two records, and what it is on twenty others."""
     made = [record(random, size) for _ in range(22)]
     rows, columns = [r for r, _ in made], [c for _, c in made]
-    system = System(rows[:2], [r.columns for r in rows[:2]], [LONG // 3] * 2)
+    system = system_of(rows[:2], periods=[LONG // 3] * 2)
     gain = system.gain(columns[:2])
     assert gain is not None
     trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns[:2], gain)
-    found = Gates(rows[:2], [], system).judged(trial)
+    found = Gates(system, []).judged(trial)
     both = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
     left = []
     for tables in ([r.columns for r in rows], both):
@@ -90,10 +89,10 @@ def judged(seed: int, sizes: tuple[float, float]) -> Judgement:
         effort = slow @ np.ones((40, 1)) + size * own + random.normal(size=(LONG, 1))
         rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE))
         columns.append(own[:, None, :])
-    system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+    system = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(rows, [], system).judged(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
+    return Gates(system, []).judged(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
 
 
 def test_a_cause_that_one_record_contradicts_is_refused() -> None:
@@ -120,10 +119,10 @@ def play_judged(seed: int, shown: float, there: tuple[float, float]) -> Judgemen
         effort = slow + size * own + random.normal(size=(LONG, 1))
         rows.append(Rows(UNUSED, effort, slow[:, None, :], np.ones((LONG, 1), dtype=bool), BARE))
         columns.append(own[:, None, :])
-    system = System(rows, [r.columns for r in rows], [LONG // 3] * 2)
+    system = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(rows, [], system).judged(FittedCandidate(Candidate("backlash", 1), {}, columns, gain))
+    return Gates(system, []).judged(FittedCandidate(Candidate("backlash", 1), {}, columns, gain))
 
 
 def test_a_record_without_impacts_does_not_speak_against_play() -> None:
@@ -157,14 +156,14 @@ def beside(
             table.append(own[:, [k]][:, None, :])
     trials, columns = [], [r.columns for r in rows]
     for name, table in zip([*before, effect], tables, strict=True):
-        system = System(rows, columns, [LONG // 3] * 2)
+        system = system_of(rows, columns, [LONG // 3] * 2)
         gain = system.gain(table)
         assert gain is not None
         trials.append(FittedCandidate(Candidate(name, None), {}, table, gain))
         columns = [np.concatenate([c, t], axis=2) for c, t in zip(columns, table, strict=True)]
     if evidence is not None:
         trials[-1] = replace(trials[-1], gain=replace(trials[-1].gain, delta_bic=evidence))
-    return Gates(rows, trials[:-1], system).judged(trials[-1])
+    return Gates(system, trials[:-1]).judged(trials[-1])
 
 
 def test_beside_a_fluid_a_cause_is_more_than_its_law_may_leave() -> None:

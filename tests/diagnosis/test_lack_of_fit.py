@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_support import BARE, UNUSED
+from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
@@ -39,7 +39,7 @@ def system(seed: int, repeats: Array, colour: float = 0.0, records: int = 2) -> 
     """Of one arm, two records or more."""
     random = default_rng([3, seed])
     rows = [record(random, repeats, colour) for _ in range(records)]
-    return System(rows, [r.columns for r in rows], [PERIOD] * records)
+    return system_of(rows, periods=[PERIOD] * records)
 
 
 def bump(size: float) -> Array:
@@ -102,7 +102,7 @@ def test_errors_of_the_positions_that_repeat_are_no_lack_of_fit() -> None:
         assert found is not None
         assert found.found
         told = [replace(r, repeated=np.tile(errors, PERIODS)[:, None]) for r in made.rows]
-        fit = lack_of_fit(System(told, [r.columns for r in told], made.periods))
+        fit = lack_of_fit(system_of(told, periods=made.periods))
         assert fit is not None
         assert not fit.found
 
@@ -133,5 +133,5 @@ def test_a_cause_that_leaves_the_contact_stands_in_for_it(right: bool, kept: boo
         s.rows,
         [np.concatenate([r.columns, c], axis=2) for r, c in zip(s.rows, one.trial.columns, strict=True)],
     )
-    doubted = doubtful(Selection([one], System(rows, tables, s.periods), []), rows)
+    doubted = doubtful(Selection([one], system_of(rows, tables, s.periods), []), s.equations)
     assert len(doubted) == 1 - kept

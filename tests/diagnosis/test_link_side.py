@@ -10,6 +10,7 @@ from hidden.judging import FOUND
 from hidden.running import run_here
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint, load
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose, records
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
@@ -112,7 +113,7 @@ def test_its_stiffness_is_found_with_the_arms_parameters(
     label = make(Case(arm, seed, (hidden,), encoder="joint"), tmp_path)
     described = load(tmp_path / "arms.yaml")["arm"]
     logs = [str(tmp_path / f"{name}.csv") for name in ("train_a", "train_b", "test")]
-    found = diagnose(described, records(described, logs[:2], logs[2:], None), experiment=False)
+    found = diagnose(described, records(described, logs[:2], logs[2:], None, USUAL.dataset), experiment=False)
     (cause,) = found.causes
     assert (cause.effect, cause.joint) == ("joint_flexibility", 3)
     assert cause.parameters["stiffness"].value == pytest.approx(400.0 / magnitude, rel=0.1)

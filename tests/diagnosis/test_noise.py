@@ -6,18 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_support import BARE, UNUSED
+from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 from scipy.stats import chi2
 
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.noise import LAGS, Autocorrelation, correlations
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.evidence.noise import Autocorrelation, correlations
+from modelgen.diagnosis.options.thresholds import EvidenceThresholds
 from modelgen.numeric import Array
 
 PERIOD, PERIODS = 500, 3
 LONG = PERIOD * PERIODS
+LIMITS = EvidenceThresholds()
+LAGS = LIMITS.autocorrelation_lags
 KEPT = 0.8  # from row to row, of the slow noise
 
 
@@ -38,7 +40,7 @@ def test_the_variance_of_a_sum_is_that_of_draws() -> None:
     columns = np.column_stack([wave(2.0), wave(120.0, 0.3)])[moving]
     lags: Array = KEPT ** np.arange(LAGS, dtype=float)
     lags[0] = 2.0
-    colour = Autocorrelation((lags / 2.0)[None], [moving[:, None]], [None])
+    colour = Autocorrelation((lags / 2.0)[None], [moving[:, None]], [None], LIMITS)
     random = default_rng(1)
     sums = np.array([columns.T @ slow_noise(random)[moving] for _ in range(2000)]) / np.sqrt(2.0)
     np.testing.assert_allclose(np.diag(colour.variance(columns)), sums.var(axis=0), rtol=0.1)
@@ -49,11 +51,11 @@ def test_the_colour_is_found_between_periods() -> None:
     random = default_rng(2)
     residuals = [(slow_noise(random) + 5.0 * wave(3.0))[:, None] for _ in range(6)]
     flags = [np.ones((LONG, 1), dtype=bool)] * 6
-    found = correlations(residuals, flags, [PERIOD] * 6)
+    found = correlations(residuals, flags, [PERIOD] * 6, LIMITS)
     assert found is not None
     expected = 0.5 * KEPT ** np.arange(1, LAGS) * (1.0 - np.arange(1, LAGS) / LAGS)
     np.testing.assert_allclose(found[0, 1:], expected, atol=0.06)
-    assert correlations(residuals, flags, [None] * 6) is None
+    assert correlations(residuals, flags, [None] * 6, LIMITS) is None
 
 
 def evidence(
@@ -74,7 +76,7 @@ def evidence(
         rows.append(Rows(UNUSED, effort, table, np.ones((LONG, n), dtype=bool), BARE))
         columns.append(np.zeros((LONG, n, 1)))
         columns[-1][:, 0, 0] = own
-    plain = System(rows, [r.columns for r in rows], [PERIOD] * 2).plain
+    plain = system_of(rows, [r.columns for r in rows], [PERIOD] * 2).plain
     found = [plain.gain(columns, alike=alike, passing=drift) for alike in (False, True)]
     return [x.delta_bic + float(np.log(plain.counts.sum())) for x in found if x is not None]
 
@@ -115,13 +117,13 @@ def test_what_passes_is_not_the_noise_that_hides_it() -> None:
         )
         for k, flags in enumerate([np.ones((LONG, 1), dtype=bool)] * 2)
     ]
-    plain = System(rows, [r.columns for r in rows], [PERIOD] * 2).plain
+    plain = system_of(rows, [r.columns for r in rows], [PERIOD] * 2).plain
     hidden, seen = (plain.gain([drift[:, None, None]] * 2, passing=passing) for passing in (False, True))
     assert hidden is not None
     assert seen is not None
     assert hidden.delta_bic < 0.5 * seen.delta_bic
     without = [replace(r, effort=r.effort - 3.0 * drift[:, None]) for r in rows]
-    clean = System(without, [r.columns for r in rows], [PERIOD] * 2).plain.colour
+    clean = system_of(without, [r.columns for r in rows], [PERIOD] * 2).plain.colour
     found = plain.colour
     assert clean is not None
     assert found is not None
@@ -136,8 +138,8 @@ def test_noise_of_unknown_colour_asks_for_more() -> None:
         for k, flags in enumerate([np.ones((LONG, 1), dtype=bool)] * 2)
     ]
     columns = [r.columns for r in rows]
-    assert System(rows, columns, [PERIOD] * 2).price == 1.0
-    assert System(rows, columns, [None, None]).price > 1.0
+    assert system_of(rows, columns, [PERIOD] * 2).price == 1.0
+    assert system_of(rows, columns, [None, None]).price > 1.0
     once = np.arange(LONG)[:, None] < PERIOD  # moves in the first period alone: nothing repeats
     still = [replace(r, moving=once) for r in rows]
-    assert System(still, columns, [PERIOD] * 2).price > 1.0
+    assert system_of(still, columns, [PERIOD] * 2).price > 1.0

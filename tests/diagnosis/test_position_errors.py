@@ -9,25 +9,28 @@ from diagnosis_support import ARM, COUNT, coarse, three
 from modelgen.dataset import Record
 from modelgen.dataset.processing.periods import other_period
 from modelgen.diagnosis.equations.position_errors import blurred, counts, feigned, rounded
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose
+
+LIMITS = USUAL.equations
 
 
 def test_the_count_is_found_where_there_is_one() -> None:
     record = three(None, 1, 0.0)[0]
-    np.testing.assert_allclose(counts(coarse(record)), COUNT, rtol=1e-6)
-    assert not counts(record).any()
-    error = blurred(coarse(record)).q - coarse(record).q
+    np.testing.assert_allclose(counts(coarse(record), LIMITS), COUNT, rtol=1e-6)
+    assert not counts(record, LIMITS).any()
+    error = blurred(coarse(record), LIMITS).q - coarse(record).q
     assert 0.45 * COUNT < np.abs(error).max() <= 0.5 * COUNT
     np.testing.assert_allclose(error.std(axis=0), COUNT / np.sqrt(12), rtol=0.03)
 
 
 def test_rounding_is_told_from_noise_that_is_rounded() -> None:
     record = three(None, 1, 0.0)[0]
-    assert rounded(coarse(record))
-    assert not rounded(record)  # no steps: what errors there are is not known
+    assert rounded(coarse(record), LIMITS)
+    assert not rounded(record, LIMITS)  # no steps: what errors there are is not known
     for size, alone in ((0.1, True), (1.0, False)):
         error = size * COUNT * np.random.default_rng(1).normal(size=record.q.shape)
-        assert rounded(coarse(replace(record, q=record.q + error))) is alone
+        assert rounded(coarse(replace(record, q=record.q + error)), LIMITS) is alone
 
 
 def test_what_errors_of_positions_can_feign() -> None:

@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_support import system_of
 from numpy.random import default_rng
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Inertial, Joint, LeveredDrive
 from modelgen.diagnosis.equations.prior import NominalPrior, Unknowns, estimated, told
 from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.thresholds import RATHER
+from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.options.thresholds import USUAL, SelectionThresholds
 from modelgen.functions import Model, build_model, grouped
 from modelgen.numeric import Array
 
@@ -60,7 +61,7 @@ def drawn(link: Inertial, number: int, off: Array) -> dict[str, float]:
 
 
 def test_links_that_are_off_by_three_tenths_scatter_by_one(model: Model) -> None:
-    said, random = told(model), default_rng(3)
+    said, random = told(model, USUAL.equations), default_rng(3)
     assert said is not None
     left = np.array(
         [
@@ -82,7 +83,7 @@ def test_links_that_are_off_by_three_tenths_scatter_by_one(model: Model) -> None
 
 
 def test_nothing_is_told_of_drives_and_friction(model: Model) -> None:
-    said = told(model)
+    said = told(model, USUAL.equations)
     assert said is not None
     of_links = {k for i in (1, 2) for k in drawn(LINKS[0], i, np.zeros(10))}
     others = {p.name: 100.0 for p in model.standard if p.name not in of_links}
@@ -93,7 +94,7 @@ def test_nothing_is_told_of_drives_and_friction(model: Model) -> None:
 
 def test_links_without_inertials_tell_nothing() -> None:
     arm = replace(ARM, links=(LINKS[0], None))
-    assert estimated(build_model(arm)).said is None
+    assert estimated(build_model(arm), USUAL.equations).said is None
 
 
 def equations(
@@ -112,7 +113,7 @@ def equations(
     columns = np.hstack([x[:, :2], np.zeros((1000, more))])[:, None, :]
     known = Unknowns(np.zeros(2 + more), np.eye(2 + more), said)
     rows = Rows(UNUSED, effort[:, None], columns, np.ones((1000, 1), dtype=bool), known)
-    system = System([rows], [columns])
+    system = system_of([rows], [columns])
     return system, [force[:, None, None]], [other[:, None, None]]
 
 
@@ -126,7 +127,7 @@ def ahead(said: NominalPrior | None, seed: int, stack: str = "white", **more: An
 
 def numbers(values: list[float]) -> NominalPrior:
     """Each parameter's own, to a tenth."""
-    return NominalPrior(np.eye(len(values)) / 0.1, np.array(values) / 0.1)
+    return NominalPrior(np.eye(len(values)) / 0.1, np.array(values) / 0.1, USUAL.equations.min_nominal_weight)
 
 
 RIGHT, WRONG = numbers([1.0, 2.0]), numbers([40.0, -90.0])
@@ -160,13 +161,17 @@ def test_one_link_that_is_not_as_described_is_not_taken_for_a_cause(count: int) 
     force = x[:, -1]
     effort = 0.3 * x[:, :-1] @ off + 0.5 * force + random.normal(size=3000)
     columns = x[:, None, :-1]
-    known = Unknowns(np.zeros(count), np.eye(count), NominalPrior(np.eye(count) / 0.3, np.zeros(count)))
+    known = Unknowns(
+        np.zeros(count),
+        np.eye(count),
+        NominalPrior(np.eye(count) / 0.3, np.zeros(count), USUAL.equations.min_nominal_weight),
+    )
     rows = Rows(UNUSED, effort[:, None], columns, np.ones((3000, 1), dtype=bool), known)
-    white = System([rows], [columns]).white
+    white = system_of([rows], [columns]).white
     true, like = (white.gain([c[:, None, None]]) for c in (force, force + 0.9 * x[:, 0]))
     assert true is not None
     assert like is not None
-    assert like.delta_bic - true.delta_bic < RATHER
+    assert like.delta_bic - true.delta_bic < SelectionThresholds().rival_margin_bic
 
 
 def test_what_the_links_parameters_can_do_is_no_cause() -> None:

@@ -11,9 +11,10 @@ from modelgen.dataset import Record
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
+from modelgen.diagnosis.options.thresholds import SelectionThresholds
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
-from modelgen.diagnosis.selection.stepwise import at_one_joint
+from modelgen.diagnosis.selection.rivals import at_one_joint
 from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.errors import InputError
 from modelgen.evaluation import with_effect
@@ -94,7 +95,11 @@ def test_what_one_joint_promises_alone_is_not_in_all_of_them() -> None:
             (FittedCandidate(Candidate("time_delay", joint), {}, [], gain), Judgement(x, x, ""))
             for joint, x in promised.items()
         ]
-        return [pair[0].candidate.joint for pair in pairs if not at_one_joint(pair, pairs)]
+        return [
+            pair[0].candidate.joint
+            for pair in pairs
+            if not at_one_joint(pair, pairs, SelectionThresholds().min_whole_arm_share)
+        ]
 
     assert judged({None: 3.2, 1: 0.2, 3: 7.1}) == [1, 3]
     assert judged({None: 7.0, 1: 5.0, 3: 7.1}) == [None, 1, 3]

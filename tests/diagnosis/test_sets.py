@@ -6,14 +6,15 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from diagnosis_support import equations_of
 from hidden.cases import Case, Hidden, make
 from hidden.running import diagnosed_here
 
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
-from modelgen.diagnosis.selection.stepwise import imitated, lesser_rivals, needed_behind
-from modelgen.diagnosis.thresholds import RATHER
+from modelgen.diagnosis.options.thresholds import SelectionThresholds
+from modelgen.diagnosis.selection.rivals import imitated, lesser_rivals, needed_behind
 from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.effects import CATALOGUE
 
@@ -47,7 +48,8 @@ def tried(effect: str, delta_bic: float) -> FittedCandidate:
 def test_what_is_too_faint_to_be_named_where_the_best_has_little_more() -> None:
     shut = "friction_offset"
     gates: Any = SimpleNamespace(
-        judged=lambda t: Judgement(3.0, 3.0, "gain" if t.candidate.effect == shut else "")
+        equations=equations_of([]),
+        judged=lambda t: Judgement(3.0, 3.0, "gain" if t.candidate.effect == shut else ""),
     )
     faint = [tried("lever_geometry", 5.0), tried(shut, 5.5)]
 
@@ -85,6 +87,9 @@ def test_a_power_of_the_speed_at_the_end_of_its_range_gives_way_to_friction_near
 def test_play_and_elasticity_are_told_apart_by_more_of_more_evidence() -> None:
     """A contact that hardens is neither, and of evidence in thousands its form leaves dozens."""
     elastic, gap = tried("joint_flexibility", 2600.0), tried("backlash", 2560.0)
-    assert needed_behind(elastic, gap) == needed_behind(replace(gap, gain=elastic.gain), elastic) > 40.0
-    assert needed_behind(elastic, tried("presliding", 2560.0)) == RATHER
-    assert needed_behind(tried("backlash", 300.0), tried("joint_flexibility", 250.0)) == RATHER
+    limits = SelectionThresholds()
+    needed = needed_behind(elastic, gap, limits)
+    assert needed == needed_behind(replace(gap, gain=elastic.gain), elastic, limits) > 40.0
+    assert needed_behind(elastic, tried("presliding", 2560.0), limits) == limits.rival_margin_bic
+    few = tried("backlash", 300.0), tried("joint_flexibility", 250.0)
+    assert needed_behind(*few, limits) == limits.rival_margin_bic

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_support import PERIOD, PERIODS, cubic, made, offset
+from diagnosis_support import PERIOD, PERIODS, cubic, made, offset, system_of
 from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
@@ -17,11 +17,12 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.noise import Whitener
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.options.thresholds import EvidenceThresholds, SelectionThresholds
 from modelgen.diagnosis.selection.cause import Cause, Selection
-from modelgen.diagnosis.selection.stepwise import left_to
-from modelgen.diagnosis.thresholds import ORDER, STAYS
+from modelgen.diagnosis.selection.rivals import left_to
 from modelgen.numeric import Array
+
+WHITENING_ORDER = EvidenceThresholds().whitening_order
 
 
 def spot(x: Array) -> Array:
@@ -37,7 +38,7 @@ def step(x: Array) -> Array:
 def judged(rows: list[Rows], q: list[Array], periods: list[int | None], *laws: Any) -> tuple[Any, ...]:
     """`outdone`, of causes with these columns that were taken one after the other."""
     causes: list[Cause] = []
-    system = System(rows, [r.columns for r in rows], periods)
+    system = system_of(rows, [r.columns for r in rows], periods)
     tables = [r.columns for r in rows]
     for name, law in zip(("friction_offset", "asymmetric_viscous_friction"), laws, strict=False):
         columns = [law(x[:, 0])[:, None, None] for x in q]
@@ -46,9 +47,9 @@ def judged(rows: list[Rows], q: list[Array], periods: list[int | None], *laws: A
         trial = FittedCandidate(Candidate(name, 1), {}, columns, gain)
         causes.append(Cause(trial, gain.delta_bic, 5.0, 5.0))
         tables = [np.concatenate([t, c], axis=2) for t, c in zip(tables, columns, strict=True)]
-        system = System(rows, tables, periods)
+        system = system_of(rows, tables, periods)
     return without_stand_ins(
-        Selection(causes, system, []), rows, [SmoothFunction("by place", {0: functions(q, 0.2)})]
+        Selection(causes, system, []), system.equations, [SmoothFunction("by place", {0: functions(q, 0.2)})]
     )
 
 
@@ -105,18 +106,18 @@ def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it(
         rows, q, periods = made(force)
         tables = [r.columns for r in rows]
         columns = [law(x[:, 0])[:, None, None] for x in q]
-        alone = System(rows, tables, periods).gain(columns)
+        alone = system_of(rows, tables, periods).gain(columns)
         assert alone is not None
         assert alone.delta_bic > 15.0
         beside = [
             np.concatenate([t, offset(x)[:, None, None]], axis=2) for t, x in zip(tables, q, strict=True)
         ]
         trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, alone)
-        return left_to(trial, System(rows, beside, periods)) / alone.delta_bic
+        return left_to(trial, system_of(rows, beside, periods)) / alone.delta_bic
 
     assert (
         kept(offset, lambda x: 1.0 + 0.1 * np.sin(x))
-        < STAYS
+        < SelectionThresholds().max_rival_share
         < kept(lambda x: offset(x) + 0.2 * cubic(x), cubic)
     )
 
@@ -132,17 +133,17 @@ def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> Non
 
 def known_noise(*sizes: float) -> Any:
     """As of a system whose joints have white noise of these sizes."""
-    taps = np.eye(1, ORDER + 1)[0]
+    taps = np.eye(1, WHITENING_ORDER + 1)[0]
     return SimpleNamespace(whiteners=[Whitener(taps, size) for size in sizes])
 
 
 def test_evidence_is_that_of_a_gaussian_process() -> None:
     """Its density with the kernel written out, noise and baseline integrated out, over that without it."""
     rows, q, periods = made(spot, 3)
-    system = System(rows, [r.columns for r in rows], periods, known_noise(1.0))
+    system = system_of(rows, [r.columns for r in rows], periods, known_noise(1.0))
     found = log_evidence(SmoothFunction("", {0: functions(q, 0.5)}), system)
 
-    used = slice(ORDER, None)  # rows with as many before them
+    used = slice(WHITENING_ORDER, None)  # rows with as many before them
     x = np.concatenate([p[used] for p in q]) / (0.5 * np.ptp(np.concatenate(q)))
     y = np.concatenate([r.effort[used] for r in rows])
     baseline = np.concatenate([r.columns[used, 0] for r in rows])
@@ -171,7 +172,7 @@ def test_a_function_at_one_joint_that_sets_a_parameter_free_is_worth_what_the_ot
         noise = default_rng([3, k]).normal(size=(len(x), 2)) * (1.0, 0.1)
         effort = columns[:, :, 0] * (3.0, 1.0) + noise
         both.append(replace(r, effort=effort, columns=columns, moving=np.ones(effort.shape, dtype=bool)))
-    system = System(both, [r.columns for r in both], periods, known_noise(1.0, 0.1))
+    system = system_of(both, [r.columns for r in both], periods, known_noise(1.0, 0.1))
     found = log_evidence(SmoothFunction("", {1: functions(q, 0.3)}), system)
     most = float(system.white.counts @ np.log(system.white.rss / system.white.counts))
     assert 0.8 * most < found.evidence < most
@@ -186,7 +187,7 @@ def test_slow_noise_is_no_function_of_the_place() -> None:
         rows, q, periods = made(lambda x: 0.0 * x, seed)
         red = [replace(r, effort=r.effort + e[:, None]) for r, e in zip(rows, noise, strict=True)]
         found = log_evidence(
-            SmoothFunction("", {0: functions(q, 0.2)}), System(red, [r.columns for r in red], periods)
+            SmoothFunction("", {0: functions(q, 0.2)}), system_of(red, [r.columns for r in red], periods)
         )
         slow.append(found.slow)
         fair.append(found.evidence)
@@ -204,7 +205,7 @@ def test_the_whitened_equations_leave_white_noise_where_errors_repeat_whose_size
             rows[k] = replace(
                 r, effort=r.effort + 2.0 * errors[0], repeated=2.0 * errors[1] if known else None
             )
-        white = System(rows, [r.columns for r in rows], periods).white.left
+        white = system_of(rows, [r.columns for r in rows], periods).white.left
         return float(white.std()), float(np.corrcoef(white[1:], white[:-1])[0, 1])
 
     spread, correlation = left(known=True)

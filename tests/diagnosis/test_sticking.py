@@ -10,7 +10,8 @@ from hidden.running import diagnosed_here, run_here
 
 from modelgen.dataset import Settings, prepare, read
 from modelgen.description import load
-from modelgen.diagnosis.equations.rows import rows_of
+from modelgen.diagnosis.equations import estimated, rows_of
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 
@@ -54,6 +55,9 @@ def test_what_the_effort_is_while_a_joint_rests_changes_no_equation(tmp_path: Pa
     assert resting.mean(axis=0).max() > 0.02
     tried = [record, replace(record, input=np.where(resting, 1e3, record.input))]
     model, evaluator = build_model(arm), Evaluator(arm)
-    before, after = (rows_of(evaluator, model, prepare(r, Settings(cutoff=18.0))) for r in tried)
+    before, after = (
+        rows_of(evaluator, model, prepare(r, Settings(cutoff=18.0)), None, estimated(model, USUAL.equations))
+        for r in tried
+    )
     np.testing.assert_array_equal(after.moving, before.moving)
     np.testing.assert_allclose(after.effort[after.moving], before.effort[after.moving], atol=1e-9)

@@ -1,7 +1,7 @@
 """Standard deviations of estimates: what they scatter by over many draws of the noise."""
 
 import numpy as np
-from diagnosis_support import BARE, UNUSED
+from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.optimize import curve_fit
 from scipy.signal import lfilter
@@ -21,10 +21,10 @@ def coloured(random: Generator) -> Array:
     return np.asarray(lfilter([1.0], [1.0, -POLE], random.normal(size=len(TIME) + 200))[200:])
 
 
-def system_of(columns: Array, effort: Array) -> System:
+def noisy(columns: Array, effort: Array) -> System:
     moving = np.ones((len(TIME), 1), dtype=bool)
     rows = [Rows(UNUSED, effort[:, None], columns[:, None, :], moving, BARE)]
-    return System(rows, [r.columns for r in rows], [PERIOD])
+    return system_of(rows, periods=[PERIOD])
 
 
 def test_of_slow_columns_in_slow_noise() -> None:
@@ -33,7 +33,7 @@ def test_of_slow_columns_in_slow_noise() -> None:
     found, stated = [], []
     for seed in range(DRAWS):
         effort = columns @ np.array([1.0, -2.0, 0.5]) + coloured(default_rng([1, seed]))
-        system = system_of(columns, effort)
+        system = noisy(columns, effort)
         found.append(system.theta)
         stated.append(np.sqrt(np.diag(covariance_of(system))))
     np.testing.assert_allclose(np.std(found, axis=0), np.mean(stated, axis=0), rtol=0.25)
@@ -50,7 +50,7 @@ def test_what_is_searched_for_is_not_known_to_the_others() -> None:
     for seed in range(DRAWS):
         effort = law(x, 3.0, 0.8) + 0.1 * coloured(default_rng([2, seed]))
         (c, v), _ = curve_fit(law, x, effort, p0=(3.0, 0.8))
-        system = system_of(law(x, 1.0, v)[:, None], effort)
+        system = noisy(law(x, 1.0, v)[:, None], effort)
         slope = (law(x, c, 1.01 * v) - law(x, c, 0.99 * v)) / (0.02 * v)
         found.append((c, v))
         stated.append(np.sqrt(np.diag(covariance_of(system, [slope[:, None, None]]))))

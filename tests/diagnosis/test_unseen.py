@@ -10,6 +10,7 @@ from hidden.cases import Case, Hidden, make
 
 from modelgen.dataset import Record
 from modelgen.description import load
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose, records
 from modelgen.diagnosis.result import Diagnosis, to_json
 
@@ -42,7 +43,7 @@ def test_another_test_record_leaves_all_but_the_errors(case: Case, tmp_path: Pat
     make(case, tmp_path)
     arm = load(tmp_path / "arms.yaml")["arm"]
     names = [str(tmp_path / f"{name}.csv") for name in ("train_a", "train_b", "test")]
-    *train, test = records(arm, names[:2], names[2:], None)
+    *train, test = records(arm, names[:2], names[2:], None, USUAL.dataset)
     one = diagnose(arm, [*train, test], experiment=False)
     other = diagnose(arm, [*train, shaken(test)], experiment=False)
     assert one.causes

@@ -24,11 +24,10 @@ from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.adequacy.lack_of_fit import ratios
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, log_evidence, smooth_functions
-from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.position_errors import with_errors
-from modelgen.diagnosis.equations.prior import estimated
+from modelgen.diagnosis.equations import Equations, estimated, rows_twice, settings_for, with_errors
 from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.pipeline import records, settings_for
+from modelgen.diagnosis.options.thresholds import USUAL
+from modelgen.diagnosis.pipeline import records
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 from modelgen.regression.weighted import weighted_fit
@@ -56,16 +55,17 @@ def of_null(arm: str, seed: int, train: int) -> dict[str, float]:
         make(case, folder)
         described = load(folder / "arms.yaml")["arm"]
         paths = [str(folder / f"{RECORDS[k]}.csv") for k in (*case.training, TEST)]
-        found = records(described, paths[:-1], paths[-1:], None)[:-1]
+        found = records(described, paths[:-1], paths[-1:], None, USUAL.dataset)[:-1]
     lengths = [period_of(record, None) for record in found]
-    chosen = with_whole_rows(choose(list(found), settings_for(found, None)), lengths)
+    chosen = with_whole_rows(choose(list(found), settings_for(found, None, USUAL)), lengths)
     model, evaluator = build_model(described), Evaluator(described)
-    rows = rows_twice(evaluator, model, [prepare(r, chosen) for r in found], estimated(model))
+    rows = rows_twice(
+        evaluator, model, [prepare(r, chosen) for r in found], estimated(model, USUAL.equations)
+    )
     periods = [None if p is None else p // chosen.factor for p in lengths]
-    theta = weighted_fit(rows, [r.columns for r in rows])
-    rows, _ = with_errors(rows, periods, evaluator, model, theta)
-    system = System(rows, [r.columns for r in rows], periods)
-    evidence = [log_evidence(s, system).evidence for s in smooth_functions(rows, evaluator, system.theta)]
+    bare = Equations(model, evaluator, rows, periods, USUAL)
+    system = System(with_errors(bare, weighted_fit(rows, bare.columns)))
+    evidence = [log_evidence(s, system).evidence for s in smooth_functions(system)]
     return {**ratios(system), SHAPE: max(evidence)}
 
 

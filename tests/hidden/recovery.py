@@ -11,9 +11,9 @@ from hidden.cases import RECORDS, TEST, Bench, Case
 from modelgen.dataset import choose, prepare
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
-from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.prior import estimated
-from modelgen.diagnosis.pipeline import records, settings_for
+from modelgen.diagnosis.equations import estimated, rows_twice, settings_for
+from modelgen.diagnosis.options.thresholds import USUAL
+from modelgen.diagnosis.pipeline import records
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
 from modelgen.regression.weighted import weighted_fit
@@ -29,11 +29,13 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
     for k in (*case.training, TEST):
         paths.append(str(folder / f"{RECORDS[k]}_without.csv"))
         logs.write(Path(paths[-1]), bench.record(k, {}))
-    found = records(arm, paths[:-1], paths[-1:], None)
+    found = records(arm, paths[:-1], paths[-1:], None, USUAL.dataset)
     lengths = [period_of(record, None) for record in found[:-1]]
-    settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff)), lengths)
+    settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff, USUAL)), lengths)
     model, evaluator = build_model(arm), Evaluator(arm)
-    *train, test = rows_twice(evaluator, model, [prepare(r, settings) for r in found], estimated(model))
+    *train, test = rows_twice(
+        evaluator, model, [prepare(r, settings) for r in found], estimated(model, USUAL.equations)
+    )
     theta = weighted_fit(train, [r.columns for r in train])
     left = (test.effort - test.columns @ theta) * test.gain
     n = left.shape[1]

@@ -16,6 +16,7 @@ from hidden.judging import Outcome, judge
 from hidden.recovery import reachable
 from modelgen.description import load
 from modelgen.diagnosis import pipeline
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import records
 from modelgen.diagnosis.result import to_json
 from modelgen.effects import known_effects
@@ -39,7 +40,7 @@ def diagnosed_here(folder: Path, name: str, *, experiment: bool = False) -> dict
     experiment: with the one that would tell apart what these records do not.
     """
     arm = load(folder / "arms.yaml", known_effects())[name]
-    logs = records(arm, trained(folder), [str(folder / "test.csv")], None)
+    logs = records(arm, trained(folder), [str(folder / "test.csv")], None, USUAL.dataset)
     found = pipeline.diagnose(arm, logs, where=Where(1), experiment=experiment)
     answer: dict[str, Any] = json.loads(json.dumps(to_json(found), allow_nan=False))
     return answer

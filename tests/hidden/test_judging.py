@@ -10,7 +10,8 @@ from hidden.judging import FOUND, MISSED, WRONG, judge
 from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, inflation
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE
-from modelgen.diagnosis.adequacy.stand_ins import LIKE
+from modelgen.diagnosis.adequacy.stand_ins import like_delta_bic
+from modelgen.diagnosis.options.thresholds import AdequacyThresholds
 
 
 def label(*hidden: tuple[str, int]) -> Label:
@@ -69,5 +70,7 @@ def test_the_null_distribution_lies_beside_the_nominal_threshold() -> None:
     for values in NULLS.values():
         assert len(values) >= 200
         assert list(values) == sorted(values)
-    assert all(0.5 < inflation(kind) < 1.5 for kind in (WHOLE, PART))
-    assert np.median(NULLS[SHAPE]) < 0.0 < LIKE < 20.0
+    share = AdequacyThresholds().null_share
+    assert all(0.5 < inflation(kind, share) < 1.5 for kind in (WHOLE, PART))
+    like = like_delta_bic(AdequacyThresholds())
+    assert np.median(NULLS[SHAPE]) < 0.0 < like < 20.0

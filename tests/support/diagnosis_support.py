@@ -1,5 +1,6 @@
 """Parts of equations that no arm and no log has."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,8 +10,9 @@ from numpy.random import default_rng
 
 from modelgen.dataset import Record
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
-from modelgen.diagnosis.equations.prior import Unknowns
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Equations, Rows, Unknowns
+from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
@@ -68,6 +70,21 @@ def coarse(record: Record) -> Record:
     """Seen by encoders at the joints."""
     q = np.round(record.q / COUNT) * COUNT
     return replace(record, q=q, motor=q * np.array([80.0, 60.0]), motor_side=(False, False))
+
+
+def equations_of(rows: Sequence[Rows], periods: Sequence[int | None] | None = None) -> Equations:
+    """Equations of which all is known, of no arm. periods: by default nothing repeats."""
+    return Equations(UNUSED, UNUSED, rows, [None] * len(rows) if periods is None else periods, USUAL)
+
+
+def system_of(
+    rows: Sequence[Rows],
+    columns: Sequence[Array] | None = None,
+    periods: Sequence[int | None] | None = None,
+    noise: Any = None,
+) -> System:
+    """The same as a system. columns: (M, n, p) of each record, by default the rows' own."""
+    return System(equations_of(rows, periods), columns, noise)
 
 
 PERIOD, PERIODS = 200, 3

@@ -15,61 +15,62 @@ from scipy.linalg import subspace_angles
 
 from modelgen.base_parameters.numeric_rank import random_states
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.candidate import Candidate, Values
-from modelgen.diagnosis.candidates.columns import of_part, slopes
-from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
-from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.selection.cause import Cause, Selection
-from modelgen.diagnosis.selection.compliance import alternatives
-from modelgen.diagnosis.selection.history import COARSE
-from modelgen.diagnosis.thresholds import RATHER
-from modelgen.diagnosis.validation.form_error import with_causes
+from modelgen.diagnosis.candidates import (
+    Candidate,
+    FittedCandidate,
+    Values,
+    beside,
+    of_part,
+    slopes,
+    system_of,
+)
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.selection import COARSE, Cause, Selection, alternatives
 from modelgen.effects import Presence
 from modelgen.errors import InputError
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Motion
 from modelgen.functions import Model
-from modelgen.model.equations import Equations
+from modelgen.model.equations import Equations as Dynamics
 from modelgen.numeric import Array
 from modelgen.regression.weighted import orthonormal
 
-EQUAL = 1e-6  # rad, principal angle
-ABSORBED = 1e-6  # part of a column that is left
 SEED = 20181101
 
 
 def synthetic(arm: Arm, model: Model, samples: int = 400) -> Motion:
     """Random states within the strokes and limits, as a motion without order in time."""
-    found = random_states(Equations(model.arm), samples, SEED)
+    found = random_states(Dynamics(model.arm), samples, SEED)
     q, dq, ddq = (np.asarray(found[name], dtype=np.float64) for name in ("q", "dq", "ddq"))
     return Motion(0.01 * np.arange(samples, dtype=np.float64), q, dq, ddq)
 
 
 def aliases(
-    causes: Sequence[Candidate], pool: Sequence[Candidate], evaluator: Evaluator, model: Model, base: Array
+    causes: Sequence[Candidate], pool: Sequence[Candidate], equations: Equations, base: Array
 ) -> list[list[Candidate]]:
     """For every cause the candidates whose columns span the same, whatever their values or with some of those
-    that a search begins with: drag of a single joint is friction with the square of its speed.
+    that a search begins with: drag of a single joint is friction with the square of its speed. base: base
+    parameters (p,).
     """
-    motion = synthetic(evaluator.arm, model)
-    q = orthonormal(evaluator.regressor(model, motion, base).reshape(-1, len(base)))
-    spans = {id(c): [_span(c, values, evaluator, motion, base, q) for values in _values(c)] for c in pool}
+    where = _Motion(equations, base)
+    most = equations.thresholds.adequacy.max_alias_angle
+    spans = {id(c): [where.span(c, values) for values in _values(c)] for c in pool}
     result = []
     for cause in causes:
-        own = None if cause.searched else _span(cause, {}, evaluator, motion, base, q)
+        own = None if cause.searched else where.span(cause, {})
         equal = []
         for other in pool:
             if other.place == cause.place:
                 continue
-            if any(_equal(own, there) for there in spans[id(other)]):
+            if any(_equal(own, there, most) for there in spans[id(other)]):
                 equal.append(other)
         result.append(equal)
     return result
 
 
-def _equal(a: Array | None, b: Array | None) -> bool:
+def _equal(a: Array | None, b: Array | None, most: float) -> bool:
     if a is None or b is None or a.shape != b.shape:
         return False
-    return float(subspace_angles(a, b).max()) < EQUAL
+    return float(subspace_angles(a, b).max()) < most
 
 
 def _values(c: Candidate) -> Iterator[Values]:
@@ -79,45 +80,56 @@ def _values(c: Candidate) -> Iterator[Values]:
             yield {p.name: value for p, value in zip(c.searched, values, strict=True)}
 
 
-def _span(
-    c: Candidate, values: Values, evaluator: Evaluator, motion: Motion, base: Array, q: Array
-) -> Array | None:
-    """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
-    effect = c.definition  # states follow one another
-    if effect.held(c.fixed) or effect.presence is Presence.LATER or effect.periodic:
-        return None
-    try:
-        if c.curved:
-            table = slopes(c, {**c.fixed, **values}, motion, evaluator, base)
-        else:
-            (table,) = of_part(c, [evaluator.columns(c.effect, c.joint, motion, {**c.fixed, **values}, base)])
-    except (InputError, ValueError):
-        return None
-    flat = table.reshape(-1, table.shape[2])
-    sizes = np.linalg.norm(flat, axis=0)
-    flat = flat[:, sizes > 1e-5 * sizes.max(initial=0.0)] if sizes.any() else flat[:, :0]
-    if not flat.shape[1]:
-        return None
-    own = flat - q @ (q.T @ flat)
-    left = np.linalg.norm(own, axis=0) > ABSORBED * np.linalg.norm(flat, axis=0)
-    return orthonormal(own[:, left]) if left.any() else None
+class _Motion:
+    """A synthetic motion, along which what effects add is compared once the base parameters' part is off."""
+
+    def __init__(self, equations: Equations, base: Array) -> None:
+        self.evaluator, self.base = equations.evaluator, base
+        self.least = equations.thresholds.adequacy.min_absorbed_share
+        self.motion = synthetic(equations.arm, equations.model)
+        regressor = self.evaluator.regressor(equations.model, self.motion, base)
+        self.own = orthonormal(regressor.reshape(-1, len(base)))
+
+    def span(self, c: Candidate, values: Values) -> Array | None:
+        """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
+        effect = c.definition  # states follow one another
+        if effect.held(c.fixed) or effect.presence is Presence.LATER or effect.periodic:
+            return None
+        given = {**c.fixed, **values}
+        try:
+            if c.curved:
+                table = slopes(c, given, self.motion, self.evaluator, self.base)
+            else:
+                every = self.evaluator.columns(c.effect, c.joint, self.motion, given, self.base)
+                (table,) = of_part(c, [every])
+        except (InputError, ValueError):
+            return None
+        flat = table.reshape(-1, table.shape[2])
+        sizes = np.linalg.norm(flat, axis=0)
+        flat = flat[:, sizes > 1e-5 * sizes.max(initial=0.0)] if sizes.any() else flat[:, :0]
+        if not flat.shape[1]:
+            return None
+        own = flat - self.own @ (self.own.T @ flat)
+        left = np.linalg.norm(own, axis=0) > self.least * np.linalg.norm(flat, axis=0)
+        return orthonormal(own[:, left]) if left.any() else None
 
 
 def without_indistinguishable(
-    selection: Selection, equal: Sequence[Sequence[Candidate]], narrowed: float
+    selection: Selection, equal: Sequence[Sequence[Candidate]]
 ) -> tuple[Selection, list[Cause]]:
     """The selection, with no cause at all where rivals come close to some, and these with such rivals alone.
 
     What the other causes explain depends on which of them it is. In the usual band none is lost. Aliases say
     the same thing, and so does a law with more freedom that holds the cause's own and makes no use of it.
-    equal: aliases of every cause; narrowed: the usual band over that of the equations.
+    equal: aliases of every cause.
     """
-    if narrowed == 1.0:
+    equations = selection.system.equations
+    if not equations.coarse:
         return selection, []
-    found = []
+    found, most = [], equations.thresholds.selection.rival_margin_bic
     for cause, same in zip(selection.causes, equal, strict=True):
         places = [other.place for other in same]
-        near = [(t, by) for t, by in cause.rivals if by <= RATHER and t.candidate.place not in places]
+        near = [(t, by) for t, by in cause.rivals if by <= most and t.candidate.place not in places]
         rivals = [(t, by) for t, by in near if not _the_same(t, cause, selection)]
         if rivals:
             found.append(replace(cause, rivals=rivals))
@@ -130,7 +142,6 @@ def _the_same(rival: FittedCandidate, cause: Cause, selection: Selection) -> boo
     """
     if alternatives(rival.candidate, cause.trial.candidate):
         return True
-    rows = selection.system.rows
     others = [c.trial for c in selection.causes if c is not cause]
-    system = System(rows, with_causes(rows, [*others, rival]), selection.system.periods)
+    system = system_of(selection.system.equations, [*others, rival])
     return beside(cause.trial, system) is None

@@ -20,20 +20,18 @@ from scipy import special
 
 from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System, independent
-from modelgen.diagnosis.thresholds import CLEAN
+from modelgen.diagnosis.equations import Rows
+from modelgen.diagnosis.evidence import System, independent
+from modelgen.diagnosis.options.thresholds import AdequacyThresholds, EvidenceThresholds
 from modelgen.numeric import Array
 
-SIGNIFICANCE = 1e-3  # of a false alarm, all joints together
-PARTS = 16  # of a period, and as many halfway between them
-FEWEST = 2.0  # independent rows of a part
 WHOLE, PART = "whole", "part"
 
 
 @dataclass(frozen=True)
 class Test:
-    """Statistic and quantile of F. kind: WHOLE or PART; joint from 0.
+    """Statistic and quantile of F. kind: WHOLE or PART; joint from 0; inflation: of what the quantile has
+    above one, as complete models have it.
 
     record, begin, end: of a part, its record and its phases in rows of the period; excess: sum of
     squares by which it repeats there, less noise [effort^2].
@@ -43,6 +41,7 @@ class Test:
     joint: int
     statistic: float
     quantile: float
+    inflation: float
     record: int = -1
     begin: int = 0
     end: int = 0
@@ -51,7 +50,7 @@ class Test:
     @property
     def threshold(self) -> float:
         """The quantile, with what it has above one scaled to what complete models reach."""
-        return 1.0 + inflation(self.kind) * (self.quantile - 1.0)
+        return 1.0 + self.inflation * (self.quantile - 1.0)
 
     @property
     def beyond(self) -> float:
@@ -92,8 +91,11 @@ class LackOfFit:
 class _Sums:
     """Of one joint: between and within periods, and by record the squares of the means by phase.
 
-    rounding: the sum that errors of the positions that repeat are expected to add between.
+    rounding: the sum that errors of the positions that repeat are expected to add between. limits: by which
+    is tested.
     """
+
+    limits: AdequacyThresholds
 
     between: float = 0.0
     rounding: float = 0.0
@@ -129,35 +131,40 @@ class _Sums:
 
     def whole(self, joint: int, tests: int) -> Test:
         """Of all rows."""
-        if self.free_within < 10 or self.within <= 0:
-            return Test(WHOLE, joint, 0.0, np.inf)
-        free = max(5.0, self.free_between)
+        size = inflation(WHOLE, self.limits.null_share)
+        if self.free_within < self.limits.min_scatter_rows or self.within <= 0:
+            return Test(WHOLE, joint, 0.0, np.inf, size)
+        free = max(self.limits.min_phase_rows, self.free_between)
         statistic = (self.between / free) / self.chance
-        return Test(WHOLE, joint, statistic, self._quantile(free, tests))
+        return Test(WHOLE, joint, statistic, self._quantile(free, tests), size)
 
     def parts(self, joint: int, tests: int) -> Iterator[Test]:
         """Of every part of every record."""
-        if self.free_within < 10 or self.within <= 0:
+        limits, size = self.limits, inflation(PART, self.limits.null_share)
+        if self.free_within < limits.min_scatter_rows or self.within <= 0:
             return
-        tests *= 2 * PARTS * len(self.phases)
+        tests *= 2 * limits.parts_of_period * len(self.phases)
         for record, squares, free in self.phases:
-            for begin, end in parts(len(squares)):
+            for begin, end in parts(len(squares), limits.parts_of_period):
                 phases = np.arange(begin, end) % len(squares)
                 count = float(free[phases].sum())
-                if count < FEWEST:
+                if count < limits.min_part_rows:
                     continue
                 statistic = (float(squares[phases].sum()) / count) / self.chance
                 excess = float(squares[phases].sum()) * (1.0 - 1.0 / statistic) if statistic > 0 else 0.0
-                yield Test(PART, joint, statistic, self._quantile(count, tests), record, begin, end, excess)
+                quantile = self._quantile(count, tests)
+                yield Test(PART, joint, statistic, quantile, size, record, begin, end, excess)
 
     def _quantile(self, free: float, tests: int) -> float:
-        return float(special.fdtri(free, self.free_within, 1 - SIGNIFICANCE / tests))
+        return float(special.fdtri(free, self.free_within, 1 - self.limits.lack_of_fit_significance / tests))
 
 
-def parts(rows: int) -> Iterator[tuple[int, int]]:
-    """First and last phase (exclusive, beyond the end: of the next period) of each part of `rows` phases."""
-    for half in range(2 * PARTS):
-        begin, end = (round((half + shift) / 2 * rows / PARTS) for shift in (0, 2))
+def parts(rows: int, count: int) -> Iterator[tuple[int, int]]:
+    """First and last phase (exclusive, beyond the end: of the next period) of each of `count` parts of `rows`
+    phases, and of those halfway between.
+    """
+    for half in range(2 * count):
+        begin, end = (round((half + shift) / 2 * rows / count) for shift in (0, 2))
         yield begin, end
 
 
@@ -189,9 +196,9 @@ def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | No
 
 
 @cache
-def inflation(kind: str) -> float:
-    """Of what the nominal thresholds have above one, by kind of test: calibrated on nulls."""
-    return float(np.quantile(NULLS[kind], CLEAN))
+def inflation(kind: str, share: float) -> float:
+    """Factor on what the nominal thresholds have above one: `share` of complete models stay below."""
+    return float(np.quantile(NULLS[kind], share))
 
 
 def ratios(system: System) -> dict[str, float]:
@@ -202,8 +209,8 @@ def ratios(system: System) -> dict[str, float]:
 
 def _tests(system: System) -> tuple[list[Test], int]:
     """All tests of all joints, and the most periods of a record."""
-    n = system.n
-    sums = [_Sums() for _ in range(n)]
+    n, limits = system.n, system.equations.thresholds
+    sums = [_Sums(limits.adequacy) for _ in range(n)]
     most = 0
     for i, r in enumerate(system.rows):
         rows = system.periods[i]
@@ -215,7 +222,8 @@ def _tests(system: System) -> tuple[list[Test], int]:
             table = folded(np.where(moving, system.residuals[i][:, j], np.nan), rows)
             repeated = r.repeated[moving, j] if r.repeated is not None else np.zeros(0)
             error = float((repeated**2).mean()) if len(repeated) else 0.0
-            sums[j].add(i, table, independent_rows(table), error)
+            share = independent_rows(table, limits.evidence)
+            sums[j].add(i, table, share, error)
     found = [s.whole(j, n) for j, s in enumerate(sums)]
     return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
 
@@ -243,9 +251,9 @@ def repeating(system: System) -> Array:
     return found
 
 
-def independent_rows(table: Array) -> float:
+def independent_rows(table: Array, limits: EvidenceThresholds) -> float:
     """Share of a record's rows that count as independent, from what differs between its periods."""
     there = np.isfinite(table)
     values = np.where(there, table, 0.0)
     mean = values.sum(axis=0, keepdims=True) / np.maximum(there.sum(axis=0, keepdims=True), 1)
-    return independent(np.where(there, values - mean, 0.0).ravel())
+    return independent(np.where(there, values - mean, 0.0).ravel(), limits)

@@ -16,15 +16,10 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from modelgen.dataset import drives_of
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.likelihood import StackedEquations
-from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Evaluator
+from modelgen.diagnosis.evidence import StackedEquations, System
 from modelgen.numeric import Array
 
 SHAPE = "shape"  # among the nulls
-BENDS = (0.2, 0.5)  # length over which a function bends, of the range of what it depends on
-SHORT = 0.06  # the same for a single joint: a hard spot
 POINTS = 80  # at which a function is free
 SAMPLES = 4000  # among which they are chosen
 SPREAD = 1e-8  # of the kernel's largest eigenvalue: less is rounding
@@ -50,20 +45,21 @@ class Worth:
     percent: float
 
 
-def smooth_functions(rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> Iterator[SmoothFunction]:
-    """Of driven arms. base: base parameters (p,), from which the inputs follow."""
-    n = rows[0].effort.shape[1]
-    inputs = [evaluator.inputs(r.motion, base) for r in rows]
-    drives = drives_of(evaluator.arm)
+def smooth_functions(system: System) -> Iterator[SmoothFunction]:
+    """Of driven arms, with the inputs that follow from the parameters as the system has them."""
+    equations, rows, n = system.equations, system.rows, system.n
+    limits = equations.thresholds.adequacy
+    inputs = [equations.evaluator.inputs(r.motion, system.base) for r in rows]
+    drives = drives_of(equations.arm)
     power = []
     for r, u in zip(rows, inputs, strict=True):
         gains = np.column_stack([drive.gain(r.prepared.q[:, j]) for j, drive in enumerate(drives)])
         power.append(np.abs(gains * u * r.prepared.dq).sum(axis=1, keepdims=True))
     for j in range(n):
-        alone = functions([r.prepared.q[:, [j]] for r in rows], SHORT)
+        alone = functions([r.prepared.q[:, [j]] for r in rows], limits.spot_length)
         spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]
         yield SmoothFunction(f"a force at joint {j + 1} that depends on its position", {j: spots})
-    for bend in BENDS:
+    for bend in limits.bend_lengths:
         free = functions([r.prepared.q for r in rows], bend)
         for j in range(n):
             where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]

@@ -3,65 +3,73 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.adequacy.stand_ins import Likeness
-from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.evidence.instruments import Endogeneity
-from modelgen.diagnosis.selection.cause import Cause, Selection
-from modelgen.diagnosis.thresholds import PRACTICAL
+from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.evidence import Endogeneity
+from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.numeric import Array
 
 
-def verdict_of(
-    selection: Selection,
-    beside: Sequence[Cause],
-    close: Sequence[Cause],
-    fit: LackOfFit | None,
-    noisy: Array,
-    correlated: Endogeneity | None,
-    likeness: Likeness | None,
-    *,
-    counted: bool,
-    asked: bool = False,
-) -> tuple[str, str]:
-    """Which of the four, and why.
+@dataclass(frozen=True)
+class Remains:
+    """What speaks for a verdict besides the causes.
 
-    beside: what gained something and left most of what repeats, or explained less than a shape; close: what
-    coarse positions do not tell from its rivals; noisy: percent of the RMSE by joint that errors of the
-    positions could feign; counted: whether such errors are all the noise there is, and what remains is no
-    more than that; asked: whether some effects alone were asked for.
+    stand_ins: what gained something and left most of what repeats, or explained less than a function of no
+    law; unclear: what coarse positions do not tell from its rivals; fit: lack of fit, None where nothing
+    repeats; feigned: percent of the RMSE by joint that errors of the positions could feign; correlated: what
+    the test of Durbin, Wu and Hausman says, None where it has no say; likeness: what is left is most like;
+    counted: whether the encoders' counts are all the noise there is, and what remains is no more than that;
+    asked: whether some effects alone were asked for.
     """
+
+    stand_ins: Sequence[Cause]
+    unclear: Sequence[Cause]
+    fit: LackOfFit | None
+    feigned: Array
+    correlated: Endogeneity | None
+    likeness: Likeness | None
+    counted: bool = False
+    asked: bool = False
+
+
+def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
+    """Which of the four, and why."""
+    fit, likeness, correlated = remains.fit, remains.likeness, remains.correlated
+    least = selection.system.equations.thresholds.validation.min_gain_percent
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
         left = like or (fit is not None and fit.found)
         return "named", "a cause passed every gate" + (
             f"; something deterministic remains beside it{like}" if left else ""
         )
-    if close:
+    if remains.unclear:
         return "cannot_tell", (
-            f"the positions are too coarse to tell {' and '.join(map(_rivals, close))}: each explains what "
-            "is missing nearly as well; finer encoders, or encoders at the motors, can tell"
+            f"the positions are too coarse to tell {' and '.join(map(_rivals, remains.unclear))}: each "
+            "explains what is missing nearly as well; finer encoders, or encoders at the motors, can tell"
         )
-    if counted:
+    if remains.counted:
         return "nothing_missing", (
             "what remains is no more than what the counts of the encoders leave; whatever is less than that "
             "takes finer ones to see"
         )
-    if noisy.max() > PRACTICAL:
-        joint = int(np.argmax(noisy)) + 1
+    if remains.feigned.max() > least:
+        joint = int(np.argmax(remains.feigned)) + 1
         return "cannot_tell", (
-            f"the positions are too coarse: their errors alone could feign a gain of {noisy.max():.1f} % at "
-            f"joint {joint}, and nothing explains more; finer encoders, or encoders at the motors, can tell"
+            "the positions are too coarse: their errors alone could feign a gain of "
+            f"{remains.feigned.max():.1f} % at joint {joint}, and nothing explains more; "
+            "finer encoders, or encoders at the motors, can tell"
         )
     if fit is None:
         return "cannot_tell", (
             "nothing could be named, and no period repeats by which the noise could be measured: excite with "
             "two or more identical periods (--period gives their length where it is not found)"
         )
-    if correlated is not None and correlated.found and correlated.cost.max() > PRACTICAL:
+    if correlated is not None and correlated.found and correlated.cost.max() > least:
         joint = int(np.argmax(correlated.cost)) + 1
         return "cannot_tell", (
             "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
@@ -69,9 +77,9 @@ def verdict_of(
             f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
     if fit.found or likeness is not None:
-        near = max(beside, key=lambda c: c.delta_bic, default=None)
+        near = max(remains.stand_ins, key=lambda c: c.delta_bic, default=None)
         more = "" if near is None else f"; {_title(near.trial.candidate)} comes nearest"
-        pool = "none of the effects asked for" if asked else "no effect of the catalogue"
+        pool = "none of the effects asked for" if remains.asked else "no effect of the catalogue"
         return (
             "outside_catalogue",
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}{more}",

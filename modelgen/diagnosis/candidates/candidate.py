@@ -8,13 +8,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from modelgen.dataset import drives_of, parse
-from modelgen.diagnosis.equations.rows import Rows, turning
+from modelgen.diagnosis.equations import Equations, Rows, turning
 from modelgen.effects import CATALOGUE, Definition, Family, Parameter, Presence
-from modelgen.evaluation import Evaluator, places
+from modelgen.evaluation import places
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]  # effect and joint
-BEGUN = 1.0  # s, begin of a part of a log that counts as its beginning
 
 
 @dataclass(frozen=True)
@@ -80,23 +79,24 @@ class Candidate:
         return self.definition.judged_at(self.joint, self.fixed, n)
 
 
-def candidates(evaluator: Evaluator, rows: Sequence[Rows]) -> list[Candidate]:
+def candidates(equations: Equations) -> list[Candidate]:
     """Everything of the catalogue that can stand somewhere on the arm and is not there yet."""
     found: list[Candidate] = []
+    arm, rows = equations.arm, equations.rows
     free = all(r.prepared.input is None for r in rows)
     for name, effect in CATALOGUE.items():
         if effect.presence is Presence.LATER and len(rows) < 2:
             continue
         if free and effect.needs_effort:
             continue
-        if effect.presence is Presence.FADING and not cold(rows):
+        if effect.presence is Presence.FADING and not cold(equations):
             continue
-        there = [joint for joint in places(evaluator.arm, name) if _seen(effect, joint, rows)]
+        there = [joint for joint in places(arm, name) if _seen(effect, joint, rows)]
         for joint in there:
             forms = [
                 (fixed, part)
-                for fixed in _fixed(effect, joint, rows, evaluator)
-                for part in effect.subsets(evaluator.arm, joint)
+                for fixed in _fixed(effect, joint, equations)
+                for part in effect.subsets(arm, joint)
             ]
             for fixed, part in forms:
                 searched = tuple(p for p in effect.searched() if p.name not in fixed)
@@ -113,9 +113,10 @@ def _seen(effect: type[Definition], joint: int | None, rows: Sequence[Rows]) -> 
     return at_links(joint, rows) and bool(effect.sought(behind_link=True))
 
 
-def cold(rows: Sequence[Rows]) -> bool:
+def cold(equations: Equations) -> bool:
     """Whether all records begin where their logs do, and not with a part of one that was warmed before."""
-    return all(parse(r.prepared.record.name).begin < BEGUN for r in rows)
+    latest = equations.thresholds.candidates.max_log_begin
+    return all(parse(r.prepared.record.name).begin < latest for r in equations.rows)
 
 
 def at_motor(joint: int | None, rows: Sequence[Rows]) -> bool:
@@ -136,44 +137,42 @@ def search_of(candidate: Candidate, rows: Sequence[Rows]) -> tuple[Parameter, ..
     return candidate.definition.sought(at_links(candidate.joint, rows))
 
 
-def first_values(candidate: Candidate, rows: Sequence[Rows], evaluator: Evaluator) -> Values | None:
+def first_values(candidate: Candidate, equations: Equations) -> Values | None:
     """A value of everything that is searched for, in the middle of its grid; None where it has no size."""
     known = candidate.fixed
     found = {
-        p.name: grid_unit(p.scale, candidate.effect, candidate.joint, rows, evaluator)
-        * p.grid[len(p.grid) // 2]
-        for p in search_of(candidate, rows)
+        p.name: grid_unit(p.scale, candidate.effect, candidate.joint, equations) * p.grid[len(p.grid) // 2]
+        for p in search_of(candidate, equations.rows)
         if p.name not in known
     }
     return found if all(value > 0 for value in found.values()) else None
 
 
-def richer_instead(candidate: Candidate, rows: Sequence[Rows], evaluator: Evaluator) -> list[Candidate]:
+def richer_instead(candidate: Candidate, equations: Equations) -> list[Candidate]:
     """Laws that come to that of an elastic joint at a limit, play for one, behind a link's own position."""
-    if not candidate.elastic or not at_links(candidate.joint, rows):
+    if not candidate.elastic or not at_links(candidate.joint, equations.rows):
         return []
     return [
         Candidate(name, candidate.joint, fixed, places=candidate.places)
         for name, effect in CATALOGUE.items()
         if effect.simpler is candidate.definition and effect.sought(behind_link=True)
-        for fixed in _fixed(effect, candidate.joint, rows, evaluator)
+        for fixed in _fixed(effect, candidate.joint, equations)
     ]
 
 
-def _fixed(
-    effect: type[Definition], joint: int | None, rows: Sequence[Rows], evaluator: Evaluator
-) -> list[dict[str, float]]:
+def _fixed(effect: type[Definition], joint: int | None, equations: Equations) -> list[dict[str, float]]:
     """Values that are not searched for, by form: what a grid of one value says, and the effect's own."""
     alone = [p for p in effect.nonlinear if len(p.grid) == 1]
-    if effect.family is Family.ELASTIC and at_links(joint, rows):
+    if effect.family is Family.ELASTIC and at_links(joint, equations.rows):
         kept = {p.name for p in effect.sought(behind_link=True)}
         alone += [p for p in effect.sought(behind_link=False) if p.name not in kept]
-    taken = {p.name: p.grid[0] * grid_unit(p.scale, effect.name, joint, rows, evaluator) for p in alone}
-    return [{**taken, **form} for form in effect.variants(evaluator.arm, joint)]
+    taken = {p.name: p.grid[0] * grid_unit(p.scale, effect.name, joint, equations) for p in alone}
+    return [{**taken, **form} for form in effect.variants(equations.arm, joint)]
 
 
-def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], evaluator: Evaluator) -> float:
+def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> float:
     """What a grid is in units of, over all records."""
+    rows = equations.rows
     if kind == "1":
         return 1.0
     if kind == "time":
@@ -188,7 +187,7 @@ def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], eva
         return span
     if kind == "speed":
         return float(np.quantile(np.abs(np.concatenate(speed)), 0.95))
-    drive = drives_of(evaluator.arm)[j]
+    drive = drives_of(equations.arm)[j]
     efforts = [
         np.abs(drive.gain(r.prepared.q[:, j]) * (0 if r.prepared.input is None else r.prepared.input[:, j]))
         for r in rows
@@ -196,10 +195,13 @@ def grid_unit(kind: str, name: str, joint: int | None, rows: Sequence[Rows], eva
     return float(np.quantile(np.concatenate(efforts), 0.95)) / max(span, 1e-12)
 
 
-def without_rests(rows: Sequence[Rows], candidate: Candidate) -> Sequence[Rows]:
-    """The rows at which a cause that was taken moves; all where it has no rest of its own."""
+def without_rests(equations: Equations, candidate: Candidate) -> Equations:
+    """With the rows at which a cause that was taken moves; all where it has no rest of its own."""
     pair = candidate.definition.coupled(candidate.fixed)
     if pair is None or candidate.joint is None:
-        return rows
+        return equations
+    rows = equations.rows
     where = [turning(r.prepared, candidate.joint, *pair) for r in rows]
-    return [replace(r, moving=r.moving & flags) for r, flags in zip(rows, where, strict=True)]
+    return equations.with_rows(
+        [replace(r, moving=r.moving & flags) for r, flags in zip(rows, where, strict=True)]
+    )

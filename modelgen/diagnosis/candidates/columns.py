@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import Candidate, Values
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Equations, Rows
 from modelgen.effects import Presence
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.numeric import Array
 
-TAIL = 1e-6  # of the largest of all records
+TAIL = 1e-6  # of the largest of all records: less is rounding
 
 
 def unchanging(candidate: Candidate, evaluator: Evaluator) -> bool:
@@ -28,14 +28,15 @@ def unchanging(candidate: Candidate, evaluator: Evaluator) -> bool:
 
 
 def candidate_columns(
-    candidate: Candidate, values: Values, rows: Sequence[Rows], evaluator: Evaluator, base: Array
+    candidate: Candidate, values: Values, equations: Equations, base: Array
 ) -> list[Array] | None:
-    """Its columns (M, n, k) in every record for values of what is searched, or about which a column that
-    follows no line is taken; None where it cannot stand.
+    """Its columns (M, n, k) in every record of the equations for values of what is searched, or about which a
+    column that follows no line is taken; None where it cannot stand. base: base parameters (p,).
     """
     try:
         found = [
-            r.filtered(_at_full_rate(candidate, values, r, k, evaluator, base)) for k, r in enumerate(rows)
+            r.filtered(_at_full_rate(candidate, values, r, k, equations.evaluator, base))
+            for k, r in enumerate(equations.rows)
         ]
     except InputError:
         return None

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from modelgen.description import Arm
+import numpy as np
+
 from modelgen.diagnosis.candidates.candidate import Candidate, Values
 from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty
-from modelgen.diagnosis.evidence.likelihood import Evidence
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import Evidence, System
 from modelgen.effects import described
 from modelgen.errors import InputError
 from modelgen.evaluation import with_effect
 from modelgen.numeric import Array
-
-WHOLLY = (0.5, 2.0)  # share of what was simulated, of an elastic joint or play, that is found
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ class FittedCandidate:
 
     @property
     def odds(self) -> float:
-        """By which rivals are compared, see `plausible.elsewhere`."""
+        """By which rivals are compared, see `place_penalty`."""
         return self.gain.delta_bic - place_penalty(self.candidate)
 
     @property
@@ -50,14 +49,28 @@ def named(candidate: Candidate, values: Array) -> dict[str, float]:
     return dict(zip(candidate.names, (float(v) for v in values), strict=False))
 
 
+def with_causes(equations: Equations, trials: Sequence[FittedCandidate]) -> list[Array]:
+    """The model's own columns and the causes' side by side, by record."""
+    return [
+        np.concatenate([r.columns, *(t.columns[i] for t in trials)], axis=2)
+        for i, r in enumerate(equations.rows)
+    ]
+
+
+def system_of(equations: Equations, trials: Sequence[FittedCandidate], noise: System | None = None) -> System:
+    """The equations with the causes' columns. noise: a system whose noise they have."""
+    return System(equations, with_causes(equations, trials), noise)
+
+
 def beside(trial: FittedCandidate, system: System) -> Evidence | None:
     """What a candidate explains beside another system's columns, with the values it was found at."""
     c = trial.candidate
     return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.passing)
 
 
-def sensible(trial: FittedCandidate, arm: Arm) -> bool:
+def sensible(trial: FittedCandidate, equations: Equations) -> bool:
     """Whether something is left where values may not be negative, and the arm admits them."""
+    arm = equations.arm
     c, found = trial.candidate, trial.parameters
     bounds = {p.name: p.bounds for p in c.definition.accepted()}
     if not all(low <= found[name] <= high for name, (low, high) in bounds.items() if name in found):
@@ -70,5 +83,6 @@ def sensible(trial: FittedCandidate, arm: Arm) -> bool:
         except InputError:
             return False
     if c.elastic:
-        return bool(WHOLLY[0] < trial.gain.values[0] < WHOLLY[1])
+        low, high = equations.thresholds.candidates.compliant_share
+        return bool(low < trial.gain.values[0] < high)
     return not c.definition.vanishes(named(c, trial.gain.values))

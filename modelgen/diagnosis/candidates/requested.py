@@ -1,4 +1,4 @@
-"""Candidates that the user asks for by name, and whether the records can show them."""
+"""Candidates that the user asks for by name, and records that one model of the arm must fit."""
 
 from __future__ import annotations
 
@@ -10,38 +10,35 @@ import numpy as np
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates.candidate import Candidate, Place, first_values
 from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.equations.checks import _of_effects, _weights
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.thresholds import APART, LARGE, LEAST, OWN
+from modelgen.diagnosis.equations import Band, Equations, columns_of_effects, weights_of_efforts
 from modelgen.effects import CATALOGUE, Presence
 from modelgen.errors import InputError
-from modelgen.evaluation import Evaluator
-from modelgen.functions import Model
-from modelgen.numeric import Array
 from modelgen.regression.weighted import moving_share, orthonormal, rmse, stacked, weighted_fit
 
 
-def check_one_arm(arm: Arm, model: Model, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> None:
+def check_one_arm(band: Band) -> None:
     """Raises InputError where no one model of this arm comes near to all records.
 
     One fit to two leaves several times what a fit to each leaves, and much of the effort, though the second
     may have frictions of its own and a payload.
     """
+    equations, limits = band.equations, band.equations.thresholds.candidates
+    arm, rows = equations.arm, equations.rows
     if len(rows) < 2 or any(r.prepared.input is None for r in rows):
         return
-    n = rows[0].effort.shape[1]
-    of_effects = _of_effects(model)
+    of_effects = columns_of_effects(equations.model)
     for r in rows[1:]:
         pair = [rows[0], r]
-        later = [candidate_columns(c, {}, pair, evaluator, base) for c in coming_later(arm)]
-        own = [np.zeros((len(rows[0].effort), n, len(of_effects))), r.columns[:, :, of_effects]]
+        later = [candidate_columns(c, {}, equations.with_rows(pair), band.base) for c in coming_later(arm)]
+        own = [np.zeros((*rows[0].effort.shape, len(of_effects))), r.columns[:, :, of_effects]]
         parts = [[x.columns for x in pair], own, *(made for made in later if made is not None)]
         table = [np.concatenate([part[k] for part in parts], axis=2) for k in range(2)]
         both = rmse(pair, table, weighted_fit(pair, table))
         each = [rmse([x], [x.columns], weighted_fit([x], [x.columns])) for x in pair]
         apart = np.sqrt((each[0] ** 2 + each[1] ** 2) / 2)
-        size = 1.0 / _weights(pair)
-        wrong = (both > APART * apart) & (both > LARGE * size)
+        size = 1.0 / weights_of_efforts(pair)
+        wrong = both > limits.max_record_disagreement * apart
+        wrong &= both > limits.min_record_disagreement * size
         if wrong.any():
             joints = ", ".join(str(j + 1) for j in np.flatnonzero(wrong))
             ratio = float((both / np.maximum(apart, 1e-300))[wrong].max())
@@ -62,13 +59,7 @@ def coming_later(arm: Arm) -> list[Candidate]:
     ]
 
 
-def asked(
-    pool: Sequence[Candidate],
-    wanted: Sequence[Place],
-    rows: Sequence[Rows],
-    evaluator: Evaluator,
-    base: Array,
-) -> list[Candidate]:
+def asked(pool: Sequence[Candidate], wanted: Sequence[Place], band: Band) -> list[Candidate]:
     """The candidates that are asked for; all where nothing is. wanted: effects, with a joint from 1 or None.
 
     Raises InputError for unknown effects, effects that the model has, places where an effect cannot stand,
@@ -76,7 +67,7 @@ def asked(
     """
     if not wanted:
         return list(pool)
-    arm, found = evaluator.arm, list[Candidate]()
+    arm, found = band.equations.arm, list[Candidate]()
     for effect, joint in wanted:
         if effect not in CATALOGUE:
             near = get_close_matches(effect, CATALOGUE, n=1)
@@ -89,10 +80,10 @@ def asked(
         there = [c for c in pool if c.effect == effect and joint in (None, c.joint)]
         if not there:
             raise InputError(f"--effect {_text((effect, joint))}: {_absent(arm, effect, joint)}")
-        shown = [c for c in there if _shows(c, rows, evaluator, base)]
+        shown = [c for c in there if _shows(c, band)]
         if not shown:
             raise InputError(
-                f"--effect {_text((effect, joint))}: {_hidden(there, rows)}; see modelgen excite"
+                f"--effect {_text((effect, joint))}: {_hidden(there, band.equations)}; see modelgen excite"
             )
         found += [c for c in shown if c not in found]
     return found
@@ -111,28 +102,33 @@ def _absent(arm: Arm, effect: str, joint: int | None) -> str:
     return f"it cannot stand at {where} of {arm.name}, or not with these records"
 
 
-def _hidden(there: Sequence[Candidate], rows: Sequence[Rows]) -> str:
-    share = moving_share(rows)
-    still = sorted({c.joint for c in there if c.joint is not None and share[c.joint - 1] <= LEAST})
+def _resting(c: Candidate, equations: Equations) -> bool:
+    share = moving_share(equations.rows)
+    return c.joint is not None and bool(share[c.joint - 1] <= equations.thresholds.equations.min_moving_share)
+
+
+def _hidden(there: Sequence[Candidate], equations: Equations) -> str:
+    still = sorted({c.joint for c in there if c.joint is not None and _resting(c, equations)})
     if still:
         return f"joint {', '.join(map(str, still))} rests in the training records, which cannot show it"
     return "the motion of the training records cannot show it: the model's own parameters absorb all of it"
 
 
-def _shows(c: Candidate, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> bool:
+def _shows(c: Candidate, band: Band) -> bool:
     """Whether the candidate has a part of its own in the equations."""
-    share = moving_share(rows)
-    if c.joint is not None and share[c.joint - 1] <= LEAST:
+    equations, rows = band.equations, band.equations.rows
+    if _resting(c, equations):
         return False
     if c.definition.periodic:
         return True
-    values = first_values(c, rows, evaluator)
-    made = None if values is None else candidate_columns(c, values, rows, evaluator, base)
+    values = first_values(c, equations)
+    made = None if values is None else candidate_columns(c, values, equations, band.base)
     if made is None:
         return False
-    weights = _weights(rows)
-    own, _ = stacked(rows, [r.columns for r in rows], weights)
+    weights = weights_of_efforts(rows)
+    own, _ = stacked(rows, equations.columns, weights)
     added, _ = stacked(rows, made, weights)
     basis = orthonormal(own)
     left = np.linalg.norm(added - basis @ (basis.T @ added), axis=0)
-    return bool((left > OWN * np.linalg.norm(added, axis=0)).any())
+    least = equations.thresholds.candidates.min_own_share
+    return bool((left > least * np.linalg.norm(added, axis=0)).any())

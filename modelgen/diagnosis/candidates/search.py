@@ -19,31 +19,26 @@ from modelgen.diagnosis.candidates.candidate import (
     search_of,
 )
 from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging
-from modelgen.diagnosis.candidates.fitted import WHOLLY, FittedCandidate, named
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
 from modelgen.diagnosis.candidates.periodogram import waves
 from modelgen.diagnosis.candidates.prior_odds import prior_penalty
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Evaluator
+from modelgen.diagnosis.evidence import System
 from modelgen.numeric import Array
 
+# Budgets of the searches: how finely values are found decides nothing.
 REFINEMENTS = 9  # golden sections: to 1.3 % of a grid's interval
-SEARCHED_WAVES = 3.0  # parameters' worth of penalty for a search over all wave numbers
 GOLDEN = (math.sqrt(5) - 1) / 2
-WHOLE = 0.02  # off a whole number of waves, of that number
 REACH, FAR = 2.5, 8.0  # factors either way over which a scanned value and others are searched
 SECTIONS = 5  # golden sections over each of several values in turn
 ROUNDS = 2  # over all values in turn
 HALVINGS = 6  # between two values of a scan
-CERTAIN = 10.0  # delta BIC (Kass and Raftery 1995)
-WORTH = 4.0  # evidence below which nothing is refined
 SECANTS = 2  # times a column that follows no line is taken at the value found
 SETTLED = 1.0  # change of evidence that needs no more of it
 Columns: TypeAlias = dict[object, list[Array] | None]  # of every record, by candidate and values
 
 
 class Search:
-    """Tries candidates against one system.
+    """Tries candidates against one system, with the arm's parameters as they are found in it.
 
     known: columns for these rows, by candidate and values. They outlive a search: those that change with the
     arm's parameters serve the next one to pass over what explains nothing, whatever the parameters are.
@@ -53,18 +48,16 @@ class Search:
     def __init__(
         self,
         system: System,
-        rows: Sequence[Rows],
-        evaluator: Evaluator,
-        base: Array,
         known: Columns | None = None,
         elastic: Collection[int | None] = (),
     ) -> None:
         self.system = system
         self.known = {} if known is None else known
-        self.rows = rows
-        self.evaluator = evaluator
+        self.equations = system.equations
+        self.rows = system.rows
+        self.limits = system.equations.thresholds.candidates
         self.elastic = elastic
-        self.base = base
+        self.base = system.base
         self.fresh = True  # whether columns that change are made anew
         self.aged = False  # whether some were not
         self.renewed: set[object] = set()  # made with the parameters of this search
@@ -73,10 +66,10 @@ class Search:
         """The best that the candidate can do; None where it adds nothing of its own."""
         self.fresh, self.aged = False, False
         found = self._trial(candidate)
-        if found is not None and self.aged and found.gain.delta_bic >= WORTH:
+        if found is not None and self.aged and found.gain.delta_bic >= self.limits.min_refined_delta_bic:
             self.fresh = True
             found = self._trial(candidate)
-        if found is None or found.gain.delta_bic < WORTH or not candidate.curved:
+        if found is None or found.gain.delta_bic < self.limits.min_refined_delta_bic or not candidate.curved:
             return found
         for _ in range(SECANTS):
             before, extra = found, float(len(found.values))
@@ -97,20 +90,24 @@ class Search:
             if at_links(candidate.joint, self.rows) and candidate.joint in self.elastic:
                 return None  # what is left of one looks like the other
             found = self._compliant(candidate)
-            richer = [] if found is None else richer_instead(candidate, self.rows, self.evaluator)
+            richer = [] if found is None else richer_instead(candidate, self.equations)
             # impacts of a loose link look elastic; the other way round they do not
             others = [other for other in map(self._compliant, richer) if other is not None]
-            return None if found and any(ahead(other, found) for other in others) else found
+            return (
+                None
+                if found and any(ahead(other, found, self.limits.certain_delta_bic) for other in others)
+                else found
+            )
         if not candidate.searched:
             return self._at(candidate, {}, 0.0)
         (parameter,) = candidate.searched[:1]
-        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.rows, self.evaluator)
+        unit = grid_unit(parameter.scale, candidate.effect, candidate.joint, self.equations)
         if not unit > 0:
             return None
         grid = [unit * g for g in parameter.grid]
         trials = [self._at(candidate, {parameter.name: x}, 1.0) for x in grid]
         best = _best(trials)
-        if best is None or best.gain.delta_bic < WORTH:
+        if best is None or best.gain.delta_bic < self.limits.min_refined_delta_bic:
             return best
         low, high = bracket(grid, trials.index(best), turns=parameter.turns)
         return self._refined(candidate, parameter.name, low, high, best, 1.0)
@@ -121,7 +118,7 @@ class Search:
         if around is None:
             columns = self._columns(candidate, values)
         else:
-            columns = candidate_columns(candidate, around, self.rows, self.evaluator, self.base)
+            columns = candidate_columns(candidate, around, self.equations, self.base)
         if columns is None or not all(np.isfinite(c).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
@@ -130,17 +127,17 @@ class Search:
         held = np.array(candidate.positive) & (gain.values == 0.0)
         if held.any():  # stays zero in every fit to come
             columns = [np.where(held, 0.0, c) for c in columns]
-        charged = prior_penalty(candidate, named(candidate, gain.values), self.evaluator.arm)
+        charged = prior_penalty(candidate, named(candidate, gain.values), self.equations.arm)
         gain = replace(gain, delta_bic=gain.delta_bic - charged)
         return FittedCandidate(candidate, dict(values), columns, gain, charged, dict(around or {}))
 
     def _columns(self, candidate: Candidate, values: Values) -> list[Array] | None:
         given = {**candidate.fixed, **values}
         key = *candidate.place, tuple(sorted(given.items()))
-        stays = unchanging(candidate, self.evaluator)
+        stays = unchanging(candidate, self.equations.evaluator)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
             every = replace(candidate, part=())
-            self.known[key] = candidate_columns(every, values, self.rows, self.evaluator, self.base)
+            self.known[key] = candidate_columns(every, values, self.equations, self.base)
             self.renewed.add(key)
         elif not stays and key not in self.renewed:
             self.aged = True
@@ -161,8 +158,7 @@ class Search:
         """A scan over the first value, then a section over each in turn."""
         search = search_of(candidate, self.rows)
         units = {
-            p.name: grid_unit(p.scale, candidate.effect, candidate.joint, self.rows, self.evaluator)
-            for p in search
+            p.name: grid_unit(p.scale, candidate.effect, candidate.joint, self.equations) for p in search
         }
         if not all(unit > 0 for unit in units.values()):
             return None
@@ -171,7 +167,7 @@ class Search:
         first = search[0].name
         scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in search[0].grid]
         best = _best([self._if_whole(t) for t in scanned]) or self._between(scanned, first, extra)
-        if best is None or best.gain.delta_bic < WORTH:
+        if best is None or best.gain.delta_bic < self.limits.min_refined_delta_bic:
             return best
         for turn in range(ROUNDS):
             for name in (p.name for p in reversed(search)):
@@ -191,7 +187,8 @@ class Search:
         """Behind a link's own position, only what is found about as large as it was simulated."""
         if found is None or not at_links(found.candidate.joint, self.rows):
             return found
-        return found if WHOLLY[0] < found.gain.values[0] < WHOLLY[1] else None
+        low, high = self.limits.compliant_share
+        return found if low < found.gain.values[0] < high else None
 
     def _between(
         self, scanned: Sequence[FittedCandidate | None], name: str, extra: float
@@ -231,27 +228,27 @@ class Search:
         cutoff = self.rows[0].prepared.settings.cutoff or self.rows[0].prepared.rate / 2
         per_harmonic = 2 * np.pi / candidate.fixed["revolution"]
         best: FittedCandidate | None = None
+        price, worth = self.limits.wave_search_price, self.limits.min_refined_delta_bic
         step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
-        for wave in waves(together[0], together[1], together[2], cutoff):
+        for wave in waves(together[0], together[1], together[2], cutoff, self.limits):
             harmonic = wave / per_harmonic
             if per_harmonic == 1.0:
                 # what turns with a motor repeats a whole number of times in its turn
                 harmonic = max(1.0, round(harmonic))
-                if abs(harmonic - wave) > max(2 * step, WHOLE * harmonic):
+                if abs(harmonic - wave) > max(2 * step, self.limits.max_wave_deviation * harmonic):
                     continue
-            found = self._at(candidate, {"harmonic": harmonic}, SEARCHED_WAVES)
-            if found is not None and found.gain.delta_bic > WORTH:
+            found = self._at(candidate, {"harmonic": harmonic}, price)
+            if found is not None and found.gain.delta_bic > worth:
                 width = step / 2 / per_harmonic
-                found = self._refined(
-                    candidate, "harmonic", harmonic - width, harmonic + width, found, SEARCHED_WAVES
-                )
+                low, high = harmonic - width, harmonic + width
+                found = self._refined(candidate, "harmonic", low, high, found, price)
             best = _best([best, found])
         return best
 
 
-def ahead(one: FittedCandidate, other: FittedCandidate) -> bool:
-    """Whether one explains more than the other for certain."""
-    return one.gain.delta_bic - other.gain.delta_bic > CERTAIN
+def ahead(one: FittedCandidate, other: FittedCandidate, certain: float) -> bool:
+    """Whether one explains more than the other by more than what is certain."""
+    return one.gain.delta_bic - other.gain.delta_bic > certain
 
 
 def bracket(grid: Sequence[float], k: int, *, turns: bool) -> tuple[float, float]:

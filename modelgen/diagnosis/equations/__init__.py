@@ -1,1 +1,35 @@
 """The equations y = X b + e of all training records, as wide a band as the encoders allow."""
+
+from modelgen.diagnosis.equations.band import Band, bands, rows_twice
+from modelgen.diagnosis.equations.checks import check_efforts, columns_of_effects, weights_of_efforts
+from modelgen.diagnosis.equations.equations import Equations
+from modelgen.diagnosis.equations.free_motion import released
+from modelgen.diagnosis.equations.position_errors import feigned, harmless, repeating_errors, with_errors
+from modelgen.diagnosis.equations.prior import NominalPrior, Unknowns, estimated, held
+from modelgen.diagnosis.equations.rows import Rows, rows_of, turning
+from modelgen.diagnosis.equations.study import Study, settings_for, study_of
+
+__all__ = [
+    "Band",
+    "Equations",
+    "NominalPrior",
+    "Rows",
+    "Study",
+    "Unknowns",
+    "bands",
+    "check_efforts",
+    "columns_of_effects",
+    "estimated",
+    "feigned",
+    "harmless",
+    "held",
+    "released",
+    "repeating_errors",
+    "rows_of",
+    "rows_twice",
+    "settings_for",
+    "study_of",
+    "turning",
+    "weights_of_efforts",
+    "with_errors",
+]

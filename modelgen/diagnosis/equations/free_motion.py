@@ -10,31 +10,27 @@ from scipy.ndimage import binary_dilation
 
 from modelgen.dataset import Prepared, Record, Settings, choose, prepare
 from modelgen.dataset.processing.rest import long_runs
+from modelgen.diagnosis.options.thresholds import EquationThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-NOISY = 3.0  # standard deviations of the speed's noise that are rest yet
-WIDEST = 0.4  # of the rate, cut-off of the positions
-RATIOS = (18.0, 9.0)  # of that cut-off over the parallel one, where the noise allows it
-QUIET = 2.0  # the noise's gate over that of the motion
 
-
-def settings_of_swings(records: Sequence[Record], settings: Settings) -> Settings:
+def settings_of_swings(records: Sequence[Record], settings: Settings, limits: EquationThresholds) -> Settings:
     """With gates beyond the noise: a swing begins and ends at rest, and nothing but noise moves it there.
 
     The positions' filter rounds off the speed where friction changes sides, and so shifts its zero: it is as
     wide as the noise allows.
     """
-    rate = 1.0 / records[0].step
-    for ratio in RATIOS:
+    rate, times = 1.0 / records[0].step, limits.rest_noise_deviations
+    for ratio in limits.position_cutoff_ratios:
         wide = replace(settings, position_cutoff=ratio * (settings.cutoff or 0.0))
-        if ratio * (settings.cutoff or 0.0) < WIDEST * rate:
-            gates, noise = choose(list(records), wide).gates, NOISY * noise_of_speeds(records, wide)
-            if all(x < QUIET * g for g, x in zip(gates, noise, strict=True)):
+        if ratio * (settings.cutoff or 0.0) < limits.max_position_cutoff * rate:
+            gates, noise = choose(list(records), wide).gates, times * noise_of_speeds(records, wide)
+            if all(x < limits.max_noise_over_rest_speed * g for g, x in zip(gates, noise, strict=True)):
                 break
     else:
         wide = settings
-        gates, noise = choose(list(records), wide).gates, NOISY * noise_of_speeds(records, wide)
+        gates, noise = choose(list(records), wide).gates, times * noise_of_speeds(records, wide)
     return replace(wide, rest_gate=tuple(max(g, float(x)) for g, x in zip(gates, noise, strict=True)))
 
 

@@ -2,10 +2,10 @@
 
 Two causes that look alike often differ in what they make of the links: the wrong one needs a link that weighs
 what nobody would have drawn. Nominal inertials are off, by some per cent or by tens of them, and nobody says
-by how much: they count as measurements of the base parameters whose common scatter is unknown, and about OFF
-at first (a multivariate t distribution; Lange, Little and Taylor 1989). That guess is worth as much as they
-are, FAITH at least: a description that the records contradict loses its word, and one link that is not as
-described cannot outvote the records.
+by how much: they count as measurements of the base parameters whose common scatter is unknown, and about
+`nominal_scatter` at first (a multivariate t distribution; Lange, Little and Taylor 1989). That guess is worth
+as much as they are, `min_nominal_weight` at least: a description that the records contradict loses its word,
+and one link that is not as described cannot outvote the records.
 """
 
 from __future__ import annotations
@@ -16,25 +16,27 @@ import numpy as np
 from scipy.linalg import null_space
 
 from modelgen.description.objects import Arm
+from modelgen.diagnosis.options.thresholds import EquationThresholds
 from modelgen.errors import InputError
 from modelgen.functions import Model
 from modelgen.functions.nominal import base_matrix, factor_value, nominal_links
 from modelgen.numeric import Array
 
-OFF = 0.3  # of a link's mass, first moments and inertia
-FAITH = 4.0  # measurements that OFF is worth, at least
-NOTHING = 1e-9  # of the largest scatter
+NOTHING = 1e-9  # of the largest scatter: less is rounding
 
 
 @dataclass(frozen=True)
 class NominalPrior:
-    """Equations rows @ base parameters = right, each with scatter 1. rows: (k, p), right: (k,)."""
+    """Equations rows @ base parameters = right, each with scatter 1. rows: (k, p), right: (k,). least: number
+    of measurements that the expected scatter is worth at least.
+    """
 
     rows: Array
     right: Array
+    least: float
 
 
-def told(model: Model) -> NominalPrior | None:
+def told(model: Model, limits: EquationThresholds) -> NominalPrior | None:
     """Of the links; what drives and effects have is not told, nor what a link has nothing of. None where a
     link has no inertials.
     """
@@ -54,7 +56,7 @@ def told(model: Model) -> NominalPrior | None:
     links, others = links[places], others[places]
     # combinations that no drive and no effect has a part in
     kept = null_space(others.T) if others.any() else np.eye(len(places))
-    scatter = kept.T @ links * np.array([OFF * size[name] for name in names])
+    scatter = kept.T @ links * np.array([limits.nominal_scatter * size[name] for name in names])
     u, s, _ = np.linalg.svd(scatter, full_matrices=False)
     there = s > NOTHING * s.max(initial=0.0)
     if not there.any():
@@ -62,7 +64,8 @@ def told(model: Model) -> NominalPrior | None:
     turned = (u[:, there] / s[there]).T @ kept.T
     rows = np.zeros((len(turned), len(factors)))
     rows[:, places] = turned
-    return NominalPrior(rows, turned @ (links @ np.array([known[name] for name in names])))
+    right = turned @ (links @ np.array([known[name] for name in names]))
+    return NominalPrior(rows, right, limits.min_nominal_weight)
 
 
 def _sizes(arm: Arm) -> dict[str, float]:
@@ -95,10 +98,10 @@ class Unknowns:
         return np.asarray(self.fixed + self.lift @ theta)
 
 
-def estimated(model: Model) -> Unknowns:
+def estimated(model: Model, limits: EquationThresholds) -> Unknowns:
     """Every base parameter is unknown."""
     p = len(model.grouping.base)
-    return Unknowns(np.zeros(p), np.eye(p), told(model))
+    return Unknowns(np.zeros(p), np.eye(p), told(model, limits))
 
 
 def held(model: Model) -> Unknowns:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rest import moving_samples
 from modelgen.description import Arm
-from modelgen.diagnosis.equations.prior import Unknowns, estimated
+from modelgen.diagnosis.equations.prior import Unknowns
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
@@ -78,14 +78,14 @@ def rows_of(
     evaluator: Evaluator,
     model: Model,
     prepared: Prepared,
-    theta: Array | None = None,
-    baseline: Unknowns | None = None,
+    theta: Array | None,
+    baseline: Unknowns,
 ) -> Rows:
     """The equations of a record. theta: unknowns, for what of the regressor depends on them (loads).
 
     A free motion has no effort: its equations are 0 = regressor parameters.
     """
-    known = baseline or estimated(model)
+    known = baseline
     parameters = known.base(np.zeros(known.lift.shape[1]) if theta is None else theta)
     motion = motion_of(prepared)
     columns = evaluator.regressor(model, motion, parameters)

@@ -14,27 +14,23 @@ from numpy.typing import NDArray
 from scipy import special
 from scipy.linalg import lstsq
 
-from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.numeric import Array
 from modelgen.regression.instruments import of_period
 
-FEWEST = 10  # equations for an unknown
-SIGNIFICANCE = 1e-4
-
 
 class Pairs:
-    """Columns (M, n, p) of some records and the same in other periods, rows that move in both.
+    """Columns (M, n, p) of a system's records and the same in other periods, rows that move in both.
 
-    own, other: (R, p), stacked record after record, joint after joint, over `sizes` of the joints.
+    own, other: (R, p), stacked record after record, joint after joint, over the sizes of the joints.
     """
 
-    def __init__(
-        self, rows: Sequence[Rows], columns: Sequence[Array], periods: Sequence[int | None], sizes: Array
-    ) -> None:
+    def __init__(self, system: System, columns: Sequence[Array]) -> None:
+        rows, sizes = system.rows, system.sizes
+        self.least = system.limits.min_equations_per_instrument
         self.instruments = [
             None if p is None else of_period(table, r.moving, p)
-            for r, table, p in zip(rows, columns, periods, strict=True)
+            for r, table, p in zip(rows, columns, system.periods, strict=True)
         ]
         self.flags: list[NDArray[np.bool_]] = []
         own, other, right = [], [], []
@@ -58,7 +54,7 @@ class Pairs:
     @property
     def enough(self) -> bool:
         """Whether there are equations enough."""
-        return len(self.own) > FEWEST * self.own.shape[1]
+        return len(self.own) > self.least * self.own.shape[1]
 
     def first_stage(self) -> Array:
         """What the columns of the other period, over `scale`, explain of the columns: (p, p)."""
@@ -105,7 +101,7 @@ class Endogeneity:
 
 def endogeneity(system: System) -> Endogeneity | None:
     """Of the equations with all that they contain; None where nothing repeats."""
-    pairs = Pairs(system.rows, system.columns, system.periods, system.sizes)
+    pairs = Pairs(system, system.columns)
     if not pairs.enough:
         return None
     stage = pairs.first_stage()
@@ -126,4 +122,5 @@ def endogeneity(system: System) -> Endogeneity | None:
     if plain is not None:
         used = plain.rss0 > 0
         cost[used] = 100.0 * (1.0 - np.sqrt(plain.rss1[used] / plain.rss0[used]))
-    return Endogeneity(statistic, gain.rank, float(special.chdtri(gain.rank, SIGNIFICANCE)), share, cost)
+    threshold = float(special.chdtri(gain.rank, system.limits.endogeneity_significance))
+    return Endogeneity(statistic, gain.rank, threshold, share, cost)

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.diagnosis.equations.prior import FAITH, NominalPrior
+from modelgen.diagnosis.equations import NominalPrior
 from modelgen.diagnosis.evidence.noise import Autocorrelation
 from modelgen.numeric import Array
 from modelgen.regression.weighted import orthonormal
 
 TURNS, SETTLED = 30, 0.01  # at most, of the search for a weight, and relative change that ends it
-OPEN = 1e-9  # of the largest singular value: below, records say nothing
-NOTHING = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
+OPEN = 1e-9  # of the largest singular value: less is rounding, and records say nothing
+NEGLIGIBLE = 1e-7  # part of a column, of unit length, that the others leave over where it depends on them
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class StackedEquations:
             self.alone = orthonormal(matrix)
             rows = np.zeros((len(said.rows), matrix.shape[1]))
             rows[:, : said.rows.shape[1]] = said.rows
-            belief = believed(matrix, right, rows, said.right, self.share)
+            belief = believed(matrix, right, replace(said, rows=rows), self.share)
             # one equation more, which nothing changes: the scatter that is expected
             rows = np.vstack([rows, np.zeros(matrix.shape[1])]) * belief.weight
             further = np.append(said.right, math.sqrt(belief.faith)) * belief.weight
@@ -118,12 +118,14 @@ class Belief:
     faith: float
 
 
-def believed(matrix: Array, right: Array, rows: Array, further: Array, share: float) -> Belief:
-    """In what is told (D, b), (D,) beside equations (R, b), (R,), of which `share` are independent.
+def believed(matrix: Array, right: Array, said: NominalPrior, share: float) -> Belief:
+    """In what is told beside equations (R, b), (R,), of which `share` are independent. said: of all b
+    columns.
 
     The likeliest scatter, begun with the records alone: what contradicts them has no say. What the records
     leave open agrees with all that is told, and says nothing about its scatter.
     """
+    rows, further = said.rows, said.right
     norms = np.linalg.norm(np.vstack([matrix, rows]), axis=0)
     norms[norms == 0] = 1.0
     q, r = np.linalg.qr(matrix / norms)
@@ -137,10 +139,10 @@ def believed(matrix: Array, right: Array, rows: Array, further: Array, share: fl
     for _ in range(TURNS):
         weight = 0.0 if math.isinf(scatter) else 1.0 / math.sqrt(scatter * share)
         table = np.vstack([r, weight * told])
-        found = np.linalg.lstsq(table, np.append(right, weight * further), rcond=NOTHING)[0]
+        found = np.linalg.lstsq(table, np.append(right, weight * further), rcond=NEGLIGIBLE)[0]
         size = 1.0 if math.isinf(scatter) else scatter
         count = float((size / (size + variances)).sum())
-        faith = max(FAITH, count)
+        faith = max(said.least, count)
         before, scatter = scatter, (float(((further - told @ found) ** 2).sum()) + faith) / (count + faith)
         if abs(scatter - before) < SETTLED * scatter:
             break
@@ -187,11 +189,11 @@ def explained(
     if stack.alone is not None:  # what the records cannot show is none, whatever is told
         records = unit[: len(stack.alone)]
         _, s, vt = np.linalg.svd(records - stack.alone @ (stack.alone.T @ records), full_matrices=False)
-        apart = vt[s > NOTHING]
+        apart = vt[s > NEGLIGIBLE]
         unit = unit @ apart.T
     own = unit - basis @ (basis.T @ unit)
     u, s, vt = np.linalg.svd(own, full_matrices=False)
-    kept, vt = s > NOTHING, vt @ apart
+    kept, vt = s > NEGLIGIBLE, vt @ apart
     if not kept.any():
         return None
     scores = u[:, kept].T @ left
@@ -239,7 +241,7 @@ def not_negative(matrix: Array, right: Array, limited: NDArray[np.intp]) -> Arra
         for zero in combinations(limited, count):
             free = np.setdiff1d(np.arange(matrix.shape[1]), zero)
             found = np.zeros(matrix.shape[1])
-            found[free] = np.linalg.lstsq(matrix[:, free], right, rcond=NOTHING)[0]
+            found[free] = np.linalg.lstsq(matrix[:, free], right, rcond=NEGLIGIBLE)[0]
             size = float(((right - matrix @ found) ** 2).sum())
             if (found[limited] >= 0).all() and size < least:
                 best, least = found, size

@@ -10,18 +10,16 @@ from numpy.typing import NDArray
 from scipy.signal import fftconvolve, lfilter
 
 from modelgen.dataset.processing.periods import noise_of
-from modelgen.diagnosis.thresholds import ORDER
+from modelgen.diagnosis.options.thresholds import EvidenceThresholds
 from modelgen.numeric import Array
-
-LAGS = 80  # rows of autocorrelation that count
-LEAST = 300  # rows from which noise is told from what repeats
 
 
 class Autocorrelation:
     """Of the noise of rows that are stacked record after record, joint after joint in each.
 
-    correlations: (n, LAGS) of each joint's noise, from lag 0, tapered so that no combination of rows has a
+    correlations: (n, lags) of each joint's noise, from lag 0, tapered so that no combination of rows has a
     negative variance (Newey and West 1987). moving: (M, n) of each record. periods: rows in a period of each.
+    limits: by which correlations are measured anew.
     """
 
     def __init__(
@@ -29,8 +27,10 @@ class Autocorrelation:
         correlations: Array,
         moving: Sequence[NDArray[np.bool_]],
         periods: Sequence[int | None],
+        limits: EvidenceThresholds,
     ) -> None:
         self.correlations, self.moving, self.periods = correlations, moving, periods
+        self.limits, self.lags = limits, correlations.shape[1]
         self.kernels = [np.concatenate([c[:0:-1], c]) for c in correlations]
         self.places: list[list[tuple[slice, NDArray[np.intp]]]] = [[] for _ in correlations]
         self.length, row = 0, 0
@@ -39,21 +39,23 @@ class Autocorrelation:
                 at = np.flatnonzero(flags[:, j])
                 places.append((slice(row, row + len(at)), self.length + at))
                 row += len(at)
-            self.length += len(flags) + LAGS
+            self.length += len(flags) + self.lags
 
     def of(self, left: Array) -> Autocorrelation:
         """That of what is left, (R,), once what does not repeat is taken off."""
         residuals = [np.zeros(flags.shape) for flags in self.moving]
-        ends = np.cumsum([len(flags) + LAGS for flags in self.moving])
+        ends = np.cumsum([len(flags) + self.lags for flags in self.moving])
         for j, places in enumerate(self.places):
             for (rows, at), table, end in zip(places, residuals, ends, strict=True):
-                table[at - (end - len(table) - LAGS), j] = left[rows]
-        found = correlations(residuals, self.moving, self.periods)
-        return self if found is None else Autocorrelation(found, self.moving, self.periods)
+                table[at - (end - len(table) - self.lags), j] = left[rows]
+        found = correlations(residuals, self.moving, self.periods, self.limits)
+        if found is None:
+            return self
+        return Autocorrelation(found, self.moving, self.periods, self.limits)
 
     def along(self, moving: Sequence[NDArray[np.bool_]]) -> Autocorrelation:
         """The same in rows of other motions."""
-        return Autocorrelation(self.correlations, moving, [None] * len(moving))
+        return Autocorrelation(self.correlations, moving, [None] * len(moving), self.limits)
 
     def variance(self, columns: Array) -> Array:
         """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""
@@ -68,23 +70,26 @@ class Autocorrelation:
 
 
 def correlations(
-    residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], periods: Sequence[int | None]
+    residuals: Sequence[Array],
+    moving: Sequence[NDArray[np.bool_]],
+    periods: Sequence[int | None],
+    limits: EvidenceThresholds,
 ) -> Array | None:
-    """Of what differs between the periods of residuals (M, n) of each record, tapered: (n, LAGS). None where
+    """Of what differs between the periods of residuals (M, n) of each record, tapered: (n, lags). None where
     hardly anything repeats of some joint that moves: what is left has the colour of what the model lacks.
     """
-    n = residuals[0].shape[1]
-    sums, counts = np.zeros((n, LAGS)), np.zeros(n)
+    n, lags = residuals[0].shape[1], limits.autocorrelation_lags
+    sums, counts = np.zeros((n, lags)), np.zeros(n)
     for e, flags, p in zip(residuals, moving, periods, strict=True):
         for j in range(n if p is not None else 0):
             values, there = noise_of(e[:, j], flags[:, j], int(p or 0))
             counts[j] += there.sum()
-            count = min(LAGS, len(values))
+            count = min(lags, len(values))
             sums[j, :count] += [values[k:] @ values[: len(values) - k] for k in range(count)]
     moves = np.any([flags.any(axis=0) for flags in moving], axis=0)
-    if (moves & (counts <= LEAST)).any() or not moves.any():
+    if (moves & (counts <= limits.min_noise_rows)).any() or not moves.any():
         return None
-    return np.asarray(sums / np.maximum(sums[:, :1], 1e-300) * (1.0 - np.arange(LAGS) / LAGS))
+    return np.asarray(sums / np.maximum(sums[:, :1], 1e-300) * (1.0 - np.arange(lags) / lags))
 
 
 @dataclass(frozen=True)
@@ -111,12 +116,12 @@ def whitened(
     return np.concatenate(parts)
 
 
-def all_usable(moving: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def all_usable(moving: NDArray[np.bool_], order: int) -> NDArray[np.bool_]:
     """`usable_rows` of every joint, (M, n)."""
-    return np.column_stack([usable_rows(flags) for flags in moving.T])
+    return np.column_stack([usable_rows(flags, order) for flags in moving.T])
 
 
-def usable_rows(moving: NDArray[np.bool_], order: int = ORDER) -> NDArray[np.bool_]:
+def usable_rows(moving: NDArray[np.bool_], order: int) -> NDArray[np.bool_]:
     """Rows (M,) that have `order` moving rows before them."""
     run = np.zeros(len(moving), dtype=int)
     count = 0
@@ -126,15 +131,17 @@ def usable_rows(moving: NDArray[np.bool_], order: int = ORDER) -> NDArray[np.boo
     return np.asarray(run > order)
 
 
-def whitener(residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], order: int = ORDER) -> Whitener:
+def whitener(
+    residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], limits: EvidenceThresholds
+) -> Whitener:
     """From the residuals (M,) of one joint in all records, by least squares over the runs."""
-    past, now = [], []
+    order, past, now = limits.whitening_order, [], []
     for residual, flags in zip(residuals, moving, strict=True):
         usable = np.flatnonzero(usable_rows(flags, order))
         past.append(np.column_stack([residual[usable - lag] for lag in range(1, order + 1)]))
         now.append(residual[usable])
     x, y = np.concatenate(past), np.concatenate(now)
-    if len(y) < 4 * order:
+    if len(y) < limits.min_fitted_rows_per_lag * order:
         left = np.concatenate([r[m] for r, m in zip(residuals, moving, strict=True)])
         size = float(np.sqrt(np.mean(left**2))) if len(left) else 1.0
         return Whitener(np.concatenate([[1.0], np.zeros(order)]), max(size, 1e-300))

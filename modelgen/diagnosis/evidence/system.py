@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.dataset.processing.periods import noise_of
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Equations, Rows
 from modelgen.diagnosis.evidence.likelihood import Evidence, StackedEquations, joints_of, weighted
 from modelgen.diagnosis.evidence.noise import (
-    LAGS,
-    LEAST,
     Autocorrelation,
     Whitener,
     all_usable,
@@ -19,36 +18,31 @@ from modelgen.diagnosis.evidence.noise import (
     whitened,
     whitener,
 )
+from modelgen.diagnosis.options.thresholds import EvidenceThresholds
 from modelgen.numeric import Array
 from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
-DEARER = 1.5  # times the evidence that it takes where the colour of the noise is not known
-
 
 class System:
-    """Rows of several records with columns (M, n, p) each: baseline and what was added.
+    """Equations with columns (M, n, p) for each record: the model's own and what was added.
 
-    Weighted by joint, whitened, stacked joint after joint, record after record. periods: rows in a period
-    of each record, None where nothing repeats. noise: a system whose noise these equations have.
+    Weighted by joint, whitened, stacked joint after joint, record after record. noise: a system whose noise
+    these equations have.
     """
 
     def __init__(
-        self,
-        rows: Sequence[Rows],
-        columns: Sequence[Array],
-        periods: Sequence[int | None] | None = None,
-        noise: System | None = None,
+        self, equations: Equations, columns: Sequence[Array] | None = None, noise: System | None = None
     ) -> None:
-        self.rows = rows
-        self.periods = periods or [None] * len(rows)
-        self.columns = columns
-        self.n = rows[0].effort.shape[1]
+        self.equations = equations
+        self.columns = equations.columns if columns is None else columns
+        rows, columns = self.rows, self.columns
+        self.n = equations.n
         self.theta = weighted_fit(rows, columns)
         self.residuals = [r.effort - c @ self.theta for r, c in zip(rows, columns, strict=True)]
         self.whiteners: list[Whitener] = (
             noise.whiteners if noise else [self._whitener(j) for j in range(self.n)]
         )
-        moving, usable = [r.moving for r in rows], [all_usable(r.moving) for r in rows]
+        moving, usable = [r.moving for r in rows], self.usable(rows)
         self.sizes = np.array([max(_size(self, j), 1e-300) for j in range(self.n)])
         efforts, joint = [r.effort for r in rows], joints_of(usable)
         self.white = StackedEquations(
@@ -60,7 +54,7 @@ class System:
             rows[0].baseline.said,
         )
         shares = np.array([_independent(self, j) for j in range(self.n)])
-        coloured = correlations(self.residuals, moving, self.periods)
+        coloured = correlations(self.residuals, moving, self.periods, self.limits)
         self.plain = StackedEquations(
             lambda c: weighted(c, moving, self.sizes),
             joints_of(moving),
@@ -68,8 +62,32 @@ class System:
             columns,
             efforts,
             rows[0].baseline.said,
-            None if coloured is None else Autocorrelation(coloured, moving, self.periods),
+            None if coloured is None else Autocorrelation(coloured, moving, self.periods, self.limits),
         )
+
+    @property
+    def rows(self) -> Sequence[Rows]:
+        """Of each record."""
+        return self.equations.rows
+
+    @property
+    def periods(self) -> Sequence[int | None]:
+        """Rows in a period of each record, None where nothing repeats."""
+        return self.equations.periods
+
+    @property
+    def limits(self) -> EvidenceThresholds:
+        """By which evidence is counted."""
+        return self.equations.thresholds.evidence
+
+    @property
+    def base(self) -> Array:
+        """Base parameters (p,) as they are found beside all that was added."""
+        return self.equations.base(self.theta)
+
+    def usable(self, rows: Sequence[Rows]) -> list[NDArray[np.bool_]]:
+        """Rows (M, n) of each record that can be whitened."""
+        return [all_usable(r.moving, self.limits.whitening_order) for r in rows]
 
     def _whitener(self, j: int) -> Whitener:
         """From what differs between periods, which is noise alone, and what errors of the positions leave in
@@ -80,13 +98,12 @@ class System:
         repeating = [k for k, p in enumerate(self.periods) if p is not None]
         if repeating:
             noise = [noise_of(residuals[k], moving[k], int(self.periods[k] or 0)) for k in repeating]
-            if sum(int(flags.sum()) for _, flags in noise) > LEAST:
+            if sum(int(flags.sum()) for _, flags in noise) > self.limits.min_noise_rows:
                 errors = [self.rows[k].repeated for k in repeating]
                 alike = [0.0 if e is None else e[:, j] for e in errors]
-                return whitener(
-                    [x + e for (x, _), e in zip(noise, alike, strict=True)], [flags for _, flags in noise]
-                )
-        return whitener(residuals, moving)
+                together = [x + e for (x, _), e in zip(noise, alike, strict=True)]
+                return whitener(together, [flags for _, flags in noise], self.limits)
+        return whitener(residuals, moving, self.limits)
 
     @property
     def noise_known(self) -> bool:
@@ -101,7 +118,7 @@ class System:
     @property
     def price(self) -> float:
         """Times the evidence that it takes to name a cause: more where the noise's colour is not known."""
-        return 1.0 if self.coloured else DEARER
+        return 1.0 if self.coloured else self.limits.unknown_noise_price
 
     @property
     def fair(self) -> StackedEquations:
@@ -144,16 +161,17 @@ def _independent(system: System, j: int) -> float:
         values, flags = e[:, j], r.moving[:, j]
         if p is not None:
             values, flags = noise_of(values, flags, p)
-        shares.append(independent(np.where(flags, values, 0.0)))
+        shares.append(independent(np.where(flags, values, 0.0), system.limits))
     return float(np.mean(shares))
 
 
-def independent(values: Array) -> float:
+def independent(values: Array, limits: EvidenceThresholds) -> float:
     """1 / (1 + 2 sum of squared autocorrelations): of a coloured series, for variances."""
     power = float(values @ values)
     if power <= 0:
         return 1.0
-    lags = [float(values[k:] @ values[:-k]) / power for k in range(1, min(LAGS, len(values) // 4))]
+    most = min(limits.autocorrelation_lags, int(limits.max_lag_share * len(values)))
+    lags = [float(values[k:] @ values[:-k]) / power for k in range(1, most)]
     return 1.0 / (1.0 + 2.0 * float(np.sum(np.square(lags))))
 
 

@@ -1,1 +1,7 @@
 """The next experiment: what would tell rivals apart, within the arm's limits."""
+
+from modelgen.diagnosis.experiment.experiment import STEM, Experiment, differences, next_experiment
+from modelgen.diagnosis.experiment.experiment import to_json as experiment_json
+from modelgen.diagnosis.experiment.motions import setup
+
+__all__ = ["STEM", "Experiment", "differences", "experiment_json", "next_experiment", "setup"]

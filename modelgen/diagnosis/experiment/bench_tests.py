@@ -22,9 +22,6 @@ from modelgen.functions.nominal import about_origin, grouped
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions
 
-DURATION = 30.0  # s of a motion
-LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9)  # of the speed limit
-SMALL, SLOW = 0.05, 0.05  # amplitude over the range, peak speed over its limit
 PAYLOAD = 0.5  # of the last link's mass
 
 
@@ -98,26 +95,27 @@ def _motions(stage: Setup, k: int) -> Iterator[tuple[str, Array]]:
         speed = float(speeds(stage.arm, limits, "joint")[k])
     except InputError:
         return
-    half = 0.95 * half
-    t: Array = stage.step * np.arange(round(DURATION / stage.step), dtype=np.float64)
-    amplitude = SMALL * 2 * half[k]
+    asked = stage.limits
+    half, duration = asked.bench_range_share * half, asked.bench_duration
+    t: Array = stage.step * np.arange(round(duration / stage.step), dtype=np.float64)
+    amplitude = asked.reversal_amplitude * 2 * half[k]
     waves = {
-        "slow reversals": amplitude * np.sin(SLOW * speed / amplitude * t),
-        "a slow sweep of its whole range there and back": -half[k] * np.cos(2 * np.pi * t / DURATION),
-        "constant speeds in both directions": _staircase(t, speed, half[k]),
+        "slow reversals": amplitude * np.sin(asked.reversal_speed * speed / amplitude * t),
+        "a slow sweep of its whole range there and back": -half[k] * np.cos(2 * np.pi * t / duration),
+        "constant speeds in both directions": _staircase(t, speed, half[k], asked.bench_speeds),
     }
     for name, wave in waves.items():
         q = np.tile(middle, (len(t), 1))
         q[:, k] += wave
-        yield f"joint {k + 1} alone: {name}, {DURATION:g} s", q
+        yield f"joint {k + 1} alone: {name}, {duration:g} s", q
 
 
-def _staircase(t: Array, speed: float, half: float) -> Array:
+def _staircase(t: Array, speed: float, half: float, levels: Sequence[float]) -> Array:
     """Positions (N,): each level of speed there and back, with ramps of a tenth of its time."""
-    each = t[-1] / len(LEVELS)
+    each = t[-1] / len(levels)
     result = np.zeros(len(t))
     step = float(t[1] - t[0])
-    for n, level in enumerate(LEVELS):
+    for n, level in enumerate(levels):
         part = (t >= n * each) & (t < (n + 1) * each)
         turns = max(1.0, np.ceil(level * speed * each / 2 / (2 * half)))
         phase = (t[part] - n * each) / each * turns

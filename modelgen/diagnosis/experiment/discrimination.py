@@ -13,19 +13,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.likelihood import NOTHING, joints_of, weighted
-from modelgen.diagnosis.evidence.noise import Autocorrelation, all_usable, whitened
-from modelgen.diagnosis.evidence.system import System
-from modelgen.evaluation import Evaluator
+from modelgen.diagnosis.candidates import Candidate, FittedCandidate, candidate_columns
+from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.evidence import (
+    NEGLIGIBLE,
+    Autocorrelation,
+    System,
+    joints_of,
+    weighted,
+    whitened,
+)
+from modelgen.diagnosis.options.thresholds import ExperimentThresholds
 from modelgen.numeric import Array
 from modelgen.regression.weighted import orthonormal
-
-AROUND = (0.5, 0.7, 1.4, 2.0)  # of the nonlinear parameter that was found
-CONTAINED = 1e-6  # part of a column that is left over
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,13 @@ class Hypothesis:
         return len(self.theta) + len(self.values)
 
 
-def hypothesis(trial: FittedCandidate) -> Hypothesis:
+def hypothesis(trial: FittedCandidate, limits: ExperimentThresholds) -> Hypothesis:
     """The cause as it was fitted to the training records."""
     others: list[Mapping[str, float]] = []
     for name, value in trial.values.items():
-        others += [{**trial.values, name: factor * value} for factor in AROUND if name != "harmonic"]
+        others += [
+            {**trial.values, name: factor * value} for factor in limits.other_values if name != "harmonic"
+        ]
     return Hypothesis(trial.candidate, dict(trial.values), trial.gain.values, tuple(others))
 
 
@@ -78,7 +80,9 @@ class _Scale:
         """What a model with these columns loses where the signal (R,) is there, in units of evidence."""
         norms = np.linalg.norm(columns, axis=0)
         table = columns[:, norms > 0] / norms[norms > 0]
-        left = signal - table @ np.linalg.lstsq(table, signal, rcond=NOTHING)[0] if len(table.T) else signal
+        left = (
+            signal - table @ np.linalg.lstsq(table, signal, rcond=NEGLIGIBLE)[0] if len(table.T) else signal
+        )
         power = np.bincount(self.joint, weights=left**2, minlength=len(self.variance))
         used = self.rows > 0
         ratio = power[used] / (self.rows[used] * np.maximum(self.variance[used], 1e-300))
@@ -94,14 +98,15 @@ class _Scale:
 class Discriminator:
     """What records of motions would say about hypotheses, with the noise that the training records have.
 
-    system: the final one. base: base parameters (p,) of the prober's arm. before: causes beside those in
-    question, whose columns both models have.
+    system: the final one. equations: whose arm further columns are made for. base: its base parameters (p,).
+    before: causes beside those in question, whose columns both models have.
     """
 
     def __init__(
-        self, system: System, evaluator: Evaluator, base: Array, before: Sequence[Hypothesis] = ()
+        self, system: System, equations: Equations, base: Array, before: Sequence[Hypothesis] = ()
     ) -> None:
-        self.system, self.evaluator, self.base, self.before = system, evaluator, base, before
+        self.system, self.equations, self.base, self.before = system, equations, base, before
+        self.limits = equations.thresholds.experiment
         n = system.n
         self.white = system.white.rss / np.maximum(system.white.counts, 1)
         rows = np.maximum(np.bincount(system.plain.joint, minlength=n), 1)
@@ -114,7 +119,7 @@ class Discriminator:
         """Columns (M, n, k) of every record; None where the cause cannot stand."""
         result = []
         for r, base in zip(rows, bases, strict=True):
-            found = candidate_columns(h.candidate, values, [r], self.evaluator, base)
+            found = candidate_columns(h.candidate, values, self.equations.with_rows([r]), base)
             if found is None or not np.isfinite(found[0]).all():
                 return None
             result += found
@@ -162,7 +167,9 @@ class Discriminator:
             own = tables[i][0]
             for j, other in enumerate(members):
                 first = tables[j][0]
-                if i == j or (own is not None and first is not None and inside(own, first)):
+                if i == j or (
+                    own is not None and first is not None and inside(own, first, self.limits.min_left_share)
+                ):
                     continue
                 rests = (
                     []
@@ -184,11 +191,11 @@ class Discriminator:
         norms = np.linalg.norm(stacked, axis=0)
         norms[norms == 0] = 1.0
         kept = rows.moving.ravel()
-        fit = np.linalg.lstsq(stacked[kept] / norms, right[kept], rcond=NOTHING)[0] / norms
+        fit = np.linalg.lstsq(stacked[kept] / norms, right[kept], rcond=NEGLIGIBLE)[0] / norms
         return np.where(rows.moving, (right - stacked @ fit).reshape(signal.shape) * sizes, np.nan), sizes
 
     def _whitened(self, rows: Sequence[Rows]) -> _Scale:
-        usable = [all_usable(r.moving) for r in rows]
+        usable = self.system.usable(rows)
         return _Scale(
             lambda c: whitened(c, usable, self.system.whiteners),
             joints_of(usable),
@@ -208,10 +215,10 @@ class Discriminator:
         )
 
 
-def inside(columns: Array, others: Array) -> bool:
-    """Whether the columns (R, k) are combinations of the others (R, m)."""
+def inside(columns: Array, others: Array, least: float) -> bool:
+    """Whether the columns (R, k) are combinations of the others (R, m), to a share `least`."""
     left = _beyond(columns, orthonormal(others))
-    return bool(np.linalg.norm(left) < CONTAINED * np.linalg.norm(columns))
+    return bool(np.linalg.norm(left) < least * np.linalg.norm(columns))
 
 
 def _beyond(columns: Array, basis: Array) -> Array:

@@ -9,21 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.experiment.bench_tests import Test, least, readings, tests
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
 from modelgen.diagnosis.experiment.motions import Setup
-from modelgen.diagnosis.experiment.trajectory import PERIODS, Progress, Proposal, propose
-from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.thresholds import RATHER
+from modelgen.diagnosis.experiment.trajectory import Progress, Proposal, propose
+from modelgen.diagnosis.options.thresholds import Thresholds
+from modelgen.diagnosis.selection import Cause
 from modelgen.effects import CATALOGUE, Presence
 from modelgen.jobs import HERE, Where
 from modelgen.numeric import Array
 
 if TYPE_CHECKING:
-    from modelgen.diagnosis.extended.findings import NamedCause
+    from modelgen.diagnosis.extended import NamedCause
 
-MEMBERS = 4  # of a set that a trajectory is looked for
 STEM = "next_experiment"
 
 
@@ -31,6 +30,7 @@ STEM = "next_experiment"
 class Experiment:
     """For one ambiguity set. separates: its members, the named cause first; proposal: the trajectory, for
     `members`; tests: on the bench, most evidence first; assumed: limits that were taken from the records.
+    thresholds: by which it was chosen.
     """
 
     separates: tuple[tuple[str, int | None], ...]
@@ -38,6 +38,7 @@ class Experiment:
     proposal: Proposal | None
     tests: tuple[Test, ...]
     assumed: tuple[str, ...]
+    thresholds: Thresholds
     judge: Discriminator | None = None
 
     @property
@@ -46,10 +47,16 @@ class Experiment:
         return None if self.proposal is None else least(self.proposal.evidence)
 
     @property
+    def run(self) -> int:
+        """Periods of the trajectory that its evidence is of."""
+        return self.thresholds.experiment.periods
+
+    @property
     def periods(self) -> int:
         """How many of the trajectory tell the causes apart: evidence grows with them."""
-        evidence = self.evidence or 0.0
-        return PERIODS if not 0.0 < evidence < RATHER else math.ceil(PERIODS * RATHER / evidence)
+        evidence, run = self.evidence or 0.0, self.run
+        asked = self.thresholds.selection.rival_margin_bic
+        return run if not 0.0 < evidence < asked else math.ceil(run * asked / evidence)
 
     @property
     def best(self) -> str:
@@ -74,20 +81,22 @@ def next_experiment(
     stage: None for free motions, whose trajectory nothing can command. found: the causes as they were
     selected, in the order of `causes`.
     """
+    limits = system.equations.thresholds
     for named, cause in zip(causes, found, strict=True):
         rivals = [(effect, joint) for effect, joint, _ in named.ambiguous_with]
         if not rivals and not named.aliases:
             continue
         separates = ((named.effect, named.joint), *rivals, *named.aliases)
         if stage is None:
-            return Experiment(separates, (), None, _said(separates), ())
+            return Experiment(separates, (), None, _said(separates), (), limits)
         trials = [cause.trial] + [t for t, _ in cause.rivals if t.candidate.place in rivals]
         claims = [(*t.candidate.place, t.parameters) for t in trials]
-        before = [hypothesis(c.trial) for c in found if c is not cause]
-        judge = Discriminator(system, stage.evaluator, stage.base, before)
+        before = [hypothesis(c.trial, limits.experiment) for c in found if c is not cause]
+        judge = Discriminator(system, stage.equations, stage.base, before)
         # what comes or fades shows between records, not within a motion
-        suited = [t for t in trials if t.candidate.definition.presence is Presence.ALWAYS][:MEMBERS]
-        members = tuple(hypothesis(t) for t in suited) if len(suited) > 1 else ()
+        suited = [t for t in trials if t.candidate.definition.presence is Presence.ALWAYS]
+        suited = suited[: limits.experiment.max_members]
+        members = tuple(hypothesis(t, limits.experiment) for t in suited) if len(suited) > 1 else ()
         proposal = propose(stage, judge, members, period, progress, where) if members else None
         bench = readings(stage, judge, claims)
         if members:
@@ -95,7 +104,8 @@ def next_experiment(
         if proposal is not None and (least(proposal.evidence) or 0.0) <= 0:
             proposal = None
         ranked = sorted(bench, key=lambda t: -(t.evidence or 0.0))
-        return Experiment(separates, members, proposal, (*ranked, *_said(separates)), stage.assumed, judge)
+        every = *ranked, *_said(separates)
+        return Experiment(separates, members, proposal, every, stage.assumed, limits, judge)
     return None
 
 
@@ -133,7 +143,7 @@ def _trajectory(e: Experiment, p: Proposal) -> dict[str, Any]:
         "file": f"{STEM}.csv",
         "set_points": f"{STEM}_set_points.csv",
         "period_s": float(f"{s.period:.9g}"),
-        "periods": PERIODS,
+        "periods": e.run,
         "periods_to_tell_apart": e.periods,
         "expected_delta_bic": _rounded(e.evidence),
         "pairs": pairs,

@@ -9,8 +9,8 @@ import numpy as np
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
 from modelgen.description import Arm
-from modelgen.diagnosis.equations.rows import Rows, rows_of
-from modelgen.diagnosis.thresholds import ORDER
+from modelgen.diagnosis.equations import Equations, Rows, rows_of
+from modelgen.diagnosis.options.thresholds import ExperimentThresholds
 from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
@@ -19,28 +19,42 @@ from modelgen.functions import Model
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions
 
-HARMONICS = 5
-FEWEST = 2  # samples of a slow motion from one row to the next
-SHORTEST, USUAL, LONGEST = 4.0, 10.0, 12.0  # s, period of a motion
-
 
 @dataclass(frozen=True)
 class Setup:
     """The arm with the processing of its training records.
 
-    arm: with a limit wherever the description has none, and without effects that have states. prepared: the
-    training records. base: base parameters (p,) of `model`. assumed: limits that were taken from the records.
-    every: sampling periods of the records between two samples of a motion; where there are several it must
-    be slow, and its positions are not filtered.
+    arm: with a limit wherever the description has none, and without effects that have states. equations: of
+    the training records. base: base parameters (p,) of their model. assumed: limits that were taken from the
+    records. every: sampling periods of the records between two samples of a motion; where there are several
+    it must be slow, and its positions are not filtered.
     """
 
     arm: Arm
-    model: Model
-    evaluator: Evaluator
-    prepared: Sequence[Prepared]
+    equations: Equations
     base: Array
     assumed: tuple[str, ...]
     every: int = 1
+
+    @property
+    def model(self) -> Model:
+        """Of the arm as described."""
+        return self.equations.model
+
+    @property
+    def evaluator(self) -> Evaluator:
+        """Of the inputs that motions need."""
+        return self.equations.evaluator
+
+    @property
+    def prepared(self) -> list[Prepared]:
+        """The training records."""
+        return [r.prepared for r in self.equations.rows]
+
+    @property
+    def limits(self) -> ExperimentThresholds:
+        """By which an experiment is chosen."""
+        return self.equations.thresholds.experiment
 
     @property
     def step(self) -> float:
@@ -55,15 +69,17 @@ class Setup:
     def coarse(self) -> Setup:
         """With as few samples as the same rows of a slow motion follow from."""
         factor = self.prepared[0].settings.factor
-        rest = next(k for k in range(min(FEWEST, factor), factor + 1) if factor % k == 0)
+        fewest = min(self.limits.min_samples_per_row, factor)
+        rest = next(k for k in range(fewest, factor + 1) if factor % k == 0)
         return replace(self, every=factor // rest)
 
     def settings(self, period: int | None, seed: int = 0) -> ExcitationOptions:
         """Of the excitation. period: samples in that of the training records."""
         rate = 1.0 / self.step
-        length = USUAL if period is None else period * self.step
-        samples = round(float(np.clip(length, SHORTEST, LONGEST)) * rate)
-        return ExcitationOptions(period=samples / rate, harmonics=HARMONICS, rate=rate, seed=seed)
+        length = self.limits.usual_period if period is None else period * self.step
+        shortest, longest = self.limits.period_range
+        samples = round(float(np.clip(length, shortest, longest)) * rate)
+        return ExcitationOptions(period=samples / rate, harmonics=self.limits.harmonics, rate=rate, seed=seed)
 
     def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
         """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged."""
@@ -83,10 +99,10 @@ class Setup:
             prepared = prepare(record, settings)
         except InputError:
             return None
-        if len(prepared.rows) < 3 * ORDER:
+        if len(prepared.rows) < self.equations.thresholds.evidence.min_rows:
             return None
         base = self.base if parameters is None else parameters
-        return rows_of(self.evaluator, self.model, prepared, base)
+        return rows_of(self.evaluator, self.model, prepared, base, self.equations.baseline)
 
     def overload(self, q: Array, dq: Array, ddq: Array) -> float:
         """Largest share of a limit of an input or an effort that the motion (N, n) needs; 0 without one."""
@@ -103,9 +119,9 @@ class Setup:
         return most
 
 
-def stage(arm: Arm, model: Model, evaluator: Evaluator, prepared: Sequence[Prepared], base: Array) -> Setup:
+def setup(arm: Arm, equations: Equations, base: Array) -> Setup:
     """What motions are planned on. Where the description has no limit, what the records reached counts."""
-    joints, assumed = list(arm.joints), []
+    joints, assumed, prepared = list(arm.joints), [], [r.prepared for r in equations.rows]
     for n, i in enumerate(arm.coordinates):
         own = joints[i].limits
         effects = tuple(u for u in joints[i].effects if not CATALOGUE[u.name].held(u.values))
@@ -119,9 +135,7 @@ def stage(arm: Arm, model: Model, evaluator: Evaluator, prepared: Sequence[Prepa
         assumed += [f"{name} of joint {n + 1}" for name in given]
         joints[i] = replace(joints[i], limits=replace(own, **given), effects=effects)  # type: ignore[arg-type]
     kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].held(u.values))
-    return Setup(
-        replace(arm, joints=tuple(joints), effects=kept), model, evaluator, prepared, base, tuple(assumed)
-    )
+    return Setup(replace(arm, joints=tuple(joints), effects=kept), equations, base, tuple(assumed))
 
 
 def _largest(values: Sequence[Array]) -> float:

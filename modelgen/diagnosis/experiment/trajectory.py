@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
 from modelgen.diagnosis.experiment.motions import Setup
 from modelgen.effects import Shows
@@ -22,20 +22,19 @@ from modelgen.excitation.run import Excitation, described
 from modelgen.jobs import HERE, Where, forked
 from modelgen.numeric import Array
 
+# Budgets of the search.
 SCALES = (1.0, 0.3, 0.1)  # of the random starts: some causes show in small motions
 DRAWS = 8  # of each scale
 STEPS = 30  # of the evolution strategy, from each of the best starts
 BEST = 2  # starts that are refined
-PERIODS = 3  # to be run
 FIRST_STEP = 0.3  # of the coefficients' size
 GROWTH, DECAY = 1.5, 0.84  # of a step that succeeded, or not: a fifth should (Rechenberg 1973)
-MARGIN = 0.01  # of every limit
 Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A trajectory of one period. q (N, n), rows, evidence (k, k; see Discriminator): of PERIODS."""
+    """A trajectory of one period. q (N, n), rows, evidence (k, k; see Discriminator): of all periods."""
 
     excitation: Excitation
     q: Array
@@ -55,11 +54,11 @@ def propose(
 
     where: processes among which starts are shared; the answer is the same.
     """
-    settings = stage.settings(period)
+    settings, margin = stage.settings(period), stage.limits.limit_margin
     try:
         p = problem(stage.arm, settings)
         first = np.random.default_rng(settings.seed)
-        drawn = [feasible(p, first, MARGIN) for _ in range(DRAWS)]
+        drawn = [feasible(p, first, margin) for _ in range(DRAWS)]
     except InputError:
         return None
     runs = [as_run(stage, p, k) for k in range(len(stage.prepared))]
@@ -82,13 +81,13 @@ def propose(
 
     def refined(k: int) -> tuple[Array, float]:
         rng = np.random.default_rng([settings.seed, 1, k])
-        return evolved(p, value, starts[order[k]], found[order[k]], rng)
+        return evolved(p, value, starts[order[k]], found[order[k]], rng, margin)
 
     ends = forked(refined, len(order), where, lambda k: told(len(starts) + k))
     best, most = max(ends, key=lambda end: end[1])
     if not np.isfinite(most):
         return None
-    q = positions(p, best, PERIODS)[0]
+    q = positions(p, best, stage.limits.periods)[0]
     rows = stage.rows(q)
     if rows is None:
         return None
@@ -96,16 +95,23 @@ def propose(
 
 
 def evolved(
-    p: Problem, value: Callable[[Array], float], best: Array, most: float, rng: np.random.Generator
+    p: Problem,
+    value: Callable[[Array], float],
+    best: Array,
+    most: float,
+    rng: np.random.Generator,
+    margin: float,
 ) -> tuple[Array, float]:
-    """Coefficients better than these, whose value is `most`, and theirs: one parent, one child."""
+    """Coefficients better than these, whose value is `most`, and theirs: one parent, one child. margin: of
+    every limit.
+    """
     step = FIRST_STEP
     for _ in range(STEPS):
         size = np.abs(best[:, 1:]).max(axis=1, keepdims=True)
         z = best.copy()
         z[:, 1:] += step * size * rng.normal(size=z[:, 1:].shape)
         z[:, :1] += step * np.minimum(1.0, size) * rng.normal(size=(len(z), 1))
-        trial = shrunk(p, z, p.grid(), 1 - MARGIN)
+        trial = shrunk(p, z, p.grid(), 1 - margin)
         found = -np.inf if trial is None else value(trial)
         step *= GROWTH if found > most else DECAY
         if trial is not None and found > most:
@@ -136,7 +142,7 @@ def as_run(stage: Setup, p: Problem, k: int) -> Array | None:
     if len(x) < len(t):
         return None
     z = np.asarray(np.linalg.lstsq(p.basis.signals(t)[0], x, rcond=None)[0].T, dtype=np.float64)
-    return shrunk(p, z, p.grid(), 1 - MARGIN)
+    return shrunk(p, z, p.grid(), 1 - stage.limits.limit_margin)
 
 
 def positions(p: Problem, z: Array, periods: int, every: int = 1) -> tuple[Array, Array, Array]:

@@ -1,1 +1,34 @@
 """The model with the causes: refitted values, their uncertainty, errors on the test record."""
+
+from modelgen.diagnosis.extended.drive_inertia import described_by
+from modelgen.diagnosis.extended.extended_model import (
+    Extension,
+    FittedModel,
+    extend,
+    replay,
+    residuals,
+    unit_of_efforts,
+)
+from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
+from modelgen.diagnosis.extended.test_errors import errors, motion_errors, shares
+from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates
+
+__all__ = [
+    "Errors",
+    "Estimate",
+    "Extension",
+    "FittedModel",
+    "NamedCause",
+    "Positions",
+    "Share",
+    "base_estimates",
+    "cause_estimates",
+    "described_by",
+    "errors",
+    "extend",
+    "motion_errors",
+    "replay",
+    "residuals",
+    "shares",
+    "unit_of_efforts",
+]

@@ -10,12 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
-from modelgen.description import Arm
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.extended.findings import Estimate
-from modelgen.diagnosis.selection.cause import Cause, Selection
-from modelgen.diagnosis.selection.compliance import best_beside
-from modelgen.diagnosis.selection.refit_stiffness import with_trials
+from modelgen.diagnosis.selection import Cause, Selection, best_beside, with_trials
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, extended_arm
 from modelgen.errors import InputError
@@ -25,15 +22,14 @@ from modelgen.functions.nominal import factor_value, nominal_links
 from modelgen.numeric import Array
 
 SOFTER = (0.5, 0.2, 0.08)  # times the stiffness that was found with the inertia of drive and links together
-LEAST = 0.05  # of the inertia of links and drive together, that is either's
 
 
-def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Estimate]:
+def inertias(model: Model, base: Array, causes: Sequence[Cause], least: float) -> dict[int, Estimate]:
     """Inertia by coordinate (from 1) of drives before the compliant joints among the causes, at the motor.
 
     base: parameters (p,). Of those alone that base parameters of links contain, and that the description
-    leaves without a value; none where links have no nominal inertials, or these leave next to nothing to the
-    drive, or to the link.
+    leaves without a value; none where links have no nominal inertials, or these leave to the drive, or to the
+    link, less than the share `least`.
     """
     try:
         known = nominal_links(model)
@@ -52,7 +48,7 @@ def inertias(model: Model, base: Array, causes: Sequence[Cause]) -> dict[int, Es
             continue
         links = sum(known[name] * factor_value(f, symbols) for name, f in terms.items())
         whole = float(base[drive.base])
-        if LEAST * whole < links < (1.0 - LEAST) * whole:
+        if least * whole < links < (1.0 - least) * whole:
             value = float(f"{(whole - links) / factor:.9g}")
             found[number] = Estimate(value, math.nan, units[drive.name])
     return found
@@ -66,24 +62,23 @@ def described_by(values: Mapping[int, Estimate]) -> list[Found]:
 
 
 def split_drive_inertia(
-    arm: Arm, model: Model, selection: Selection, base: Array, rows: Sequence[Rows], evaluator: Evaluator
-) -> tuple[dict[int, Estimate], Selection, Evaluator]:
-    """`inertias`, and with them the selection and the evaluator of the arm that has them; all as they were,
+    selection: Selection, equations: Equations
+) -> tuple[dict[int, Estimate], Selection, Equations]:
+    """`inertias`, and with them the selection and the equations of the arm that has them; all as they were,
     and none, where compliant joints do no better with them than rigid ones.
     """
-    values = inertias(model, base, selection.causes)
+    least = equations.thresholds.extended.min_inertia_share
+    values = inertias(equations.model, selection.system.base, selection.causes, least)
     if values:
-        split = Evaluator(extended_arm(arm, described_by(values)))
-        found = refound(selection, values, rows, split)
+        split = equations.with_evaluator(Evaluator(extended_arm(equations.arm, described_by(values))))
+        found = refound(selection, values, split)
         if found is not None:
             return values, found, split
-    return {}, selection, evaluator
+    return {}, selection, equations
 
 
-def refound(
-    selection: Selection, numbers: Collection[int], rows: Sequence[Rows], evaluator: Evaluator
-) -> Selection | None:
-    """The selection with the values of the compliant joints `numbers` that are best on the evaluator's arm;
+def refound(selection: Selection, numbers: Collection[int], equations: Equations) -> Selection | None:
+    """The selection with the values of the compliant joints `numbers` that are best on the equations' arm;
     None where rigid ones are better there.
 
     The search begins at what was found, and at softer ones: slowly, a joint does the same with half the
@@ -96,8 +91,8 @@ def refound(
             starts = [trial.values]
             if "stiffness" in trial.values:  # which a gap behind a link's own position has not
                 starts += [{**trial.values, "stiffness": f * trial.values["stiffness"]} for f in SOFTER]
-            found = best_beside(trial, starts, others, rows, evaluator)
+            found = best_beside(trial, starts, others, equations)
             if found is None:
                 return None
             trials[k] = found
-    return with_trials(selection, trials, rows)
+    return with_trials(selection, trials, equations)

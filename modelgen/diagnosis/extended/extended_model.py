@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.band import rows_twice
-from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
-from modelgen.diagnosis.equations.rows import Rows, rows_of
-from modelgen.diagnosis.selection.cause import Selection
+from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
+from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, rows_twice
+from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
+from modelgen.diagnosis.extended.findings import Estimate
+from modelgen.diagnosis.extended.uncertainty import valued
+from modelgen.diagnosis.options.thresholds import ExtendedThresholds
+from modelgen.diagnosis.selection import Selection, refit_stiffness
 from modelgen.effects import CATALOGUE, Family, Presence, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
@@ -23,8 +24,7 @@ from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
 from modelgen.simulation.windows import Windows, simulated_windows
 
-WINDOW = 0.25  # s
-MOST = 250  # windows
+# Budgets of the fit beside elastic joints: how finely parameters are found decides nothing.
 HALVES = 10  # steps, of which half is taken each
 WHOLES = 6  # steps by the slopes
 SHORTER = 3  # times a step is halved that leads astray
@@ -47,25 +47,51 @@ class FittedModel:
         return self.rows[0].baseline.base(self.theta)
 
 
+@dataclass(frozen=True)
+class Extension:
+    """The model as described, and the extended one.
+
+    selection: the causes with their values as reported. equations: of the arm with those inertias of its
+    drives that were split from their links'. base: its base parameters (p,) as found beside the causes.
+    inertias: by coordinate (from 1).
+    """
+
+    selection: Selection
+    equations: Equations
+    base: Array
+    inertias: Mapping[int, Estimate]
+    before: FittedModel
+    after: FittedModel
+
+
+def extend(arm: Arm, selection: Selection, equations: Equations) -> Extension:
+    """Refit the causes' values beside the arm's parameters; fit the arm as described and with the causes."""
+    base = selection.system.base
+    inertias, selection, split = split_drive_inertia(selection, equations)
+    selection = valued(refit_stiffness(selection, split))
+    before = fitted(arm, equations.model, equations.rows)
+    return Extension(selection, split, base, inertias, before, extended(before, selection, split))
+
+
 def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> FittedModel:
     """The model with the parameters that explain the rows best."""
     return FittedModel(arm, model, rows, weighted_fit(rows, [r.columns for r in rows]))
 
 
-def extended(arm: Arm, before: FittedModel, selection: Selection, train: Sequence[Prepared]) -> FittedModel:
-    """The arm with the causes, everything else fitted anew."""
+def extended(before: FittedModel, selection: Selection, equations: Equations) -> FittedModel:
+    """The equations' arm with the causes, everything else fitted anew."""
     causes = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     if not causes:
         return before
-    bigger = extended_arm(arm, causes)
+    bigger = extended_arm(equations.arm, causes)
     model = build_model(bigger)
-    known = held(model) if train[0].input is None else estimated(model)
+    known = held(model) if equations.free else estimated(model, equations.thresholds.equations)
     # links that weigh nothing swing on no spring: not from zero
-    beside = before.rows[0].baseline.base(selection.system.theta[: before.rows[0].columns.shape[2]])
-    values = dict(zip((b.name for b in before.model.grouping.base), beside, strict=True))
+    beside = zip(before.model.grouping.base, selection.system.base, strict=True)
+    values = {b.name: value for b, value in beside}
     first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
-    start = None if train[0].input is None else first
-    seen = [_seen_by(p, bigger) for p in train]
+    start = None if equations.free else first
+    seen = [_seen_by(r.prepared, bigger) for r in equations.rows]
     if any(CATALOGUE[effect].family is Family.ELASTIC for effect, _, _ in causes):
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
@@ -88,7 +114,7 @@ def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
     return prepare(replace(record, arm=described(arm)), prepared.settings)
 
 
-def replay(fitted: FittedModel, rows: Rows) -> Windows | None:
+def replay(fitted: FittedModel, rows: Rows, limits: ExtendedThresholds) -> Windows | None:
     """Simulated against measured positions; None where the record is too short, or nothing stays finite.
 
     A free motion has no inputs, and is simulated from its beginning to its end.
@@ -102,11 +128,11 @@ def replay(fitted: FittedModel, rows: Rows) -> Windows | None:
         starts = p.rows[moving[:1]]
         length = len(p.time) - trim - int(starts[0])
     else:
-        length = max(4, round(WINDOW / p.record.step))
+        length = max(4, round(limits.simulated_window / p.record.step))
         count = (len(p.time) - 2 * trim) // length
         if count < 2:
             return None
-        starts = trim + length * np.linspace(0, count - 1, min(count, MOST)).astype(int)
+        starts = trim + length * np.linspace(0, count - 1, min(count, limits.max_windows)).astype(int)
     states = None
     if any(f.name == "effects_step" for f in fitted.model.functions):
         evaluator = Evaluator(fitted.arm)
@@ -118,22 +144,16 @@ def replay(fitted: FittedModel, rows: Rows) -> Windows | None:
     return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
 
 
-def residuals(
-    test: Rows,
-    before: FittedModel,
-    selection: Selection,
-    after: FittedModel,
-    evaluator: Evaluator,
-    base: Array,
-) -> tuple[Array, Array]:
-    """On the test record (M, n), in the unit of its efforts: before and after. base: of `evaluator`'s arm."""
+def residuals(test: Rows, extension: Extension) -> tuple[Array, Array]:
+    """On the test record (M, n), in the unit of its efforts: before and after."""
+    selection, before, after = extension.selection, extension.before, extension.after
     old = (test.effort - test.columns @ before.theta) * test.gain
     if not selection.causes:
         return old, old
     if any(c.trial.candidate.definition.presence is Presence.LATER for c in selection.causes):
         table = [test.columns]
         for cause in selection.causes:
-            found = columns_of(cause.trial, test, evaluator, base)
+            found = columns_of(cause.trial, test, extension)
             assert found is not None
             table.append(found)
         left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
@@ -143,14 +163,15 @@ def residuals(
     return old, (rows.effort - rows.columns @ after.theta) * test.gain
 
 
-def columns_of(trial: FittedCandidate, test: Rows, evaluator: Evaluator, base: Array) -> Array | None:
+def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Array | None:
     """Columns (M, n, k) of a cause on another record than those it was fitted to; None where it cannot stand
-    there. base: of `evaluator`'s arm.
+    there.
     """
     # a payload that came between the records stays
     later = trial.candidate.definition.presence is Presence.LATER
     records = [test, test] if later else [test]
-    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, records, evaluator, base)
+    equations, values = extension.equations.with_rows(records), {**trial.values, **trial.around}
+    found = candidate_columns(trial.candidate, values, equations, extension.base)
     return None if found is None else found[-1]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from modelgen.diagnosis.evidence.instruments import Endogeneity
+from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.numeric import Array
 
 

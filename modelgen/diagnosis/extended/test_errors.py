@@ -10,29 +10,35 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset import Record
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.extended.extended_model import columns_of
+from modelgen.diagnosis.candidates import with_causes
+from modelgen.diagnosis.equations import Rows
+from modelgen.diagnosis.extended.extended_model import Extension, columns_of
 from modelgen.diagnosis.extended.findings import Errors, Share
-from modelgen.diagnosis.selection.cause import Selection
-from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Evaluator
+from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
 from modelgen.simulation.windows import Windows
 
-DRAWS = 400
-BLOCKS = 20  # in a record
+DRAWS = 400  # of the bootstrap: a budget
 SEED = 1989
 
 
-def errors(rows: Rows, before: Array, after: Array, unit: str) -> Errors:
+def errors(rows: Rows, before: Array, after: Array, unit: str, limits: ExtendedThresholds) -> Errors:
     """From residuals (M, n) in `unit`; rows that do not move do not count."""
     n = before.shape[1]
-    found = [compared(before[rows.moving[:, j], j], after[rows.moving[:, j], j]) for j in range(n)]
+    found = []
+    for j in range(n):
+        moving = rows.moving[:, j]
+        found.append(compared(before[moving, j], after[moving, j], limits))
     return Errors(unit, *np.array(found).T)
 
 
-def motion_errors(record: Record, before: Windows | None, after: Windows | None) -> Errors:
+def motion_errors(
+    record: Record,
+    before: Windows | None,
+    after: Windows | None,
+    limits: ExtendedThresholds,
+) -> Errors:
     """Of the simulated positions of a free motion [rad, m]; not a number where one cannot be simulated."""
     n = record.n
     found = np.full((n, 5), np.nan)
@@ -40,40 +46,42 @@ def motion_errors(record: Record, before: Windows | None, after: Windows | None)
     unit = ", ".join(dict.fromkeys("m" if j.type == "prismatic" else "rad" for j in joints)) or "rad"
     if before is not None and after is not None and before.simulated.shape == after.simulated.shape:
         old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
-        found = np.array([compared(old[:, j], new[:, j]) for j in range(n)])
+        found = np.array([compared(old[:, j], new[:, j], limits) for j in range(n)])
     return Errors(unit, *found.T)
 
 
-def compared(before: Array, after: Array) -> tuple[float, ...]:
+def compared(before: Array, after: Array, limits: ExtendedThresholds) -> tuple[float, ...]:
     """RMSE before and after, gain in percent and its interval, from errors (M,) in order of time."""
-    if len(before) < BLOCKS:
+    count = limits.bootstrap_blocks
+    if len(before) < count:
         return (np.nan,) * 5
     random = np.random.default_rng(SEED)
     a, b = before**2, after**2
     old, new = np.sqrt(a.mean()), np.sqrt(b.mean())
-    parts = np.array_split(np.arange(len(a)), BLOCKS)
+    parts = np.array_split(np.arange(len(a)), count)
     sums = np.array([[a[p].sum(), b[p].sum()] for p in parts])
-    drawn = sums[random.integers(BLOCKS, size=(DRAWS, BLOCKS))].sum(axis=1)
+    drawn = sums[random.integers(count, size=(DRAWS, count))].sum(axis=1)
     gains = 100 * (1 - np.sqrt(drawn[:, 1] / drawn[:, 0]))
-    low, high = np.quantile(gains, [0.025, 0.975])
+    low, high = np.quantile(gains, limits.interval_quantiles)
     return float(old), float(new), float(100 * (1 - new / old)), float(low), float(high)
 
 
-def shares(selection: Selection, test: Rows, evaluator: Evaluator, base: Array) -> list[Share]:
+def shares(extension: Extension, test: Rows) -> list[Share]:
     """Of every cause, over the joints where it acts, each in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. Not a number where one of them cannot stand on that record. base: of `evaluator`'s arm.
+    searched for stay. Not a number where one of them cannot stand on that record.
     """
-    rows, trials = selection.system.rows, [cause.trial for cause in selection.causes]
-    made = [columns_of(trial, test, evaluator, base) for trial in trials]
+    selection, limits = extension.selection, extension.equations.thresholds.extended
+    equations, trials = selection.system.equations, [cause.trial for cause in selection.causes]
+    made = [columns_of(trial, test, extension) for trial in trials]
     there = [table for table in made if table is not None and np.isfinite(table).all()]
     if len(there) < len(trials):
         return [Share()] * len(trials)
 
     def left(kept: Sequence[int]) -> tuple[Array, Array]:
         """Residuals (M, n) of the model with these causes, and their RMSE by joint (n,)."""
-        theta = weighted_fit(rows, with_causes(rows, [trials[k] for k in kept]))
+        theta = weighted_fit(equations.rows, with_causes(equations, [trials[k] for k in kept]))
         table = np.concatenate([test.columns, *(there[k] for k in kept)], axis=2)
         return test.effort - table @ theta, rmse([test], [table], theta)
 
@@ -86,5 +94,5 @@ def shares(selection: Selection, test: Rows, evaluator: Evaluator, base: Array) 
         before, after = (
             np.concatenate([e[test.moving[:, j], j] / sizes[j] for j in places]) for e in (without, with_all)
         )
-        found.append(Share(*compared(before, after)[2:]))
+        found.append(Share(*compared(before, after, limits)[2:]))
     return found

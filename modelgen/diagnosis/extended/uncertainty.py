@@ -16,14 +16,12 @@ from itertools import pairwise
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.extended.findings import Estimate
-from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.effects import CATALOGUE
-from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.model.parameters import unit_of
 from modelgen.numeric import Array
@@ -31,7 +29,6 @@ from modelgen.transmission import of_joint
 
 STEP = 0.01  # of a value, over which slopes are taken
 OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
-KNOWN = 0.5  # of a value: a larger deviation says that it is not determined
 
 
 def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
@@ -68,17 +65,21 @@ def valued(selection: Selection) -> Selection:
 def _columns_of(selection: Selection) -> list[slice]:
     """Places of the causes' columns in the system's."""
     counts = [c.trial.columns[0].shape[2] for c in selection.causes]
-    ends = selection.system.rows[0].columns.shape[2] + np.cumsum([0, *counts])
+    ends = selection.system.equations.unknowns + np.cumsum([0, *counts])
     return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
 
-def deviations(selection: Selection, evaluator: Evaluator) -> list[dict[str, float]]:
-    """Standard deviations of the causes' parameters by name; nan of what was fixed, or is not determined."""
+def deviations(selection: Selection, equations: Equations) -> list[dict[str, float]]:
+    """Standard deviations of the causes' parameters by name; nan of what was fixed, or is not determined.
+
+    equations: whose arm further columns are made for.
+    """
     if not selection.causes:
         return []
     system, rows = selection.system, selection.system.rows
-    base = rows[0].baseline.base(system.theta[: rows[0].columns.shape[2]])
-    slopes = [_slopes(c, rows, evaluator, base) for c in selection.causes]
+    of_arm = system.equations.with_evaluator(equations.evaluator)
+    slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
+    most = equations.thresholds.extended.max_relative_deviation
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
     places = _columns_of(selection)
     compliant = [c.trial.candidate.elastic for c in selection.causes]
@@ -88,22 +89,20 @@ def deviations(selection: Selection, evaluator: Evaluator) -> list[dict[str, flo
     for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
         last = searched + slope[0].shape[2]
         at = np.r_[own, searched:last]
-        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
+        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start, most))
         searched = last
     return found
 
 
-def _slopes(cause: Cause, rows: Sequence[Rows], evaluator: Evaluator, base: Array) -> list[Array]:
+def _slopes(cause: Cause, equations: Equations, base: Array) -> list[Array]:
     """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
     trial = cause.trial
     theta = np.ones(1) if trial.candidate.elastic else trial.gain.values
-    parts: list[list[Array]] = [[] for _ in rows]
+    parts: list[list[Array]] = [[] for _ in equations.rows]
     for name, value in trial.values.items():
         step = STEP * (abs(value) or 1.0)
         ends = [
-            candidate_columns(
-                trial.candidate, {**trial.values, **trial.around, name: x}, rows, evaluator, base
-            )
+            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, equations, base)
             for x in (value - step, value + step)
         ]
         for k, part in enumerate(parts):
@@ -117,8 +116,10 @@ def _slopes(cause: Cause, rows: Sequence[Rows], evaluator: Evaluator, base: Arra
     ]
 
 
-def _physical(trial: FittedCandidate, covariance: Array, linear: int) -> dict[str, float]:
-    """Of the effect's own parameters, by how they follow from what was estimated and searched for."""
+def _physical(trial: FittedCandidate, covariance: Array, linear: int, most: float) -> dict[str, float]:
+    """Of the effect's own parameters, by how they follow from what was estimated and searched for. most:
+    relative deviation beyond which a value is not determined.
+    """
     names, now = list(trial.values), trial.parameters
     moved: list[dict[str, float]] = []
     sizes: Array = np.sqrt(np.maximum(0.0, np.diag(covariance)))
@@ -133,16 +134,16 @@ def _physical(trial: FittedCandidate, covariance: Array, linear: int) -> dict[st
     for name, value in now.items():
         slope = np.array([other.get(name, value) - value for other in moved]) / safe
         std = math.sqrt(max(0.0, float(slope @ covariance @ slope)))
-        undetermined = name in names and std > KNOWN * abs(value)
+        undetermined = name in names and std > most * abs(value)
         found[name] = np.nan if std == 0.0 or undetermined else std
     return found
 
 
-def cause_estimates(selection: Selection, evaluator: Evaluator) -> list[dict[str, Estimate]]:
+def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str, Estimate]]:
     """Of every cause, its own parameters; what was fixed, or is not determined, has no deviation."""
     found = []
-    for cause, spread in zip(selection.causes, deviations(selection, evaluator), strict=True):
-        units = _units(evaluator.arm, *cause.trial.candidate.place)
+    for cause, spread in zip(selection.causes, deviations(selection, equations), strict=True):
+        units = _units(equations.arm, *cause.trial.candidate.place)
         values = cause.trial.parameters
         found.append({name: Estimate(v, spread[name], units.get(name, "")) for name, v in values.items()})
     return found
@@ -159,13 +160,11 @@ def _units(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
     return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
 
 
-def base_estimates(
-    model: Model, rows: Sequence[Rows], theta: Array, periods: Sequence[int | None]
-) -> Mapping[str, Estimate]:
-    """Base parameters of a model from its fit to rows; those that were known have no deviation. periods: rows
-    in a period of each record.
+def base_estimates(model: Model, theta: Array, equations: Equations) -> Mapping[str, Estimate]:
+    """Base parameters of a model from its fit; those that were known have no deviation. theta: unknowns (k,)
+    of its equations.
     """
-    system = System(rows, [r.columns for r in rows], periods)
+    system, rows = System(equations), equations.rows
     lift = rows[0].baseline.lift
     spread = np.sqrt(np.maximum(0.0, np.diag(lift @ covariance_of(system) @ lift.T)))
     return {

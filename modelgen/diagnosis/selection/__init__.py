@@ -1,1 +1,26 @@
 """Forward selection, exchange and backward elimination of causes."""
+
+from modelgen.diagnosis.selection.cause import Cause, Selection, together
+from modelgen.diagnosis.selection.compliance import alternatives, best_beside
+from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, History, Ranked
+from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness, with_trials
+from modelgen.diagnosis.selection.stepwise import Report, forward_selection, threshold
+
+__all__ = [
+    "COARSE",
+    "EXCHANGED",
+    "STANDS_IN",
+    "SUPERFLUOUS",
+    "Cause",
+    "History",
+    "Ranked",
+    "Report",
+    "Selection",
+    "alternatives",
+    "best_beside",
+    "forward_selection",
+    "refit_stiffness",
+    "threshold",
+    "together",
+    "with_trials",
+]

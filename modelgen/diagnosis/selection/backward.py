@@ -7,31 +7,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System, whitened_fit
+from modelgen.diagnosis.candidates import FittedCandidate, beside, system_of
+from modelgen.diagnosis.evidence import System, whitened_fit
 from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.diagnosis.validation.gates import Gates
-from modelgen.numeric import Array
-
-CONTRADICTION = 3.0  # standard deviations below zero, of what cannot be negative
+from modelgen.diagnosis.validation import Gates
 
 
-def backward_elimination(
-    causes: list[Cause],
-    rows: Sequence[Rows],
-    system: System,
-    evidence: float,
-    blur: Array | None,
-    narrowed: float,
-) -> tuple[list[Cause], System]:
+def backward_elimination(causes: list[Cause], system: System, evidence: float) -> tuple[list[Cause], System]:
     """Without causes that the others have made superfluous: those that lack evidence, then those whose value
     is not possible, then those that gain nothing, in the final model. Evidence of the rest in that model.
+
+    system: with all causes; evidence: delta BIC that it takes to name one.
     """
+    equations = system.equations
+    most = equations.thresholds.selection.max_sign_deviations
     while len(causes) > 1:
         rest = [[c.trial for c in causes if c is not cause] for cause in causes]
-        without = [System(rows, with_causes(rows, others), system.periods) for others in rest]
+        without = [system_of(equations, others) for others in rest]
         scores = [_worth(c.trial, s) for c, s in zip(causes, without, strict=True)]
         worst = int(np.argmin(scores))
         if scores[worst] >= evidence:
@@ -39,32 +31,22 @@ def backward_elimination(
                 cause.delta_bic = score
             signs = _least_values(causes, system)
             worst = int(np.argmin(signs))
-            if signs[worst] >= -CONTRADICTION:
-                gates = [
-                    Gates(rows, others, s, blur, narrowed, last=True)
-                    for others, s in zip(rest, without, strict=True)
-                ]
+            if signs[worst] >= -most:
+                gates = [Gates(s, others, last=True) for others, s in zip(rest, without, strict=True)]
                 gains = [_gain(c.trial, g) for c, g in zip(causes, gates, strict=True)]
                 worst = int(np.argmin(gains))
                 if gains[worst] > 0.0:
                     break
         del causes[worst]
-        system = System(rows, with_causes(rows, [c.trial for c in causes]), system.periods)
+        system = system_of(equations, [c.trial for c in causes])
     return causes, system
 
 
-def measured(
-    cause: Cause,
-    causes: Sequence[Cause],
-    rows: Sequence[Rows],
-    system: System,
-    blur: Array | None,
-    narrowed: float,
-) -> Cause:
+def measured(cause: Cause, causes: Sequence[Cause], system: System) -> Cause:
     """The cause with its evidence and gains beside all others. system: with all of them."""
     others = [c.trial for c in causes if c is not cause]
-    without = System(rows, with_causes(rows, others), system.periods)
-    by = Gates(rows, others, without, blur, narrowed, last=True).judged(cause.trial)
+    without = system_of(system.equations, others)
+    by = Gates(without, others, last=True).judged(cause.trial)
     return replace(
         cause, delta_bic=_worth(cause.trial, without), cross_gain=by.gain, expected_gain=by.expected
     )

@@ -1,4 +1,4 @@
-"""A named cause, and what the selection has come to."""
+"""Causes that were selected, and the system that holds them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.candidates import FittedCandidate, system_of
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.history import History, taken_back
-from modelgen.diagnosis.validation.form_error import with_causes
 
 
 @dataclass
@@ -60,8 +59,7 @@ class Selection:
     def without(self, lost: Sequence[Cause], why: str) -> Selection:
         """The same with fewer causes, and in its turns why."""
         kept = [c for c in self.causes if all(c is not other for other in lost)]
-        rows = self.system.rows
-        system = System(rows, with_causes(rows, [c.trial for c in kept]), self.system.periods)
+        system = system_of(self.system.equations, [c.trial for c in kept])
         turns = self.turns
         for c in lost:
             turns = taken_back(turns, c.trial.candidate.place, why)

@@ -16,16 +16,21 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from modelgen.diagnosis.candidates.candidate import Candidate, Values
-from modelgen.diagnosis.candidates.columns import candidate_columns
-from modelgen.diagnosis.candidates.fitted import FittedCandidate, beside, sensible
-from modelgen.diagnosis.candidates.search import ahead
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.candidates import (
+    Candidate,
+    FittedCandidate,
+    Values,
+    ahead,
+    beside,
+    candidate_columns,
+    sensible,
+    with_causes,
+)
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.options.thresholds import Thresholds
 from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.diagnosis.validation.gates import Judgement
-from modelgen.evaluation import Evaluator
+from modelgen.diagnosis.validation import Judgement
 from modelgen.jobs import HERE, Where, forked
 from modelgen.numeric import Array
 from modelgen.regression.weighted import stacked, weighted_fit, weights_of
@@ -37,19 +42,18 @@ FIRST, SETTLING, TURNS = 8, 4, 1  # half steps of the parameters: at what was fo
 EDGE = 0.4  # of the first simplex, in logarithms
 MOST = 45  # trials
 FINE, EVEN = 0.03, 1e-4  # in logarithms, of the values and of what is left
-SIMPLER = 1.15  # times what an elastic joint carries to rows that were not seen, that a gap must
 SINGULAR = 1e-10
 LEAST = 1e-300
 Judged = tuple[FittedCandidate, Judgement]
 _Begun = tuple[Values, float, Array]  # values, what they leave, parameters beside them
 
 
-def refine(causes: Sequence[Cause], rows: Sequence[Rows], evaluator: Evaluator) -> None:
+def refine(causes: Sequence[Cause], equations: Equations) -> None:
     """Finds the values of the gaps among the causes anew, beside all others; see `stiffness` for the rest."""
     for cause in causes:
         if "play" in cause.trial.values and "stiffness" in cause.trial.values:
             others = [c.trial for c in causes if c is not cause]
-            found = best_beside(cause.trial, [cause.trial.values], others, rows, evaluator)
+            found = best_beside(cause.trial, [cause.trial.values], others, equations)
             cause.trial = found or cause.trial
 
 
@@ -57,13 +61,12 @@ def best_beside(
     trial: FittedCandidate,
     starts: Sequence[Values],
     others: Sequence[FittedCandidate],
-    rows: Sequence[Rows],
-    evaluator: Evaluator,
+    equations: Equations,
 ) -> FittedCandidate | None:
     """An elastic joint or a gap with its best values beside others, whose columns stay; None where a rigid
     joint leaves less. starts: where the search may begin.
     """
-    place = _Beside(rows, others, trial, evaluator)
+    place = _Beside(equations, others, trial)
     return place.best([place.begun(values) for values in starts])
 
 
@@ -71,8 +74,6 @@ def refined(
     trials: Sequence[FittedCandidate],
     causes: Sequence[Cause],
     system: System,
-    rows: Sequence[Rows],
-    evaluator: Evaluator,
     where: Where = HERE,
 ) -> list[FittedCandidate]:
     """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
@@ -87,11 +88,11 @@ def refined(
     while left and left[0].candidate.elastic:
         joint = left[0].candidate.joint
         there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
-        better = _better(there, [_Beside(rows, others, t, evaluator) for t in there], where)
+        better = _better(there, [_Beside(system.equations, others, t) for t in there], where)
         gains = [beside(t, system) for t in better]
         found = [replace(t, gain=gain) for t, gain in zip(better, gains, strict=True) if gain]
         if found:
-            return [t for t in found if sensible(t, evaluator.arm)]
+            return [t for t in found if sensible(t, system.equations)]
         left = [t for t in left if not t.candidate.elastic or t.candidate.joint != joint]
     return []
 
@@ -114,7 +115,7 @@ def _better(
     return [t for t in forked(best, len(trials), where) if t is not None]
 
 
-def member(first: Judged, eligible: Sequence[Judged]) -> Judged:
+def member(first: Judged, eligible: Sequence[Judged], limits: Thresholds) -> Judged:
     """The first, or of the two laws at its place one of which is the other's limit the one that is there.
 
     The simpler one, an elastic joint, which is a gap of no width, unless the other's evidence is certainly
@@ -125,7 +126,9 @@ def member(first: Judged, eligible: Sequence[Judged]) -> Judged:
         return first
     plain = first[0].candidate.definition is other[0].candidate.definition.simpler
     simpler, richer = (first, other) if plain else (other, first)
-    more = ahead(richer[0], simpler[0]) or richer[1].gain > SIMPLER * simpler[1].gain
+    times = limits.selection.min_gap_gain_ratio
+    more = ahead(richer[0], simpler[0], limits.candidates.certain_delta_bic)
+    more = more or richer[1].gain > times * simpler[1].gain
     return richer if more else simpler
 
 
@@ -149,14 +152,13 @@ class _Beside:
 
     def __init__(
         self,
-        rows: Sequence[Rows],
+        equations: Equations,
         others: Sequence[FittedCandidate],
         trial: FittedCandidate,
-        evaluator: Evaluator,
     ) -> None:
-        self.rows, self.evaluator, self.trial = rows, evaluator, trial
-        self.own = rows[0].columns.shape[2]
-        table, whole = with_causes(rows, others), with_causes(rows, [*others, trial])
+        self.equations, self.trial = equations, trial
+        self.rows = rows = equations.rows
+        table, whole = with_causes(equations, others), with_causes(equations, [*others, trial])
         self.weights = weights_of(rows, whole, weighted_fit(rows, whole))
         self.left, self.right = stacked(rows, table, self.weights)
         norms = np.linalg.norm(self.left, axis=0)
@@ -224,8 +226,8 @@ class _Beside:
         return float(np.log(np.maximum(np.bincount(self.joint, error**2) / self.count, LEAST)).sum() / 2)
 
     def _columns(self, values: Values, theta: Array) -> list[Array] | None:
-        base = self.rows[0].baseline.base(theta[: self.own])
-        made = candidate_columns(self.trial.candidate, values, self.rows, self.evaluator, base)
+        base = self.equations.base(theta)
+        made = candidate_columns(self.trial.candidate, values, self.equations, base)
         return None if made is None or not all(np.isfinite(c).all() for c in made) else made
 
     def _stacked(self, made: Sequence[Array]) -> Array:

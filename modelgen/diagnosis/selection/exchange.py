@@ -1,7 +1,7 @@
 """Rivals in the place of causes: which of them explain the most once all values are found anew.
 
-A turn compares candidates with what was found until then. Columns that follow no line have since moved, and
-the arm's parameters with them; beside the causes of later turns another one of those that were alike may be
+A step compares candidates with what was found until then. Columns that follow no line have since moved, and
+the arm's parameters with them; beside the causes of later steps another one of those that were alike may be
 ahead.
 """
 
@@ -10,30 +10,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from modelgen.diagnosis.candidates.prior_odds import place_penalty
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System
+from modelgen.diagnosis.candidates import place_penalty
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, together
 from modelgen.diagnosis.selection.compliance import alternatives
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Evaluator
 
 
-def exchanged(
-    causes: list[Cause], rows: Sequence[Rows], evaluator: Evaluator, periods: Sequence[int | None]
-) -> list[Cause]:
-    """The causes, each replaced by the rival with which all of them together have the best odds.
+def exchanged(causes: Sequence[Cause], equations: Equations) -> list[Cause] | None:
+    """The causes, each replaced by the rival with which all of them together have the best odds; None where
+    nothing is replaced.
 
-    Who is replaced becomes the rival. The same list where nothing is replaced.
+    Who is replaced becomes the rival.
     """
     if not any(cause.rivals for cause in causes):
-        return causes
-    bare = System(rows, with_causes(rows, []), periods)
-    best, most = causes, _worth(causes, bare)
+        return None
+    bare = System(equations)
+    better: list[Cause] | None = None
+    most = _worth(causes, bare)
     for place, cause in enumerate(causes):
+        best = better or causes
         held = best[place].trial
         for trial, _ in cause.rivals:
+            best = better or causes
             others = [c.trial.candidate.place for c in best if c is not best[place]]
             if trial.candidate.place in others:
                 continue
@@ -41,14 +41,14 @@ def exchanged(
                 continue
             tried = [replace(c) for c in best]
             tried[place].trial = trial
-            refit(tried, rows, evaluator)
+            refit(tried, equations)
             found = _worth(tried, bare)
             if found > most:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
                 less = found - most + place_penalty(trial.candidate) - place_penalty(held.candidate)
                 tried[place].rivals, tried[place].lesser = [(held, max(0.0, less)), *rivals], []
-                best, most = tried, found
-    return best
+                better, most = tried, found
+    return better
 
 
 def _worth(causes: Sequence[Cause], bare: System) -> float:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from modelgen.diagnosis.candidates.candidate import Place
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.validation.gates import Judgement
+from modelgen.diagnosis.candidates import FittedCandidate, Place
+from modelgen.diagnosis.validation import Judgement
 
 # Why what was taken is no cause in the end.
 EXCHANGED, SUPERFLUOUS, STANDS_IN, COARSE = "exchanged", "superfluous", "stands in", "coarse positions"

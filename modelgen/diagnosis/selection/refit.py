@@ -13,29 +13,33 @@ from itertools import pairwise
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.columns import candidate_columns, unchanging
-from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
-from modelgen.diagnosis.candidates.prior_odds import prior_penalty
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.candidates import (
+    FittedCandidate,
+    candidate_columns,
+    named,
+    prior_penalty,
+    unchanging,
+    with_causes,
+)
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.validation.form_error import with_causes
-from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
 
+# When the turns end: how finely values are found decides nothing.
 TURNS = 10
 CLOSE = 0.005  # of a value, its change in a turn
 WORSE = 1e-4  # rise of the misfit by which a turn is not taken
-FARTHEST = 3.0  # times the first sum of squares: what runs on is another law's, and stays as it was
 
 
-def refit(causes: Sequence[Cause], rows: Sequence[Rows], evaluator: Evaluator) -> None:
+def refit(causes: Sequence[Cause], equations: Equations) -> None:
     """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
-    own = rows[0].columns.shape[2]
+    rows, own = equations.rows, equations.unknowns
+    farthest = equations.thresholds.selection.max_refit_growth
     trials = [c.trial for c in causes]
     best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
     for turn in range(TURNS):
-        table = with_causes(rows, trials)
+        table = with_causes(equations, trials)
         theta = weighted_fit(rows, table)
         left = misfit(rows, table, theta)
         if left > least + WORSE:
@@ -51,27 +55,25 @@ def refit(causes: Sequence[Cause], rows: Sequence[Rows], evaluator: Evaluator) -
         best, least = trials, min(left, least)
         if len(last) and np.allclose(theta[own:], last, rtol=CLOSE, atol=1e-12):
             break
-        most = most if turn else FARTHEST * np.array(sizes)
-        base, last = rows[0].baseline.base(theta[:own]), theta[own:]
-        trials = [_anew(t, v, rows, evaluator, base) for t, v in zip(best, values, strict=True)]
+        most = most if turn else farthest * np.array(sizes)
+        base, last = equations.base(theta), theta[own:]
+        trials = [_anew(t, v, equations, base) for t, v in zip(best, values, strict=True)]
         if all(new is old for new, old in zip(trials, best, strict=True)):
             break
     for cause, trial in zip(causes, best, strict=True):
         cause.trial = trial
 
 
-def _anew(
-    trial: FittedCandidate, values: Array, rows: Sequence[Rows], evaluator: Evaluator, base: Array
-) -> FittedCandidate:
+def _anew(trial: FittedCandidate, values: Array, equations: Equations, base: Array) -> FittedCandidate:
     """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
     c = trial.candidate
-    if c.elastic or unchanging(c, evaluator) or (values[np.array(c.positive)] < 0).any():
+    if c.elastic or unchanging(c, equations.evaluator) or (values[np.array(c.positive)] < 0).any():
         return trial
     after = replace(
         trial,
         gain=replace(trial.gain, values=values),
-        prior_penalty=prior_penalty(c, named(c, values), evaluator.arm),
+        prior_penalty=prior_penalty(c, named(c, values), equations.arm),
     )
     around = after.parameters if c.curved else {}
-    found = candidate_columns(c, {**trial.values, **around}, rows, evaluator, base)
+    found = candidate_columns(c, {**trial.values, **around}, equations, base)
     return trial if found is None else replace(after, columns=found, around=around)

@@ -16,26 +16,26 @@ from scipy.linalg import lstsq
 from scipy.stats import chi2
 
 from modelgen.dataset.processing.periods import noise_of
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Equations, Rows
 from modelgen.numeric import Array
 from modelgen.regression.weighted import stacked, weighted_fit, weights_of
 
-DRAWS = 64
+DRAWS = 64  # of noise: a budget, more tell the same with less scatter
 SEED = 20010601
 
 
 def agreement(
     parts: Sequence[tuple[Sequence[Rows], Sequence[int]]],
-    rows: Sequence[Rows],
+    equations: Equations,
     columns: Sequence[Array],
     own: int,
-    periods: Sequence[int | None],
 ) -> float:
     """Probability that estimates of the columns from `own` on lie as far apart by noise alone (Wald's test).
 
-    parts: rows, and which records they are of; rows, columns (M, n, p), periods: of all records. A column
+    parts: rows, and which records they are of; columns: (M, n, p), of all records. A column
     that some part lacks is left out; 0 where none is left: what cannot be compared is not agreed on.
     """
+    rows, periods = equations.rows, equations.periods
     shown = [_shown(some, [columns[i] for i in which]) for some, which in parts]
     kept = [k for k in range(own, columns[0].shape[2]) if all(there[k] for there in shown)]
     if not kept:

@@ -10,21 +10,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.equations.rows import Rows
+from modelgen.diagnosis.equations import Rows
 from modelgen.numeric import Array
 from modelgen.regression.cross_validation import blocks, groups
 from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
-FEW = 4  # records that are tried one by one
 Part = tuple[list[Rows], list[int]]  # rows, and which records they are of
 
 
 @dataclass(frozen=True)
 class Split:
-    """halves: of all records, not record by record. within: a joint, from 0, whose equations are tried where
+    """most: records that are held out one by one; of more every other one is. halves: of all records, not
+    record by record. within: a joint, from 0, whose equations are tried where
     the fitted rows passed as well: a law of the position tells nothing of other places.
     """
 
+    most: int
     halves: bool = False
     within: int | None = None
 
@@ -43,7 +44,7 @@ def _parts(rows: Sequence[Rows], split: Split) -> list[tuple[Part, Part]]:
         first, second = ((part, every) for part in _masked(rows))
         return [(first, second), (second, first)]
     found = []
-    for part in groups(len(rows), FEW):
+    for part in groups(len(rows), split.most):
         others = [i for i in every if i not in part]
         found.append((([rows[i] for i in others], others), ([rows[i] for i in part], part)))
     return found

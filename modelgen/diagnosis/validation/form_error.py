@@ -6,28 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.system import System, mean_squares
+from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
+from modelgen.diagnosis.evidence import System, mean_squares
 from modelgen.effects import Family
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
-
-FORM = 0.05  # of the power that causes explain at a joint: less is what a law's form leaves
-SWINGS = 0.1  # the same of elastic joints and play, simulated beside an arm that had taken over some of it
-
-
-def with_causes(rows: Sequence[Rows], trials: Sequence[FittedCandidate]) -> list[Array]:
-    """Baseline and the causes' columns side by side, by record."""
-    return [np.concatenate([r.columns, *(t.columns[i] for t in trials)], axis=2) for i, r in enumerate(rows)]
 
 
 class Forms:
     """Of the causes taken before, in this order, whose columns stand in the system beside the baseline's."""
 
-    def __init__(self, rows: Sequence[Rows], before: Sequence[FittedCandidate], system: System) -> None:
-        self.rows = rows
+    def __init__(self, before: Sequence[FittedCandidate], system: System) -> None:
         self.before = before
         self.system = system
         self._left: dict[Family, Array] = {}
@@ -50,13 +39,14 @@ class Forms:
             share = np.zeros(self.system.n)
             if there:
                 rest = [t for t in self.before if t.candidate.definition.family is not family]
-                others = with_causes(self.rows, rest)
+                rows, others = self.system.rows, with_causes(self.system.equations, rest)
                 left = mean_squares(self.system)
-                explained = rmse(self.rows, others, weighted_fit(self.rows, others)) ** 2 - left
+                explained = rmse(rows, others, weighted_fit(rows, others)) ** 2 - left
                 elastic = family is Family.ELASTIC
                 places = [None if elastic else t.candidate.joint for t in there]
                 at = np.array([None in places or j + 1 in places for j in range(self.system.n)])
-                form = SWINGS if elastic else FORM
+                limits = self.system.equations.thresholds.validation
+                form = limits.elastic_form_error if elastic else limits.form_error
                 share = np.where(at, np.clip(form * explained / np.maximum(left, 1e-300), 0.0, 1.0), 0.0)
             self._left[family] = np.asarray(100.0 * (1.0 - np.sqrt(1.0 - share)))
         return self._left[family]

@@ -11,30 +11,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.position_errors import feigned, repeating_errors
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.evidence.instruments import Pairs
-from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.thresholds import PRACTICAL, practical
+from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
+from modelgen.diagnosis.equations import feigned, repeating_errors
+from modelgen.diagnosis.evidence import Pairs, System
+from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.validation.agreement import agreement
 from modelgen.diagnosis.validation.cross_validation import Split, folds, left_unseen
-from modelgen.diagnosis.validation.form_error import Forms, with_causes
+from modelgen.diagnosis.validation.form_error import Forms
 from modelgen.effects import Family, Presence, Shows
 from modelgen.numeric import Array
 from modelgen.regression.weighted import moving_rows, rmse, stacked, weighted_fit
-
-# Evidence over which it falls from MORE to that: the faint may be the best of hundreds of forms by chance.
-FAINT, MORE = (6.0, 15.0), 3.0
-DELAYED = 3.0  # the same for what acts at reversals beside a delay
-STICKING = 5.0  # the same beside what acts at reversals, as play does too: the form of that leaves more
-CARRIED = 0.2  # of the gain to be expected, measured at least: less comes by chance
-AGREED = 1e-4  # probability that parts differ as much on a cause: less contradicts it
-HARDLY = 0.1  # of the power of play in the record that shows it most
-WORSE = 0.01  # of the squares of all joints: by less, a cause that must help may make others worse
-SIGNIFICANT = 6.0  # standard deviations of an estimate by instruments
-DRAWN = 1.5  # times what a draw of errors of the positions could feign, those that are there may by chance
 
 
 @dataclass(frozen=True)
@@ -50,34 +36,22 @@ class Judgement:
 
 
 class Gates:
-    """Of one turn. before: causes that were taken; blur: what errors of the positions leave in the residuals,
-    mean squares by joint (n,); narrowed: the usual band over that of the rows; last: what is judged was taken
-    before those, which cannot have left it anything of theirs.
+    """Of one step of the selection. system: with the causes that were taken `before`; last: what is judged
+    was taken before those, which cannot have left it anything of theirs.
     """
 
-    def __init__(
-        self,
-        rows: Sequence[Rows],
-        before: Sequence[FittedCandidate],
-        system: System,
-        blur: Array | None = None,
-        narrowed: float = 1.0,
-        *,
-        last: bool = False,
-    ) -> None:
-        self.rows = rows
-        self.before = before
-        self.system = system
-        self.blur = np.zeros(system.n) if blur is None else blur
-        self.narrowed = narrowed
-        self.last = last
-        self.old = with_causes(rows, before)
-        self.counts = moving_rows(rows)
+    def __init__(self, system: System, before: Sequence[FittedCandidate], *, last: bool = False) -> None:
+        self.system, self.before, self.last = system, before, last
+        self.equations, self.rows = system.equations, system.rows
+        self.limits = system.equations.thresholds.validation
+        self.blur = np.broadcast_to(self.equations.blur, system.n)
+        self.old = with_causes(self.equations, before)
+        self.counts = moving_rows(self.rows)
         formed = [t.candidate for t in before if not _known_form(t.candidate)]
         own = [] if last else [c.joint for c in formed]
         self.taken = {j for j in range(system.n) if None in own or j + 1 in own}  # joints of causes
         self._known: dict[Split, Array] = {}
-        self.forms = Forms(rows, before, system)
+        self.forms = Forms(before, system)
 
     def judged(self, trial: FittedCandidate) -> Judgement:
         """Whether the cause helps and matters at a joint that it is judged by.
@@ -95,22 +69,23 @@ class Gates:
         to which its form may leave some. Friction beside friction, and anything beside what a fluid does,
         must be more than the form of that may leave.
         """
-        new = with_causes(self.rows, [*self.before, trial])
+        new = with_causes(self.equations, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
         effect = trial.candidate.definition
         halves = effect.presence is Presence.LATER or self._somewhere(trial)
-        split = Split(halves, (trial.candidate.joint or 1) - 1 if Shows.PLACES in effect.shows else None)
+        within = (trial.candidate.joint or 1) - 1 if Shows.PLACES in effect.shows else None
+        split = Split(self.limits.max_records_one_by_one, halves, within)
         whole, again = np.stack([self._without(split), self._with(new, split)], axis=1)
         places = [j for j in trial.candidate.joints(self.system.n) if self.counts[j] > 0]
         refitted = _gains(again)[places]
-        least = np.full(len(places), practical(self._least(trial), self.narrowed))
+        least = np.full(len(places), in_band(self._least(trial), self.equations.narrowed))
         least = np.maximum(least, self.forms.least(trial.candidate)[places])
         could = feigned(self.blur[places], (again[0] / self._tried(split))[places])
         if (could > least).any() and instrumented(trial, self.system):
             could = np.zeros(len(places))
         doubtful = not self.system.noise_known or _feignable(trial.candidate)
         strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
-        anew = strict & (refitted >= np.maximum(least, DRAWN * could))
+        anew = strict & (refitted >= np.maximum(least, self.limits.position_error_factor * could))
         if strict.all() and not anew.any():
             shut = "gain" if (refitted < least).all() else "positions"
             return Judgement(float(refitted.max(initial=-np.inf)), np.nan, shut)
@@ -118,14 +93,15 @@ class Gates:
         hoped = float(expected.max(initial=0.0))
         gains = np.where(strict, refitted, np.maximum(refitted, _gains(whole)[places]))
         due = ~strict & (expected >= least)
-        carried = due & (gains >= CARRIED * expected)
+        carried = due & (gains >= self.limits.min_measured_share * expected)
         agreed = bool(due.any()) and not carried.any() and self._agreed(new, split)
         if agreed:
             carried = due
         if not (anew | carried).any():
             return Judgement(float(gains.max(initial=-np.inf)), hoped, "gain")
         if carried.any():
-            worse = not agreed and min(self._total(s) for s in (again, whole)) > 1.0 + WORSE
+            most = 1.0 + self.limits.max_rise
+            worse = not agreed and min(self._total(s) for s in (again, whole)) > most
         else:
             worse = self._total(again) >= 1.0
         shut = "other joints" if worse else ""
@@ -144,29 +120,31 @@ class Gates:
         theta = np.linalg.lstsq(*stacked(shows, self.old, 1.0 / sizes), rcond=None)[0]
         left = [((r.effort - c @ theta) / sizes)[r.moving] for r, c in zip(shows, self.old, strict=True)]
         power = [float(np.mean(e**2)) for e in left]
-        return min(power) < HARDLY * max(power)
+        return min(power) < self.limits.min_power_share * max(power)
 
     def _agreed(self, new: Sequence[Array], split: Split) -> bool:
         """Whether the parts agree on the cause."""
         parts = [part for _, part in folds(self.rows, split)]
         own = self.old[0].shape[2]
-        return agreement(parts, self.rows, new, own, self.system.periods) >= AGREED
+        return agreement(parts, self.equations, new, own) >= self.limits.min_agreement
 
     def _least(self, trial: FittedCandidate) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
-        c = trial.candidate
+        c, limits = trial.candidate, self.limits
         if _reverses(c):
             before = [o for o in (t.candidate for t in self.before) if _at_one_place(c, o)]
             if any(_reverses(o) and not _lags(o) for o in before):
-                return STICKING
+                return limits.gain_at_reversals_percent
             if _lags(c) and any(o.elastic for o in before):
-                return STICKING
+                return limits.gain_at_reversals_percent
             if not _lags(c) and any(_reverses(o) for o in before):
-                return DELAYED
+                return limits.gain_beside_delay_percent
         evidence = trial.gain.delta_bic / self.system.price
         if not self.system.coloured:
-            return MORE if evidence < FAINT[1] else PRACTICAL
-        return float(np.interp(evidence, FAINT, (MORE, PRACTICAL)))
+            faint = evidence < limits.faint_delta_bic[1]
+            return limits.faint_gain_percent if faint else limits.min_gain_percent
+        ends = limits.faint_gain_percent, limits.min_gain_percent
+        return float(np.interp(evidence, limits.faint_delta_bic, ends))
 
     def _tried(self, split: Split) -> Array:
         """How many rows (n,) are tried, at least one."""
@@ -256,8 +234,9 @@ def instrumented(trial: FittedCandidate, system: System) -> bool:
     if trial.candidate.elastic:  # searched for over what makes a filter of any errors
         return False
     table = [np.concatenate([c, t], axis=2) for c, t in zip(system.columns, trial.columns, strict=True)]
-    pairs = Pairs(system.rows, table, system.periods, system.sizes)
-    if not pairs.enough or repeating_errors(system.rows, system.periods).any():
+    pairs = Pairs(system, table)
+    if not pairs.enough or repeating_errors(system.equations).any():
         return False
     values = pairs.t_values(system.plain.share)[system.columns[0].shape[2] :]
-    return bool(np.abs(values).max(initial=0.0) > SIGNIFICANT)
+    least = system.equations.thresholds.validation.min_instrument_deviations
+    return bool(np.abs(values).max(initial=0.0) > least)

@@ -1,62 +1,22 @@
-"""A diagnosis, as it is reported."""
+"""A diagnosis as plain data: diagnosis.json."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from modelgen.description import Arm
-from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
-from modelgen.diagnosis.adequacy.stand_ins import Likeness
-from modelgen.diagnosis.equations.rows import Rows
-from modelgen.diagnosis.experiment.experiment import Experiment
-from modelgen.diagnosis.experiment.experiment import to_json as experiment_json
-from modelgen.diagnosis.extended.extended_model import FittedModel
-from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions
-from modelgen.diagnosis.selection.cause import Selection
-from modelgen.diagnosis.selection.history import Ranked
+from modelgen.diagnosis.experiment import experiment_json
+from modelgen.diagnosis.extended import NamedCause, Positions
+from modelgen.diagnosis.result.diagnosis import Diagnosis
+from modelgen.diagnosis.selection import Ranked
 from modelgen.numeric import Array
-from modelgen.simulation.windows import Windows
-
-VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    """Everything that was found. likeness: what the causes leave is most like; before, after: the arm as
-    described and the arm with the causes, fitted to the training records; simulation: of the test record with
-    either; test: rows of the test record; residuals: (M, n) before and after, as the log has its efforts;
-    inertias: of drives before elastic joints and play by coordinate (from 1), as `drives.inertias` has them.
-    """
-
-    arm: Arm
-    verdict: str
-    reason: str
-    causes: tuple[NamedCause, ...]
-    not_identifiable: tuple[tuple[str, str], ...]
-    lack_of_fit: LackOfFit | None
-    likeness: Likeness | None
-    errors: Errors
-    simulation: tuple[Windows | None, Windows | None]
-    before: FittedModel
-    after: FittedModel
-    parameters: Mapping[str, Estimate]
-    next_experiment: Experiment | None
-    test: Rows
-    residuals: tuple[Array, Array]
-    selection: Selection
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    positions: Positions | None = None
-    inertias: Mapping[int, Estimate] = field(default_factory=dict)
 
 
 def to_json(d: Diagnosis) -> dict[str, Any]:
     """diagnosis.json."""
     fit = d.lack_of_fit
-    where = None if fit is None else place(fit, d.selection.system.rows)
+    where = d.lack_of_fit_part
     return {
         "schema": 1,
         "arm": d.arm.name,
@@ -108,7 +68,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             {"joint": number, "value": rounded(e.value), "unit": e.unit} for number, e in d.inertias.items()
         ],
         "next_experiment": experiment_json(d.next_experiment),
-        "ranking": [[_rank(r) for r in turn] for turn in d.selection.turns],
+        "ranking": [[_rank(r) for r in turn] for turn in d.ranking],
         "positions": None if d.positions is None else _positions(d.positions),
         "settings": dict(d.settings),
     }

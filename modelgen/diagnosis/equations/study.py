@@ -1,0 +1,72 @@
+"""The records of a diagnosis from where they move on, their periods, and the usual band."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from modelgen.dataset import Record, Settings
+from modelgen.dataset.processing.periods import period_of
+from modelgen.description import Arm
+from modelgen.diagnosis.equations.free_motion import released, settings_of_swings
+from modelgen.diagnosis.options import Options
+from modelgen.diagnosis.options.thresholds import Thresholds
+from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Model, build_model
+
+
+@dataclass(frozen=True)
+class Study:
+    """What equations are made of. records: the last is the test record. lengths: samples in a period of each
+    training record, None where nothing repeats. settings: of the usual band. narrower: whether that may give
+    way to a narrower one where coarse positions spoil it.
+    """
+
+    model: Model
+    evaluator: Evaluator
+    records: Sequence[Record]
+    lengths: Sequence[int | None]
+    settings: Settings
+    thresholds: Thresholds
+    narrower: bool = False
+
+
+def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
+    """What equations are made of: the records from where they move on, their periods, and the usual band.
+
+    Raises InputError where records do not fit together, or none holds the period that is given.
+    """
+    free, period, thresholds = found[0].input is None, options.period, options.thresholds
+    other = next((r for r in found if (r.input is None) != free), None)
+    if other is not None:
+        here, there = ("an effort", "none") if free else ("no effort", "one")
+        raise InputError(f"{other.name}: found {here}, {found[0].name} has {there}; expected all alike")
+    settings = settings_for(found, options.cutoff, thresholds)
+    if free:
+        found = [released(record, settings) for record in found]
+    lengths = [
+        None if free and period is None else period_of(record, period, thresholds.dataset)
+        for record in found[:-1]
+    ]
+    if period is not None and all(p is None for p in lengths):
+        raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
+    narrower = options.cutoff is None and not free
+    return Study(build_model(arm), Evaluator(arm), found, lengths, settings, thresholds, narrower)
+
+
+def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thresholds) -> Settings:
+    """A wide band: what friction and backlash do lies far above the motion's own frequencies.
+
+    Narrower for free motions, which lack what drives do and whose noise is all in the positions. The last
+    record, the test record, has no say. cutoff: as the user gave it [Hz].
+    Raises InputError where it is not positive.
+    """
+    if cutoff is not None and not cutoff > 0.0:
+        raise InputError(f"--cutoff: found {cutoff:g} Hz, expected more than 0: a diagnosis needs a band")
+    limits, rate, free = thresholds.equations, 1.0 / found[0].step, found[0].input is None
+    if cutoff is None:
+        widest = limits.max_free_cutoff if free else limits.max_cutoff
+        cutoff = min(widest, rate / limits.samples_per_cutoff_period)
+    chosen = Settings(cutoff=cutoff, thresholds=thresholds.dataset)
+    return settings_of_swings(found[:-1], chosen, limits) if free else chosen

@@ -1,0 +1,137 @@
+"""Thresholds of the adequacy: lack of fit, functions of no law, causes that nothing tells apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from modelgen.diagnosis.options.thresholds.sources import JUDGED, SIMULATED
+from modelgen.thresholds import Group, entry
+
+
+@dataclass(frozen=True)
+class AdequacyThresholds(Group):
+    """What decides whether the causes explain what repeats, and whether they stand in for something else."""
+
+    lack_of_fit_significance: float = entry(
+        1e-3, "probability", "Chance of a false alarm of the tests of one kind, all joints together.", JUDGED
+    )
+    parts_of_period: int = entry(
+        16,
+        "parts",
+        "Lack of fit is tested in as many parts of the period, and in those halfway between.",
+        "short enough for a contact or a hard spot",
+    )
+    min_part_rows: float = entry(
+        2.0, "independent rows", "A part with fewer is not tested.", "the least that a variance follows from"
+    )
+    min_phase_rows: float = entry(
+        5.0, "independent rows", "As many phases count at least in the test of all rows.", JUDGED
+    )
+    min_scatter_rows: float = entry(
+        10.0, "independent rows", "With fewer rows that differ between periods nothing is tested.", JUDGED
+    )
+    null_share: float = entry(
+        1.0 - 0.01 / 2.0,
+        "of complete models",
+        "So many stay below the threshold of either test, and below the evidence of a function of no law.",
+        "240 simulated arms with nothing hidden",
+    )
+    bend_lengths: tuple[float, ...] = entry(
+        (0.2, 0.5), "of the range", "Lengths over which the functions of no law bend.", SIMULATED
+    )
+    spot_length: float = entry(
+        0.06,
+        "of the range",
+        "Functions of one joint's position bend over this length, for hard spots.",
+        SIMULATED,
+    )
+    beside_delta_bic: float = entry(
+        7.0,
+        "delta BIC",
+        "With more evidence beside a cause than this a function may take its place; half for a single cause.",
+        SIMULATED,
+    )
+    lone_cause_delta_bic: float = entry(
+        7.0,
+        "delta BIC",
+        "With half of that beside it, a function that has this much more takes a single cause's place.",
+        SIMULATED,
+    )
+    detail_ratio: float = entry(
+        2.0,
+        "1",
+        "A cause is a detail of what is left where a function beside it has so many times its evidence.",
+        SIMULATED,
+    )
+    slow_delta_bic: float = entry(
+        40.0,
+        "delta BIC",
+        "With more in the plain equations, beside a cause and over it, a function that is as good else wins.",
+        "functions of complete models have 37 there once in 200",
+    )
+    as_good_delta_bic: float = entry(
+        5.0,
+        "delta BIC",
+        "A function is as good as a cause where it is behind by no more than this and `as_good_share`.",
+        SIMULATED,
+    )
+    as_good_share: float = entry(
+        0.01,
+        "of the evidence",
+        "A function is as good as a cause where it is behind by no more than `as_good_delta_bic` and this.",
+        SIMULATED,
+    )
+    behind_delta_bic: float = entry(
+        20.0,
+        "delta BIC",
+        "A function that is behind the cause by more in the plain equations does not take its place.",
+        SIMULATED,
+    )
+    further_cause_price: float = entry(
+        8.0,
+        "delta BIC",
+        "Each further cause costs this where one function is held against several of them.",
+        "2 ln 60, for some sixty candidates",
+    )
+    min_explained_repeating: float = entry(
+        2 / 3,
+        "of what repeats",
+        "A cause that explains less at its joints is held against functions.",
+        SIMULATED,
+    )
+    max_left_in_part: float = entry(
+        1 / 2,
+        "of what repeats",
+        "A cause that leaves more in the part of the period that shows most is held against functions.",
+        SIMULATED,
+    )
+    clear_part_ratio: float = entry(
+        1.5,
+        "of the threshold",
+        "A cause is held against functions where a part of another joint's period shows more lack of fit.",
+        SIMULATED,
+    )
+    min_repeating_share: float = entry(
+        0.1, "of the residuals' power", "A joint where less repeats is explained.", SIMULATED
+    )
+    rough_delta_bic: float = entry(
+        250.0,
+        "delta BIC",
+        "With more evidence, a cause that is simulated roughly, as impacts are, may leave what repeats.",
+        "play gave 500 to 2800 in simulated arms",
+    )
+    max_alias_angle: float = entry(
+        1e-6, "rad", "Effects whose columns span spaces at a smaller principal angle are aliases.", "rounding"
+    )
+    min_absorbed_share: float = entry(
+        1e-6,
+        "of a column",
+        "A column of which the model leaves less is absorbed by its parameters.",
+        "rounding",
+    )
+    max_counts_ratio: float = entry(
+        1.25,
+        "1",
+        "A free motion lacks nothing where residuals are at most so many times what encoder counts leave.",
+        SIMULATED,
+    )

@@ -1,0 +1,123 @@
+"""From the stages to what is reported: named causes, errors on the test record, settings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from modelgen.diagnosis.adequacy import place
+from modelgen.diagnosis.decision import Decision
+from modelgen.diagnosis.equations import Study
+from modelgen.diagnosis.extended import (
+    Extension,
+    NamedCause,
+    Positions,
+    base_estimates,
+    cause_estimates,
+    described_by,
+    errors,
+    motion_errors,
+    replay,
+    residuals,
+    shares,
+    unit_of_efforts,
+)
+from modelgen.diagnosis.options import Options
+from modelgen.diagnosis.options.thresholds import USUAL, in_band
+from modelgen.diagnosis.result.diagnosis import Diagnosis
+from modelgen.diagnosis.result.not_identifiable import not_identifiable
+from modelgen.diagnosis.selection import Selection, threshold
+
+
+def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
+    """What was found, with the errors that either model leaves of the test record: its only use."""
+    band, selection, arm = decision.band, extension.selection, extension.before.arm
+    equations, limits = extension.equations, extension.equations.thresholds.extended
+    test = equations.of_record(band.test, extension.before.theta)
+    pair = residuals(test, extension)
+    causes = _named(decision, extension)
+    if causes and not equations.free:
+        causes = tuple(
+            replace(cause, share=share) for cause, share in zip(causes, shares(extension, test), strict=True)
+        )
+    described = replay(extension.before, test, limits)
+    played = described, replay(extension.after, test, limits) if causes else described
+    after, fit = extension.after, decision.remains.fit
+    values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
+    added = *described_by(extension.inertias), *values
+    return Diagnosis(
+        arm=arm,
+        verdict=decision.verdict,
+        reason=decision.reason,
+        causes=causes,
+        not_identifiable=not_identifiable(arm, equations, selection),
+        lack_of_fit=fit,
+        lack_of_fit_part=None if fit is None else place(fit, equations.rows),
+        likeness=decision.remains.likeness,
+        errors=motion_errors(study.records[-1], *played, limits)
+        if equations.free
+        else errors(test, *pair, unit_of_efforts(band.test), limits),
+        simulation=played,
+        before=extension.before,
+        after=after,
+        parameters=base_estimates(after.model, after.theta, equations.with_rows(after.rows)),
+        next_experiment=None,
+        test=test,
+        residuals=pair,
+        ranking=selection.turns,
+        added=added,
+        settings=_settings(study, decision, selection, options),
+        positions=Positions(decision.remains.feigned, decision.correlated),
+        inertias=extension.inertias,
+    )
+
+
+def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:
+    """`settings` of diagnosis.json: what was asked, and how the records were processed."""
+    chosen, train = decision.band.chosen, study.records[:-1]
+    periods = zip(study.lengths, train, strict=True)
+    asked = [effect if joint is None else f"{effect}:{joint}" for effect, joint in options.effects]
+    least = in_band(options.thresholds.validation.min_gain_percent, decision.band.equations.narrowed)
+    changed = {e.name: e.value for e in options.thresholds.entries()}
+    usual = {e.name: e.value for e in USUAL.entries()}
+    others = {name: value for name, value in changed.items() if value != usual[name]}
+    return {
+        "asked": asked or "all",
+        "train": [record.name for record in train],
+        "test": study.records[-1].name,
+        "cutoff_hz": chosen.cutoff,
+        "position_cutoff_hz": chosen.position_cutoff,
+        "factor": chosen.factor,
+        "rest_gates": [float(f"{gate:.6g}") for gate in chosen.gates],
+        "period_s": [None if p is None else float(f"{p * r.step:.9g}") for p, r in periods],
+        "evidence_threshold": threshold(selection.system),
+        "practical_gain_percent": round(least, 3),
+        **({"thresholds": others} if others else {}),
+    }
+
+
+def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
+    """The causes as they are reported, with aliases and rivals."""
+    causes = extension.selection.causes
+    if not causes:
+        return ()
+    estimates = cause_estimates(extension.selection, extension.equations)
+    result = []
+    for cause, same, values in zip(causes, decision.equal, estimates, strict=True):
+        c = cause.trial.candidate
+        alias = tuple(other.place for other in same)
+        rivals = tuple(
+            (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in alias
+        )
+        result.append(
+            NamedCause(
+                effect=c.effect,
+                joint=c.joint,
+                parameters=values,
+                delta_bic=cause.delta_bic,
+                cross_gain=cause.cross_gain,
+                expected_gain=cause.expected_gain,
+                aliases=alias,
+                ambiguous_with=rivals,
+            )
+        )
+    return tuple(result)
