@@ -28,6 +28,7 @@ class Made:
     """A log that exists nowhere: made as it is read. The time that this takes goes to standard error."""
 
     by_column = True
+    remarks: tuple[str, ...] = ()
 
     def __init__(self, samples: int) -> None:
         self.samples, self.names = samples, tuple(names())

@@ -123,8 +123,27 @@ class Record:
         )
 
 
+@dataclass(frozen=True)
+class Layout:
+    """How a table stands in a text file, as far as somebody has said it; the rest is found out.
+
+    columns: names where there is no header. delimiter: between cells, " " for blanks. decimal: its sign.
+    encoding: of the text. skip_lines: lines passed over at the beginning.
+    """
+
+    columns: tuple[str, ...] = ()
+    delimiter: str | None = None
+    decimal: str | None = None
+    encoding: str | None = None
+    skip_lines: int = 0
+
+
 class Reader(Protocol):
     """A file with named columns."""
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found out about the file and assumed, as far as it has been read."""
 
     @property
     def by_column(self) -> bool:

@@ -196,5 +196,5 @@ def test_a_missing_extra_is_named(
         return original(name, *args, **kwargs)
 
     monkeypatch.setattr(builtins, "__import__", missing)
-    with pytest.raises(InputError, match=rf"need(s)? {library}: pip install 'modelgen\[logs\]'"):
+    with pytest.raises(InputError, match=rf"need(s)? {library}: pip install '{library}>="):
         read(str(tmp_path / file), AXIS, mapping(tmp_path))

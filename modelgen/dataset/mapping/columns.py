@@ -22,16 +22,20 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Signal:
-    """One column to be made: factor * formula + offset."""
+    """One column to be made: factor * formula + offset. bits: of a counter that was logged as unsigned."""
 
     formula: Formula
     factor: float
     offset: float
     wrap: float | None = None
+    bits: int | None = None
 
     def __call__(self, columns: dict[str, Array], last: dict[Signal, float]) -> Array:
         """Its values (N,); `last` keeps its last value from block to block where it wraps."""
-        values = self.factor * self.formula(columns) + self.offset
+        raw = self.formula(columns)
+        if self.bits is not None:
+            raw = np.where(raw >= 2.0 ** (self.bits - 1), raw - 2.0**self.bits, raw)
+        values = self.factor * raw + self.offset
         if self.wrap is None:
             return values
         before = last.get(self, float(values[0]))
@@ -59,7 +63,7 @@ class MappedReader:
                 ["joints"],
                 key=True,
             )
-        self.remarks: list[str] = []
+        self._remarks: list[str] = []
         self.effort_units: dict[str, str] = {}
         self._aliases = dict(document.names)
         for short, name in self._aliases.items():
@@ -68,6 +72,8 @@ class MappedReader:
         self._columns = (*reader.names, *self._aliases)
         time = document.time
         factor = foreign.unit(time.unit, units.TIMES, ["time"])
+        if time.column in getattr(reader, "instants", ()):
+            factor = 1.0  # a date has its own unit
         self._time = Signal(self._formula(time.column, ["time", "column"]), factor, 0.0)
         self._signals: dict[str, Signal] = {}
         self._groups: dict[str, list[str]] = {}  # coupled columns by kind, in the order of the joints
@@ -86,6 +92,18 @@ class MappedReader:
                 raise foreign.error(
                     f"the log's column {original} stands there {count} times, expected once", []
                 )
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the mapping and the file say for the user."""
+        return (*self._remarks, *self.reader.remarks)
+
+    @property
+    def scales(self) -> dict[str, tuple[float, float]]:
+        """Factor and offset of the columns that are plain columns of the log, by name."""
+        if self._coupling is not None:
+            return {}
+        return {name: (s.factor, s.offset) for name, s in self._signals.items() if s.bits is None}
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""
@@ -200,7 +218,7 @@ class MappedReader:
         self.effort_units[name] = units.EFFORT_UNITS[kind]
         if prefix == "u":
             what = "duty cycle" if kind == "duty" else "voltage"
-            self.remarks.append(
+            self._remarks.append(
                 f"{described.name}: the effort is a {what} [{units.EFFORT_UNITS[kind]}]: back-EMF sits in "
                 "the viscous friction, and every parameter is per that unit"
             )
@@ -233,7 +251,8 @@ class MappedReader:
         offset = self.foreign.number(model.offset, [*path, "offset"])
         if scale == 0.0:
             raise self.foreign.error("found 0, expected a scale other than 0", [*path, "scale"])
-        return Signal(self._formula(model.column, [*path, "column"]), factor * scale, factor * offset)
+        made = self._formula(model.column, [*path, "column"])
+        return Signal(made, factor * scale, factor * offset, bits=model.bits)
 
     def _formula(self, text: str, path: Steps) -> Formula:
         try:

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from modelgen.dataset.mapping import units
 from modelgen.dataset.mapping.schema import Document
+from modelgen.dataset.objects import Layout
 from modelgen.description.document import Node, Steps, parse, read_text
 from modelgen.description.expressions import ExpressionError, evaluate
 from modelgen.description.messages import describe, first_mistake, mistake
@@ -54,6 +55,12 @@ class Foreign:
                 hint = "; with 4096 counts per revolution write unit: rev, scale: 1/4096"
             raise self.error(f"found the unit {describe(name)}{suggest(name, known)}{hint}", [*path, "unit"])
         return known[name]
+
+    @property
+    def layout(self) -> Layout:
+        """What the mapping says about the table in the file."""
+        d = self.document
+        return Layout(tuple(d.columns), d.delimiter, d.decimal, d.encoding, d.skip_lines)
 
     @property
     def hold(self) -> str | float:

@@ -32,6 +32,10 @@ class ColumnModel(Model):
     unit: str = Field(description="Unit of scale times column plus offset.")
     scale: Number = Field(default=1.0, description="Factor of the column; a minus sign turns it round.")
     offset: Number = Field(default=0.0, description="Added to scale times column, in the unit.")
+    bits: Annotated[int, Field(ge=2, le=52)] | None = Field(
+        default=None,
+        description="Of a counter whose negative values were logged as unsigned: 16 where -1 is 65535.",
+    )
 
 
 class PlacedModel(ColumnModel):
@@ -87,6 +91,19 @@ class Document(Model):
         default="following",
         description="following: an effort holds until the next sample; previous: since the one before; "
         "instant: it was sampled at its stamp; a number: that long after its stamp [s].",
+    )
+    columns: list[ColumnText] = Field(
+        default=[], description="Names of the columns of a table without a header, in their order."
+    )
+    delimiter: Literal[",", ";", "\t", "|", " "] | None = Field(
+        default=None, description="What stands between cells; ' ' for blanks. Default: found out."
+    )
+    decimal: Literal[".", ","] | None = Field(default=None, description="Decimal sign. Default: found out.")
+    encoding: str | None = Field(
+        default=None, description="Encoding of the text: utf-8, utf-16, latin-1. Default: found out."
+    )
+    skip_lines: Annotated[int, Field(ge=0)] = Field(
+        default=0, description="Lines passed over at the beginning of the file."
     )
     names: dict[str, str] = Field(
         default={}, description="Short names for columns whose own cannot stand in a formula."

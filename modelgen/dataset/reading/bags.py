@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.dataset.reading.extras import missing
 from modelgen.dataset.reading.messages import columns_of, number_at
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.errors import InputError
@@ -28,6 +29,7 @@ class BagReader:
     """
 
     by_column = False
+    remarks: tuple[str, ...] = ()
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -118,7 +120,7 @@ class BagReader:
         except InputError:
             raise
         except ImportError as error:
-            raise InputError(f"{self.path}: bags need {error.name}: pip install 'modelgen[logs]'") from None
+            raise missing(f"{self.path}: bags need", str(error.name)) from None
         except Exception as error:
             # Foreign code on a file of any content: whatever it raises means that the file cannot be read.
             reason = " ".join(str(error).split())[:160] or type(error).__name__

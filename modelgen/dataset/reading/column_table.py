@@ -22,6 +22,7 @@ class ColumnTable:
     """
 
     by_column = True
+    remarks: tuple[str, ...] = ()
 
     def __init__(self, columns: Any, name: str) -> None:
         self.name, self._columns = name, columns

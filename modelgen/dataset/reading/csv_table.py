@@ -1,105 +1,139 @@
-"""CSV logs: one header line of names, then lines of numbers, read block by block."""
+"""CSV logs: a header of names, then rows of numbers, read block by block, each with a cell for every name."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
+from modelgen.dataset.objects import Layout
+from modelgen.dataset.reading.pipes import plain_file
+from modelgen.dataset.reading.shape import Shape, shape_of, wrong_count
 from modelgen.dataset.reading.specs import unreadable
+from modelgen.dataset.reading.text import cells_of, lines_of, number
+from modelgen.dataset.reading.turns import in_turn
 from modelgen.description.document import one_line
 from modelgen.errors import InputError, Location
 from modelgen.numeric import Array
 
 
 class CsvReader:
-    """A CSV file. The separator is a comma, semicolon, tab or blanks, whichever the header holds.
+    """A table in a text file, whose shape is taken from its first lines.
 
-    Lines that begin with # and empty lines are skipped. Raises InputError where there is no header.
+    Lines that begin with # and empty lines are skipped. Raises InputError where there is no header, and where
+    the shape is uncertain.
     """
 
     by_column = False
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, layout: Layout | None = None) -> None:
         self.path = path
         try:
-            with path.open(encoding="utf-8-sig", newline=None) as stream:
-                self.header_line, header = next(
-                    (
-                        (n, line)
-                        for n, line in enumerate(islice(stream, 1000), 1)
-                        if line.strip() and not line.startswith("#")
-                    ),
-                    (0, ""),
-                )
-        except OSError as error:
+            self._file = plain_file(path)
+        except (OSError, ValueError) as error:
             raise unreadable(path, error) from None
-        except UnicodeDecodeError:
-            raise InputError(f"{path}: found bytes that are no UTF-8 text, expected a CSV log") from None
-        if not header.strip():
-            raise InputError(
-                f"{path}: the log is empty, expected a header such as t,q1,i1 and one line per sample"
-            )
-        self.separator = next((s for s in (",", ";", "\t") if s in header), None)
-        words = header.split(self.separator)
-        self.names = tuple(word.strip().strip('"').strip() for word in words)
-        if all(_number(name) is not None for name in self.names):
-            where = Location(str(path), self.header_line, 1)
-            raise InputError(
-                "found numbers in the first line, expected the names of the columns: t,q1,i1", where
-            )
+        self.shape: Shape = shape_of(path, self._file, layout or Layout())
+        self.names = self.shape.names
+        self.units = self.shape.units
+        self._found: dict[str, None] = dict.fromkeys(self.shape.remarks)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found out about the file, and assumed."""
+        return tuple(self._found)
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block. Raises InputError with the place of a bad cell."""
         indices = [self.names.index(name) for name in wanted]
-        line = self.header_line
-        # What is no UTF-8 becomes a lone surrogate, which no number holds: the cell is then found.
-        with self.path.open(encoding="utf-8-sig", errors="surrogateescape", newline=None) as stream:
-            for _ in range(self.header_line):
+        if self.shape.sparse.intersection(indices):
+            whole = list(self._rows(indices, rows))
+            table = np.concatenate(whole) if whole else np.empty((0, len(wanted)))
+            table, remark = in_turn(str(self.path), wanted, table)
+            self._found[remark] = None
+            yield from (table[k : k + rows] for k in range(0, len(table), rows))
+            return
+        yield from self._rows(indices, rows)
+
+    def _rows(self, indices: list[int], rows: int) -> Iterator[Array]:
+        line = self.shape.header
+        with lines_of(self._file, self.shape.encoding) as stream:
+            for _ in range(line):
                 next(stream)
-            while lines := list(islice(stream, rows)):
-                try:
-                    with warnings.catch_warnings():
-                        warnings.simplefilter("ignore")  # an empty block at the end
-                        block = np.loadtxt(
-                            lines, delimiter=self.separator, usecols=indices, ndmin=2, comments="#"
-                        )
-                except ValueError:
-                    raise self._bad_cell(lines, line, indices) from None
-                line += len(lines)
-                if block.size:
+            held = list(islice(stream, rows))
+            while held:
+                following = list(islice(stream, rows))
+                block = self._fast(held, indices)
+                if block is None:
+                    block = self._slow(held, line, indices, last=not following)
+                line += len(held)
+                held = following
+                if len(block):
                     yield block
 
-    def _bad_cell(self, lines: list[str], before: int, indices: list[int]) -> InputError:
-        """The first cell that is no number."""
-        for number, line in enumerate(lines, before + 1):
-            text = line.split("#")[0]
-            if any("\udc80" <= c <= "\udcff" for c in text):
-                return InputError("found bytes that are no UTF-8 text", Location(str(self.path), number, 1))
+    def _fast(self, lines: list[str], indices: list[int]) -> Array | None:
+        """The block where every line is a plain row of numbers; None where it is not."""
+        delimiter, width = self.shape.delimiter, len(self.names) + self.shape.trailing
+        if delimiter is None:
+            even = all(len(line.split()) == width for line in lines)
+        else:
+            even = all(line.count(delimiter) == width - 1 for line in lines)
+        if not even or any('"' in line or "#" in line for line in lines):
+            return None
+        if self.shape.decimal == ",":
+            if any("." in line for line in lines):
+                return None
+            lines = [line.replace(",", ".") for line in lines]
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return np.loadtxt(lines, delimiter=delimiter, usecols=indices, ndmin=2, comments=None)
+        except ValueError:
+            return None
+
+    def _slow(self, lines: list[str], before: int, indices: list[int], *, last: bool) -> Array:
+        """The block cell by cell. Raises InputError at the first cell that is no number."""
+        width = len(self.names)
+        found = []
+        for k, line in enumerate(lines, before + 1):
+            text = line.split("#")[0].rstrip("\r\n")
             if not text.strip():
                 continue
-            cells = text.rstrip("\r\n").split(self.separator)
-            if len(cells) <= max(indices):
-                where = Location(str(self.path), number, 1)
-                return InputError(
-                    f"found {len(cells)} cells, expected {len(self.names)}: {', '.join(self.names)}", where
+            if any("\udc80" <= c <= "\udcff" for c in text):
+                raise InputError("found bytes that are no UTF-8 text", Location(str(self.path), k, 1))
+            cells = cells_of(text, self.shape.delimiter)
+            if self.shape.trailing and len(cells) == width + 1 and not cells[-1]:
+                cells.pop()
+            if len(cells) != width:
+                if last and k == before + len(lines) and not line.endswith("\n") and len(cells) < width:
+                    self._found[f"line {k}, the last, is cut off and left out"] = None
+                    continue
+                raise InputError(
+                    wrong_count(len(cells), self.names, "", self.shape.delimiter),
+                    Location(str(self.path), k, 1),
                 )
-            for index in indices:
-                if _number(cells[index]) is None:
-                    column = len((self.separator or " ").join(cells[:index])) + (2 if index else 1)
-                    where = Location(str(self.path), number, column)
-                    cell = one_line(cells[index]) or "nothing"
-                    return InputError(
-                        f"found '{cell}' in the column {self.names[index]}, expected a number", where
-                    )
-        return InputError(f"{self.path}: cannot be read as numbers")
+            found.append([self._number(cells, text, k, i) for i in indices])
+        return np.array(found).reshape(len(found), len(indices))
 
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text.strip().strip('"'))
-    except ValueError:
-        return None
+    def _number(self, cells: Sequence[str], text: str, line: int, index: int) -> float:
+        cell = cells[index]
+        value = number(cell, self.shape.decimal)
+        if value is not None:
+            return value
+        if not cell and index in self.shape.sparse:
+            return np.nan
+        between = self.shape.delimiter or " "
+        raw = text.split(self.shape.delimiter) if '"' not in text else list(cells)
+        column = len(between.join(raw[:index])) + (2 if index else 1)
+        said = one_line(cell) or "nothing"
+        hint = (
+            f" (the decimal sign is '{self.shape.decimal}')"
+            if "," in cell or self.shape.decimal == ","
+            else ""
+        )
+        raise InputError(
+            f"found '{said}' in the column {self.names[index]}, expected a number{hint}",
+            Location(str(self.path), line, column),
+        )

@@ -4,24 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from modelgen.dataset.reading.extras import missing
 from modelgen.dataset.reading.specs import unreadable
+from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 
 class ParquetReader:
-    """A Parquet file of numeric columns. Raises InputError where it is not, or pyarrow is missing."""
+    """A Parquet file of numbers, dates and times.
 
-    by_column = True
+    A date or time becomes seconds since the file's first row. Raises InputError where it is no such file, or
+    pyarrow is missing.
+    """
 
     def __init__(self, path: Path) -> None:
         try:
             import pyarrow.parquet  # noqa: PLC0415 - an extra
         except ImportError:
-            raise InputError(f"{path}: Parquet needs pyarrow: pip install 'modelgen[logs]'") from None
+            raise missing(f"{path}: Parquet needs", "pyarrow") from None
         self.path = path
         try:
             with path.open("rb"):
@@ -31,16 +36,41 @@ class ParquetReader:
             raise unreadable(path, error) from None
         except pyarrow.ArrowException as error:
             raise InputError(f"{path}: this is no Parquet file: {str(error).splitlines()[0]}") from None
-        self.names = tuple(self._file.schema_arrow.names)
+        schema = self._file.schema_arrow
+        self.names = tuple(schema.names)
+        self.instants = frozenset(
+            f.name for f in schema if pyarrow.types.is_timestamp(f.type) or pyarrow.types.is_time(f.type)
+        )
+        self._found: dict[str, None] = {}
+        self.sparse = self._sparse()
+        self.by_column = not self.sparse
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found out about the file, and assumed."""
+        return tuple(self._found)
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, `rows` at a time; a missing value is NaN. Raises InputError."""
+        for name in self.instants.intersection(wanted):
+            self._found[f"{name} is a date or time: seconds are counted from the file's first row"] = None
+        if not self.sparse.intersection(wanted):
+            yield from self._rows(wanted, rows)
+            return
+        table, remark = in_turn(str(self.path), wanted, np.concatenate(list(self._rows(wanted, rows))))
+        self._found[remark] = None
+        yield from (table[k : k + rows] for k in range(0, len(table), rows))
+
+    def _rows(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         import pyarrow  # noqa: PLC0415 - an extra
 
+        types = pyarrow.types
         for name in wanted:
             kind = self._file.schema_arrow.field(name).type
-            if not (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)):
+            numbers = types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind)
+            if not numbers and name not in self.instants:
                 raise InputError(f"{self.path}: found {kind} in the column {name}, expected numbers")
+        first: dict[str, int] = {}
         try:
             # pyarrow would otherwise keep what it has read of the file.
             batches = self._file.iter_batches(batch_size=rows, columns=list(wanted), use_threads=False)
@@ -51,8 +81,12 @@ class ParquetReader:
                     count = min(batch.num_rows - taken, rows - filled)
                     for k, name in enumerate(wanted):
                         column = batch.column(name).slice(taken, count)
+                        if name in self.instants:
+                            held[filled : filled + count, k] = _seconds(column, name, first)
+                            continue
                         if column.type != pyarrow.float64():
-                            column = column.cast(pyarrow.float64())
+                            # Integers beyond 2^53 (nanoseconds since 1970) lose their last digits alone.
+                            column = column.cast(pyarrow.float64(), safe=False)
                         held[filled : filled + count, k] = column.to_numpy(zero_copy_only=False)
                     taken, filled = taken + count, filled + count
                     if filled == rows:
@@ -60,8 +94,39 @@ class ParquetReader:
                         held, filled = _empty(rows, len(wanted)), 0
             if filled:
                 yield held[:filled]
-        except (OSError, pyarrow.ArrowException) as error:
+        except (OSError, ValueError, pyarrow.ArrowException) as error:
             raise InputError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
+
+    def _sparse(self) -> frozenset[str]:
+        """Columns that are blank in many rows but not in all, by the file's own counts."""
+        data = self._file.metadata
+        blank: dict[str, int] = {}
+        try:
+            for group in range(data.num_row_groups):
+                for k in range(data.num_columns):
+                    column = data.row_group(group).column(k)
+                    counts = column.statistics
+                    name = column.path_in_schema
+                    blank[name] = blank.get(name, 0) + (counts.null_count or 0 if counts is not None else 0)
+        except Exception:
+            return frozenset()  # statistics are for guidance alone: a damaged one is found when read
+        rows = data.num_rows
+        return frozenset(n for n, count in blank.items() if count >= 10 and 0.2 * rows < count < rows)
+
+
+def _seconds(column: Any, name: str, first: dict[str, int]) -> Array:
+    """Dates or times as seconds since the first of them; blank ones are NaN."""
+    import pyarrow  # noqa: PLC0415 - an extra
+
+    per = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
+    wide = pyarrow.int32() if pyarrow.types.is_time32(column.type) else pyarrow.int64()
+    numbers = column.cast(wide).cast(pyarrow.int64())
+    there = np.asarray(numbers.is_valid().to_numpy(zero_copy_only=False), dtype=bool)
+    values = np.asarray(numbers.fill_null(0).to_numpy(zero_copy_only=False))
+    if there.any():
+        first.setdefault(name, int(values[there][0]))
+    # The difference of integers is exact; they themselves have more digits than a float.
+    return np.where(there, per * (values - first.get(name, 0)).astype(np.float64), np.nan)
 
 
 def _empty(rows: int, columns: int) -> Array:

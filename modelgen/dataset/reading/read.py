@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from modelgen.dataset.processing.resampling import held_resampled, smooth_resamp
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.plausible import check_efforts, check_unsigned
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -69,6 +70,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     """
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
+    scales: dict[str, tuple[float, float]] = getattr(source.reader, "scales", {})
+    for k, column in enumerate(source.wanted):
+        if column in signals.effort or column in (signals.dq or ()):
+            factor, offset = scales.get(column, (1.0, 0.0))
+            check_unsigned(file, column, np.round((table[:, k] - offset) / factor, 6))
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     motor_side = tuple(name.startswith("qm") for name in signals.position)
@@ -127,7 +133,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         arm=arm,
         held=source.hold in ("following", "previous"),
     )
-    return record, logged
+    beyond = check_efforts(record, signals.effort, arm, drives)
+    return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
 
 
 def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:

@@ -17,6 +17,11 @@ MAPPED_EFFORTS = ("taum", "u")  # force at the motor coordinate; duty cycle or v
 _SIGNAL = re.compile(rf"({'|'.join(sorted(KINDS, key=len, reverse=True))})([1-9][0-9]*)")
 
 
+def is_signal(name: str) -> bool:
+    """Whether a column has a name of docs/logs.md: t, q1, tau2."""
+    return name == "t" or _SIGNAL.fullmatch(name) is not None
+
+
 @dataclass(frozen=True)
 class Signals:
     """Names of the columns by joint: position always, the others where the log has them."""

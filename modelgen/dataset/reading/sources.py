@@ -11,9 +11,11 @@ import numpy as np
 from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.mapping.columns import MappedReader
 from modelgen.dataset.mapping.files import listed, load_mapping
-from modelgen.dataset.objects import Reader, Record
+from modelgen.dataset.objects import Layout, Reader, Record
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.renamed import in_small_letters
+from modelgen.dataset.reading.shape import other_unit, unit_word
 from modelgen.dataset.reading.signals import Signals, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.reading.tables import open_table
@@ -42,8 +44,12 @@ class Source:
     rate: float | None = None
     gap: float | None = None
     effort_units: dict[str, str] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
     thresholds: DatasetThresholds = USUAL
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """For the user, as far as the log has been read."""
+        return self.reader.remarks
 
     @property
     def wanted(self) -> tuple[str, ...]:
@@ -80,16 +86,17 @@ def open_source(
     spec = parse(log)
     drives = drives_of(arm)
     if mapping is None:
-        reader = opened(spec)
+        reader = in_small_letters(opened(spec))
         if isinstance(reader, BagReader):
             raise InputError(
                 f"{spec.text}: a bag needs a mapping file (--mapping) that names its columns: "
                 + listed(reader.names)
             )
         signals = find_signals(spec.text, reader.names, arm, drives)
+        check_units(spec.text, reader, signals, arm, drives)
         return Source(spec, reader, signals, drives, thresholds=thresholds)
     foreign = load_mapping(mapping)
-    mapped = MappedReader(foreign, opened(spec), arm, drives)
+    mapped = MappedReader(foreign, opened(spec, foreign.layout), arm, drives)
     time = foreign.document.time
     return Source(
         spec,
@@ -100,15 +107,35 @@ def open_source(
         foreign.positive(time.resample, ["time", "resample"]),
         foreign.positive(time.largest_gap, ["time", "largest_gap"]),
         mapped.effort_units,
-        tuple(mapped.remarks),
         thresholds,
     )
 
 
-def opened(spec: Spec) -> Reader:
+def check_units(
+    file: str, reader: Reader, signals: Signals, arm: Arm, drives: Sequence[NumericDrive]
+) -> None:
+    """Units that the file itself says must be those of docs/logs.md. Raises InputError."""
+    said: dict[str, str] = getattr(reader, "units", {})
+    for name in signals.wanted:
+        if name not in said:
+            continue
+        kind = name.rstrip("0123456789")
+        expected = "s" if name == "t" else "A" if kind == "i" else None
+        if expected is None and kind in ("q", "dq", "ddq", "tau"):
+            prismatic = arm.joints[arm.coordinates[int(name.removeprefix(kind)) - 1]].type == "prismatic"
+            base = ("N" if prismatic else "N m") if kind == "tau" else ("m" if prismatic else "rad")
+            expected = base + {"dq": "/s", "ddq": "/s^2"}.get(kind, "")
+        if expected is not None and other_unit(said[name], expected):
+            raise InputError(
+                f"{file}: the file says that {name} is in {unit_word(said[name])}, expected {expected}; "
+                "declare `unit: ...` in a mapping file (--mapping)"
+            )
+
+
+def opened(spec: Spec, layout: Layout | None = None) -> Reader:
     """The reader for a log. Raises InputError, also for a record, which has been read."""
     if spec.held is None:
-        return open_table(spec.path)
+        return open_table(spec.path, layout)
     if isinstance(spec.held, Record):
         raise InputError(f"{spec.text}: found a record, expected a log as it was recorded")
     return spec.held
@@ -121,7 +148,7 @@ def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
     Raises InputError.
     """
     spec = parse(log)
-    reader = opened(spec)
+    reader = in_small_letters(opened(spec))
     wanted = tuple(dict.fromkeys(("t", *names)))
     absent = [name for name in wanted if name not in reader.names]
     if absent:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.reading.column_table import ColumnTable, Log
+from modelgen.dataset.reading.pipes import plain_file
 from modelgen.errors import InputError
 
 _PART = re.compile(r"(?P<file>.+)@(?P<begin>[^@:]*):(?P<end>[^@:]*)")
@@ -40,9 +41,9 @@ class Spec:
         files = sorted(p for p in self.path.rglob("*") if p.is_file()) if self.path.is_dir() else [self.path]
         for file in files:
             try:
-                with file.open("rb") as stream:
+                with plain_file(file).open("rb") as stream:
                     digest.update(hashlib.file_digest(stream, "sha256").digest())
-            except OSError as error:
+            except (OSError, ValueError) as error:
                 raise unreadable(self.path, error) from None
         return digest.hexdigest()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from modelgen.dataset.objects import Reader
+from modelgen.dataset.objects import Layout, Reader
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.csv_table import CsvReader
 from modelgen.dataset.reading.parquet_table import ParquetReader
@@ -12,10 +12,14 @@ from modelgen.dataset.reading.specs import unreadable
 from modelgen.errors import InputError
 
 BAGS = (".bag", ".db3", ".mcap")
+SHEETS = (".xlsx", ".xls", ".xlsm", ".ods")
 
 
-def open_table(path: Path) -> Reader:
-    """The reader for a file, by its suffix; a folder is a ROS 2 bag. Raises InputError."""
+def open_table(path: Path, layout: Layout | None = None) -> Reader:
+    """The reader for a file, by its suffix; a folder is a ROS 2 bag. Raises InputError.
+
+    layout: of a table in a text file, as far as it is known. A pipe is read as such a table.
+    """
     suffix = path.suffix.lower()
     try:
         path.stat()
@@ -29,7 +33,8 @@ def open_table(path: Path) -> Reader:
         return BagReader(path)
     if suffix in (".parquet", ".pq"):
         return ParquetReader(path)
-    if suffix in (".csv", ".txt", ".tsv", ""):
-        return CsvReader(path)
+    if suffix in (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", "") or path.is_fifo():
+        return CsvReader(path, layout)
     kinds = ".csv, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
-    raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}")
+    hint = "; in the spreadsheet, save the sheet as CSV UTF-8" if suffix in SHEETS else ""
+    raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}{hint}")
