@@ -71,13 +71,15 @@ def run(
     seconds: float | None = None,
     by: Diagnose = diagnose,
     keep: bool = False,
+    retry: bool = False,
 ) -> int:
     """Answer the entries that have none in `into`, until `seconds` are over; how many are still without.
 
     by: what answers for a folder with a written case. keep: leave records and reports, which are large.
+    retry: run again what failed, which is no answer of the diagnosis.
     """
     end = None if seconds is None else time.monotonic() + seconds
-    left = [e for e in entries if not (into / e.name / ANSWER).exists()]
+    left = [e for e in entries if wanted(into / e.name / ANSWER, retry)]
     for k, entry in enumerate(left):
         if end is not None and time.monotonic() > end:
             return len(left) - k
@@ -91,6 +93,11 @@ def run(
             _clear(folder)
         print(f"{k + 1}/{len(left)} {entry.name}: {told(answer)}", flush=True)
     return 0
+
+
+def wanted(path: Path, retry: bool) -> bool:
+    """Whether a case is to be run: it has no answer, or one that failed and is tried again."""
+    return not path.exists() or (retry and "failed" in json.loads(path.read_text()))
 
 
 def _clear(folder: Path) -> None:
@@ -130,6 +137,7 @@ def main() -> None:
     parser.add_argument("--part", default="1/1")
     parser.add_argument("--seconds", type=float)
     parser.add_argument("--keep", action="store_true", help="leave the records and the reports")
+    parser.add_argument("--retry", action="store_true", help="run again what failed")
     parser.add_argument("--only-make", action="store_true", help="write the cases, diagnose nothing")
     given = parser.parse_args()
     part, parts = map(int, given.part.split("/"))
@@ -145,7 +153,7 @@ def main() -> None:
         for entry in entries:
             entry.make().write(given.into / entry.name)
         return
-    left = run(entries, given.into, seconds=given.seconds, keep=given.keep)
+    left = run(entries, given.into, seconds=given.seconds, keep=given.keep, retry=given.retry)
     print(f"{len(entries) - left} of {len(entries)} have an answer")
 
 

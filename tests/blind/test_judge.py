@@ -117,8 +117,14 @@ def test_the_runner_goes_on_and_the_table_counts(
     assert runner.run(entries, tmp_path, by=by) == 0
     assert asked == [e.name for e in entries]
     assert not list(tmp_path.rglob("*.csv"))
+    failed = tmp_path / entries[1].name / runner.ANSWER
+    failed.write_text('{"failed": "Traceback"}')
+    assert runner.run(entries, tmp_path, by=by) == 0
+    assert asked[3:] == []
+    assert runner.run(entries, tmp_path, by=by, retry=True) == 0
+    assert asked[3:] == [entries[1].name]
     rows = judge.counted(judge.answers(tmp_path))
     assert [(r["cases"], r["exact"]["count"], r["nothing_missing"]["count"]) for r in rows] == [(3, 3, 3)] * 2
     assert "3 (44 to 100 %)" in judge.table(rows)
     assert json.loads((tmp_path / entries[0].name / "truth.json").read_text())["train"] == ["train_1"]
-    assert capsys.readouterr().out.count("nothing_missing") == 3
+    assert capsys.readouterr().out.count("nothing_missing") == 4

@@ -93,7 +93,8 @@ def _warm(rng: Numbers, world: World, plan: Plan, number: int) -> Hidden:
             "warm_speed": speed,
         }
 
-    text = "friction falls with the heat of the motion; every record begins cold"
+    begin = "heat runs on from record to record" if plan.on_and_on else "every record begins cold"
+    text = f"friction falls with the heat of the motion; {begin}"
     return Hidden(
         "friction_warm_up", (number,), number, lambda x: world.joint(number, **values(x)), values, text
     )
