@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.dataset.reading.bag_messages import Messages, messages_of
 from modelgen.dataset.reading.extras import missing
-from modelgen.dataset.reading.messages import columns_of, number_at
+from modelgen.dataset.reading.messages import columns_of, labels, number_at
 from modelgen.dataset.reading.specs import unreadable
+from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-PEEK = 2000  # messages that the topics' columns are taken from
+PEEK = 200  # messages of a topic that its columns are taken from
 LOG_TIME = "log_time"
-Messages = Iterator[tuple[str, int, Any]]  # topic, time [ns], message
 
 
 class BagReader:
@@ -29,25 +29,43 @@ class BagReader:
     """
 
     by_column = False
-    remarks: tuple[str, ...] = ()
 
     def __init__(self, path: Path) -> None:
         self.path = path
         if not path.exists():
             raise unreadable(path, FileNotFoundError())
-        found: dict[str, dict[str, None]] = {}
+        self._found: dict[str, None] = {}
         self._start: int | None = None
-        with self._messages() as messages:
-            for k, (topic, time, message) in enumerate(messages):
-                self._start = time if self._start is None else min(self._start, time)
-                if topic not in found:
-                    found[topic] = dict.fromkeys([LOG_TIME, *columns_of(message)])
-                if k >= PEEK:
-                    break
-        if not found:
+        self._topics = self._scanned()
+        if not self._topics:
             raise InputError(f"{path}: the bag holds no message that can be read")
-        self._topics = {topic: tuple(columns) for topic, columns in found.items()}
-        self.names = tuple(f"{topic}.{name}" for topic, columns in found.items() for name in columns)
+        self.names = tuple(f"{topic}.{name}" for topic, columns in self._topics.items() for name in columns)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found out about the file, and left out."""
+        return tuple(self._found)
+
+    def _scanned(self) -> dict[str, tuple[str, ...]]:
+        """Columns by topic, of all publishers: from a topic's first messages, from all that name elements."""
+        found: dict[str, dict[str, None]] = {}
+        seen: dict[str, int] = {}
+        publishers: dict[str, set[tuple[str, ...]]] = {}
+        with self._messages() as messages:
+            for topic, time, decoded in messages:
+                self._start = time if self._start is None else min(self._start, time)
+                seen[topic] = seen.get(topic, 0) + 1
+                if seen[topic] > PEEK and not any(publishers[topic]):
+                    continue
+                message = decoded()
+                known = publishers.setdefault(topic, set())
+                names = tuple(labels(message))
+                if names not in known:
+                    known.add(names)
+                    columns = found.setdefault(topic, dict.fromkeys([LOG_TIME]))
+                    columns |= dict.fromkeys(columns_of(message))
+        self._several = {topic for topic, known in publishers.items() if len(known) > 1}
+        return {topic: tuple(columns) for topic, columns in found.items()}
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block; the first wanted one is the time and sets the rows."""
@@ -55,9 +73,24 @@ class BagReader:
         base = places[0][0]
         others = {topic for topic, _ in places} - {base}
         series = {topic: self._series(topic, places) for topic in sorted(others)}
+        if base in self._several:
+            own = [k for k, (topic, _) in enumerate(places) if topic == base]
+            table = np.zeros((0, len(places)))
+            part = self._present(base, [places[k][1] for k in own])
+            if (~np.isnan(part)).all():
+                chosen = part
+            else:
+                chosen, remark = in_turn(str(self.path), tuple(wanted[k] for k in own), part)
+                self._remark(remark)
+            table = np.zeros((len(chosen), len(places)))
+            table[:, own] = chosen
+            for k in range(0, len(table), rows):
+                yield from self._joined(table[k : k + rows], places, series)
+            return
         waiting: list[list[float]] = []
         with self._messages([base]) as messages:
-            for _, time, message in messages:
+            for _, time, decoded in messages:
+                message = decoded()
                 waiting.append(
                     [self._number(message, time, name) if topic == base else 0.0 for topic, name in places]
                 )
@@ -66,6 +99,27 @@ class BagReader:
                     waiting = []
         if waiting:
             yield from self._joined(np.array(waiting), places, series)
+
+    def _present(self, topic: str, names: Sequence[str]) -> Array:
+        """Columns (N, k) of a topic with several publishers, the time first, in the order of time.
+
+        Messages that have none of the others are passed over; NaN where one has only some.
+        """
+        kept, passed = [], 0
+        with self._messages([topic]) as messages:
+            for _, time, decoded in messages:
+                message = decoded()
+                row = [self._number(message, time, name) for name in names]
+                if len(row) > 1 and np.isnan(row[1:]).all():
+                    passed += 1
+                else:
+                    kept.append(row)
+        if passed:
+            self._remark(
+                f"{topic}: {passed} of {passed + len(kept)} messages have none of the columns: passed over"
+            )
+        table = np.array(kept).reshape(len(kept), len(names))
+        return table[np.argsort(table[:, 0], kind="stable")] if np.isnan(table).any() else table
 
     def _joined(
         self, block: Array, places: Sequence[tuple[str, str]], series: dict[str, tuple[Array, Array]]
@@ -91,16 +145,25 @@ class BagReader:
                 f"use {places[0][0]}.{LOG_TIME} as the time column"
             )
         names = [name for other, name in places if other == topic]
-        with self._messages([topic]) as messages:
-            table = np.array(
-                [
-                    [self._number(message, time, name) for name in (clock, *names)]
-                    for _, time, message in messages
-                ]
-            )
+        if topic in self._several:
+            table = self._present(topic, [clock, *names])
+            table = table[~np.isnan(table).any(axis=1)]
+        else:
+            table = self._all(topic, [clock, *names])
+        if not len(table):
+            raise InputError(f"{self.path}: {topic} has no message with all of {', '.join(names)}")
         if np.any(np.diff(table[:, 0]) <= 0.0):
             raise InputError(f"{self.path}: time runs backwards in {topic}.{clock}")
         return table[:, 0], table[:, 1:]
+
+    def _all(self, topic: str, names: Sequence[str]) -> Array:
+        with self._messages([topic]) as messages:
+            rows = [
+                [self._number(m, time, n) for n in names]
+                for _, time, decoded in messages
+                for m in [decoded()]
+            ]
+        return np.array(rows).reshape(len(rows), len(names))
 
     def _number(self, message: Any, time: int, name: str) -> float:
         if name == LOG_TIME:
@@ -113,9 +176,8 @@ class BagReader:
 
     @contextmanager
     def _messages(self, topics: Sequence[str] | None = None) -> Iterator[Messages]:
-        opened = _json_messages if _is_json(self.path) else _ros_messages
         try:
-            with opened(self.path, topics) as messages:
+            with messages_of(self.path, topics, self._remark) as messages:
                 yield messages
         except InputError:
             raise
@@ -126,39 +188,5 @@ class BagReader:
             reason = " ".join(str(error).split())[:160] or type(error).__name__
             raise InputError(f"{self.path}: cannot be read as a bag: {reason}") from None
 
-
-def _is_json(path: Path) -> bool:
-    """Whether an MCAP file's messages are JSON, which needs no ROS types."""
-    if path.suffix != ".mcap":
-        return False
-    try:
-        from mcap.reader import make_reader  # noqa: PLC0415 - an extra
-
-        with path.open("rb") as stream:
-            summary = make_reader(stream).get_summary()
-    except Exception:
-        return False
-    kinds = {channel.message_encoding for channel in summary.channels.values()} if summary else set()
-    return kinds == {"json"}
-
-
-@contextmanager
-def _json_messages(path: Path, topics: Sequence[str] | None) -> Iterator[Messages]:
-    from mcap.reader import make_reader  # noqa: PLC0415 - an extra
-
-    with path.open("rb") as stream:
-        found = make_reader(stream).iter_messages(topics=topics)
-        yield ((channel.topic, message.log_time, json.loads(message.data)) for _, channel, message in found)
-
-
-@contextmanager
-def _ros_messages(path: Path, topics: Sequence[str] | None) -> Iterator[Messages]:
-    from rosbags.highlevel import AnyReader  # noqa: PLC0415 - an extra
-    from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
-
-    with AnyReader([path], default_typestore=get_typestore(Stores.LATEST)) as bag:
-        chosen = [c for c in bag.connections if topics is None or c.topic in topics]
-        yield (
-            (connection.topic, time, bag.deserialize(raw, connection.msgtype))
-            for connection, time, raw in bag.messages(connections=chosen)
-        )
+    def _remark(self, text: str) -> None:
+        self._found[text] = None

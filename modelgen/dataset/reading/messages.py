@@ -18,7 +18,7 @@ _ELEMENT = re.compile(r"(.*)\[([^\]]*)\]")
 
 def columns_of(message: Any) -> Iterator[str]:
     """Names of a message's numbers, without its topic."""
-    labels = _labels(message)
+    known = labels(message)
     for name, value in _fields(message):
         if _is_time(value) or _number(value) is not None:
             yield name
@@ -26,7 +26,7 @@ def columns_of(message: Any) -> Iterator[str]:
             continue
         elif hasattr(value, "__len__") and not isinstance(value, dict):
             if 0 < len(value) <= MAX_ELEMENTS:
-                named = labels if len(labels) == len(value) else None
+                named = known if len(known) == len(value) else None
                 for k, element in enumerate(value):
                     if _number(element) is not None:
                         yield f"{name}[{named[k] if named else k}]"
@@ -38,15 +38,17 @@ def columns_of(message: Any) -> Iterator[str]:
 
 def number_at(message: Any, column: str) -> float:
     """The number that a column names in a message; NaN where the message does not have it."""
-    value, labels = message, _labels(message)
+    value, known = message, labels(message)
     for step in _steps(column):
         element = _ELEMENT.fullmatch(step)
         value = _get(value, element[1] if element else step)
         if element and value is not None:
-            if element[2].isdecimal():
+            if element[2] in known:
+                k = known.index(element[2])
+            elif element[2].isdecimal() and not any(name.isdecimal() for name in known):
                 k = int(element[2])
             else:
-                k = labels.index(element[2]) if element[2] in labels else len(value)
+                k = len(value)
             value = value[k] if k < len(value) else None
         if value is None:
             return float("nan")
@@ -74,7 +76,8 @@ def _get(message: Any, name: str) -> Any:
     return message.get(name) if isinstance(message, dict) else getattr(message, name, None)
 
 
-def _labels(message: Any) -> Sequence[str]:
+def labels(message: Any) -> Sequence[str]:
+    """The names of a message's elements, none where it does not name them. A name may be made of digits."""
     for name in NAMES:
         value = _get(message, name)
         if isinstance(value, list) and value and all(isinstance(v, str) for v in value):

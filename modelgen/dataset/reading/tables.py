@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from modelgen.dataset.objects import Layout, Reader
+from modelgen.dataset.reading.bag_messages import bag_files
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.csv_table import CsvReader
 from modelgen.dataset.reading.parquet_table import ParquetReader
@@ -26,7 +27,7 @@ def open_table(path: Path, layout: Layout | None = None) -> Reader:
     except (OSError, ValueError) as error:
         raise unreadable(path, error) from None
     if path.is_dir():
-        if not (path / "metadata.yaml").exists():
+        if bag_files(path) == [path] and not (path / "metadata.yaml").exists():
             raise unreadable(path, IsADirectoryError())
         return BagReader(path)
     if suffix in BAGS:
