@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -39,7 +40,7 @@ def messages_of(path: Path, topics: Sequence[str] | None, remark: Remark) -> Ite
     with AnyReader(files, default_typestore=get_typestore(Stores.LATEST)) as bag:
         chosen = [c for c in bag.connections if topics is None or c.topic in topics]
         yield (
-            (c.topic, time, lambda c=c, raw=raw: bag.deserialize(raw, c.msgtype))
+            (c.topic, time, partial(bag.deserialize, raw, c.msgtype))
             for c, time, raw in bag.messages(connections=chosen)
         )
 
@@ -92,7 +93,7 @@ def _mcap_messages(stream: Any, topics: Sequence[str] | None, remark: Remark) ->
                 channel = channels[record.channel_id]
                 decode = decoders.get(record.channel_id)
                 if decode is not None and (topics is None or channel.topic in topics):
-                    yield channel.topic, record.log_time, lambda d=decode, raw=record.data: d(raw)
+                    yield channel.topic, record.log_time, partial(decode, record.data)
     except (GeneratorExit, InputError):
         raise
     except Exception:
