@@ -22,8 +22,12 @@ class Location:
 class InputError(Exception):
     """Bad input: one clear line for the user, exit code 2, no traceback.
 
-    `message` says what was found, what was expected, what is available and the likely fix;
-    `where` is the place in the description when the mistake has one.
+    Parameters
+    ----------
+    message : str
+        What was found, what was expected, what is available and the likely fix.
+    where : Location, optional
+        The place in the description, where the mistake has one.
     """
 
     def __init__(self, message: str, where: Location | None = None) -> None:

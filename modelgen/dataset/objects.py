@@ -13,18 +13,55 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Record:
-    """N samples of an arm with n coordinates, on one uniform time axis.
+    """One log, or a part of one: N samples of an arm with n coordinates, on one uniform time axis.
 
-    name: what the user called it (FILE@t0:t1). t: (N,) [s]. q: (N, n) joint coordinates [rad, m].
-    motor: (N, n) motor coordinates [motor unit], q where a joint has no drive. input: (N, n) in the
-    contract's unit of an input [A for a driven joint, N m or N for an undriven one], None for a free
-    motion; `gain`: (N, n), what the input is multiplied by to give what the log carried (K(q) where
-    it carried tau<n>, 1 where it carried a current); effort_unit: unit of that, by joint. dq, ddq:
-    measured rates where the log has them. temperature: (N, n) [deg C]. motor_side: whether joint n was
-    logged as qm<n>. hold: time by which the input lies after the position's stamp [s]. remarks: for the
-    user. arm: whose coordinates these are. core: in a block of a stream, the samples to keep (begin, end;
-    the others are overlap with its neighbours), None for a whole record; first: number of the block's
-    first sample in the whole. held: whether the input is constant between its samples.
+    Parameters
+    ----------
+    name : str
+        What the user called it (FILE@t0:t1).
+    t : ndarray
+        Times (N,) [s].
+    q : ndarray
+        Joint coordinates (N, n) [rad, m].
+    motor : ndarray
+        Motor coordinates (N, n) [motor unit], q where a joint has no drive.
+    input : ndarray, optional
+        Inputs (N, n) [A for a driven joint, N m or N for an undriven one], None for a free motion.
+    gain : ndarray, optional
+        What the input is multiplied by to give what the log carried, (N, n): K(q) where it carried tau<n>, 1
+        where it carried a current.
+    effort_unit : tuple of str
+        Unit of what the log carried, by joint.
+    dq, ddq : ndarray, optional
+        Measured rates (N, n) [rad/s, m/s; rad/s^2, m/s^2] where the log has them.
+    temperature : ndarray, optional
+        Temperatures (N, n) [deg C].
+    motor_side : tuple of bool
+        Whether joint n was logged as qm<n>.
+    hold : float
+        Time by which the input lies after the position's stamp [s].
+    remarks : tuple of str
+        What the user should know.
+    arm : Arm, optional
+        Whose coordinates these are.
+    core : tuple of int, optional
+        In a block of a stream the samples to keep, (begin, end); the others are overlap with its neighbours.
+        None for a whole record.
+    first : int
+        Number of the block's first sample in the whole.
+    held : bool
+        Whether the input is constant between its samples.
+
+    Attributes
+    ----------
+    n : int
+        Number of coordinates.
+    step : float
+        Sampling period [s].
+    columns : dict of str to ndarray
+        Samples (N,) by the names of a log: t, q<n>, dq<n>, ddq<n>, i<n> or tau<n>, temperature<n>.
+    units : dict of str to str
+        Unit of each of the columns.
     """
 
     name: str
@@ -103,7 +140,20 @@ class Record:
         return f"<table><caption>{escape(repr(self))}</caption>{head}{rows}</table>"
 
     def part(self, begin: int, end: int, name: str = "") -> Record:
-        """Samples begin to end (end excluded) as a record of their own."""
+        """Samples begin to end as a record of their own.
+
+        Parameters
+        ----------
+        begin, end : int
+            Numbers of the first sample and of the one after the last.
+        name : str
+            Its name. Default: that of the whole.
+
+        Returns
+        -------
+        Record
+            The part, with (end - begin) samples.
+        """
 
         def cut(values: Array | None) -> Array | None:
             return None if values is None else values[begin:end]

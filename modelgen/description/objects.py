@@ -117,13 +117,36 @@ class Tool:
 
 @dataclass(frozen=True)
 class Arm:
-    """One arm: joints in YAML order; an antecedent may stand later in the file, without cycles.
+    """One arm, as its description has it.
 
-    `links[i]` belongs to `joints[i]`. `symbols` maps the names of geometry symbols to their values.
-    `effects` are those of the whole arm. `base` is world <- base frame, None where that is the world; gravity
-    is given in the base frame. `tools` are named frames on links.
-    `notes` are remarks for the user that are not errors (a range cut to the stroke, say).
-    `document` is the text of the description that the arm was read from, in YAML.
+    Parameters
+    ----------
+    name : str
+        Its name in the file.
+    joints : tuple of Joint
+        In YAML order; an antecedent may stand later in the file, without cycles.
+    links : tuple of Inertial or None
+        `links[i]` belongs to `joints[i]`: mass [kg], centre of mass [m], inertia [kg m^2].
+    gravity : tuple of float
+        Acceleration (3,) in the base frame [m/s^2].
+    fluid_density : float
+        Of the fluid around the arm [kg/m^3]; above 0 adds the buoyancy parameters.
+    source : str
+        Where the figures come from.
+    symbols : mapping of str to float
+        Values of the geometry's symbols [m, rad] by name.
+    notes : tuple of str
+        Remarks for the user that are not errors (a range cut to the stroke, say).
+    effects : tuple of EffectUse
+        Effects of the whole arm.
+    base : Transform, optional
+        World <- base frame, None where that is the world.
+    tools : tuple of Tool
+        Named frames on links.
+    where : Location, optional
+        Where the arm stands in its file.
+    document : str
+        The text of the description that the arm was read from, in YAML.
     """
 
     name: str
