@@ -101,13 +101,14 @@ def gather(folder: Path) -> None:
                 _copy(picture, folder / "examples" / place.name / picture.name)
     for package in PACKAGES:
         _write(folder / "reference" / f"{package}.md", reference(package))
+    _write(folder / "reference" / "face.md", face())
     _write(folder / "reference" / "command_line.md", command_line())
     trees = {
         **GUIDES,
         "How to": howto,
         "More": others,
         "Examples": examples,
-        "Reference": [f"reference/{name}" for name in ("command_line", *PACKAGES)],
+        "Reference": [f"reference/{name}" for name in ("face", "command_line", *PACKAGES)],
     }
     index = folder / "index.md"
     index.write_text(index.read_text("utf-8") + "".join(_tree(k, v) for k, v in trees.items() if v), "utf-8")
@@ -126,6 +127,17 @@ def reference(package: str) -> str:
         names += modules(package)
     text = "".join(f".. automodule:: {name}\n{options}\n" for name in names)
     return f"# modelgen.{package}\n\n```{{eval-rst}}\n{text}```\n"
+
+
+def face() -> str:
+    """A page of what `import modelgen` gives."""
+    module = importlib.import_module("modelgen")
+    # Classes of packages that have a page of their own are described there.
+    elsewhere = {name: home for name in module.__all__ if (home := _home(module, name)) is not None}
+    listed = "".join(f"- `{name}`: [modelgen.{home}]({home}.md)\n" for name, home in elsewhere.items())
+    text = ".. automodule:: modelgen\n   :members:\n   :imported-members:\n"
+    text += f"   :exclude-members: {', '.join(elsewhere)}\n"
+    return f"# modelgen\n\n```{{eval-rst}}\n{text}```\n\nAlso of the face:\n\n{listed}"
 
 
 def _home(module: ModuleType, name: str) -> str | None:

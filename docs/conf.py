@@ -10,7 +10,12 @@ from latex2mathml.converter import convert
 
 project = "modelgen"
 author = "The modelgen authors"
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+# A class is found in its module, in its package and here.
+suppress_warnings = ["ref.python"]
 html_theme = "furo"
 html_title = "modelgen"
 html_show_copyright = False
@@ -27,7 +32,13 @@ autodoc_type_aliases = {"Array": "Array"}
 
 
 def _plain(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Docstrings are plain text: names in backquotes are code, indented lines are as they stand."""
+    """Docstrings are plain text: names in backquotes are code, indented lines are as they stand.
+
+    In those with sections, which napoleon reads, indented lines belong to the entry above.
+    """
+    if any(re.fullmatch(r"-{5,}", line) for line in lines):
+        lines[:] = [_escaped(line) for line in lines]
+        return
     result: list[str] = []
     block = False
     for line in lines:
@@ -66,4 +77,4 @@ def _block(translator: Any, node: Any) -> None:
 def setup(app: Any) -> None:
     """Called by Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
-    app.connect("autodoc-process-docstring", _plain)
+    app.connect("autodoc-process-docstring", _plain, priority=400)  # before napoleon
