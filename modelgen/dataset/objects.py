@@ -51,6 +51,8 @@ class Record:
         Number of the block's first sample in the whole.
     held : bool
         Whether the input is constant between its samples.
+    repeats : float
+        Rows of the log per new reading.
 
     Attributes
     ----------
@@ -81,6 +83,7 @@ class Record:
     core: tuple[int, int] | None = None
     first: int = 0
     held: bool = False
+    repeats: float = 1.0
 
     @property
     def n(self) -> int:

@@ -39,6 +39,9 @@ class DatasetThresholds(Group):
     slow_sampling_step: float = entry(
         0.5, "s", "A longer step is remarked on: stamps may be in milliseconds.", _GUARD
     )
+    fast_sampling_step: float = entry(
+        1e-5, "s", "A shorter step is remarked on: stamps may be in another unit.", _GUARD
+    )
     max_range_excess: float = entry(
         0.1, "of the range", "Positions that leave a joint's range by more are refused.", _GUARD
     )

@@ -70,11 +70,13 @@ class MappedReader:
             if name not in reader.names:
                 raise foreign.error(f"{self._no_column(name)}", ["names", short])
         self._columns = (*reader.names, *self._aliases)
+        self._rate = foreign.positive(document.rate, ["rate"])
         time = document.time
         factor = foreign.unit(time.unit, units.TIMES, ["time"])
         if time.column in getattr(reader, "instants", ()):
             factor = 1.0  # a date has its own unit
-        self._time = Signal(self._formula(time.column, ["time", "column"]), factor, 0.0)
+        stamped = formula("0", ()) if self._rate else self._formula(time.column, ["time", "column"])
+        self._time = Signal(stamped, factor, 0.0)
         self._signals: dict[str, Signal] = {}
         self._groups: dict[str, list[str]] = {}  # coupled columns by kind, in the order of the joints
         for k, joint in enumerate(document.joints):
@@ -114,20 +116,34 @@ class MappedReader:
         original = tuple(dict.fromkeys(self._aliases.get(name, name) for name in needed))
         start: float | None = None
         last: dict[Signal, float] = {}
+        count = 0
+        if not original:  # the time alone of a log whose samples are counted
+            original = tuple(dict.fromkeys(next(iter(self._signals.values())).formula.names))
         for block in self.reader.blocks(original, rows):
             columns = {name: block[:, i] for i, name in enumerate(original)}
             columns |= {short: columns[name] for short, name in self._aliases.items() if name in columns}
             if start is None:
                 raw = self._time.formula(columns)
-                start = float(raw[0]) if self.foreign.document.time.relative else 0.0
-            yield self._block(wanted, columns, start, last)
+                start = float(raw.flat[0]) if self.foreign.document.time.relative else 0.0
+            made = self._block(wanted, columns, start, last, len(block))
+            if self._rate:
+                made[:, [i for i, name in enumerate(wanted) if name == "t"]] = (
+                    (count + np.arange(len(block))) / self._rate
+                )[:, None]
+            count += len(block)
+            yield made
 
     def _block(
-        self, wanted: tuple[str, ...], columns: dict[str, Array], start: float, last: dict[Signal, float]
+        self,
+        wanted: tuple[str, ...],
+        columns: dict[str, Array],
+        start: float,
+        last: dict[Signal, float],
+        rows: int,
     ) -> Array:
         # The first stamp is taken off before the unit: nanoseconds of an epoch have no digits to spare.
-        t = self._time.factor * (self._time.formula(columns) - start)
-        result = np.empty((len(t), len(wanted)))
+        t = np.broadcast_to(self._time.factor * (self._time.formula(columns) - start), (rows,))
+        result = np.empty((rows, len(wanted)))
         coupled: dict[str, Array] = {}
         for i, name in enumerate(wanted):
             if name == "t":

@@ -87,6 +87,10 @@ class Document(Model):
     schema_version: Literal[1] = Field(alias="schema", description="Version of this format: 1.")
     source: str = Field(default="", description="Where the log comes from; free text.")
     time: TimeModel = Field(default=TimeModel(), description="The time axis.")
+    rate: Number | None = Field(
+        default=None,
+        description="Samples per second where there are no stamps, or useless ones: they are counted.",
+    )
     hold: Number = Field(
         default="following",
         description="following: an effort holds until the next sample; previous: since the one before; "

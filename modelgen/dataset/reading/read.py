@@ -10,10 +10,12 @@ import numpy as np
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
+from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.plausible import check_efforts, check_unsigned
+from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -41,12 +43,45 @@ def read(
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
     checks.check_length(spec, len(table), thresholds.min_samples)
     checks.check_finite(spec, table[:, 0], source.wanted, table)
+    table, found, repeats = _true_instants(source, table)
+    checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
+    if repeats > 1.0 and not source.stated and any(source.signals.effort):
+        # Position and effort that are new together were read together, which no controller's output is.
+        source = replace(source, hold="instant")
+        found.append(
+            "the effort is new where the position is: taken as read at the same instant (hold: instant)"
+        )
     record, logged = record_of(source, arm, table, axis, axis.times())
+    if found:
+        record = replace(record, remarks=(*found, *record.remarks), repeats=repeats)
     checks.check_constant(spec, arm, source.signals.position, logged, "position")
     if record.input is not None:
         checks.check_constant(spec, arm, source.signals.effort, record.input, "effort")
     return record
+
+
+def _true_instants(source: Source, table: Array) -> tuple[Array, list[str], float]:
+    """The rows of new readings, at instants that the positions agree with; remarks; rows per reading."""
+    remarks, repeats = [], 1.0
+    t = table[:, 0]
+    found = refresh_of(table[:, 1:])
+    if found is not None and np.all(np.diff(t) > 0.0):
+        rate = (len(t) - 1) / (t[-1] - t[0])
+        table, repeats = table[found.first].copy(), found.every
+        table[:, 0] = found.instants(t)
+        remarks.append(
+            f"every reading stands there {repeats:.4g} times: the log has {rate:.6g} Hz, its source "
+            f"{rate / repeats:.6g} Hz; new readings alone are used, at their instants"
+        )
+    if source.rate is None and len(table) > 1:
+        names = source.wanted
+        positions = table[:, [names.index(name) for name in source.signals.position]]
+        even, remark = true_stamps(table[:, 0], positions, source.thresholds)
+        if remark is not None:
+            table = np.column_stack([even, table[:, 1:]])
+            remarks.append(remark)
+    return table, remarks, repeats
 
 
 def _of_arm(record: Record, arm: Arm) -> Record:
@@ -99,6 +134,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         remarks.append(
             f"a sample every {axis.step:.6g} s: where t is in milliseconds, a mapping file says so"
         )
+    if axis.step < limits.fast_sampling_step:
+        remarks.append(f"a sample every {axis.step:.6g} s: is the unit of the time right?")
     gain, given, hold = None, None, 0.0
     if any(signals.effort):
         effort, hold = on_axis.efforts(signals.effort)

@@ -33,7 +33,8 @@ class Source:
 
     hold: "following", "previous", "instant", or the delay [s] of the effort's samples. rate: of the uniform
     axis [Hz]; gap: longest time without a sample [s]; None: by default. effort_units: by column, where
-    they are not those of its name. thresholds: by which the log is refused or resampled.
+    they are not those of its name. thresholds: by which the log is refused or resampled. stated: whether
+    the mapping says `hold`.
     """
 
     spec: Spec
@@ -45,6 +46,7 @@ class Source:
     gap: float | None = None
     effort_units: dict[str, str] = field(default_factory=dict)
     thresholds: DatasetThresholds = USUAL
+    stated: bool = False
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -108,6 +110,7 @@ def open_source(
         foreign.positive(time.largest_gap, ["time", "largest_gap"]),
         mapped.effort_units,
         thresholds,
+        "hold" in foreign.document.model_fields_set,
     )
 
 

@@ -135,12 +135,18 @@ def _advice(texts: Sequence[Log]) -> str:
 def last_quarter_out(record: Record) -> str:
     """Options by which a record serves for both."""
     spec, t = parse(record.name), record.t
-    begin, end = (f"{x:g}" if math.isfinite(x) else "" for x in (spec.begin, spec.end))
-    return _parts(spec.path, begin, f"{t[0] + 0.75 * (t[-1] - t[0]):.6g}", end)
+    begin, end = (_instant(x, record.step) if math.isfinite(x) else "" for x in (spec.begin, spec.end))
+    return _parts(spec.path, begin, _instant(t[0] + 0.75 * (t[-1] - t[0]), record.step), end)
 
 
 def _parts(file: Path, begin: str = "", at: str = "", end: str = "") -> str:
     return f"--train {file}@{begin}:{at} --test {file}@{at}:{end}"
+
+
+def _instant(t: float, step: float) -> str:
+    """A time [s] in so many digits that samples a step apart are told apart."""
+    digits = max(6, math.ceil(math.log10(max(abs(t), 1e-300) / step)) + 2)
+    return f"{t:.{min(digits, 17)}g}"
 
 
 def split(record: Record, parts: int = 2) -> list[Record]:
@@ -151,6 +157,7 @@ def split(record: Record, parts: int = 2) -> list[Record]:
     for begin, end in pairwise(edges):
         if end - begin < 2:
             raise InputError(f"{record.name}: {len(record.t)} samples cannot be split into {parts} blocks")
-        name = f"{file}@{record.t[begin]:.6g}:{record.t[end - 1] + record.step:.6g}"
+        first, last = record.t[begin], record.t[end - 1] + record.step
+        name = f"{file}@{_instant(first, record.step)}:{_instant(last, record.step)}"
         blocks.append(record.part(begin, end, name))
     return blocks

@@ -1,0 +1,55 @@
+"""Stamps that say less than the order of the samples: coarse ones, bursts, jitter of the transport."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.dataset.thresholds import DatasetThresholds
+from modelgen.numeric import Array
+
+DOUBLED = 0.05  # share of stamps equal to the one before, from which stamps are coarser than the samples
+SMOOTHER = 0.5  # of the roughness over the stamps, below which samples are taken as evenly spaced
+
+
+def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str | None]:
+    """Stamps (N,) [s], or evenly spaced ones where the positions (N, n) say so; a remark on that.
+
+    Samples taken evenly and stamped late, in bursts or coarsely, make a motion rough that is smooth over
+    evenly spaced instants; stamps that are true make it smoother than those.
+    """
+    steps, count = np.diff(t), len(t)
+    if count < limits.min_samples or not np.isfinite(t).all() or (steps < 0.0).any():
+        return t, None
+    number = np.arange(count, dtype=np.float64)
+    number -= number.mean()
+    period = float(number @ (t - t.mean()) / (number @ number))
+    even = t.mean() + period * number
+    apart = float(np.abs(t - even).max())
+    doubled = float(np.mean(steps == 0.0))
+    if period <= 0.0 or apart > limits.max_gap_periods * period or apart <= limits.max_jitter * period:
+        return t, None
+    if doubled:
+        if doubled < DOUBLED:
+            return t, None
+        said = f"{100 * doubled:.0f} % of the stamps equal the one before"
+    elif roughness(even, positions) < SMOOTHER * roughness(t, positions):
+        said = f"stamps vary by up to {apart / period:.2g} periods and the positions do not follow them"
+    else:
+        return t, None
+    return even, f"{said}: samples are taken as evenly spaced, at {1 / period:.6g} Hz"
+
+
+def roughness(t: Array, positions: Array) -> float:
+    """Power by which positions (N, n) differ from the cubic through their four neighbours, in their own."""
+    around = [t[:-4], t[1:-3], t[3:-1], t[4:]]
+    values = [positions[:-4], positions[1:-3], positions[3:-1], positions[4:]]
+    here = t[2:-2]
+    guess = np.zeros_like(positions[2:-2])
+    for k in range(4):
+        weight = np.ones_like(here)
+        for j in range(4):
+            if j != k:
+                weight *= (here - around[j]) / (around[k] - around[j])
+        guess += weight[:, None] * values[k]
+    error = ((positions[2:-2] - guess) ** 2).mean(axis=0)
+    return float(np.sum(error / np.maximum(positions.var(axis=0), 1e-300)))

@@ -1,0 +1,74 @@
+"""Readings that repeat because the log is written faster than its source refreshes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.numeric import Array
+
+LEAST = 60  # changes of a reading, at least, that a refresh rate is told by
+LEAST_REPEATS = 1.9  # rows per reading
+SINGLE = 0.9  # share of changes that come after one refresh, give or take a row
+QUANTA = 2.5  # of its resolution, that a reading moves by from one to the next in the median
+
+
+@dataclass(frozen=True)
+class Refresh:
+    """every: rows from one new reading to the next. first: rows (M,) at which a new reading stands."""
+
+    every: float
+    first: np.ndarray
+
+    def instants(self, t: Array) -> Array:
+        """Times (M,) [s] of the readings, from the stamps (N,) of the rows.
+
+        A refresh that is no whole number of rows shows first at rows that are a little late, now less, now
+        more; the instants themselves are evenly spaced.
+        """
+        shown = t[self.first]
+        even = np.polyval(np.polyfit(np.arange(len(shown)), shown - shown[0], 1), np.arange(len(shown)))
+        late = shown - shown[0] - even
+        row = float(np.median(np.diff(t)))
+        return np.asarray(shown[0] + even) if 0.05 * row < np.ptp(late) < 1.5 * row else shown
+
+
+def refresh_of(columns: Array) -> Refresh | None:
+    """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
+
+    They do where all columns change together, at instants a refresh apart. A coarse encoder that turns slowly
+    is told from that: it changes by one step of its resolution, and not after equal times.
+    """
+    changed = np.any(np.diff(columns, axis=0) != 0.0, axis=1)
+    rows = np.flatnonzero(changed) + 1
+    if len(rows) < LEAST or len(rows) * LEAST_REPEATS > len(columns):
+        return None
+    waits = np.diff(rows)
+    every = float(np.median(waits))
+    if every < LEAST_REPEATS:
+        return None
+    near = np.abs(waits - every) <= max(1.01, 0.1 * every)
+    # A refresh may bring the same reading again: its change then comes after several.
+    several = np.abs(waits / every - np.rint(waits / every)) * every <= max(1.01, 0.1 * every)
+    if near.mean() < SINGLE or not several.mean() > 0.98 or (waits < 0.5 * every).any():
+        return None
+    if not any(_moves(column[rows]) for column in columns.T):
+        return None
+    every = float(np.mean(waits[near]))
+    counts = np.maximum(np.rint(waits / every), 1).astype(int)
+    inner = [rows[:1]]
+    for begin, wait, count in zip(rows[:-1], waits, counts, strict=True):
+        inner.append(begin + np.rint(wait * np.arange(1, count + 1) / count).astype(int))
+    first = np.concatenate(inner)
+    # What stood in the log's first rows began before it: when, nobody knows, but for a whole refresh.
+    if abs(first[0] - every) <= max(1.01, 0.1 * every):
+        first = np.concatenate([[0], first])
+    return Refresh(every, first)
+
+
+def _moves(readings: Array) -> bool:
+    """Whether readings (M,) move by more than steps of their own resolution."""
+    steps = np.abs(np.diff(readings))
+    steps = steps[steps > 0.0]
+    return len(steps) >= LEAST // 2 and float(np.median(steps)) > QUANTA * float(steps.min())
