@@ -10,7 +10,7 @@ from typing import Any
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Shown, Table
 from modelgen.dataset import Record, read
-from modelgen.dataset.inspection import Channel, Inspected, inspect
+from modelgen.dataset.inspection import Channel, Inspected, inspect, skeleton
 from modelgen.description import Arm
 
 
@@ -177,6 +177,30 @@ def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None 
     """
     (one,) = listed(log, "log")
     return Inspection(inspect(one, arm, mapping))
+
+
+def mapping_skeleton(log: Log, arm: Arm | None = None) -> str:
+    """Guess a mapping file from the names and numbers of a log's columns; every guess is marked as one.
+
+    Parameters
+    ----------
+    log : log
+        A path, "FILE@t0:t1" [s], or a table of columns.
+    arm : Arm, optional
+        Whose joints the mapping is for. Default: as many joints as columns look like positions.
+
+    Returns
+    -------
+    str
+        YAML text of a mapping file that the log can be read by.
+
+    Raises
+    ------
+    InputError
+        For a log that cannot be opened, and where too few columns look like positions.
+    """
+    (one,) = listed(log, "log")
+    return skeleton(one, arm)
 
 
 def _number(x: float) -> float | None:

@@ -16,6 +16,7 @@ from modelgen.cli.commands import (
     generate,
     identify,
     init,
+    inspect,
     refine,
     schema,
     show,
@@ -48,6 +49,7 @@ def _common(context: typer.Context, version: Version = False) -> None:
 for _command in (
     generate,
     show,
+    inspect,
     identify,
     diagnose,
     simulate,

@@ -9,6 +9,7 @@ from modelgen.cli.commands.fleet import fleet
 from modelgen.cli.commands.generate import generate
 from modelgen.cli.commands.identify import identify
 from modelgen.cli.commands.init import init
+from modelgen.cli.commands.inspect import inspect
 from modelgen.cli.commands.refine import refine
 from modelgen.cli.commands.schema import schema
 from modelgen.cli.commands.show import show
@@ -24,6 +25,7 @@ __all__ = [
     "generate",
     "identify",
     "init",
+    "inspect",
     "refine",
     "schema",
     "show",

@@ -1,5 +1,6 @@
 """What a log says about itself, before it is used for anything."""
 
 from modelgen.dataset.inspection.channels import Channel, Inspected, inspect
+from modelgen.dataset.inspection.skeleton import skeleton
 
-__all__ = ["Channel", "Inspected", "inspect"]
+__all__ = ["Channel", "Inspected", "inspect", "skeleton"]

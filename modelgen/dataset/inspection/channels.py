@@ -14,6 +14,8 @@ from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.read import read
+from modelgen.dataset.reading.renamed import in_small_letters
+from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.sources import BLOCK, open_source, opened
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.description import Arm
@@ -75,11 +77,25 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     if mapping is not None:
         raise InputError(f"{parse(log).text}: a mapping file makes columns of an arm, expected an arm too")
     spec = parse(log)
-    columns, rest = _columns(spec, opened(spec))
+    reader = in_small_letters(opened(spec))
+    columns, rest = _columns(spec, reader)
+    remarks = list(reader.remarks)
     t = columns.pop("t", None)
+    measured = [x for x in columns.values() if np.isfinite(x).all()]
+    refresh = refresh_of(np.stack(measured, axis=1)) if measured else None
+    if refresh is not None:
+        remarks.append(
+            f"every reading stands there {refresh.every:.4g} times: the source is slower than the log"
+        )
     positions = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
     found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
-    return Inspected(**{**vars(found), "without_numbers": rest})
+    return Inspected(**{**vars(found), "without_numbers": rest, "remarks": tuple(remarks)})
+
+
+def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Columns of numbers (N,) of a log by name, and the names of the others. Raises InputError."""
+    spec = parse(log)
+    return _columns(spec, in_small_letters(opened(spec)))
 
 
 def _of_record(record: Record, t: Array | None = None) -> Inspected:

@@ -1,0 +1,54 @@
+"""modelgen inspect: what a log says about itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from modelgen.cli.guard import guarded
+from modelgen.cli.options import Json, OneArm
+
+# ruff: noqa: PLC0415 - the help is quick
+
+LogFile = Annotated[str, typer.Argument(metavar="LOG", help="FILE or FILE@t0:t1 [s].")]
+Described = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="ARMS", help="Description in YAML, for the columns of an arm.", show_default=False
+    ),
+]
+Mapping = Annotated[
+    Path | None,
+    typer.Option("--mapping", metavar="FILE", help="Mapping file of a foreign log.", show_default=False),
+]
+Skeleton = Annotated[
+    Path | None,
+    typer.Option(
+        "--skeleton", metavar="FILE", help="Write a mapping file to start from.", show_default=False
+    ),
+]
+
+
+@guarded
+def inspect(
+    log: LogFile,
+    arms: Described = None,
+    *,
+    arm: OneArm = "",
+    mapping: Mapping = None,
+    skeleton: Skeleton = None,
+    as_json: Json = False,
+) -> None:
+    """Say what is in a log: columns, rate, jitter, resolution, repeated readings, period."""
+    from modelgen.api.inspect import inspect_log, mapping_skeleton
+    from modelgen.cli.arms import one
+    from modelgen.cli.output import print_result
+    from modelgen.files import check_writable, write_new
+
+    found = one(arms, arm) if arms is not None or arm or mapping is not None else None
+    if skeleton is not None:
+        check_writable("--skeleton", skeleton)
+        write_new(skeleton, mapping_skeleton(log, found))
+    print_result(inspect_log(log, found, mapping=mapping), as_json=as_json)
