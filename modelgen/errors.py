@@ -31,9 +31,10 @@ class InputError(Exception):
     """
 
     def __init__(self, message: str, where: Location | None = None) -> None:
-        self.message = message
+        # Names of columns and words of libraries may hold ends of lines.
+        self.message = " ".join(message.splitlines())
         self.where = where
-        super().__init__(f"{where}: {message}" if where else message)
+        super().__init__(f"{where}: {self.message}" if where else self.message)
 
 
 def suggest(name: str, options: Iterable[str]) -> str:

@@ -14,6 +14,8 @@ from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+HEAD = 4096  # rows that blank columns are told by
+
 
 class ParquetReader:
     """A Parquet file of numbers, dates and times.
@@ -31,7 +33,7 @@ class ParquetReader:
         try:
             with path.open("rb"):
                 pass
-            self._file = pyarrow.parquet.ParquetFile(path, pre_buffer=False)
+            self._file = pyarrow.parquet.ParquetFile(path, pre_buffer=False, page_checksum_verification=True)
         except OSError as error:
             raise unreadable(path, error) from None
         except pyarrow.ArrowException as error:
@@ -98,19 +100,19 @@ class ParquetReader:
             raise InputError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
 
     def _sparse(self) -> frozenset[str]:
-        """Columns that are blank in many rows but not in all, by the file's own counts."""
-        data = self._file.metadata
-        blank: dict[str, int] = {}
+        """Columns that are blank in many of the first rows but not in all."""
+        import pyarrow  # noqa: PLC0415 - an extra
+
+        types = pyarrow.types
+        schema = self._file.schema_arrow
+        names = [f.name for f in schema if types.is_integer(f.type) or types.is_floating(f.type)]
         try:
-            for group in range(data.num_row_groups):
-                for k in range(data.num_columns):
-                    column = data.row_group(group).column(k)
-                    counts = column.statistics
-                    name = column.path_in_schema
-                    blank[name] = blank.get(name, 0) + (counts.null_count or 0 if counts is not None else 0)
-        except Exception:
-            return frozenset()  # statistics are for guidance alone: a damaged one is found when read
-        rows = data.num_rows
+            # Counts in the file's metadata would do, but a damaged one ends the process.
+            batch = next(self._file.iter_batches(batch_size=HEAD, columns=names, use_threads=False))
+            blank = {name: batch.column(name).null_count for name in names}
+        except (OSError, KeyError, ValueError, StopIteration, pyarrow.ArrowException):
+            return frozenset()  # what is damaged is found when it is read
+        rows = batch.num_rows
         return frozenset(n for n, count in blank.items() if count >= 10 and 0.2 * rows < count < rows)
 
 

@@ -92,7 +92,8 @@ def unreadable(path: Path, error: OSError | ValueError) -> InputError:
         return InputError(f"{path}: there is no such log" + (f"; near: {', '.join(near)}" if near else ""))
     if isinstance(error, IsADirectoryError):
         return InputError(f"{path}: found a folder, expected a log")
-    return InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}")
+    reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:160]
+    return InputError(f"{path}: cannot be read: {reason}")
 
 
 def check_separate(train: Sequence[Log], test: Sequence[Log]) -> None:
