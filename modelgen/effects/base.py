@@ -157,6 +157,11 @@ class Swing:
 class BodyEffect(Definition):
     """A body that the link before the joint carries, and that the joint turns against it."""
 
+    @classmethod
+    def vanishes(cls, estimated: Numbers) -> bool:
+        """It shows by its weight alone where links and drive absorb its inertia, or noise hides it."""
+        return False
+
     @abstractmethod
     def swing(self, x: BodyVariables, p: Values) -> Swing:
         """How it turns, over `x.q`. Raises ValueError where the joint's drive moves no such body."""

@@ -10,7 +10,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, Swing, Values, at
-from modelgen.effects.traits import Family, Numbers, Shows, joint_of
+from modelgen.effects.traits import Family, Shows, joint_of
 from modelgen.effects.variables import BodyVariables, Variables
 from modelgen.symbolic import number as figure
 from modelgen.transmission import of_joint
@@ -213,11 +213,6 @@ class ActuatorMass(BodyEffect):
     def subsets(cls, arm: Arm, number: int | None) -> tuple[tuple[str, ...], ...]:
         """Where its base is says also where its weight points."""
         return cls.parts if _carried(arm, number) else super().subsets(arm, number)
-
-    @classmethod
-    def vanishes(cls, estimated: Numbers) -> bool:
-        """It shows by its weight alone where its inertia is lost in noise."""
-        return False
 
     @classmethod
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
