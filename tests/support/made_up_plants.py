@@ -108,13 +108,20 @@ PLANTS: Mapping[str, Plant] = {
 }
 
 
-def description(n: int, effects: str = "") -> str:
-    """arms.yaml of the pendulum or the planar arm. effects: of the last joint in YAML, for the usual ones."""
-    more = f", effects: {effects}" if effects else ""
+def description(n: int, effects: str | None = None) -> str:
+    """arms.yaml of the pendulum or the planar arm, with the usual effects.
+
+    effects: of the last joint in YAML, after the plant's own friction and inertia at every joint; None for
+    the usual ones.
+    """
     joints, links = [], []
     for k in range(n):
         drive = f"{{type: direct, ratio: {RATIO[k]}, torque_constant: {CONSTANT[k]}}}"
-        own = more if k == n - 1 else ""
+        own = (
+            f"{{viscous_friction: {{coefficient: {VISCOUS[k]}}}}}, {{drive_inertia: {{inertia: {ROTOR[k]}}}}}"
+        )
+        own += f", {effects}" if effects and k == n - 1 else ""
+        own = "" if effects is None else f", effects: [{own}]"
         inertia = f"[0.01, 0, 0, {INERTIA[k]}, 0, {INERTIA[k]}]"
         joints.append(f"{{name: j{k + 1}, d: {LENGTH if k else 0}, drive: {drive}{own}}}")
         links.append(f"j{k + 1}: {{mass: {MASS[k]}, com: [{COM[k]}, 0, 0], inertia: {inertia}}}")
