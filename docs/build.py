@@ -57,7 +57,7 @@ GUIDES = {
         "diagnosis_method",
         "thresholds",
     ],
-    "Working on modelgen": ["architecture", "glossary", "thresholds"],
+    "Working on modelgen": ["architecture", "glossary"],
 }
 
 

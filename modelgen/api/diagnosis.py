@@ -22,7 +22,7 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis import assumptions, harms, sketches, unnamed
+from modelgen.report.diagnosis import assumptions, harms, sketches, suspicions, unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.figures import Pen
 from modelgen.report.writing import write
@@ -43,13 +43,13 @@ class Diagnosis(Shown):
     arm : Arm
         The arm as described.
     verdict : str
-        "named", "nothing_missing", "outside_catalogue" or "cannot_tell".
+        "named", "suspected", "nothing_missing", "outside_catalogue" or "cannot_tell".
     reason : str
         Why, in words.
     causes : tuple of NamedCause
         What is named: effect, joint (from 1; None for the whole arm), parameters, evidence.
     suspects : tuple
-        What has evidence and failed a check that decides. There are none yet: it is empty.
+        What has evidence and failed a check that decides, in the same form.
     parameters : Named of Estimate
         Base parameters (p,) of the extended arm by name: value, std, unit.
     """
@@ -59,7 +59,7 @@ class Diagnosis(Shown):
         self.arm: Arm = found.arm
         self.verdict, self.reason = found.verdict, found.reason
         self.causes: tuple[NamedCause, ...] = found.causes
-        self.suspects: tuple[NamedCause, ...] = ()
+        self.suspects: tuple[NamedCause, ...] = found.suspects
         self.parameters: Named[Estimate] = Named(found.parameters)
 
     @property
@@ -133,7 +133,7 @@ class Diagnosis(Shown):
         ]
         columns = dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right")
         parts.append(Table(f"error on the test record [{e.unit}]", columns, errors))
-        parts += [*harms(d), *assumptions(d)]
+        parts += [*suspicions(d), *harms(d), *assumptions(d)]
         if d.next_experiment is not None:
             parts.append(f"next: {followed(d.next_experiment)}")
         return parts

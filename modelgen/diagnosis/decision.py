@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.diagnosis.adequacy import (
+    Examined,
     Remains,
     aliases,
+    examined,
     lack_of_fit,
     smooth_functions,
     verdict_of,
@@ -20,7 +22,7 @@ from modelgen.diagnosis.candidates import Candidate, asked, at_motor, candidates
 from modelgen.diagnosis.equations import Band, Equations, feigned, harmless
 from modelgen.diagnosis.evidence import Endogeneity, endogeneity, mean_squares
 from modelgen.diagnosis.options import Options
-from modelgen.diagnosis.selection import Selection, forward_selection
+from modelgen.diagnosis.selection import SUSPECT, Selection, forward_selection
 from modelgen.numeric import Array
 
 Progress = Callable[[str, int, int], None]
@@ -28,12 +30,19 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Decision:
-    """What one band says. equal: aliases of every cause; remains: what the causes leave; correlated: what the
-    test of Durbin, Wu and Hausman says, whether it has a say or not.
+    """What one band says.
+
+    causes: those of the selection with their checks; suspects: what failed one of them, in the order in which
+    it was taken; before: the selection with the suspects; equal: aliases of every cause; remains: what the
+    causes leave; correlated: what the test of Durbin, Wu and Hausman says,
+    whether it has a say or not.
     """
 
     band: Band
     selection: Selection
+    causes: Sequence[Examined]
+    suspects: Sequence[Examined]
+    before: Selection
     equal: Sequence[Sequence[Candidate]]
     remains: Remains
     correlated: Endogeneity | None
@@ -48,6 +57,9 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     selection = forward_selection(equations, pool, progress, options.where)
     functions = [] if equations.free else list(smooth_functions(selection.system))
     selection, stand_ins, likeness = without_stand_ins(selection, equations, functions)
+    before, every = selection, examined(selection, equations)
+    suspects = [e for e in every if e.failed]
+    selection = selection.without([e.cause for e in suspects], SUSPECT) if suspects else selection
     named = [c.trial.candidate for c in selection.causes]
     equal = aliases(named, pool, equations, selection.system.base) if named else []
     selection, unclear = without_indistinguishable(selection, equal)
@@ -57,6 +69,7 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     fit, correlated, left = lack_of_fit(system), endogeneity(system), mean_squares(system)
     remains = Remains(
         stand_ins=stand_ins,
+        suspects=suspects,
         unclear=unclear,
         fit=fit,
         feigned=feigned(equations.blur, left),
@@ -66,7 +79,8 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
         asked=bool(options.effects),
     )
     verdict, reason = verdict_of(selection, remains)
-    return Decision(band, selection, equal, remains, correlated, verdict, reason)
+    causes = [e for e in every if any(e.cause.trial.candidate == c.trial.candidate for c in selection.causes)]
+    return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
 
 
 def _pool(band: Band, options: Options) -> list[Candidate]:

@@ -94,6 +94,7 @@ class Traits(ABC):
     exact: what it does follows from the arm's own equations or is a constant; its form leaves others nothing.
     needs_effort: it is about what the drives are given, or what working does to them; of no meaning in a free
         motion.
+    needs_drive: it is made by a drive; a joint without one has it only where efforts tell of an actuator.
     periodic: it repeats with its coordinate, `harmonic` times in a `revolution`, two of its parameters; the
         waves are read off a periodogram.
     rereads: with it the joint is elsewhere at the same reading of its motor.
@@ -101,6 +102,7 @@ class Traits(ABC):
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
     simpler: the law of the catalogue that this one comes to at a limit of its values.
+    claims: names of parameters without which it would not be there; their values are above zero.
     """
 
     name: ClassVar[str]
@@ -113,12 +115,14 @@ class Traits(ABC):
     presence: ClassVar[Presence] = Presence.ALWAYS
     shows: ClassVar[frozenset[Shows]] = frozenset()
     needs_effort: ClassVar[bool] = False
+    needs_drive: ClassVar[bool] = False
     periodic: ClassVar[bool] = False
     rereads: ClassVar[bool] = False
     of_rotor: ClassVar[bool] = False
     overlooked: ClassVar[tuple[float, float]] = (math.inf, 0.0)
     reading: ClassVar[Reading | None] = None
     simpler: ClassVar[type[Traits] | None] = None
+    claims: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def accepted(cls) -> tuple[Parameter, ...]:
@@ -249,6 +253,11 @@ class Traits(ABC):
         return []
 
     # -- which values are plausible ---------------------------------------------------------
+
+    @classmethod
+    def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
+        """Why no arm has it with these values, a clause; empty where nothing speaks against them."""
+        return ""
 
     @classmethod
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:

@@ -17,6 +17,7 @@ from modelgen.resources import templates_folder
 FAILED = "failed"
 WORDS = {
     "named": "cause named",
+    "suspected": "cause suspected",
     "nothing_missing": "nothing missing",
     "outside_catalogue": "outside the catalogue",
     "cannot_tell": "cannot tell",
@@ -24,6 +25,7 @@ WORDS = {
 }
 COLOURS = {
     "named": "#1f5fa8",
+    "suspected": "#7fa8d1",
     "nothing_missing": "#3a8f4d",
     "outside_catalogue": "#d1661a",
     "cannot_tell": "#999999",

@@ -11,7 +11,8 @@ from markupsafe import Markup
 
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, Ranked
+from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, SUSPECT, Ranked
+from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
 from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
 from modelgen.report.experiment import described, picture
@@ -59,6 +60,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         reason=d.reason,
         causes=[_cause(d, k) for k in range(len(d.causes))],
         harms=harms(d),
+        suspicions=suspicions(d),
         assumptions=assumptions(d),
         fit=_fit(d),
         errors=_errors(d),
@@ -86,6 +88,7 @@ _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
     "outside_catalogue": "Something is missing that is not in the catalogue.",
     "cannot_tell": "These records cannot tell.",
+    "suspected": "Nothing can be named, and something is suspected.",
 }
 
 
@@ -126,6 +129,7 @@ _REFUSED = {
     EXCHANGED: "taken, then exchanged: another one explains more with all values found anew",
     SUPERFLUOUS: "taken, then superfluous beside the others",
     STANDS_IN: "taken, then taken back: it stands in for something that the catalogue lacks",
+    SUSPECT: "taken, then taken back: it failed a check, see the suspects",
     COARSE: "taken, then taken back: the positions are too coarse to tell it from others",
 }
 _SHOWN = 12  # candidates of a turn
@@ -205,9 +209,31 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
         "share": _share(c),
         "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
         "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
+        "checks": [_checked(check) for check in c.checks],
         "experiment": CATALOGUE[c.effect].experiment,
         "reference": CATALOGUE[c.effect].reference,
     }
+
+
+def suspicions(d: Diagnosis) -> list[str]:
+    """What has evidence and is not named, each with the check that it failed."""
+    return [
+        f"Suspected: {c.effect} at {_place(c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
+        + "; ".join(f"{name}, {text}" for name, mark, text in map(_checked, c.checks) if mark == "no")
+        + "."
+        for c in d.suspects
+    ]
+
+
+def _checked(c: Check) -> tuple[str, str, str]:
+    """Name, answer and figures of a check."""
+    mark = "not asked" if c.passed is None else "yes" if c.passed else "no"
+    if not c.decides and c.passed is False:
+        mark = "no, which does not decide"
+    figures = (
+        f" ({c.value:.3g}, threshold {c.threshold:.3g})" if np.isfinite([c.value, c.threshold]).all() else ""
+    )
+    return c.name, mark, c.text + figures
 
 
 def _share(c: NamedCause) -> str:

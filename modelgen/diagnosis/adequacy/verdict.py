@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.diagnosis.adequacy.checks import Examined
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.adequacy.stand_ins import Likeness
 from modelgen.diagnosis.candidates import Candidate
@@ -19,14 +20,15 @@ from modelgen.numeric import Array
 class Remains:
     """What speaks for a verdict besides the causes.
 
-    stand_ins: what gained something and left most of what repeats, or explained less than a function of no
-    law; unclear: what coarse positions do not tell from its rivals; fit: lack of fit, None where nothing
-    repeats; feigned: percent of the RMSE by joint that errors of the positions could feign; correlated: what
-    the test of Durbin, Wu and Hausman says, None where it has no say; likeness: what is left is most like;
-    counted: whether the encoders' counts are all the noise there is, and what remains is no more than that;
-    asked: whether some effects alone were asked for.
+    suspects: what has evidence and failed a check; stand_ins: what gained something and left most of what
+    repeats, or explained less than a function of no law; unclear: what coarse positions do not tell from its
+    rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
+    the positions could feign; correlated: what the test of Durbin, Wu and Hausman says, None where it has no
+    say; likeness: what is left is most like; counted: whether the encoders' counts are all the noise there
+    is, and what remains is no more than that; asked: whether some effects alone were asked for.
     """
 
+    suspects: Sequence[Examined]
     stand_ins: Sequence[Cause]
     unclear: Sequence[Cause]
     fit: LackOfFit | None
@@ -38,7 +40,7 @@ class Remains:
 
 
 def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
-    """Which of the four, and why."""
+    """Which of the five, and why."""
     fit, likeness, correlated = remains.fit, remains.likeness, remains.correlated
     least = selection.system.equations.thresholds.validation.min_gain_percent
     like = "" if likeness is None else f", most like {likeness.shape.text}"
@@ -47,6 +49,8 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
         return "named", "a cause passed every gate" + (
             f"; something deterministic remains beside it{like}" if left else ""
         )
+    if remains.suspects:
+        return "suspected", "; ".join(map(_suspected, remains.suspects))
     if remains.unclear:
         return "cannot_tell", (
             f"the positions are too coarse to tell {' and '.join(map(_rivals, remains.unclear))}: each "
@@ -85,6 +89,11 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}{more}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _suspected(e: Examined) -> str:
+    why = " and ".join(f"{c.name} ({c.text})" for c in e.failed)
+    return f"{_title(e.cause.trial.candidate)} has evidence and fails a check: {why}"
 
 
 def _where(fit: LackOfFit, selection: Selection) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from modelgen.dataset import drives_of, parse
 from modelgen.diagnosis.equations import Equations, Rows, turning
 from modelgen.effects import CATALOGUE, Definition, Family, Parameter, Presence
+from modelgen.effects.traits import joint_of
 from modelgen.evaluation import places
 
 Values = Mapping[str, float]
@@ -92,6 +93,8 @@ def candidates(equations: Equations) -> list[Candidate]:
         if effect.presence is Presence.FADING and not cold(equations):
             continue
         there = [joint for joint in places(arm, name) if _seen(effect, joint, rows)]
+        if free and effect.needs_drive:
+            there = [joint for joint in there if joint is None or joint_of(arm, joint).drive.driven]
         for joint in there:
             forms = [
                 (fixed, part)

@@ -3,7 +3,7 @@
 from modelgen.diagnosis.evidence.instruments import Endogeneity, Pairs, endogeneity
 from modelgen.diagnosis.evidence.likelihood import NEGLIGIBLE, Evidence, StackedEquations, joints_of, weighted
 from modelgen.diagnosis.evidence.noise import Autocorrelation, whitened
-from modelgen.diagnosis.evidence.system import System, independent, mean_squares, whitened_fit
+from modelgen.diagnosis.evidence.system import System, covariance, independent, mean_squares, whitened_fit
 
 __all__ = [
     "NEGLIGIBLE",
@@ -13,6 +13,7 @@ __all__ = [
     "Pairs",
     "StackedEquations",
     "System",
+    "covariance",
     "endogeneity",
     "independent",
     "joints_of",

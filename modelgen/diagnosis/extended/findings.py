@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from modelgen.diagnosis.evidence import Endogeneity
+from modelgen.diagnosis.validation import Check
 from modelgen.numeric import Array
 
 
@@ -34,7 +35,8 @@ class NamedCause:
     """A cause. joint: number of the coordinate from 1, None for the whole arm. ambiguous_with: rivals with
     how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
     expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.
-    share: of the gain on the test record.
+    share: of the gain on the test record. joint_name: of the description, None for the whole arm. checks: the
+    same for every cause.
     """
 
     effect: str
@@ -46,6 +48,8 @@ class NamedCause:
     aliases: tuple[tuple[str, int | None], ...] = ()
     ambiguous_with: tuple[tuple[str, int | None, float], ...] = ()
     share: Share = Share()
+    joint_name: str | None = None
+    checks: tuple[Check, ...] = ()
 
 
 @dataclass(frozen=True)

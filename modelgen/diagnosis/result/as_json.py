@@ -10,6 +10,7 @@ from modelgen.diagnosis.experiment import experiment_json
 from modelgen.diagnosis.extended import NamedCause, Positions
 from modelgen.diagnosis.result.diagnosis import Diagnosis
 from modelgen.diagnosis.selection import Ranked
+from modelgen.diagnosis.validation import Check
 from modelgen.numeric import Array
 
 
@@ -23,6 +24,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         "verdict": d.verdict,
         "reason": d.reason,
         "causes": [_cause(c) for c in d.causes],
+        "suspects": [_cause(c) for c in d.suspects],
         "not_identifiable": [{"effect": name, "reason": reason} for name, reason in d.not_identifiable],
         "lack_of_fit": None
         if fit is None
@@ -106,6 +108,7 @@ def _cause(c: NamedCause) -> dict[str, Any]:
     return {
         "effect": c.effect,
         "joint": c.joint,
+        "joint_name": c.joint_name,
         "parameters": {
             name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in c.parameters.items()
@@ -120,6 +123,18 @@ def _cause(c: NamedCause) -> dict[str, Any]:
             {"effect": effect, "joint": joint, "delta_bic": rounded(behind)}
             for effect, joint, behind in c.ambiguous_with
         ],
+        "checks": [_check(check) for check in c.checks],
+    }
+
+
+def _check(c: Check) -> dict[str, Any]:
+    return {
+        "name": c.name,
+        "passed": c.passed,
+        "decides": c.decides,
+        "value": rounded(c.value),
+        "threshold": rounded(c.threshold),
+        "text": c.text,
     }
 
 

@@ -15,7 +15,7 @@ from modelgen.diagnosis.selection import History
 from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows
 
-VERDICTS = ("named", "nothing_missing", "outside_catalogue", "cannot_tell")
+VERDICTS = ("named", "suspected", "nothing_missing", "outside_catalogue", "cannot_tell")
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Diagnosis:
     the arm with the causes, fitted to the training records; simulation: of the test record with either; test:
     rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
     description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
-    has its efforts; inertias: of drives before elastic joints and play by coordinate (from 1), as
-    `drives.inertias` has them.
+    has its efforts; suspects: what has evidence and failed a check that decides; inertias: of drives before
+    elastic joints and play by coordinate (from 1).
     """
 
     arm: Arm
@@ -50,5 +50,6 @@ class Diagnosis:
     ranking: History
     added: Sequence[tuple[str, int | None, Mapping[str, float]]]
     settings: Mapping[str, Any] = field(default_factory=dict)
+    suspects: tuple[NamedCause, ...] = ()
     positions: Positions | None = None
     inertias: Mapping[int, Estimate] = field(default_factory=dict)

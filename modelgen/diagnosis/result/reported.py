@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from modelgen.diagnosis.adequacy import place
+from modelgen.description import Arm
+from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
 from modelgen.diagnosis.equations import Study
 from modelgen.diagnosis.extended import (
@@ -36,9 +37,9 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     pair = residuals(test, extension)
     causes = _named(decision, extension)
     if causes and not equations.free:
-        causes = tuple(
-            replace(cause, share=share) for cause, share in zip(causes, shares(extension, test), strict=True)
-        )
+        worth = shares(extension, test)
+        causes = tuple(replace(cause, share=share) for cause, share in zip(causes, worth, strict=True))
+    causes = tuple(replace(c, checks=(*c.checks, confirmed(c.share.gain, c.share.low))) for c in causes)
     described = replay(extension.before, test, limits)
     played = described, replay(extension.after, test, limits) if causes else described
     after, fit = extension.after, decision.remains.fit
@@ -49,6 +50,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         verdict=decision.verdict,
         reason=decision.reason,
         causes=causes,
+        suspects=_suspects(decision, arm),
         not_identifiable=not_identifiable(arm, equations, selection),
         lack_of_fit=fit,
         lack_of_fit_part=None if fit is None else place(fit, equations.rows),
@@ -102,7 +104,7 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
         return ()
     estimates = cause_estimates(extension.selection, extension.equations)
     result = []
-    for cause, same, values in zip(causes, decision.equal, estimates, strict=True):
+    for cause, same, values, asked in zip(causes, decision.equal, estimates, decision.causes, strict=True):
         c = cause.trial.candidate
         alias = tuple(other.place for other in same)
         rivals = tuple(
@@ -118,6 +120,37 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
                 expected_gain=cause.expected_gain,
                 aliases=alias,
                 ambiguous_with=rivals,
+                joint_name=_joint_name(extension.before.arm, c.joint),
+                checks=asked.checks,
             )
         )
     return tuple(result)
+
+
+def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
+    """What has evidence and failed a check, with its values as they were found beside the causes."""
+    if not decision.suspects:
+        return ()
+    before = decision.before
+    estimates = cause_estimates(before, before.system.equations)
+    result = []
+    for e in decision.suspects:
+        k = next(k for k, c in enumerate(before.causes) if c is e.cause)
+        c = e.cause.trial.candidate
+        result.append(
+            NamedCause(
+                effect=c.effect,
+                joint=c.joint,
+                parameters=estimates[k],
+                delta_bic=e.cause.delta_bic,
+                cross_gain=e.cause.cross_gain,
+                expected_gain=e.cause.expected_gain,
+                joint_name=_joint_name(arm, c.joint),
+                checks=(*e.checks, confirmed(float("nan"), float("nan"))),
+            )
+        )
+    return tuple(result)
+
+
+def _joint_name(arm: Arm, number: int | None) -> str | None:
+    return None if number is None else arm.joints[arm.coordinates[number - 1]].name

@@ -2,15 +2,24 @@
 
 from modelgen.diagnosis.selection.cause import Cause, Selection, together
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
-from modelgen.diagnosis.selection.history import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, History, Ranked
+from modelgen.diagnosis.selection.history import (
+    COARSE,
+    EXCHANGED,
+    STANDS_IN,
+    SUPERFLUOUS,
+    SUSPECT,
+    History,
+    Ranked,
+)
 from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness, with_trials
-from modelgen.diagnosis.selection.stepwise import Report, forward_selection, threshold
+from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
 __all__ = [
     "COARSE",
     "EXCHANGED",
     "STANDS_IN",
     "SUPERFLUOUS",
+    "SUSPECT",
     "Cause",
     "History",
     "Ranked",
@@ -19,6 +28,7 @@ __all__ = [
     "alternatives",
     "best_beside",
     "forward_selection",
+    "needed_evidence",
     "refit_stiffness",
     "threshold",
     "together",

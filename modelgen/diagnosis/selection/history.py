@@ -10,6 +10,7 @@ from modelgen.diagnosis.validation import Judgement
 
 # Why what was taken is no cause in the end.
 EXCHANGED, SUPERFLUOUS, STANDS_IN, COARSE = "exchanged", "superfluous", "stands in", "coarse positions"
+SUSPECT = "suspect"
 
 
 @dataclass(frozen=True)

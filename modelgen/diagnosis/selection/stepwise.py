@@ -187,6 +187,11 @@ def least_evidence(trial: FittedCandidate, equations: Equations) -> float:
     return limits.fading_delta_bic if trial.candidate.passing else limits.min_delta_bic
 
 
+def needed_evidence(trial: FittedCandidate, system: System) -> float:
+    """Delta BIC that it takes to name this cause in this system's noise."""
+    return max(least_evidence(trial, system.equations), threshold(system))
+
+
 def threshold(system: System) -> float:
     """Delta BIC that it takes to name a cause."""
     limits = system.equations.thresholds.selection

@@ -1,5 +1,7 @@
 """The gates that a cause must pass on rows its fit has not seen."""
 
+from modelgen.diagnosis.validation.agreement import agreement
+from modelgen.diagnosis.validation.check import Check
 from modelgen.diagnosis.validation.gates import Gates, Judgement, instrumented
 
-__all__ = ["Gates", "Judgement", "instrumented"]
+__all__ = ["Check", "Gates", "Judgement", "agreement", "instrumented"]

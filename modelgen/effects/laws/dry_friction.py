@@ -9,9 +9,10 @@ import sympy as sp
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, Parameter, Values, at
 from modelgen.effects.laws.velocity_friction import SMOOTHING, Friction, direction
-from modelgen.effects.traits import Presence, Seen, Shows
+from modelgen.effects.traits import Numbers, Presence, Seen, Shows
 from modelgen.effects.variables import Variables
 
+QUICKEST = 10.0  # s, of a drive that warms up
 RISE = 2e-3  # s: long before what a band of some ten Hz shows
 
 
@@ -162,6 +163,13 @@ class FrictionWarmUp(Friction):
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
     shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=25.0)
+
+    @classmethod
+    def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
+        """A drive's housing warms in minutes, its oil film in tens of seconds."""
+        if values["time"] >= QUICKEST:
+            return ""
+        return f"no drive warms with a time constant of {values['time']:.2g} s; {QUICKEST:.0f} s is quick"
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:

@@ -13,8 +13,9 @@ from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, 
 from modelgen.effects.traits import Family, Shows, joint_of
 from modelgen.effects.variables import BodyVariables, Variables
 from modelgen.symbolic import number as figure
-from modelgen.transmission import of_joint
+from modelgen.transmission import curves, of_joint
 
+GRAVITY = 0.05  # of a wave in a turn of the joint: nearer, a wave cannot be told from gravity
 HEAVY = 0.3  # of the mass of all links, of one actuator
 
 
@@ -94,6 +95,7 @@ class TorqueRipple(Effect):
         Parameter("revolution", "{x}", "a revolution [2 pi rad]", default=2 * math.pi, bounds=POSITIVE),
     )
     periodic = True
+    needs_drive = True  # a bearing alone has neither poles nor teeth
     caveat = " Its phase does only where both logs count positions from the same zero."
     shows = frozenset({Shows.BRIEFLY})
     confused_with = ("position_dependent_friction", "lever_geometry")
@@ -109,6 +111,19 @@ class TorqueRipple(Effect):
             drive.unit in ("rad", "unit rad") if drive.driven else joint_of(arm, number).type != "prismatic"
         )
         return [{"revolution": 2 * np.pi if turns else 1.0}]
+
+    @classmethod
+    def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
+        """One wave in a turn of the joint has the form of gravity."""
+        assert number is not None
+        joint = joint_of(arm, number)
+        low, high = joint.limits.position or (-math.pi, math.pi)
+        q = np.array([low, high])
+        turns = abs(float(np.diff(curves(of_joint(arm, joint)).motor(q))[0])) / values["revolution"]
+        waves = values["harmonic"] * turns / ((high - low) / math.tau)
+        if joint.type == "prismatic" or abs(waves - 1.0) > GRAVITY:
+            return ""
+        return "it has one wave in a turn of the joint, as gravity has"
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """RS sin(phase) + RC cos(phase), phase = 2 pi harmonic x / revolution."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from modelgen.diagnosis.options.thresholds.sources import JUDGED, SIMULATED
+from modelgen.diagnosis.options.thresholds.sources import JUDGED, SIMULATED, STRANGERS
 from modelgen.thresholds import Group, entry
 
 
@@ -128,6 +128,39 @@ class AdequacyThresholds(Group):
         "of a column",
         "A column of which the model leaves less is absorbed by its parameters.",
         "rounding",
+    )
+    max_behind_refused: float = entry(
+        15.0,
+        "delta BIC",
+        "A cause is a suspect where a refused candidate that could be there instead is ahead by more.",
+        STRANGERS,
+    )
+    max_free_form_ahead: float = entry(
+        15.0,
+        "delta BIC",
+        "A free function of a joint's position and speed outdoes the causes there where it is ahead by more.",
+        STRANGERS,
+    )
+    max_free_form_share: float = entry(
+        0.2,
+        "of the evidence",
+        "A free function outdoes the causes of a joint where it is ahead by more than this share of theirs.",
+        STRANGERS,
+    )
+    min_free_form_beside: float = entry(
+        7.0,
+        "delta BIC",
+        "A free function outdoes the causes of a joint where it explains so much beside all causes.",
+        STRANGERS,
+    )
+    min_claimed_deviations: float = entry(
+        3.0,
+        "standard deviations",
+        "What an effect claims, as a payload does a mass, must be above zero by so many.",
+        STRANGERS,
+    )
+    min_stable_probability: float = entry(
+        0.01, "probability", "A cause is reported as stable where records agree on its size (Wald).", JUDGED
     )
     max_counts_ratio: float = entry(
         1.25,

@@ -1,0 +1,152 @@
+"""Checks of every cause, the same for all: what fails one that decides is a suspect, not a cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
+from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import covariance
+from modelgen.diagnosis.options.thresholds import in_band
+from modelgen.diagnosis.selection import Cause, Selection, needed_evidence
+from modelgen.diagnosis.validation import Check, agreement
+from modelgen.numeric import Array
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A cause with its checks."""
+
+    cause: Cause
+    checks: tuple[Check, ...]
+
+    @property
+    def failed(self) -> tuple[Check, ...]:
+        """The checks for which it is none."""
+        return tuple(c for c in self.checks if c.decides and c.passed is False)
+
+
+def examined(selection: Selection, equations: Equations) -> list[Examined]:
+    """Every cause of the selection with its checks. equations: of the band, all rows that move."""
+    forms = free_forms(selection, equations)
+    return [
+        Examined(
+            cause,
+            (
+                _evidence(cause, selection),
+                significant(k, selection),
+                _admissible(cause, equations),
+                _gain(cause, equations),
+                _undominated(dominance(cause, selection)),
+                _form(forms.get(cause.trial.candidate.joint)),
+                _stable(k, selection),
+            ),
+        )
+        for k, cause in enumerate(selection.causes)
+    ]
+
+
+def confirmed(gain: float, low: float) -> Check:
+    """Whether a cause lowers the error on the test record. gain, low: its share and the lower bound [%]."""
+    asked = bool(np.isfinite(low))
+    return Check(
+        "confirmed",
+        low > 0.0 if asked else None,
+        False,
+        low,
+        0.0,
+        f"it takes {gain:.1f} % off the error on the test record, at least {low:.1f} %"
+        if asked
+        else "the test record cannot tell what it is worth there",
+    )
+
+
+def _evidence(cause: Cause, selection: Selection) -> Check:
+    least = needed_evidence(cause.trial, selection.system)
+    text = "evidence (delta BIC) beside all other causes"
+    return Check("evidence", cause.delta_bic >= least, False, cause.delta_bic, least, text)
+
+
+def significant(k: int, selection: Selection) -> Check:
+    """Whether what an effect claims is not zero: asked of parameters without which it would not be there."""
+    cause = selection.causes[k]
+    least = selection.system.equations.thresholds.adequacy.min_claimed_deviations
+    c = cause.trial.candidate
+    claims = [name for name in c.names if name in c.definition.claims]
+    if not claims:
+        text = "its evidence is that of all its parameters together"
+        return Check("significant", True, True, float("nan"), float("nan"), text)
+    values, spread = _estimated(k, selection)
+    found = min(values[name] / max(spread[name], 1e-300) for name in claims)
+    text = f"standard deviations that its {' and '.join(claims)} is above zero"
+    return Check("significant", found >= least, True, found, least, text)
+
+
+def _estimated(k: int, selection: Selection) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    """Values and standard deviations of what was estimated of the cause number k, by name."""
+    system = selection.system
+    begin = system.equations.unknowns
+    begin += sum(c.trial.columns[0].shape[2] for c in selection.causes[:k])
+    names = selection.causes[k].trial.candidate.names
+    spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
+    return (
+        {name: float(system.theta[begin + i]) for i, name in enumerate(names)},
+        {name: float(spread[begin + i]) for i, name in enumerate(names)},
+    )
+
+
+def _admissible(cause: Cause, equations: Equations) -> Check:
+    c = cause.trial.candidate
+    why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
+    text = why or "nothing in its values speaks against it"
+    return Check("admissible", not why, True, float("nan"), float("nan"), text)
+
+
+def _gain(cause: Cause, equations: Equations) -> Check:
+    least = in_band(equations.thresholds.validation.min_gain_percent, equations.narrowed)
+    found = max(x for x in (cause.cross_gain, cause.expected_gain) if not np.isnan(x))
+    text = "percent less error on rows that its fit has not seen"
+    return Check("gain", True, True, found, least, text)
+
+
+def _undominated(by: Dominance) -> Check:
+    text = "delta BIC by which a refused candidate of its turn is ahead"
+    if by.place is not None:
+        effect, joint = by.place
+        text = (
+            f"delta BIC by which {effect} {'of the arm' if joint is None else f'at joint {joint}'} is ahead"
+        )
+    return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
+
+
+def _form(by: FreeForm | None) -> Check:
+    if by is None:
+        text = "no function of position and speed could stand in its place"
+        return Check("form", True, True, float("nan"), float("nan"), text)
+    text = "delta BIC by which a free function of the joint's position and speed is ahead"
+    return Check("form", not by.better, True, by.ahead, by.most, text)
+
+
+def _stable(k: int, selection: Selection) -> Check:
+    system = selection.system
+    least = system.equations.thresholds.adequacy.min_stable_probability
+    parts = [([row], [i]) for i, row in enumerate(system.rows)]
+    columns, own = _last(k, selection)
+    found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
+    text = "probability of records that differ as much in its size where that is the same in all"
+    return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
+
+
+def _last(k: int, selection: Selection) -> tuple[Sequence[Array], int]:
+    """The system's columns of every record with the cause's at the end, and how many stand before."""
+    others = [c.trial for i, c in enumerate(selection.causes) if i != k]
+    trial, equations = selection.causes[k].trial, selection.system.equations
+    columns = [
+        np.concatenate([own, *(t.columns[i] for t in others), trial.columns[i]], axis=2)
+        for i, own in enumerate(equations.columns)
+    ]
+    return columns, columns[0].shape[2] - trial.columns[0].shape[2]

@@ -1,0 +1,58 @@
+"""Whether another candidate, refused or not, explains more than a cause: the runner-up is not the name."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.diagnosis.candidates import Candidate, Place
+from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection
+
+# Refusals for want of evidence, of values that can be, or of a form of itself: they leave a cause its name.
+_LESSER = ("", "evidence", "values", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
+
+
+@dataclass(frozen=True)
+class Dominance:
+    """ahead: delta BIC by which the candidate `place` is ahead of a cause, the most of all; most: by which
+    it may be.
+    """
+
+    ahead: float
+    most: float
+    place: Place | None = None
+
+
+def dominance(cause: Cause, selection: Selection) -> Dominance:
+    """The candidate that is ahead of the cause by most, of those that a gate refused.
+
+    At the cause's turn, or beside all causes in the end: at its joint or of the whole arm. None of a free
+    motion.
+    """
+    equations = selection.system.equations
+    most = equations.thresholds.adequacy.max_behind_refused
+    if equations.free or not selection.turns:
+        return Dominance(-np.inf, most)
+    c = cause.trial.candidate
+    named = {other.trial.candidate.place for other in selection.causes}
+    found = [Dominance(-np.inf, most)]
+    for turn in selection.turns:
+        own = next((r for r in turn if r.taken and r.place == c.place), None)
+        if own is not None:
+            found += [_over(r, own.delta_bic, most) for r in turn if _dominates(r, c, named)]
+    if not any(r.taken for r in selection.turns[-1]):
+        found += [_over(r, cause.delta_bic, most) for r in selection.turns[-1] if _dominates(r, c, named)]
+    return max(found, key=lambda d: d.ahead)
+
+
+def _over(r: Ranked, evidence: float, most: float) -> Dominance:
+    return Dominance(r.delta_bic - evidence, most, r.place)
+
+
+def _dominates(r: Ranked, c: Candidate, named: Collection[Place]) -> bool:
+    """Whether what was refused, then and for good, could be there instead of the candidate."""
+    if r.refused in _LESSER or r.place in named:
+        return False
+    return r.joint is None or r.joint == c.joint

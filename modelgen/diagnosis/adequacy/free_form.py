@@ -1,0 +1,71 @@
+"""Whether a free function of a joint's position and speed explains clearly more than the causes there.
+
+The function is a Gaussian process with a jump where the speed changes its sign (Rasmussen and Williams 2006):
+whatever a friction or a force over the joint does, it can. Laws that are there cost less than its freedom.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions, log_evidence
+from modelgen.diagnosis.candidates import system_of
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.selection import Selection, together
+
+
+@dataclass(frozen=True)
+class FreeForm:
+    """ahead: delta BIC by which the function is ahead of a joint's causes; most: by which it may be; beside:
+    its evidence beside all causes, of which `least` makes it better.
+    """
+
+    ahead: float
+    most: float
+    beside: float
+    least: float
+
+    @property
+    def better(self) -> bool:
+        """Whether it is clearly ahead, and explains something beside the causes."""
+        return self.ahead > self.most and self.beside >= self.least
+
+
+def free_forms(selection: Selection, equations: Equations) -> dict[int | None, FreeForm]:
+    """By joint with causes, the free function that is ahead of them by most.
+
+    Asked for all causes of a joint together. Not of elastic joints and play, whose own laws are none of the
+    joint's motion, of causes of the whole arm, or of free motions.
+    """
+    if equations.free:
+        return {}
+    limits = equations.thresholds.adequacy
+    found: dict[int | None, FreeForm] = {}
+    for joint in sorted({c.trial.candidate.joint or 0 for c in selection.causes} - {0}):
+        own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
+        if any(t.candidate.elastic for t in own):
+            continue
+        others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
+        without = system_of(equations, others, selection.system)
+        evidence = together(own, without, fair=True)
+        most = max(limits.max_free_form_ahead, limits.max_free_form_share * max(evidence, 0.0))
+        tried = []
+        for shape in _functions(joint - 1, equations):
+            ahead = log_evidence(shape, without).evidence - evidence
+            beside = log_evidence(shape, selection.system).evidence if ahead > most else -np.inf
+            tried.append(FreeForm(ahead, most, beside, limits.min_free_form_beside))
+        found[joint] = max(tried, key=lambda f: (f.better, f.ahead))
+    return found
+
+
+def _functions(j: int, equations: Equations) -> Iterator[SmoothFunction]:
+    """Functions of position and speed of joint j (from 0), of every bend length."""
+    states = [np.column_stack([r.prepared.q[:, j], r.prepared.dq[:, j]]) for r in equations.rows]
+    for bend in equations.thresholds.adequacy.bend_lengths:
+        tables = []
+        for r, x, state in zip(equations.rows, functions(states, bend), states, strict=True):
+            tables.append(r.equation(j, np.hstack([x, x * np.sign(state[:, 1:])])))
+        yield SmoothFunction(f"a force at joint {j + 1} over its position and speed", {j: tables})

@@ -1,0 +1,157 @@
+"""A cause is named only where every check that decides lets it: the same checks for all."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of, three
+
+from modelgen.dataset import Record
+from modelgen.description import DirectDrive
+from modelgen.diagnosis.adequacy.checks import confirmed, significant
+from modelgen.diagnosis.adequacy.dominance import dominance
+from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
+from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.result import to_json
+from modelgen.diagnosis.selection import Cause, Ranked, Selection
+from modelgen.effects import CATALOGUE
+
+NAMES = ["evidence", "significant", "admissible", "gain", "undominated", "form", "stable", "confirmed"]
+
+
+def test_every_cause_has_the_same_checks_and_passes_those_that_decide() -> None:
+    said = to_json(diagnose(ARM, three("stribeck_friction", 2, 0.5), experiment=False))
+    (cause,) = said["causes"]
+    assert (cause["effect"], cause["joint"], cause["joint_name"]) == ("stribeck_friction", 2, "j2")
+    assert [c["name"] for c in cause["checks"]] == NAMES
+    assert all(c["passed"] for c in cause["checks"])
+    assert {c["name"] for c in cause["checks"] if not c["decides"]} == {"evidence", "stable", "confirmed"}
+    assert said["suspects"] == []
+
+
+def with_force(records: list[Record], joint: int, law: Any) -> list[Record]:
+    """The records with an effort more at a joint, as its motor sees it."""
+    found = []
+    for r in records:
+        given = np.asarray(r.input).copy()
+        dq = np.gradient(r.q, r.step, axis=0)
+        given[:, joint - 1] += law(r.q[:, joint - 1], dq)
+        found.append(replace(r, input=given))
+    return found
+
+
+@pytest.mark.parametrize("joint", [1, 2])
+def test_a_law_outside_the_catalogue_lends_its_evidence_to_no_name(joint: int) -> None:
+    """A product of the speed's sine, the position's cosine and the other joint's speed."""
+    records = three(None, 1, 0.0, seed=11)
+    size = 0.25 * float(np.std(np.asarray(records[0].input)[:, joint - 1]))
+    other = 2 - joint
+
+    def law(q: np.ndarray, dq: np.ndarray) -> np.ndarray:
+        return np.asarray(size * np.sin(4.0 * dq[:, joint - 1]) * np.cos(5.0 * q) * dq[:, other])
+
+    found = diagnose(ARM, with_force(records, joint, law), experiment=False)
+    assert not found.causes
+    assert found.verdict in ("suspected", "outside_catalogue")
+
+
+def turn(*candidates: tuple[str, int | None, float, str, bool]) -> list[Ranked]:
+    return [
+        Ranked(effect, joint, evidence, 5.0, 5.0, refused, taken)
+        for effect, joint, evidence, refused, taken in candidates
+    ]
+
+
+def chosen(*turns: list[Ranked], effect: str = "friction_offset", joint: int = 1) -> tuple[Cause, Selection]:
+    """A cause with an evidence of 100 that was taken in these turns."""
+    rows, q, periods = made(offset)
+    system = system_of(rows, periods=periods)
+    columns = [offset(x[:, 0])[:, None, None] for x in q]
+    gain = system.gain(columns)
+    assert gain is not None
+    trial = FittedCandidate(Candidate(effect, joint), {}, columns, replace(gain, delta_bic=100.0))
+    cause = Cause(trial, 100.0, 5.0, 5.0)
+    # Records with efforts: of a free motion nothing is held against a cause.
+    driven: Any = equations_of([replace(r, prepared=PREPARED) for r in rows], [PERIOD] * len(rows))
+    object.__setattr__(system, "equations", driven)
+    return cause, Selection([cause], system, list(turns))
+
+
+class _Prepared:
+    input = np.zeros(1)
+
+
+PREPARED: Any = _Prepared()
+OWN = ("friction_offset", 1, 100.0, "", True)
+
+
+@pytest.mark.parametrize(
+    ("other", "dominated"),
+    [
+        (("time_delay", None, 120.0, "gain", False), True),  # what explains most was refused
+        (("presliding", 1, 120.0, "positions", False), True),
+        (("presliding", 1, 120.0, "values", False), False),  # it cannot be there itself
+        (("presliding", 2, 120.0, "gain", False), False),  # at another joint
+        (("time_delay", None, 112.0, "gain", False), False),  # not clearly ahead
+        (("time_delay", None, 120.0, "evidence", False), False),  # asks for more evidence itself
+        (("presliding", 1, 120.0, "near rest", False), False),
+    ],
+)
+def test_the_runner_up_is_not_the_name(
+    other: tuple[str, int | None, float, str, bool], dominated: bool
+) -> None:
+    found = dominance(*chosen(turn(OWN, other)))
+    assert (found.ahead > found.most) == dominated
+    if dominated:
+        assert found.place == other[:2]
+
+
+def test_what_is_refused_in_the_end_is_held_against_the_cause_too() -> None:
+    found = dominance(*chosen(turn(OWN), turn(("presliding", 1, 130.0, "gain", False))))
+    assert found.ahead == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "possible"),
+    [
+        ("friction_warm_up", {"time": 1.4}, False),
+        ("friction_warm_up", {"time": 20.0}, True),
+        (
+            "torque_ripple",
+            {"harmonic": 1.0 / 80.0, "revolution": 2 * np.pi},
+            False,
+        ),  # one wave a turn: gravity
+        ("torque_ripple", {"harmonic": 1.0, "revolution": 2 * np.pi}, True),
+        ("spring", {"stiffness": 3.0}, True),
+    ],
+)
+def test_values_that_no_arm_has(effect: str, values: dict[str, float], possible: bool) -> None:
+    assert isinstance(ARM.joints[0].drive, DirectDrive)
+    assert ARM.joints[0].drive.ratio == 80.0
+    assert (CATALOGUE[effect].impossible(ARM, 1, values) == "") == possible
+
+
+@pytest.mark.parametrize(("mass", "passed"), [(0.0, False), (-0.5, False), (0.5, True)])
+def test_a_payload_without_a_mass_is_none_whatever_its_moments_explain(mass: float, passed: bool) -> None:
+    """In noise of unit size and 1200 rows a mass of 0.5 is some 17 deviations from zero."""
+    random = np.random.default_rng(4)
+    rows, _, periods = made(lambda x: 0.0 * x)
+    columns = [random.normal(size=(len(r.effort), 1, 2)) for r in rows]
+    loaded = [
+        replace(r, effort=r.effort + c @ np.array([mass, 2.0])) for r, c in zip(rows, columns, strict=True)
+    ]
+    bare = system_of(loaded, periods=periods)
+    gain = bare.gain(columns)
+    assert gain is not None
+    assert gain.delta_bic > 1000.0
+    trial = FittedCandidate(Candidate("payload_change", None, part=("mass", "moment_x")), {}, columns, gain)
+    system = system_of(loaded, with_causes(bare.equations, [trial]), periods)
+    check = significant(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []))
+    assert (check.name, check.decides, check.passed) == ("significant", True, passed)
+
+
+def test_the_test_record_confirms_or_does_not_and_decides_nothing() -> None:
+    for low, passed in ((0.5, True), (-0.5, False), (float("nan"), None)):
+        check = confirmed(1.0, low)
+        assert (check.passed, check.decides) == (passed, False)
