@@ -129,7 +129,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
     """Another value of each threshold, and what it must change."""
     (folder / "range").mkdir()
     spec, range_seen = log(folder / "range", STEP * np.arange(500.0) + 1.0), out_of_range()
-    names = ("short", "gap", "jitter", "uneven", "slow", "turn")
+    names = ("short", "gap", "jitter", "uneven", "slow", "fast", "turn")
     folders = {name: folder / name for name in names}
     for path in folders.values():
         path.mkdir()
@@ -140,6 +140,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "max_spline_jitter": (0.1, reading(folders["uneven"], uneven(0.4))),
         "averaging_step": (1.1, averaged),
         "slow_sampling_step": (0.05, reading(folders["slow"], 0.1 * np.arange(100.0))),
+        "fast_sampling_step": (0.01, reading(folders["fast"], STEP * np.arange(200.0))),
         "steady_step": (0.01, reading(folders["turn"], STEP * np.arange(200.0), turned())),
         "max_range_excess": (0.001, lambda limits: range_seen(limits, spec)),
         "max_shared_samples": (20, shared),
