@@ -40,7 +40,7 @@ TIME_STEP = sp.Symbol("dt", positive=True)
 
 @dataclass(frozen=True)
 class Part:
-    """Where an effect acts, and the force there.
+    """One part of an effect: its place and its force there.
 
     place: that of the `Effect`, "point", "body" or "input". joint: index into `arm.joints`. forces: one, for
     a point x, y, z in the axes of its link, and its moment likewise where there is one; for a body those of

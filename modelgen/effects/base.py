@@ -1,4 +1,4 @@
-"""What an effect is: one definition in SymPy, from which everything else is derived.
+"""An effect is one definition in SymPy, from which everything else is derived.
 
 There are five kinds. An `Effect` is one generalised force over one coordinate, `LinkEffect` forces at
 points of a link, `BodyEffect` those of a body that swings on a link, a `DescriptionEffect` changes what the
@@ -64,7 +64,7 @@ class Definition(Traits):
 
     @classmethod
     def held(cls, p: Mapping[str, sp.Expr | float]) -> tuple[str, ...]:
-        """Of `states`, those that it has with these values of its parameters; all for most."""
+        """Names of the `states` that it has with these values of its parameters; all for most."""
         return cls.states
 
 
@@ -81,7 +81,7 @@ class Effect(Definition):
 
     @classmethod
     def coupled(cls, values: Numbers) -> tuple[int, float] | None:
-        """Of a pair, the other joint and the ratio."""
+        """Return the other joint of a pair and the ratio."""
         return (round(values["other"]), values.get("ratio", 1.0)) if cls.place == "pair" else None
 
     @abstractmethod
@@ -124,7 +124,7 @@ class LinkEffect(Definition):
 
     @abstractmethod
     def points(self, p: Values) -> Sequence[Point]:
-        """Where the force acts; points of the line do not exist on a link of no length."""
+        """Points at which the force acts; a link of no length has no points of the line."""
 
     @abstractmethod
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
@@ -196,13 +196,13 @@ class DescriptionEffect(Definition):
 
 
 class InputEffect(Definition):
-    """What the drive makes of its input, coordinate by coordinate, in the unit of the input."""
+    """A change that the drive makes to its input, coordinate by coordinate, in the unit of the input."""
 
     needs_effort: ClassVar[bool] = True
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """At a drive."""
+        """It stands at a drive."""
         return number is None or joint_of(arm, number).drive.driven
 
     @abstractmethod

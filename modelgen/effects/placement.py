@@ -1,4 +1,4 @@
-"""Where an effect can stand, and the arm that has it."""
+"""Placement says where an effect can stand, and makes the arm that has it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What other parts may ask of an effect besides its law: where it can stand, how its values are found, where
-and when it shows, which values are plausible.
+"""Traits are what other parts may ask of an effect besides its law: where it can stand, how its values are
+found, where and when it shows, which values are plausible.
 
 Every trait says something of the physics or of the measurement, and has a default: a kind of effect sets what
 it implies, and a class of its own sets what is particular to it. Joints are numbered as coordinates, from 1;
@@ -29,7 +29,7 @@ SMALL = 1e-3  # of the value in its picture, of a parameter: the step of a slope
 
 
 class Family(Enum):
-    """What the rest looks like that a law leaves, since no law is that of the arm to the last."""
+    """Kind of the rest that a law leaves, since no law is that of the arm to the last."""
 
     OTHER = "other"
     FRICTION = "friction"  # a force over the joint's own motion
@@ -47,7 +47,7 @@ class Presence(Enum):
 
 
 class Shows(Enum):
-    """Where in a motion it shows."""
+    """Parts of a motion that show it."""
 
     NEAR_REST = "near rest"  # friction at speeds near zero
     REVERSALS = "reversals"  # as a change of what happens where the speed changes its sign
@@ -73,7 +73,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Seen:
-    """What records can show at all. whole: each begins where its log does; still: joints that rest in all;
+    """Limits of what records can show. whole: each begins where its log does; still: joints that rest in all;
     unsided: joints whose position cannot tell a link from its drive, since it is not known which of the two
     it is, or is too coarse (`coarse`).
     """
@@ -222,7 +222,7 @@ class Traits(ABC):
 
     @classmethod
     def vanishes(cls, estimated: Numbers) -> bool:
-        """Whether nothing is left of it: no parameter that may not be negative is above zero."""
+        """Whether it vanishes: no parameter that may not be negative is above zero."""
         positive = {p.name for p in cls.accepted() if p.bounds[0] >= 0.0}
         limited = [value for name, value in estimated.items() if name in positive]
         return bool(limited) and not max(limited) > 0
@@ -244,7 +244,7 @@ class Traits(ABC):
 
     @classmethod
     def imitates(cls, values: Numbers) -> Shows | None:
-        """Where it shows with values at which it comes to look like another law; None for most."""
+        """Part of a motion in which its values make it look like another law; None for most."""
         return None
 
     @classmethod

@@ -1,4 +1,4 @@
-"""What the laws of effects may depend on."""
+"""Laws of effects may depend on these variables."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Triple = tuple[sp.Symbol, sp.Symbol, sp.Symbol]
 
 @dataclass(frozen=True)
 class Variables:
-    """Of a force over one coordinate.
+    """Variables of a force over one coordinate.
 
     position, velocity, acceleration: of the coordinate that the effect belongs to. square: its velocity
     times that of the reference motion, velocity^2 where there is none. q: the joint's coordinate. load:
@@ -42,7 +42,7 @@ class Variables:
 
 @dataclass(frozen=True)
 class PointVariables:
-    """Of a force at a point of a link, everything in the axes of the link's frame.
+    """Variables of a force at a point of a link, in the axes of the link's frame.
 
     velocity [m/s]; acceleration less gravity, gravity [m/s^2]; line: direction of the link, from its origin
     to the next link's; turn: its derivative [1/s]; reference, reference_turn: velocity and turn of the
@@ -70,7 +70,7 @@ class PointVariables:
 
 @dataclass(frozen=True)
 class BodyVariables:
-    """Of a body that turns against the link that carries it, everything in its own axes.
+    """Variables of a body that turns against the link that carries it, in its own axes.
 
     pivot: acceleration of its pivot less gravity, gravity [m/s^2]; along, across: accelerations of what lies
     1 m from the pivot on its x and its y axis, less the pivot's. q: the coordinate that turns it;
@@ -87,7 +87,7 @@ class BodyVariables:
 
 @dataclass(frozen=True)
 class InputVariables:
-    """Of what stands between input and effort: the input, the effect's states."""
+    """Variables between input and effort: the input, the effect's states."""
 
     input: sp.Symbol
     state: Mapping[str, sp.Symbol]

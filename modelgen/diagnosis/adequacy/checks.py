@@ -26,7 +26,7 @@ class Examined:
 
     @property
     def failed(self) -> tuple[Check, ...]:
-        """The checks for which it is none."""
+        """Checks for which it is a suspect."""
         return tuple(c for c in self.checks if c.decides and c.passed is False)
 
 

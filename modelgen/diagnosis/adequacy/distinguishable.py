@@ -74,7 +74,7 @@ def _equal(a: Array | None, b: Array | None, most: float) -> bool:
 
 
 def _values(c: Candidate) -> Iterator[Values]:
-    """Of what is searched, where that has no unit; nothing else is the same for every arm."""
+    """Yield values of what is searched, where it has no unit; nothing else is the same for every arm."""
     if all(p.scale == "1" for p in c.searched):
         for values in product(*(p.grid for p in c.searched)):
             yield {p.name: value for p, value in zip(c.searched, values, strict=True)}

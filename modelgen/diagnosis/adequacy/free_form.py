@@ -35,7 +35,7 @@ class FreeForm:
 
 
 def free_forms(selection: Selection, equations: Equations) -> dict[int | None, FreeForm]:
-    """By joint with causes, the free function that is ahead of them by most.
+    """Find, for each joint with causes, the free function that is ahead of them by most.
 
     Asked for all causes of a joint together. Not of elastic joints and play, whose own laws are none of the
     joint's motion, of causes of the whole arm, or of free motions.

@@ -54,7 +54,7 @@ class Test:
 
     @property
     def beyond(self) -> float:
-        """What the statistic has above one over what the quantile has, whatever the records' length."""
+        """Excess of the statistic over one in units of its quantile's, whatever the records' length."""
         return (self.statistic - 1.0) / (self.quantile - 1.0)
 
     @property
@@ -89,7 +89,7 @@ class LackOfFit:
 
 @dataclass
 class _Sums:
-    """Of one joint: between and within periods, and by record the squares of the means by phase.
+    """Sums of one joint between and within periods, and by record the squares of the means by phase.
 
     rounding: the sum that errors of the positions that repeat are expected to add between. limits: by which
     is tested.
@@ -126,11 +126,11 @@ class _Sums:
 
     @property
     def chance(self) -> float:
-        """What a complete model leaves between, for each independent phase."""
+        """Sum between periods that a complete model leaves, for each independent phase."""
         return self.within / self.free_within + self.rounding / self.free_between
 
     def whole(self, joint: int, tests: int) -> Test:
-        """Of all rows."""
+        """Test all rows."""
         size = inflation(WHOLE, self.limits.null_share)
         if self.free_within < self.limits.min_scatter_rows or self.within <= 0:
             return Test(WHOLE, joint, 0.0, np.inf, size)
@@ -139,7 +139,7 @@ class _Sums:
         return Test(WHOLE, joint, statistic, self._quantile(free, tests), size)
 
     def parts(self, joint: int, tests: int) -> Iterator[Test]:
-        """Of every part of every record."""
+        """Test every part of every record."""
         limits, size = self.limits, inflation(PART, self.limits.null_share)
         if self.free_within < limits.min_scatter_rows or self.within <= 0:
             return
@@ -169,7 +169,7 @@ def parts(rows: int, count: int) -> Iterator[tuple[int, int]]:
 
 
 def lack_of_fit(system: System) -> LackOfFit | None:
-    """Of the training records; None where nothing repeats."""
+    """Test the training records; None where nothing repeats."""
     found, most = _tests(system)
     if not any(np.isfinite(t.quantile) for t in found):
         return None
@@ -179,7 +179,7 @@ def lack_of_fit(system: System) -> LackOfFit | None:
 
 
 def in_parts(system: System) -> list[Test]:
-    """Of every part of the period of every joint and record."""
+    """Test every part of the period of every joint and record."""
     return [t for t in _tests(system)[0] if t.kind == PART]
 
 
@@ -202,7 +202,7 @@ def inflation(kind: str, share: float) -> float:
 
 
 def ratios(system: System) -> dict[str, float]:
-    """By kind of test, how far a statistic goes beyond one at most, over how far its quantile of F does."""
+    """Largest excess of a statistic over one, in units of its quantile's excess, by kind of test."""
     found, _ = _tests(system)
     return {k: max((t.beyond for t in found if t.kind == k), default=0.0) for k in (WHOLE, PART)}
 

@@ -1,4 +1,4 @@
-"""What complete models leave: lack of fit and the evidence of shapes (delta BIC).
+"""Complete models leave these lacks of fit and this evidence of shapes (delta BIC).
 
 The largest of all joints of a null, by kind of test (lack_of_fit.py: how far beyond one a statistic goes,
 over how far its quantile does), and of all shapes (shapes.py). Two to four simulated records of 240 arms

@@ -1,4 +1,4 @@
-"""What is left as a smooth function of one thing, whatever the function: no physical law stands behind it.
+"""Smooth functions of one thing, without a physical law, describe what the causes leave.
 
 A cause outside the catalogue may look like an effect inside. It looks more like a function of what it does
 depend on: where the arm is (a hard spot, a contact) or what its drives take (a supply that sags). The
@@ -46,7 +46,7 @@ class Worth:
 
 
 def smooth_functions(system: System) -> Iterator[SmoothFunction]:
-    """Of driven arms, with the inputs that follow from the parameters as the system has them."""
+    """Functions for driven arms, with the inputs that follow from the system's parameters."""
     equations, rows, n = system.equations, system.rows, system.n
     limits = equations.thresholds.adequacy
     inputs = [equations.evaluator.inputs(r.motion, system.base) for r in rows]
@@ -100,7 +100,7 @@ def _far_apart(values: Array) -> Array:
 
 
 def log_evidence(shape: SmoothFunction, system: System) -> Worth:
-    """What the shape explains beside the system's columns: its marginal likelihood, of the best of SIZES.
+    """Evidence of the shape beside the system's columns: its marginal likelihood, of the best of SIZES.
 
     In the fair equations the variance of each joint's noise is at its best and its colour known: a function
     that bends follows noise of the same colour.
@@ -123,7 +123,7 @@ def log_evidence(shape: SmoothFunction, system: System) -> Worth:
 def _likelihood(
     stack: StackedEquations, columns: Sequence[Array], acted: NDArray[np.bool_]
 ) -> tuple[float, Array]:
-    """Of the weights (k,) of the columns, each of variance 1 times the best size, and the weights there.
+    """Likelihood of the columns' weights (k,), each of variance 1 times the best size, and the weights there.
 
     Over that without them; the price of the size is that of one parameter. acted: joints (n,) with columns.
     """

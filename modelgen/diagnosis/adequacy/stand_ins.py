@@ -22,7 +22,7 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Likeness:
-    """What the causes leave is most like `shape`, with this evidence (delta BIC)."""
+    """A shape that what the causes leave is most like, with its evidence (delta BIC)."""
 
     shape: SmoothFunction
     evidence: float
@@ -153,7 +153,7 @@ def doubtful(selection: Selection, equations: Equations) -> list[Cause]:
 
 
 def _worst(tests: Sequence[Test], n: int) -> Array:
-    """What repeats in the part of the period that shows most, by joint (n,) [effort^2]."""
+    """Sum that repeats in the part of the period that shows most, by joint (n,) [effort^2]."""
     found = np.zeros(n)
     for t in tests:
         found[t.joint] = max(found[t.joint], t.excess)

@@ -18,7 +18,7 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Remains:
-    """What speaks for a verdict besides the causes.
+    """Findings that speak for a verdict besides the causes.
 
     suspects: what has evidence and failed a check; stand_ins: what gained something and left most of what
     repeats, or explained less than a function of no law; unclear: what coarse positions do not tell from its

@@ -56,7 +56,7 @@ class Candidate:
 
     @property
     def positive(self) -> tuple[bool, ...]:
-        """Of each column, whether its parameter may not be negative."""
+        """Flags of columns whose parameter may not be negative."""
         bounds = {p.name: p.bounds for p in self.definition.accepted()}
         return tuple(name in bounds and bounds[name][0] >= 0.0 for name in self.names)
 
@@ -174,7 +174,7 @@ def _fixed(effect: type[Definition], joint: int | None, equations: Equations) ->
 
 
 def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> float:
-    """What a grid is in units of, over all records."""
+    """Unit of a grid, over all records."""
     rows = equations.rows
     if kind == "1":
         return 1.0
@@ -199,7 +199,7 @@ def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> 
 
 
 def without_rests(equations: Equations, candidate: Candidate) -> Equations:
-    """With the rows at which a cause that was taken moves; all where it has no rest of its own."""
+    """Equations of the rows at which a taken cause moves; of all where it has no rest of its own."""
     pair = candidate.definition.coupled(candidate.fixed)
     if pair is None or candidate.joint is None:
         return equations

@@ -47,7 +47,7 @@ def candidate_columns(
 
 
 def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
-    """Of columns (M, n, k) of all parameters, those that are asked for."""
+    """Pick the columns that are asked for, of those (M, n, k) of all parameters."""
     if not candidate.part:
         return list(tables)
     kept = [candidate.every.index(name) for name in candidate.names]

@@ -34,7 +34,7 @@ class FittedCandidate:
 
     @property
     def odds(self) -> float:
-        """By which rivals are compared, see `place_penalty`."""
+        """Evidence by which rivals are compared, see `place_penalty`."""
         return self.gain.delta_bic - place_penalty(self.candidate)
 
     @property
@@ -63,7 +63,7 @@ def system_of(equations: Equations, trials: Sequence[FittedCandidate], noise: Sy
 
 
 def beside(trial: FittedCandidate, system: System) -> Evidence | None:
-    """What a candidate explains beside another system's columns, with the values it was found at."""
+    """Evidence of a candidate beside another system's columns, with the values it was found at."""
     c = trial.candidate
     return system.gain(trial.columns, float(len(trial.values)), c.positive, passing=c.passing)
 

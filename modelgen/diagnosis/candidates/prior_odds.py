@@ -16,14 +16,14 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 
 
 def prior_penalty(candidate: Candidate, values: Mapping[str, float], arm: Arm) -> float:
-    """What the candidate's values and its other forms take off its delta BIC."""
+    """Price of the candidate's values and of its other forms, in delta BIC."""
     scales = candidate.definition.usual(arm, candidate.joint)
     charged = sum(math.log1p((values[name] / scale) ** 2) for name, scale in scales.items() if name in values)
     return 2.0 * (charged + math.log(candidate.forms))
 
 
 def place_penalty(candidate: Candidate) -> float:
-    """What the effect's other places take off the odds of the candidate against one of another effect.
+    """Price of the effect's other places, in the odds against a candidate of another effect.
 
     No effect is likelier than another before any record: one that may be at every joint is as likely at each
     as its share. Whether anything is there at all is asked of the evidence alone.

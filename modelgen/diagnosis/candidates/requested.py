@@ -50,7 +50,7 @@ def check_one_arm(band: Band) -> None:
 
 
 def coming_later(arm: Arm) -> list[Candidate]:
-    """What may come between two records, with all its parameters."""
+    """Candidates that may come between two records, with all their parameters."""
     return [
         Candidate(name, place)
         for name, effect in CATALOGUE.items()

@@ -53,7 +53,7 @@ class Band:
 
 
 def bands(study: Study) -> Iterator[Band]:
-    """The bands to ask, the next where one cannot tell.
+    """Yield the bands to ask, the next where one cannot tell.
 
     Where errors of the positions could feign a little more than what counts, the wide band is asked first: it
     shows what is fast. Raises InputError where the records are too short, rest, or excite too little.

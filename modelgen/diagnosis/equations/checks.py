@@ -1,4 +1,4 @@
-"""What records must hold to be asked: a motion that excites the model and what is asked for, of one arm."""
+"""Records must excite the model and what is asked for, and be of one arm, to be asked."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class Equations:
 
     @property
     def baseline(self) -> Unknowns:
-        """What the model's own columns belong to."""
+        """Unknowns that the model's own columns belong to."""
         return self.rows[0].baseline
 
     @property
@@ -79,9 +79,9 @@ class Equations:
         return rows_of(self.evaluator, self.model, prepared, theta, self.baseline)
 
     def with_rows(self, rows: Sequence[Rows]) -> Equations:
-        """The same with other rows of the records, or with those of other records."""
+        """Equations with other rows of the records, or with those of other records."""
         return replace(self, rows=rows)
 
     def with_evaluator(self, evaluator: Evaluator) -> Equations:
-        """The same with further columns made for another arm."""
+        """Equations whose further columns are made for another arm."""
         return replace(self, evaluator=evaluator)

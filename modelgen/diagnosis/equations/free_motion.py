@@ -16,7 +16,7 @@ from modelgen.numeric import Array
 
 
 def settings_of_swings(records: Sequence[Record], settings: Settings, limits: EquationThresholds) -> Settings:
-    """With gates beyond the noise: a swing begins and ends at rest, and nothing but noise moves it there.
+    """Settings with gates beyond the noise: a swing begins and ends at rest, where noise alone moves it.
 
     The positions' filter rounds off the speed where friction changes sides, and so shifts its zero: it is as
     wide as the noise allows.
@@ -49,7 +49,7 @@ def noise_of_speeds(records: Sequence[Record], settings: Settings) -> Array:
 
 
 def released(record: Record, settings: Settings) -> Record:
-    """From the release to the last standstill: filters must not see the hand that held the arm before.
+    """Cut a record from the release to the last standstill: filters must not see the hand that held the arm.
 
     Raises InputError where no joint moves.
     """

@@ -1,4 +1,4 @@
-"""What the description tells of the base parameters before any record, and how far it is believed.
+"""The description tells of base parameters before any record, and is believed up to a point.
 
 Two causes that look alike often differ in what they make of the links: the wrong one needs a link that weighs
 what nobody would have drawn. Nominal inertials are off, by some per cent or by tens of them, and nobody says
@@ -69,7 +69,7 @@ def told(model: Model, limits: EquationThresholds) -> NominalPrior | None:
 
 
 def _sizes(arm: Arm) -> dict[str, float]:
-    """Of each of the links' standard parameters by name: mass, mass times radius, and that times radius."""
+    """Sizes of the links' standard parameters by name: mass, mass times radius, and that times radius."""
     found: dict[str, float] = {}
     for i, link in enumerate(arm.links, start=1):
         if link is None:

@@ -36,12 +36,12 @@ class Rows:
 
     @cached_property
     def motion(self) -> Motion:
-        """At full rate."""
+        """Motion at full rate."""
         return motion_of(self.prepared)
 
     @property
     def gain(self) -> Array:
-        """What an input is multiplied by to give what the log carried, (M, n)."""
+        """Factor from an input to what the log carried, (M, n)."""
         p = self.prepared
         return np.ones(self.effort.shape) if p.gain is None else np.asarray(p.gain[p.rows])
 
@@ -68,7 +68,7 @@ class Rows:
 
 
 def motion_of(prepared: Prepared) -> Motion:
-    """At full rate, with the side of the joints that was measured."""
+    """Motion at full rate, with the side of the joints that was measured."""
     p = prepared
     sides = p.record.motor_side or (False,) * p.n
     return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff)

@@ -18,7 +18,7 @@ from modelgen.functions import Model, build_model
 
 @dataclass(frozen=True)
 class Study:
-    """What equations are made of. records: the last is the test record. lengths: samples in a period of each
+    """Sources of equations. records: the last is the test record. lengths: samples in a period of each
     training record, None where nothing repeats. settings: of the usual band. narrower: whether that may give
     way to a narrower one where coarse positions spoil it.
     """
@@ -33,7 +33,7 @@ class Study:
 
 
 def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
-    """What equations are made of: the records from where they move on, their periods, and the usual band.
+    """Prepare a study: the records from where they move on, their periods, and the usual band.
 
     Raises InputError where records do not fit together, or none holds the period that is given.
     """

@@ -1,4 +1,4 @@
-"""What a column explains beyond the noise: whitening, likelihood ratios, instruments."""
+"""Evidence of columns beyond the noise: whitening, likelihood ratios, instruments."""
 
 from modelgen.diagnosis.evidence.instruments import Endogeneity, Pairs, endogeneity
 from modelgen.diagnosis.evidence.likelihood import NEGLIGIBLE, Evidence, StackedEquations, joints_of, weighted

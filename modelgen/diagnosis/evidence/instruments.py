@@ -57,7 +57,7 @@ class Pairs:
         return len(self.own) > self.least * self.own.shape[1]
 
     def first_stage(self) -> Array:
-        """What the columns of the other period, over `scale`, explain of the columns: (p, p)."""
+        """Share of the columns that those of the other period, over `scale`, explain: (p, p)."""
         found = lstsq(
             self.other / self.scale, self.own, cond=1e-10, lapack_driver="gelsy", check_finite=False
         )[0]
@@ -100,7 +100,7 @@ class Endogeneity:
 
 
 def endogeneity(system: System) -> Endogeneity | None:
-    """Of the equations with all that they contain; None where nothing repeats."""
+    """Test the equations with all that they contain; None where nothing repeats."""
     pairs = Pairs(system, system.columns)
     if not pairs.enough:
         return None

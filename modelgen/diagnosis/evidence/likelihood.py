@@ -22,7 +22,7 @@ NEGLIGIBLE = 1e-7  # part of a column, of unit length, that the others leave ove
 
 @dataclass(frozen=True)
 class Evidence:
-    """What further columns explain. rss0, rss1: by joint, without and with; values: of the columns."""
+    """Evidence of further columns. rss0, rss1: by joint, without and with; values: of the columns."""
 
     delta_bic: float
     values: Array
@@ -32,7 +32,7 @@ class Evidence:
 
 
 class StackedEquations:
-    """What a baseline leaves of R equations, and below them of the D that the description tells of it.
+    """Residuals that a baseline leaves of R equations, and of D more that the description tells of it.
 
     matrix, right: (R, b), (R,), of the records alone; joint: (R,), from 0; counts, rss: (n,), how many of a
     joint's equations are independent, and sums of squares of what is left of them; share: of all rows, those
@@ -98,7 +98,7 @@ class StackedEquations:
         alike: bool = False,
         passing: bool = False,
     ) -> Evidence | None:
-        """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
+        """Evidence of columns (M, n, k) of each record; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
         negative; empty for none. alike: as if noise hid columns of all colours alike. passing: they do not
@@ -109,8 +109,8 @@ class StackedEquations:
 
 @dataclass(frozen=True)
 class Belief:
-    """In what is told beside some equations. weight: one over its scatter among them; count: of it, what the
-    records could contradict; faith: measurements that the scatter expected is worth.
+    """Belief in what is told beside some equations. weight: one over its scatter among them; count: of it,
+    what the records could contradict; faith: measurements that the scatter expected is worth.
     """
 
     weight: float
@@ -119,8 +119,8 @@ class Belief:
 
 
 def believed(matrix: Array, right: Array, said: NominalPrior, share: float) -> Belief:
-    """In what is told beside equations (R, b), (R,), of which `share` are independent. said: of all b
-    columns.
+    """Find the belief in what is told beside equations (R, b), (R,), of which `share` are independent.
+    said: of all b columns.
 
     The likeliest scatter, begun with the records alone: what contradicts them has no say. What the records
     leave open agrees with all that is told, and says nothing about its scatter.
@@ -174,7 +174,7 @@ def explained(
     alike: bool = False,
     passing: bool = False,
 ) -> Evidence | None:
-    """What columns (R + D, k) explain of what the stack's baseline leaves.
+    """Evidence of columns (R + D, k) in what the stack's baseline leaves.
 
     positive: columns whose value may not be negative: it is zero where it would be. alike, passing: as of
     `StackedEquations.gain`.

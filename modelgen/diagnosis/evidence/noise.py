@@ -15,7 +15,7 @@ from modelgen.numeric import Array
 
 
 class Autocorrelation:
-    """Of the noise of rows that are stacked record after record, joint after joint in each.
+    """Autocorrelation of noise in rows stacked record after record, joint after joint in each.
 
     correlations: (n, lags) of each joint's noise, from lag 0, tapered so that no combination of rows has a
     negative variance (Newey and West 1987). moving: (M, n) of each record. periods: rows in a period of each.
@@ -42,7 +42,7 @@ class Autocorrelation:
             self.length += len(flags) + self.lags
 
     def of(self, left: Array) -> Autocorrelation:
-        """That of what is left, (R,), once what does not repeat is taken off."""
+        """Autocorrelation of what is left, (R,), once what does not repeat is taken off."""
         residuals = [np.zeros(flags.shape) for flags in self.moving]
         ends = np.cumsum([len(flags) + self.lags for flags in self.moving])
         for j, places in enumerate(self.places):
@@ -54,11 +54,11 @@ class Autocorrelation:
         return Autocorrelation(found, self.moving, self.periods, self.limits)
 
     def along(self, moving: Sequence[NDArray[np.bool_]]) -> Autocorrelation:
-        """The same in rows of other motions."""
+        """Autocorrelation in rows of other motions."""
         return Autocorrelation(self.correlations, moving, [None] * len(moving), self.limits)
 
     def variance(self, columns: Array) -> Array:
-        """Of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""
+        """Variance of the sums of noise of unit variance times columns (R, k): (k, k) (Bartlett 1946)."""
         found = np.zeros((columns.shape[1], columns.shape[1]))
         for kernel, places in zip(self.kernels, self.places, strict=True):
             spread = np.zeros((self.length, columns.shape[1]))
@@ -75,8 +75,11 @@ def correlations(
     periods: Sequence[int | None],
     limits: EvidenceThresholds,
 ) -> Array | None:
-    """Of what differs between the periods of residuals (M, n) of each record, tapered: (n, lags). None where
-    hardly anything repeats of some joint that moves: what is left has the colour of what the model lacks.
+    """Autocorrelation of what differs between the periods of residuals (M, n) of each record, tapered: (n,
+    lags).
+
+    None where hardly anything repeats of some joint that moves: what is left has the colour of what the
+    model lacks.
     """
     n, lags = residuals[0].shape[1], limits.autocorrelation_lags
     sums, counts = np.zeros((n, lags)), np.zeros(n)
@@ -94,7 +97,7 @@ def correlations(
 
 @dataclass(frozen=True)
 class Whitener:
-    """Of one joint: the prediction-error filter 1 - a1 z^-1 - ... and the size of what it leaves."""
+    """Whitener of one joint: the prediction-error filter 1 - a1 z^-1 - ... and the size of what it leaves."""
 
     taps: Array
     size: float
@@ -134,7 +137,7 @@ def usable_rows(moving: NDArray[np.bool_], order: int) -> NDArray[np.bool_]:
 def whitener(
     residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]], limits: EvidenceThresholds
 ) -> Whitener:
-    """From the residuals (M,) of one joint in all records, by least squares over the runs."""
+    """Fit a whitener to the residuals (M,) of one joint in all records, by least squares over the runs."""
     order, past, now = limits.whitening_order, [], []
     for residual, flags in zip(residuals, moving, strict=True):
         usable = np.flatnonzero(usable_rows(flags, order))

@@ -67,7 +67,7 @@ class System:
 
     @property
     def rows(self) -> Sequence[Rows]:
-        """Of each record."""
+        """Rows of each record."""
         return self.equations.rows
 
     @property
@@ -77,7 +77,7 @@ class System:
 
     @property
     def limits(self) -> EvidenceThresholds:
-        """By which evidence is counted."""
+        """Thresholds by which evidence is counted."""
         return self.equations.thresholds.evidence
 
     @property
@@ -135,7 +135,7 @@ class System:
         *,
         passing: bool = False,
     ) -> Evidence | None:
-        """What columns (M, n, k) of each record would explain; None where they add nothing of their own.
+        """Evidence of columns (M, n, k) of each record; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
         negative; empty for none. passing: they do not repeat with the periods. The evidence is that of the
@@ -176,7 +176,7 @@ def independent(values: Array, limits: EvidenceThresholds) -> float:
 
 
 def mean_squares(system: System) -> Array:
-    """Of what the fit leaves on the moving rows, by joint (n,)."""
+    """Mean squares that the fit leaves on the moving rows, by joint (n,)."""
     return rmse(system.rows, system.columns, system.theta) ** 2
 
 
@@ -187,7 +187,7 @@ def whitened_fit(system: System) -> tuple[Array, Array]:
 
 
 def covariance(system: System) -> Array:
-    """Of the least squares solution of the whitened equations, (p, p)."""
+    """Covariance of the least squares solution of the whitened equations, (p, p)."""
     norms = np.linalg.norm(system.white.matrix, axis=0)
     norms[norms == 0] = 1.0
     inverse = np.linalg.pinv((system.white.matrix / norms).T @ (system.white.matrix / norms), rcond=1e-14)

@@ -1,4 +1,4 @@
-"""The next experiment: what would tell rivals apart, within the arm's limits."""
+"""The next experiment tells rivals apart, within the arm's limits."""
 
 from modelgen.diagnosis.experiment.experiment import STEM, Experiment, differences, next_experiment
 from modelgen.diagnosis.experiment.experiment import to_json as experiment_json

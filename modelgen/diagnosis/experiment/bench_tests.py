@@ -66,7 +66,7 @@ def least(evidence: Array) -> float | None:
 def readings(
     stage: Setup, judge: Discriminator, claims: Sequence[tuple[str, int | None, Mapping[str, float]]]
 ) -> list[Test]:
-    """Of what causes claim: (effect, joint, values of its parameters)."""
+    """Readings of what causes claim: (effect, joint, values of its parameters)."""
     found = []
     for effect, joint, values in claims:
         reading = CATALOGUE[effect].reading

@@ -1,4 +1,4 @@
-"""How well a motion tells two causes from each other: the discrepancy of Atkinson and Fedorov (1975).
+"""The discrepancy of Atkinson and Fedorov (1975) says how well a motion tells two causes apart.
 
 With cause j true, y = X b + C_j c_j; what model i leaves of it, |(I - P_i) C_j c_j|^2 with P_i the projection
 on X and C_i, is the evidence against i that the motion can give, least over the nonlinear parameters of i.
@@ -39,7 +39,7 @@ class Hypothesis:
 
     @property
     def parameters(self) -> int:
-        """What the information criterion counts."""
+        """Number of parameters that the information criterion counts."""
         return len(self.theta) + len(self.values)
 
 
@@ -68,7 +68,7 @@ class _Scale:
 
     @property
     def rows(self) -> Array:
-        """By joint (n,)."""
+        """Numbers of rows by joint (n,)."""
         return np.bincount(self.joint, minlength=len(self.variance)).astype(float)
 
     @property
@@ -77,7 +77,7 @@ class _Scale:
         return np.asarray(self.rows * self.shares)
 
     def drop(self, signal: Array, columns: Array) -> float:
-        """What a model with these columns loses where the signal (R,) is there, in units of evidence."""
+        """Evidence that a model with these columns loses where the signal (R,) is there."""
         norms = np.linalg.norm(columns, axis=0)
         table = columns[:, norms > 0] / norms[norms > 0]
         left = (
@@ -96,7 +96,7 @@ class _Scale:
 
 
 class Discriminator:
-    """What records of motions would say about hypotheses, with the noise that the training records have.
+    """A discriminator predicts what motions would say about hypotheses, in the training records' noise.
 
     system: the final one. equations: whose arm further columns are made for. base: its base parameters (p,).
     before: causes beside those in question, whose columns both models have.
@@ -180,7 +180,7 @@ class Discriminator:
         return found
 
     def left_over(self, true: Hypothesis, other: Hypothesis, rows: Rows) -> tuple[Array, Array]:
-        """What `other` leaves (M, n) where `true` is, nan at rest, and the spread of the noise (n,)."""
+        """Residuals (M, n) that `other` leaves where `true` is, nan at rest, and the noise's spread (n,)."""
         own, wrong = (self.columns(h, h.values, [rows], [self.base]) for h in (true, other))
         sizes = self.system.sizes * np.sqrt(self.plain)
         if own is None or wrong is None:
@@ -222,5 +222,5 @@ def inside(columns: Array, others: Array, least: float) -> bool:
 
 
 def _beyond(columns: Array, basis: Array) -> Array:
-    """What is left of columns (R, k) beyond an orthonormal basis (R, b)."""
+    """Take from columns (R, k) what lies in an orthonormal basis (R, b)."""
     return np.asarray(columns - basis @ (basis.T @ columns))

@@ -1,4 +1,4 @@
-"""What to measure next where several causes explain the records: a trajectory, or a test on the bench."""
+"""An experiment for several causes that explain the records: a trajectory, or a test on the bench."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ class Experiment:
 
     @property
     def periods(self) -> int:
-        """How many of the trajectory tell the causes apart: evidence grows with them."""
+        """Number of the trajectory's periods that tell the causes apart: evidence grows with them."""
         evidence, run = self.evidence or 0.0, self.run
         asked = self.thresholds.selection.rival_margin_bic
         return run if not 0.0 < evidence < asked else math.ceil(run * asked / evidence)
 
     @property
     def best(self) -> str:
-        """What to do: the test that promises most evidence, the trajectory where no test has more."""
+        """The test that promises most evidence, the trajectory where no test has more."""
         first = self.tests[0] if self.tests else None
         if self.proposal is None or (first and (first.evidence or 0.0) > (self.evidence or 0.0)):
             return first.text if first else ""
@@ -76,7 +76,7 @@ def next_experiment(
     progress: Progress | None = None,
     where: Where = HERE,
 ) -> Experiment | None:
-    """For the first cause that others could stand for; None where there is none.
+    """Plan for the first cause that others could stand for; None where no cause has rivals.
 
     stage: None for free motions, whose trajectory nothing can command. found: the causes as they were
     selected, in the order of `causes`.
@@ -110,7 +110,7 @@ def next_experiment(
 
 
 def _said(separates: Sequence[tuple[str, int | None]]) -> tuple[Test, ...]:
-    """What the catalogue says of each, once."""
+    """Tests that the catalogue names for each, once."""
     texts = dict.fromkeys(CATALOGUE[effect].experiment for effect, _ in separates)
     return tuple(Test(text, None) for text in texts)
 

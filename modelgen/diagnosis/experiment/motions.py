@@ -38,12 +38,12 @@ class Setup:
 
     @property
     def model(self) -> Model:
-        """Of the arm as described."""
+        """Model of the arm as described."""
         return self.equations.model
 
     @property
     def evaluator(self) -> Evaluator:
-        """Of the inputs that motions need."""
+        """Evaluator of the inputs that motions need."""
         return self.equations.evaluator
 
     @property
@@ -53,7 +53,7 @@ class Setup:
 
     @property
     def limits(self) -> ExperimentThresholds:
-        """By which an experiment is chosen."""
+        """Thresholds by which an experiment is chosen."""
         return self.equations.thresholds.experiment
 
     @property
@@ -62,19 +62,19 @@ class Setup:
         return self.prepared[0].record.step
 
     def times(self, count: int) -> Array:
-        """Of so many samples (N,) of a motion [s]."""
+        """Times (N,) of so many samples of a motion [s]."""
         return np.asarray(self.every * self.step * np.arange(count), dtype=np.float64)
 
     @property
     def coarse(self) -> Setup:
-        """With as few samples as the same rows of a slow motion follow from."""
+        """Set-up with as few samples as the same rows of a slow motion follow from."""
         factor = self.prepared[0].settings.factor
         fewest = min(self.limits.min_samples_per_row, factor)
         rest = next(k for k in range(fewest, factor + 1) if factor % k == 0)
         return replace(self, every=factor // rest)
 
     def settings(self, period: int | None, seed: int = 0) -> ExcitationOptions:
-        """Of the excitation. period: samples in that of the training records."""
+        """Settings of the excitation. period: samples in that of the training records."""
         rate = 1.0 / self.step
         length = self.limits.usual_period if period is None else period * self.step
         shortest, longest = self.limits.period_range
@@ -120,7 +120,7 @@ class Setup:
 
 
 def setup(arm: Arm, equations: Equations, base: Array) -> Setup:
-    """What motions are planned on. Where the description has no limit, what the records reached counts."""
+    """Prepare what motions are planned on. Where the description has no limit, that of the records counts."""
     joints, assumed, prepared = list(arm.joints), [], [r.prepared for r in equations.rows]
     for n, i in enumerate(arm.coordinates):
         own = joints[i].limits

@@ -129,12 +129,12 @@ def worth(stage: Setup, judge: Discriminator, members: Sequence[Hypothesis], p: 
 
 
 def scaled(z: Array, factor: float) -> Array:
-    """The same motion about the same middle, smaller."""
+    """Shrink the motion about its middle."""
     return np.concatenate([z[:, :1], factor * z[:, 1:]], axis=1)
 
 
 def as_run(stage: Setup, p: Problem, k: int) -> Array | None:
-    """What training record k ran, as a series; None where it left the limits."""
+    """Motion of training record k as a series; None where it left the limits."""
     prepared, t = stage.prepared[k], p.at_rate()
     x = prepared.motor if p.settings.coordinates == "motor" else prepared.q
     begin = int(prepared.rows[0])

@@ -176,7 +176,7 @@ def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Arra
 
 
 def unit_of_efforts(test: Prepared) -> str:
-    """Of the log's efforts; several where joints differ."""
+    """Unit of the log's efforts; several where joints differ."""
     return ", ".join(dict.fromkeys(test.effort_unit)) or "A"
 
 

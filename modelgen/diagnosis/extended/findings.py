@@ -21,8 +21,8 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Share:
-    """What leaving a cause out costs on the test record, percent of the RMSE; low, high: 95 % interval. Below
-    zero where it does harm there. Not a number where that is not known.
+    """A share is what leaving a cause out costs on the test record, percent of the RMSE. low, high: 95 %
+    interval. Below zero where it does harm there. Not a number where that is not known.
     """
 
     gain: float = float("nan")

@@ -1,4 +1,4 @@
-"""What a model leaves of the test record, before and after, with intervals from a block bootstrap.
+"""Errors on the test record, before and after, with intervals from a block bootstrap.
 
 Blocks keep the colour of the residuals (Kuensch 1989).
 """
@@ -24,7 +24,7 @@ SEED = 1989
 
 
 def errors(rows: Rows, before: Array, after: Array, unit: str, limits: ExtendedThresholds) -> Errors:
-    """From residuals (M, n) in `unit`; rows that do not move do not count."""
+    """Errors from residuals (M, n) in `unit`; rows that do not move do not count."""
     n = before.shape[1]
     found = []
     for j in range(n):
@@ -39,7 +39,7 @@ def motion_errors(
     after: Windows | None,
     limits: ExtendedThresholds,
 ) -> Errors:
-    """Of the simulated positions of a free motion [rad, m]; not a number where one cannot be simulated."""
+    """Errors of a free motion's simulated positions [rad, m]; not a number where one cannot be simulated."""
     n = record.n
     found = np.full((n, 5), np.nan)
     joints = [] if record.arm is None else [record.arm.joints[i] for i in record.arm.coordinates]
@@ -67,7 +67,7 @@ def compared(before: Array, after: Array, limits: ExtendedThresholds) -> tuple[f
 
 
 def shares(extension: Extension, test: Rows) -> list[Share]:
-    """Of every cause, over the joints where it acts, each in units of what all causes leave there.
+    """Shares of the causes, over the joints where each acts, in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
     searched for stay. Not a number where one of them cannot stand on that record.

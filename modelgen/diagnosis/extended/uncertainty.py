@@ -32,8 +32,8 @@ OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
 
 
 def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
-    """Of the least squares estimate of a system's columns (p), and of what has these slopes (M, n, m) of each
-    record: (p + m, p + m). known: columns whose factor is.
+    """Covariance of the least squares estimate of a system's columns (p), and of what has these slopes (M,
+    n, m) of each record: (p + m, p + m). known: columns whose factor is.
     """
     plain = system.plain
     matrix = plain.matrix.copy()
@@ -95,7 +95,7 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
 
 
 def _slopes(cause: Cause, equations: Equations, base: Array) -> list[Array]:
-    """What the cause adds (M, n, m) per unit of each value that was searched for, of every record."""
+    """Slopes (M, n, m) of the cause's columns by each value that was searched for, of every record."""
     trial = cause.trial
     theta = np.ones(1) if trial.candidate.elastic else trial.gain.values
     parts: list[list[Array]] = [[] for _ in equations.rows]
@@ -117,8 +117,9 @@ def _slopes(cause: Cause, equations: Equations, base: Array) -> list[Array]:
 
 
 def _physical(trial: FittedCandidate, covariance: Array, linear: int, most: float) -> dict[str, float]:
-    """Of the effect's own parameters, by how they follow from what was estimated and searched for. most:
-    relative deviation beyond which a value is not determined.
+    """Deviations of the effect's own parameters, by how they follow from what was estimated and searched for.
+
+    most: relative deviation beyond which a value is not determined.
     """
     names, now = list(trial.values), trial.parameters
     moved: list[dict[str, float]] = []
@@ -140,7 +141,7 @@ def _physical(trial: FittedCandidate, covariance: Array, linear: int, most: floa
 
 
 def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str, Estimate]]:
-    """Of every cause, its own parameters; what was fixed, or is not determined, has no deviation."""
+    """Estimates of the causes' own parameters; what was fixed, or is not determined, has no deviation."""
     found = []
     for cause, spread in zip(selection.causes, deviations(selection, equations), strict=True):
         units = _units(equations.arm, *cause.trial.candidate.place)

@@ -14,7 +14,7 @@ from modelgen.diagnosis.validation import Gates
 
 
 def backward_elimination(causes: list[Cause], system: System, evidence: float) -> tuple[list[Cause], System]:
-    """Without causes that the others have made superfluous: those that lack evidence, then those whose value
+    """Leave out causes that others have made superfluous: those that lack evidence, then those whose value
     is not possible, then those that gain nothing, in the final model. Evidence of the rest in that model.
 
     system: with all causes; evidence: delta BIC that it takes to name one.
@@ -65,7 +65,7 @@ def _worth(trial: FittedCandidate, without: System) -> float:
 
 
 def _least_values(causes: Sequence[Cause], system: System) -> list[float]:
-    """Of what may not be negative in each cause, the least value in the whitened equations, in its standard
+    """Least value in each cause of what may not be negative, in the whitened equations, in its standard
     deviations; zero where there is nothing of the kind.
     """
     values, spread = whitened_fit(system)

@@ -57,7 +57,7 @@ class Selection:
     turns: History
 
     def without(self, lost: Sequence[Cause], why: str) -> Selection:
-        """The same with fewer causes, and in its turns why."""
+        """Take causes out; the turns say why."""
         kept = [c for c in self.causes if all(c is not other for other in lost)]
         system = system_of(self.system.equations, [c.trial for c in kept])
         turns = self.turns

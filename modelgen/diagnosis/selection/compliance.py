@@ -76,7 +76,7 @@ def refined(
     system: System,
     where: Where = HERE,
 ) -> list[FittedCandidate]:
-    """Where an elastic joint or a gap is ahead of all trials, those at its joint with their best values.
+    """Find the best values of elastic joints and gaps at a joint where one of them is ahead of all trials.
 
     Where a rigid joint leaves less than all of them, whatever is ahead of the other trials. None beside
     another one: what is left of that looks like the next. where: processes among which they are shared.
@@ -100,7 +100,7 @@ def refined(
 def _better(
     trials: Sequence[FittedCandidate], places: Sequence[_Beside], where: Where
 ) -> list[FittedCandidate]:
-    """Those of the trials that leave less than a rigid joint, with their best values."""
+    """Keep the trials that leave less than a rigid joint, with their best values."""
     begins = [(k, values) for k, trial in enumerate(trials) for values in (trial.values, *_starts(trial))]
 
     def begun(number: int) -> _Begun:

@@ -1,4 +1,4 @@
-"""What was asked at every turn of the selection, with what evidence, and why it is no cause."""
+"""The history holds the candidates of every turn, their evidence, and why each is no cause."""
 
 from __future__ import annotations
 

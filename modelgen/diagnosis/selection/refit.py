@@ -65,7 +65,7 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
 
 
 def _anew(trial: FittedCandidate, values: Array, equations: Equations, base: Array) -> FittedCandidate:
-    """With columns at these values (k,) and base parameters; as it was where the arm does not admit them."""
+    """Renew a trial's columns at values (k,) and base parameters; unchanged where the arm refuses them."""
     c = trial.candidate
     if c.elastic or unchanging(c, equations.evaluator) or (values[np.array(c.positive)] < 0).any():
         return trial

@@ -58,7 +58,7 @@ def refit_stiffness(selection: Selection, equations: Equations) -> Selection:
 
 
 def _share(trials: Sequence[FittedCandidate], which: int, values: Array) -> float:
-    """What is found of an elastic joint's column. values: of all trials' columns, one after the other."""
+    """Share of an elastic joint's column that is found. values: of all trials' columns in turn."""
     return float(values[sum(t.columns[0].shape[2] for t in trials[:which])])
 
 

@@ -74,7 +74,7 @@ class _Steps:
 
     @property
     def equations(self) -> Equations:
-        """As the causes have left them: one that rests takes its rows with it."""
+        """Equations as the causes have left them: one that rests takes its rows with it."""
         return self.system.equations
 
     @property
@@ -129,7 +129,7 @@ class _Steps:
         return trials, faint, refused
 
     def _judged(self, trials: Sequence[FittedCandidate], gates: Gates) -> list[Judged]:
-        """What the gates say, and which of those that pass give way to others."""
+        """Judge the trials by the gates; some of those that pass give way to others."""
         priced = self.stepped or harmless(self.equations, mean_squares(self.system))
         noisy = not priced and correlated(self.system)
         found: list[Judged] = []

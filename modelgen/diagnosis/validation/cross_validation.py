@@ -51,7 +51,7 @@ def _parts(rows: Sequence[Rows], split: Split) -> list[tuple[Part, Part]]:
 
 
 def _passed(tried: Sequence[Rows], fitted: Sequence[Rows], j: int) -> list[Rows]:
-    """The tried rows without those equations of joint j where no fitted row of it was."""
+    """Leave out tried equations of joint j at places where no fitted row was."""
     there = np.concatenate([_places(r, j)[r.moving[:, j]] for r in fitted])
     low, high = (there.min(), there.max()) if len(there) else (np.inf, -np.inf)
     found = []

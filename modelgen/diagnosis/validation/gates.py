@@ -36,8 +36,10 @@ class Judgement:
 
 
 class Gates:
-    """Of one step of the selection. system: with the causes that were taken `before`; last: what is judged
-    was taken before those, which cannot have left it anything of theirs.
+    """Gates of one step of the selection.
+
+    system: with the causes that were taken `before`; last: what is judged was taken before those, which
+    cannot have left it anything of theirs.
     """
 
     def __init__(self, system: System, before: Sequence[FittedCandidate], *, last: bool = False) -> None:
@@ -162,7 +164,7 @@ class Gates:
         return self._known[split]
 
     def _with(self, new: Sequence[Array], split: Split) -> Array:
-        """The same with the cause, as it was fitted to the other part."""
+        """Sums of squares with the cause, as it was fitted to the other part."""
         own = self.old[0].shape[2]
         found = np.zeros((2, self.system.n))
         for (fitted, at), (tried, to) in folds(self.rows, split):

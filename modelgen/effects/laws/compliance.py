@@ -40,7 +40,7 @@ def stiffness(*grid: float) -> Parameter:
 
 
 class Compliance(Effect):
-    """What elastic joints and play share.
+    """Elastic joints and play share this.
 
     It lies at the motor. Where a lever's ratio changes along the stroke, stiffness, damping and play are
     those at the joint in the middle of it.
@@ -53,7 +53,7 @@ class Compliance(Effect):
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """Where it is not known which position was measured."""
+        """It is hidden where nobody knows which position was measured."""
         there = [arm.joints[arm.coordinates[n - 1]].effects for n in seen.unsided]
         unsided = [
             n for n, uses in zip(seen.unsided, there, strict=True) if all(u.name != cls.name for u in uses)
@@ -115,7 +115,7 @@ class Compliance(Effect):
         return {"lag": lag + dt * (rate + after) / 2, "rate": after}
 
     def _effort(self, x: Variables, p: Values) -> sp.Expr:
-        """What spring and damper do to the link."""
+        """Effort of spring and damper at the link."""
         stretch, lever = self._stretch(x)
         force, touching = self.spring(stretch, p)
         return lever * (force + p["damping"] * touching * lever * x.state["rate"])

@@ -173,7 +173,7 @@ class FrictionWarmUp(Friction):
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """Where drives were warmed before."""
+        """It is hidden where drives were warmed before."""
         text = "a record begins in the middle of a log: how warm the drives were is not known"
         return [] if named or seen.whole else [text]
 

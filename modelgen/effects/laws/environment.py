@@ -1,4 +1,4 @@
-"""What surrounds the arm: fluid, payload, the ground that it stands on."""
+"""The arm's surroundings: fluid, payload, the ground that it stands on."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Strips(LinkEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """Where the links that carry no other have nominal inertials, from which their end is taken."""
+        """It stands where links that carry no other have nominal inertials, from which their end is taken."""
         carrying = {joint.antecedent for joint in arm.joints}
         return all(link is not None for i, link in enumerate(arm.links) if i not in carrying)
 

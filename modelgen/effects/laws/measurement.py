@@ -33,7 +33,7 @@ class EncoderOffset(DescriptionEffect):
 
     @classmethod
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
-        """Of an angle; how far a slide may be off depends on its size."""
+        """Usual size of an angle; that of a slide depends on the arm's size."""
         slides = number is not None and joint_of(arm, number).type == "prismatic"
         return {} if slides else super().usual(arm, number)
 
@@ -73,7 +73,7 @@ class LeverGeometry(DescriptionEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """At a lever."""
+        """It stands at a lever."""
         return number is not None and joint_of(arm, number).drive.actuator is not None
 
     @classmethod
@@ -120,17 +120,17 @@ class DriveGainError(DescriptionEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """At a drive."""
+        """It stands at a drive."""
         return number is not None and joint_of(arm, number).drive.driven
 
     @classmethod
     def scales(cls, values: Numbers) -> float | None:
-        """Where nothing else bends the input."""
+        """It scales the input where nothing else bends that."""
         return 1 / (1 + values["error"])
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """At a single joint."""
+        """A single joint hides it."""
         if named or len(arm.coordinates) > 1:
             return []
         return ["the torque constant of a single joint scales all its parameters"]
@@ -213,7 +213,7 @@ class TimeDelay(InputEffect):
         return x.state["lagged"] if p["delay"] > 0 else x.input
 
     def required(self, x: InputVariables, p: Values) -> sp.Expr:
-        """As without it: what has not happened yet cannot be commanded."""
+        """Return the input unchanged: what has not happened yet cannot be commanded."""
         return x.input
 
     def step(self, x: InputVariables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:

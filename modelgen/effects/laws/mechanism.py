@@ -171,7 +171,7 @@ class TransmissionCoupling(Effect):
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
-        """With every joint before this one, in either direction."""
+        """Couple it with every joint before this one, in either direction."""
         assert number is not None
         return [{"other": float(k), "ratio": r} for k in range(1, number) for r in (1.0, -1.0)]
 
@@ -216,17 +216,17 @@ class ActuatorMass(BodyEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """At a lever."""
+        """It stands at a lever."""
         return number is not None and joint_of(arm, number).drive.actuator is not None
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
-        """Where its base is shows only if other joints turn the link that carries it."""
+        """The place of its base shows only if other joints turn the link that carries it."""
         return [{}] if _carried(arm, number) else [{"base_angle": 0.0}]
 
     @classmethod
     def subsets(cls, arm: Arm, number: int | None) -> tuple[tuple[str, ...], ...]:
-        """Where its base is says also where its weight points."""
+        """The place of its base says also where its weight points."""
         return cls.parts if _carried(arm, number) else super().subsets(arm, number)
 
     @classmethod
@@ -241,7 +241,7 @@ class ActuatorMass(BodyEffect):
         return {"inertia": mass * longest**2 / 3, "moment_x": moment, "moment_y": moment}
 
     def swing(self, x: BodyVariables, p: Values) -> Swing:
-        """From the base, at the distance l1 from the joint, to the lever's end, at l2."""
+        """It swings from the base, at the distance l1 from the joint, to the lever's end, at l2."""
         q, actuator = x.transmission.q, x.transmission.drive.actuator
         if actuator is None:
             raise ValueError("found on a joint without a lever, expected a levered drive")

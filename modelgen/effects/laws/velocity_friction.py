@@ -63,7 +63,7 @@ class CoulombFriction(Effect):
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """At rest."""
+        """A joint at rest hides it."""
         return [f"joint {n} does not move in the training records" for n in seen.still]
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
@@ -147,7 +147,7 @@ class NonlinearViscousFriction(Friction):
 
     @classmethod
     def imitates(cls, values: Numbers) -> Shows | None:
-        """At the least power it is dry friction that is lower near rest."""
+        """The least power is dry friction that is lower near rest."""
         least = cls.nonlinear[0].grid[0]
         return Shows.NEAR_REST if values.get("exponent", math.inf) < NEAR_REST * least else None
 
