@@ -6,8 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from modelgen.effects import CATALOGUE
 from modelgen.identification.objects import POOR, Estimate, Identification
 
+CLEARLY = 3.0  # standard deviations
 # What shows a parameter, by the letters that its standard parameter begins with; the first that fits.
 _SHOWN_BY = (
     (("FV", "FA", "FN"), "a wider range of speeds"),
@@ -23,7 +25,8 @@ def verdict(found: Identification) -> str:
     poor = [e for e in found.estimates if e.std is not None and (e.relative or np.inf) > POOR]
     dropped = [e.name for e in found.estimates if e.dropped]
     good = [e.name for e in found.estimates if e.std is not None and (e.relative or np.inf) <= POOR]
-    text = [f"{len(good)} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
+    text = impossible(found.estimates)
+    text += [f"{len(good)} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
     if poor:
         text.append(f"Poorly determined: {', '.join(e.name for e in poor)}.")
     if lost:
@@ -49,6 +52,26 @@ def verdict(found: Identification) -> str:
     if advice:
         text.append(f"What would help: {'; '.join(advice)}. See modelgen excite.")
     return " ".join(text)
+
+
+def impossible(estimates: Sequence[Estimate]) -> list[str]:
+    """A question where parameters of effects that are never negative come out below zero clearly."""
+    limited = {p.symbol for effect in CATALOGUE.values() for p in effect.linear if p.bounds[0] >= 0.0}
+    negative = [
+        e
+        for e in estimates
+        if e.std is not None
+        and e.name == e.standard
+        and e.name.rstrip("0123456789") in limited
+        and e.value < -CLEARLY * e.std
+    ]
+    if not negative:
+        return []
+    joints = ", ".join(str(j) for j in sorted({e.joint for e in negative}))
+    return [
+        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive joint {joints}. "
+        "Is the sign of the efforts the other way round, or that of torque_constant?"
+    ]
 
 
 def experiment(wanting: Sequence[Estimate]) -> list[str]:
