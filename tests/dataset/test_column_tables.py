@@ -119,7 +119,8 @@ def test_a_mapping_file_renames_and_scales_the_columns_of_a_table(arm: Arm, tmp_
 
 def test_uneven_time_is_resampled_as_in_a_file(arm: Arm, tmp_path: Path) -> None:
     table = columns()
-    table["t"] = table["t"] + np.random.default_rng(2).uniform(-0.001, 0.001, len(table["t"]))
+    t = table["t"] + np.random.default_rng(2).uniform(-0.001, 0.001, len(table["t"]))
+    table |= {"t": t, "q1": np.sin(t + 1), "q2": 0.5 * np.cos(2 * t)}
     found = read(named(table, "log"), arm)
     assert any("resampled" in remark for remark in found.remarks)
     same(found, read(file(tmp_path, table), arm))

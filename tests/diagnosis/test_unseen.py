@@ -28,6 +28,8 @@ def said(d: Diagnosis) -> dict[str, Any]:
     for name in ("error", "simulation"):
         del whole[name]
     del whole["settings"]["test"]
+    for cause in whole["causes"]:  # which the test record confirms or not
+        cause["checks"] = [check for check in cause["checks"] if check["name"] != "confirmed"]
     return whole
 
 

@@ -40,9 +40,9 @@ def test_the_report_stands_alone_and_is_the_same_again(found: Diagnosis) -> None
 def test_one_value_in_the_answer_the_description_and_the_table(found: Diagnosis) -> None:
     """What is reported is what predicted the test record."""
     (cause,) = found.causes
-    (use,) = [c.trial for c in found.selection.causes]
+    ((_, _, used),) = found.added
     (place,) = [n for n in found.parameters if n.startswith("FS")]
-    assert use.parameters["magnitude"] == cause.parameters["magnitude"].value
+    assert used["magnitude"] == cause.parameters["magnitude"].value
     assert found.parameters[place].value == pytest.approx(cause.parameters["magnitude"].value, rel=1e-5)
     described = found.after.arm.joints[1].effects[-1].values["velocity"]
     assert described == pytest.approx(cause.parameters["velocity"].value, rel=1e-8)
