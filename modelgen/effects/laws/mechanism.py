@@ -10,7 +10,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, BodyEffect, Effect, Parameter, Swing, Values, at
-from modelgen.effects.traits import Family, Shows, joint_of
+from modelgen.effects.traits import Family, Numbers, Shows, joint_of
 from modelgen.effects.variables import BodyVariables, Variables
 from modelgen.symbolic import number as figure
 from modelgen.transmission import curves, of_joint
