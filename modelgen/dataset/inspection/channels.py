@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -89,7 +89,7 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         )
     positions = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
     found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
-    return Inspected(**{**vars(found), "without_numbers": rest, "remarks": tuple(remarks)})
+    return replace(found, without_numbers=rest, remarks=tuple(remarks))
 
 
 def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -105,7 +105,7 @@ def _of_record(record: Record, t: Array | None = None) -> Inspected:
     found = _inspected(record.name, record.t if t is None else t, channels, [])
     period = period_of(record, None)
     seconds = None if period is None else period * record.step
-    return Inspected(**{**vars(found), "period": seconds, "remarks": record.remarks})
+    return replace(found, period=seconds, remarks=record.remarks)
 
 
 def _raw(log: Log, arm: Arm, mapping: Path | str | None) -> Array:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
+from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import covariance
 from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.selection import Cause, Selection, needed_evidence
 from modelgen.diagnosis.validation import Check, agreement
-from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)
@@ -88,15 +88,11 @@ def significant(k: int, selection: Selection) -> Check:
 
 def _estimated(k: int, selection: Selection) -> tuple[Mapping[str, float], Mapping[str, float]]:
     """Values and standard deviations of what was estimated of the cause number k, by name."""
-    system = selection.system
-    begin = system.equations.unknowns
-    begin += sum(c.trial.columns[0].shape[2] for c in selection.causes[:k])
+    system, own = selection.system, selection.columns[k]
     names = selection.causes[k].trial.candidate.names
     spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
-    return (
-        {name: float(system.theta[begin + i]) for i, name in enumerate(names)},
-        {name: float(spread[begin + i]) for i, name in enumerate(names)},
-    )
+    values = zip(names, system.theta[own].tolist(), strict=True)
+    return dict(values), dict(zip(names, spread[own].tolist(), strict=True))
 
 
 def _admissible(cause: Cause, equations: Equations) -> Check:
@@ -135,18 +131,10 @@ def _stable(k: int, selection: Selection) -> Check:
     system = selection.system
     least = system.equations.thresholds.adequacy.min_stable_probability
     parts = [([row], [i]) for i, row in enumerate(system.rows)]
-    columns, own = _last(k, selection)
+    trial = selection.causes[k].trial
+    others = [c.trial for i, c in enumerate(selection.causes) if i != k]
+    columns = with_causes(system.equations, [*others, trial])  # the cause's own at the end
+    own = columns[0].shape[2] - trial.columns[0].shape[2]
     found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
     text = "probability of records that differ as much in its size where that is the same in all"
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
-
-
-def _last(k: int, selection: Selection) -> tuple[Sequence[Array], int]:
-    """The system's columns of every record with the cause's at the end, and how many stand before."""
-    others = [c.trial for i, c in enumerate(selection.causes) if i != k]
-    trial, equations = selection.causes[k].trial, selection.system.equations
-    columns = [
-        np.concatenate([own, *(t.columns[i] for t in others), trial.columns[i]], axis=2)
-        for i, own in enumerate(equations.columns)
-    ]
-    return columns, columns[0].shape[2] - trial.columns[0].shape[2]

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -53,20 +52,13 @@ def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[
 def valued(selection: Selection) -> Selection:
     """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
     causes = []
-    for cause, own in zip(selection.causes, _columns_of(selection), strict=True):
+    for cause, own in zip(selection.causes, selection.columns, strict=True):
         trial, values = cause.trial, selection.system.theta[own]
         if not trial.candidate.elastic:  # which are as they were simulated
             values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
             trial = replace(trial, gain=replace(trial.gain, values=values))
         causes.append(replace(cause, trial=trial))
     return replace(selection, causes=causes)
-
-
-def _columns_of(selection: Selection) -> list[slice]:
-    """Places of the causes' columns in the system's."""
-    counts = [c.trial.columns[0].shape[2] for c in selection.causes]
-    ends = selection.system.equations.unknowns + np.cumsum([0, *counts])
-    return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
 
 def deviations(selection: Selection, equations: Equations) -> list[dict[str, float]]:
@@ -81,7 +73,7 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
     slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
     most = equations.thresholds.extended.max_relative_deviation
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
-    places = _columns_of(selection)
+    places = selection.columns
     compliant = [c.trial.candidate.elastic for c in selection.causes]
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     whole = covariance_of(system, together if together[0].shape[2] else (), held)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from modelgen.description import Arm
@@ -9,6 +10,7 @@ from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
 from modelgen.diagnosis.equations import Study
 from modelgen.diagnosis.extended import (
+    Estimate,
     Extension,
     NamedCause,
     Positions,
@@ -26,7 +28,8 @@ from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.options.thresholds import USUAL, in_band
 from modelgen.diagnosis.result.diagnosis import Diagnosis
 from modelgen.diagnosis.result.not_identifiable import not_identifiable
-from modelgen.diagnosis.selection import Selection, threshold
+from modelgen.diagnosis.selection import Cause, Selection, threshold
+from modelgen.diagnosis.validation import Check
 
 
 def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
@@ -99,31 +102,18 @@ def _settings(study: Study, decision: Decision, selection: Selection, options: O
 
 def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
     """The causes as they are reported, with aliases and rivals."""
-    causes = extension.selection.causes
+    causes, arm = extension.selection.causes, extension.before.arm
     if not causes:
         return ()
     estimates = cause_estimates(extension.selection, extension.equations)
     result = []
     for cause, same, values, asked in zip(causes, decision.equal, estimates, decision.causes, strict=True):
-        c = cause.trial.candidate
-        alias = tuple(other.place for other in same)
+        aliases = tuple(other.place for other in same)
         rivals = tuple(
-            (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in alias
+            (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in aliases
         )
-        result.append(
-            NamedCause(
-                effect=c.effect,
-                joint=c.joint,
-                parameters=values,
-                delta_bic=cause.delta_bic,
-                cross_gain=cause.cross_gain,
-                expected_gain=cause.expected_gain,
-                aliases=alias,
-                ambiguous_with=rivals,
-                joint_name=_joint_name(extension.before.arm, c.joint),
-                checks=asked.checks,
-            )
-        )
+        named = _as_named(arm, cause, values, asked.checks)
+        result.append(replace(named, aliases=aliases, ambiguous_with=rivals))
     return tuple(result)
 
 
@@ -131,26 +121,26 @@ def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
     """What has evidence and failed a check, with its values as they were found beside the causes."""
     if not decision.suspects:
         return ()
-    before = decision.before
-    estimates = cause_estimates(before, before.system.equations)
-    result = []
-    for e in decision.suspects:
-        k = next(k for k, c in enumerate(before.causes) if c is e.cause)
-        c = e.cause.trial.candidate
-        result.append(
-            NamedCause(
-                effect=c.effect,
-                joint=c.joint,
-                parameters=estimates[k],
-                delta_bic=e.cause.delta_bic,
-                cross_gain=e.cause.cross_gain,
-                expected_gain=e.cause.expected_gain,
-                joint_name=_joint_name(arm, c.joint),
-                checks=(*e.checks, confirmed(float("nan"), float("nan"))),
-            )
-        )
-    return tuple(result)
+    before, unmeasured = decision.before, confirmed(float("nan"), float("nan"))
+    found = zip(before.causes, cause_estimates(before, before.system.equations), strict=True)
+    estimates = {id(cause): values for cause, values in found}
+    return tuple(
+        _as_named(arm, e.cause, estimates[id(e.cause)], (*e.checks, unmeasured)) for e in decision.suspects
+    )
 
 
-def _joint_name(arm: Arm, number: int | None) -> str | None:
-    return None if number is None else arm.joints[arm.coordinates[number - 1]].name
+def _as_named(
+    arm: Arm, cause: Cause, values: Mapping[str, Estimate], checks: tuple[Check, ...]
+) -> NamedCause:
+    """A cause with its values and checks, without what only the test record or its rivals say."""
+    c = cause.trial.candidate
+    return NamedCause(
+        effect=c.effect,
+        joint=c.joint,
+        parameters=values,
+        delta_bic=cause.delta_bic,
+        cross_gain=cause.cross_gain,
+        expected_gain=cause.expected_gain,
+        joint_name=None if c.joint is None else arm.joints[arm.coordinates[c.joint - 1]].name,
+        checks=checks,
+    )

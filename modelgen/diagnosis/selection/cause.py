@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,6 +56,13 @@ class Selection:
     causes: list[Cause]
     system: System
     turns: History
+
+    @property
+    def columns(self) -> list[slice]:
+        """Places of the causes' columns among the system's."""
+        counts = [c.trial.columns[0].shape[2] for c in self.causes]
+        ends = self.system.equations.unknowns + np.cumsum([0, *counts])
+        return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
     def without(self, lost: Sequence[Cause], why: str) -> Selection:
         """Take causes out; the turns say why."""
