@@ -19,7 +19,7 @@ def library() -> Any:
         importlib.import_module("pyarrow.parquet")
         return importlib.import_module("pyarrow")
     except ImportError:
-        raise InputError("the table of a fleet needs pyarrow: pip install 'pyarrow>=15'") from None
+        raise InputError("a fleet needs pyarrow: pip install 'pyarrow>=15'") from None
 
 
 def write_table(rows: Sequence[Row], path: Path) -> None:

@@ -11,6 +11,7 @@ from hidden.running import run_here
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.validation.gates import Judgement
 
@@ -51,7 +52,7 @@ def test_of_an_elastic_joint_and_a_gap_the_simpler_one_is_taken_where_both_expla
     pairs = [judged("joint_flexibility", 2, *elastic), judged("backlash", 2, *gap)]
     pairs.append(judged("backlash", 1, 700.0, 9.0))  # another joint's has no say
     pairs.sort(key=lambda pair: -pair[0].gain.delta_bic)
-    trial, _ = member(pairs[0], pairs)
+    trial, _ = member(pairs[0], pairs, USUAL)
     assert (trial.candidate.effect, trial.candidate.joint) == (named, 2)
 
 

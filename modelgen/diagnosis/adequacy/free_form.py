@@ -37,7 +37,8 @@ class FreeForm:
 def free_forms(selection: Selection, equations: Equations) -> dict[int | None, FreeForm]:
     """Find, for each joint with causes, the free function that is ahead of them by most.
 
-    Asked for all causes of a joint together. Not of elastic joints and play, whose own laws are none of the
+    Asked for all causes of a joint together; a cause whose law is the first terms of a series counts with the
+    function that the series would come to. Not of elastic joints and play, whose own laws are none of the
     joint's motion, of causes of the whole arm, or of free motions.
     """
     if equations.free:
@@ -51,21 +52,32 @@ def free_forms(selection: Selection, equations: Equations) -> dict[int | None, F
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
         evidence = together(own, without, fair=True)
+        rest = 0.0  # of the series, which is no other cause
+        if any(t.candidate.definition.series for t in own):
+            series = _functions(joint - 1, equations, series=True)
+            rest = max(rest, *(log_evidence(shape, selection.system).evidence for shape in series))
         most = max(limits.max_free_form_ahead, limits.max_free_form_share * max(evidence, 0.0))
         tried = []
         for shape in _functions(joint - 1, equations):
-            ahead = log_evidence(shape, without).evidence - evidence
-            beside = log_evidence(shape, selection.system).evidence if ahead > most else -np.inf
+            ahead = log_evidence(shape, without).evidence - evidence - rest
+            beside = log_evidence(shape, selection.system).evidence - rest if ahead > most else -np.inf
             tried.append(FreeForm(ahead, most, beside, limits.min_free_form_beside))
         found[joint] = max(tried, key=lambda f: (f.better, f.ahead))
     return found
 
 
-def _functions(j: int, equations: Equations) -> Iterator[SmoothFunction]:
-    """Functions of position and speed of joint j (from 0), of every bend length."""
-    states = [np.column_stack([r.prepared.q[:, j], r.prepared.dq[:, j]]) for r in equations.rows]
+def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
+    """Functions of position and speed of joint j (from 0), of every bend length.
+
+    series: of the position, times the direction.
+    """
+    name = f"a force at joint {j + 1} over its position and speed"
+    positions = [r.prepared.q[:, [j]] for r in equations.rows]
+    speeds = [r.prepared.dq[:, [j]] for r in equations.rows]
+    over = positions if series else [np.hstack(state) for state in zip(positions, speeds, strict=True)]
     for bend in equations.thresholds.adequacy.bend_lengths:
         tables = []
-        for r, x, state in zip(equations.rows, functions(states, bend), states, strict=True):
-            tables.append(r.equation(j, np.hstack([x, x * np.sign(state[:, 1:])])))
-        yield SmoothFunction(f"a force at joint {j + 1} over its position and speed", {j: tables})
+        for r, x, speed in zip(equations.rows, functions(over, bend), speeds, strict=True):
+            turned = x * np.sign(speed)
+            tables.append(r.equation(j, turned if series else np.hstack([x, turned])))
+        yield SmoothFunction(name, {j: tables})

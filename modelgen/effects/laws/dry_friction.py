@@ -112,6 +112,7 @@ class PositionDependentFriction(Friction):
     )
     nonlinear = (SMOOTHING,)
     shows = frozenset({Shows.PLACES, Shows.LOAD})
+    series = True
     confused_with = ("load_dependent_friction",)
     experiment = "small reversals at many places of the range, with and without payload"
     shown = at(slope=0.04, curvature=0.02)
