@@ -102,8 +102,8 @@ class Traits(ABC):
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
     simpler: the law of the catalogue that this one comes to at a limit of its values.
-    series: its law is the first terms of a series in the joint's position; another function of the position and
-        the direction is the same cause.
+    series: its law is the first terms of a series in the joint's position; another function of the position
+        and the direction is the same cause.
     claims: names of parameters without which it would not be there; their values are above zero.
     """
 
