@@ -133,7 +133,7 @@ class Diagnosis(Shown):
         ]
         columns = dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right")
         parts.append(Table(f"error on the test record [{e.unit}]", columns, errors))
-        parts += [*suspicions(d), *harms(d), *assumptions(d)]
+        parts += [*suspicions(d), *harms(d), *assumptions(d), *(f"log: {line}" for line in d.log.lines())]
         if d.next_experiment is not None:
             parts.append(f"next: {followed(d.next_experiment)}")
         return parts

@@ -72,7 +72,7 @@ class Identification(Result):
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": spectra,
-            "report.html": page(found, o.others, data["verdict"], data["processing"], spectra),
+            "report.html": page(found, o.others, data["verdict"], _processing(o), spectra),
         }
         if found.test is not None:
             files["test.svg"] = predictions(found.test, o.others)
@@ -117,7 +117,7 @@ class Identification(Result):
             rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
             title = "NRMSE % of parts of the training records, each held out in its turn"
             parts.append(Table(title, heads, rows))
-        return [*parts, *o.data["processing"], o.data["verdict"]]
+        return [*parts, *_processing(o), o.data["verdict"]]
 
     def __repr__(self) -> str:
         errors = ""
@@ -169,6 +169,12 @@ def identify(
     """
     chosen = changed(options or IdentificationOptions(), changes)
     return Identification(identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress))
+
+
+def _processing(o: Outcome) -> list[str]:
+    """What was found out about the logs, and how they were processed."""
+    steps = [line for line in o.data["processing"] if line not in o.log.remarks]
+    return [*(f"log: {line}" for line in o.log.lines()), *steps]
 
 
 def _test_tables(test: Validation, o: Outcome) -> list[str | Table]:

@@ -53,6 +53,11 @@ class Record:
         Whether the input is constant between its samples.
     repeats : float
         Rows of the log per new reading.
+    jitter : float
+        Largest deviation of the time between two samples from the period, in periods, before the samples were
+        moved to their uniform axis.
+    effort_hold : str or float
+        When the efforts were read: "following", "previous" or "instant", or their delay [s].
 
     Attributes
     ----------
@@ -84,6 +89,8 @@ class Record:
     first: int = 0
     held: bool = False
     repeats: float = 1.0
+    jitter: float = 0.0
+    effort_hold: str | float = "following"
 
     @property
     def n(self) -> int:

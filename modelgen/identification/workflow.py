@@ -23,6 +23,7 @@ from modelgen.dataset import (
     split,
 )
 from modelgen.dataset import preset as processing
+from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -46,13 +47,14 @@ STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streame
 @dataclass(frozen=True)
 class Outcome:
     """others: models beside the identification. first: a training record, for the spectra. chosen: settings
-    of the processing. folds: parts of the training records held out in turn.
+    of the processing. log: facts of the records. folds: parts of the training records held out in turn.
     """
 
     found: Identification
     others: Sequence[Alternative]
     first: Prepared
     chosen: Chosen
+    log: RecordsInspected
     folds: Folds | None = None
 
     @cached_property
@@ -62,6 +64,7 @@ class Outcome:
         return (
             to_json(self.found)
             | {"cutoff_hz": self.chosen.cutoff, "processing": described(self.first)}
+            | {"log": self.log.to_json()}
             | ({"without_drives": beside} if beside else {})
             | ({} if self.folds is None else {"folds": self._folds(self.folds)})
         )
@@ -146,7 +149,8 @@ def _whole(
         one, two = split(training[0])
         training, testing = [one], [two]
     asked = _settings(o)(1 / training[0].step)
-    chosen = with_whole_rows(choose(training, asked), [period_of(x, None) for x in training])
+    periods = [period_of(x, None) for x in training]
+    chosen = with_whole_rows(choose(training, asked), periods)
     progress("identifying", 0, None)
     fitted, held = [[prepare(x, chosen) for x in part] for part in (training, testing)]
     payloads = _payloads(o.payload, [*train, *test])
@@ -179,7 +183,8 @@ def _whole(
     if o.folds is not None:
         progress(f"holding out each of {o.folds} parts", 0, None)
         parts = folds(training, o.folds, chosen, identified)
-    return Outcome(found, others, fitted[0], chosen, parts)
+    log = inspect_records(fitted, testing, chosen, periods)
+    return Outcome(found, others, fitted[0], chosen, log, parts)
 
 
 def _payloads(
@@ -249,4 +254,7 @@ def _streamed(
         physical=o.consistent,
         progress=lambda done, total: progress(doing, done, total),
     )
-    return Outcome(found, (), next(iter(streams[0])), chosen)
+    heads = [next(iter(stream)) for stream in streams]
+    tests, samples = [p.record for p in testing], [stream.samples for stream in streams]
+    log = inspect_records(heads, tests, chosen, [None] * len(heads), samples)
+    return Outcome(found, (), heads[0], chosen, log)

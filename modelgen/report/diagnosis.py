@@ -79,6 +79,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
         missing=d.not_identifiable,
         experiment=described(d.next_experiment, drawn.get(NEXT, "")),
+        log=d.log.lines(),
         settings=[(name, _said(value)) for name, value in d.settings.items()],
     )
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"

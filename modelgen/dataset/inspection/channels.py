@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.reading.column_table import Log
@@ -41,6 +42,10 @@ class Channel:
     resolution: float | None
     repeated: float
     missing: int
+
+    def coarse(self, share: float) -> bool:
+        """Whether a step of the readings is more than a share of their range."""
+        return self.resolution is not None and self.resolution > share * (self.high - self.low) > 0.0
 
 
 @dataclass(frozen=True)
@@ -96,6 +101,30 @@ def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Columns of numbers (N,) of a log by name, and the names of the others. Raises InputError."""
     spec = parse(log)
     return _columns(spec, in_small_letters(opened(spec)))
+
+
+def inspect_record(record: Record, lag: int | None, samples: int | None = None) -> Inspected:
+    """The inspection of a record by the columns that it was read from.
+
+    lag: samples in a period of its motion. samples: of the whole, of which the record may be the beginning.
+    """
+    sides, units = record.motor_side or (False,) * record.n, record.units
+    drives = () if record.arm is None else drives_of(record.arm)
+    channels = []
+    for k in range(record.n):
+        if sides[k]:
+            channels.append(_channel(f"qm{k + 1}", drives[k].unit if drives else "", record.motor[:, k]))
+        else:
+            channels.append(_channel(f"q{k + 1}", units[f"q{k + 1}"], record.q[:, k]))
+    if record.input is not None:
+        gain = np.ones_like(record.input) if record.gain is None else record.gain
+        for k, unit in enumerate(record.effort_unit):
+            name = f"{'i' if unit == 'A' else 'tau'}{k + 1}"
+            channels.append(_channel(name, unit, record.input[:, k] * gain[:, k]))
+    found = _inspected(record.name, record.t, channels, [])
+    period = None if lag is None else lag * record.step
+    count = found.samples if samples is None else samples
+    return replace(found, samples=count, jitter=record.jitter, period=period, remarks=record.remarks)
 
 
 def _of_record(record: Record, t: Array | None = None) -> Inspected:

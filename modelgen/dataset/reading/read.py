@@ -169,6 +169,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         remarks=tuple(remarks),
         arm=arm,
         held=source.hold in ("following", "previous"),
+        jitter=axis.jitter,
+        effort_hold=source.hold,
     )
     beyond = check_efforts(record, signals.effort, arm, drives)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged

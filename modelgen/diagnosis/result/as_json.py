@@ -72,6 +72,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         "next_experiment": experiment_json(d.next_experiment),
         "ranking": [[_rank(r) for r in turn] for turn in d.ranking],
         "positions": None if d.positions is None else _positions(d.positions),
+        "log": d.log.to_json(),
         "settings": dict(d.settings),
     }
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from modelgen.dataset.inspection import RecordsInspected
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import LackOfFit, Likeness
 from modelgen.diagnosis.equations import Rows
@@ -28,7 +29,7 @@ class Diagnosis:
     rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
     description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
     has its efforts; suspects: what has evidence and failed a check that decides; inertias: of drives before
-    elastic joints and play by coordinate (from 1).
+    elastic joints and play by coordinate (from 1); log: facts of the records.
     """
 
     arm: Arm
@@ -49,6 +50,7 @@ class Diagnosis:
     residuals: tuple[Array, Array]
     ranking: History
     added: Sequence[tuple[str, int | None, Mapping[str, float]]]
+    log: RecordsInspected
     settings: Mapping[str, Any] = field(default_factory=dict)
     suspects: tuple[NamedCause, ...] = ()
     positions: Positions | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from modelgen.dataset.inspection import inspect_records
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
@@ -70,6 +71,9 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         residuals=pair,
         ranking=selection.turns,
         added=added,
+        log=inspect_records(
+            [r.prepared for r in equations.rows], study.records[-1:], band.chosen, study.lengths
+        ),
         settings=_settings(study, decision, selection, options),
         positions=Positions(decision.remains.feigned, decision.correlated),
         inertias=extension.inertias,
