@@ -22,7 +22,7 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis import assumptions, harms, sketches, suspicions, unnamed
+from modelgen.report.diagnosis import assumptions, compared, harms, sketches, suspicions, unnamed
 from modelgen.report.experiment import followed
 from modelgen.report.figures import Pen
 from modelgen.report.writing import write
@@ -85,8 +85,8 @@ class Diagnosis(Shown):
         Parameters
         ----------
         folder : Path or str
-            It gets diagnosis.json, report.html with its pictures, <arm>_extended.yaml, and the extended
-            model's code in `generated`.
+            It gets diagnosis.json, report.html with its pictures, <arm>_extended.yaml with the values of its
+            parameters in <arm>_parameters.yaml, and the extended model's code in `generated`.
         code : bool
             False leaves the code out.
 
@@ -133,7 +133,13 @@ class Diagnosis(Shown):
         ]
         columns = dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right")
         parts.append(Table(f"error on the test record [{e.unit}]", columns, errors))
-        parts += [*suspicions(d), *harms(d), *assumptions(d), *(f"log: {line}" for line in d.log.lines())]
+        parts += [
+            *suspicions(d),
+            *harms(d),
+            *assumptions(d),
+            *compared(d),
+            *(f"log: {line}" for line in d.log.lines()),
+        ]
         if d.next_experiment is not None:
             parts.append(f"next: {followed(d.next_experiment)}")
         return parts

@@ -131,7 +131,8 @@ class Simulation(Result):
         sequence of str or Table
             In the order in which they are printed.
         """
-        return _motion(self.found) if self.found.trajectory is not None else _scores(self.found)
+        parts = _motion(self.found) if self.found.trajectory is not None else _scores(self.found)
+        return [self.found.note, *parts] if self.found.note else parts
 
     def __repr__(self) -> str:
         head = f"Simulation of {self.arm.name}: {len(self.t)} samples over {self.t[-1] - self.t[0]:g} s"

@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from modelgen.description.objects import Inertial
+from modelgen.description.objects import Arm, Inertial
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.functions.objects import Model
@@ -33,6 +33,12 @@ def nominal_standard(model: Model) -> dict[str, float]:
                 f"{arm.name}: {p.name}, {p.text}, has no nominal value in the description", arm.where
             )
     return {p.name: values[p.name] for p in model.standard}
+
+
+def is_nominal(arm: Arm) -> bool:
+    """Whether the description gives every link and every effect its nominal values."""
+    effects = all(p.name in e.nominal for e in applied_effects(arm) for p, _ in e.parameters)
+    return effects and not arm.fluid_density and all(link is not None for link in arm.links)
 
 
 def nominal_links(model: Model) -> dict[str, float]:

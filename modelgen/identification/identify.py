@@ -19,7 +19,7 @@ from modelgen.identification.consistent import consistent
 from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
-from modelgen.identification.objects import Estimate, Identification
+from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.validation import regression_of, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
@@ -115,8 +115,20 @@ def _columns_by_load(model: Model) -> bool:
     return bool({"load", "state"} & {a.name for a in function.arguments})
 
 
+def errors_of(
+    train: Sequence[Prepared], test: Sequence[Prepared], model: Model, evaluator: Evaluator
+) -> Validation:
+    """Errors on `test` of the model fitted to `train` as `identify` does it by default. Raises InputError."""
+    _, solution = _fitted(train, evaluator, model, None, "wls")
+    return validate(evaluator, model, test, solution.theta)
+
+
 def _fitted(
-    train: Sequence[Prepared], evaluator: Evaluator, model: Model, added: Sequence[Array], method: str
+    train: Sequence[Prepared],
+    evaluator: Evaluator,
+    model: Model,
+    added: Sequence[Array] | None,
+    method: str,
 ) -> tuple[Regression, Solution]:
     """Rows and least squares. Columns that depend on the load are evaluated anew with the load found."""
     theta = np.zeros(len(model.grouping.base))

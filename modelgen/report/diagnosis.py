@@ -61,7 +61,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         causes=[_cause(d, k) for k in range(len(d.causes))],
         harms=harms(d),
         suspicions=suspicions(d),
-        assumptions=assumptions(d),
+        assumptions=[*assumptions(d), *compared(d)],
         fit=_fit(d),
         errors=_errors(d),
         unit=d.errors.unit,
@@ -133,6 +133,7 @@ _REFUSED = {
     SUSPECT: "taken, then taken back: it failed a check, see the suspects",
     COARSE: "taken, then taken back: the positions are too coarse to tell it from others",
 }
+_SAME = 0.01  # of an error or a cut-off, that needs no word
 _SHOWN = 12  # candidates of a turn
 
 
@@ -164,6 +165,26 @@ def assumptions(d: Diagnosis) -> list[str]:
         if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
     return taken + unknown
+
+
+def compared(d: Diagnosis) -> list[str]:
+    """Why `modelgen identify` says another error of the test record, where it does."""
+    if d.identified is None:
+        return []
+    rmse, usual = d.identified
+    cutoff, before = float(d.settings["cutoff_hz"]), d.errors.before
+    known = np.isfinite(before)
+    rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())
+    if not rested and abs(usual - cutoff) <= _SAME * cutoff:
+        return []
+    numbers = ", ".join(f"{x:.4g}" for x in rmse)
+    at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is"
+    counted = f"; {at_rest} {numbers} {d.errors.unit}" if rested else ""
+    other = f", identify chooses {usual:.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
+    return [
+        f"The error is that up to {cutoff:.6g} Hz, fitted and judged while the joint moves{counted}{other}; "
+        f"modelgen identify --cutoff {cutoff:.6g} has this band."
+    ]
 
 
 def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:

@@ -12,6 +12,7 @@ from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
 from modelgen.errors import InputError
 from modelgen.functions import Options
+from modelgen.functions.parameters_file import parameters_yaml
 from modelgen.generation import generate
 from modelgen.report.diagnosis import NEXT, pictures, report, sketches
 from modelgen.report.experiment import NAMES, plans
@@ -19,10 +20,12 @@ from modelgen.report.figures import Pen
 
 
 def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:
-    """diagnosis.json, report.html, the extended description and its code into `out`: whole, or nothing.
+    """diagnosis.json, report.html, the extended description, its parameters and its code into `out`.
 
-    code: False leaves the code out. pen: draws the
-    pictures, a new one in this process by default. Raises InputError.
+    All of them, or none.
+
+    code: False leaves the code out. pen: draws the pictures, a new one in this process by default. Raises
+    InputError.
     """
     name = d.arm.name
     new, there = out / ".new", out.exists()  # on the file system of `out`, whatever that is
@@ -33,8 +36,10 @@ def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None)
         new.mkdir(parents=True)
         extended = extended_yaml(d.arm, d.added)
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
+        values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}
+        text = parameters_yaml(name, values)
+        (new / f"{name}_parameters.yaml").write_text(text, encoding="utf-8", newline="\n")
         if code:
-            values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}
             (arm,) = load(new / f"{name}_extended.yaml", known_effects()).values()
             generate([arm], new / "generated", Options(identified=values), processes=1)
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"

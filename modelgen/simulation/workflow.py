@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,8 +12,9 @@ import numpy as np
 from modelgen.dataset import prepare, read
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.functions.nominal import is_nominal
 from modelgen.functions.options import prepared
-from modelgen.functions.parameters_file import values_of
+from modelgen.functions.parameters_file import values_beside, values_of
 from modelgen.numeric import Array
 from modelgen.options import ModelOptions, SimulationOptions
 from modelgen.progress import Progress, silent
@@ -37,6 +38,7 @@ class Simulated:
     t: (S,) [s]. q, dq: (S, n) joint coordinates [rad, m; /s]. inputs: (S, n) [A; N m, N], None of a free
     motion and of a replay. measured: (S, n) positions of the first log [rad, m]. replays, logs: one by log.
     trajectory: of a motion without a log. ended: why it stopped before its time, empty where it did not.
+    note: where the parameters came from, empty where they are the description's or were given.
     """
 
     plant: Plant
@@ -49,6 +51,7 @@ class Simulated:
     replays: tuple[Replay, ...] = ()
     logs: tuple[str, ...] = ()
     ended: str = ""
+    note: str = ""
 
     @cached_property
     def data(self) -> dict[str, Any]:
@@ -70,9 +73,16 @@ def simulated(
     """
     o = options or SimulationOptions()
     arm = prepared(arm, ModelOptions(without=o.without))
-    parameters = values_of(o.parameters, [arm.name]) or None
+    parameters, note = values_of(o.parameters, [arm.name]) or None, ""
+    if parameters is None and not o.lock and not is_nominal(arm):
+        parameters = values_beside([arm], ModelOptions(without=o.without)).get(arm.name)
+        if parameters is not None:
+            note = (
+                f"parameters: {arm.name}_parameters.yaml beside the description, which has no nominal values"
+            )
     made = plant(arm, parameters, lock=locks(o.lock), payload=numbers("--payload", o.payload))
-    return _against(made, logs, o, progress) if logs else _alone(made, o, progress)
+    found = _against(made, logs, o, progress) if logs else _alone(made, o, progress)
+    return replace(found, note=note)
 
 
 def _alone(p: Plant, o: SimulationOptions, progress: Progress) -> Simulated:

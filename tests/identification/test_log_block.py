@@ -97,3 +97,31 @@ def test_the_log_of_a_stream_is_that_of_the_whole(arm: mg.Arm, tmp_path: Path) -
     for key in ("rate", "samples", "hold", "repeated_readings"):
         assert streamed[key] == pytest.approx(whole[key]) if key != "hold" else streamed[key] == whole[key]
     assert streamed["resolution"]["q1"] == pytest.approx(whole["resolution"]["q1"], rel=1e-6)
+
+
+def test_the_two_errors_are_one_in_the_same_band(arm: mg.Arm, results: list[Any]) -> None:
+    diagnosed = results[1].to_json()
+    cutoff = diagnosed["settings"]["cutoff_hz"]
+    train, test = [log(16.0, 1), log(16.0, 2)], log(8.0, 3)
+    same = mg.identify(arm, train, test, cutoff=cutoff).to_json()
+    assert diagnosed["error"]["with_rest"] == pytest.approx(same["test"]["rmse"], rel=0.01)
+    said = [x for x in results[1].shown() if isinstance(x, str) and "identify --cutoff" in x]
+    assert len(said) == 1
+    assert f"{cutoff:g} Hz" in said[0]
+
+
+def test_what_is_written_can_be_simulated_and_generated_at_once(results: list[Any], tmp_path: Path) -> None:
+    results[1].write(tmp_path, code=False)
+    extended = mg.load_arms(tmp_path / "axis_extended.yaml")["axis"]
+    motion = mg.simulate(extended, q0=0.3, duration=0.5)
+    assert "axis_parameters.yaml beside the description" in str(motion.shown()[0])
+    values = (tmp_path / "axis_parameters.yaml").read_text(encoding="utf-8")
+    assert all(f"{e.value:.6g}"[:6] in values for e in results[1].parameters.values())
+    # The same motion as with the values given by name: a swing that gravity drives and friction slows.
+    named = mg.simulate(extended, q0=0.3, duration=0.5, parameters=results[1].parameters)
+    assert motion.q == pytest.approx(named.q, rel=1e-9)  # the file has twelve digits
+    assert motion.q[-1, 0] < 0.3 - 0.05
+    mg.generate([extended], tmp_path / "generated")
+    assert "identified" in (tmp_path / "generated" / "axis" / "include" / "axis.h").read_text(
+        encoding="utf-8"
+    )

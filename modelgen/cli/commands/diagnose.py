@@ -30,7 +30,7 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
-    from modelgen.cli.arms import one
+    from modelgen.cli.arms import command, one
     from modelgen.report.figures import Pen
 
     found = one(arms, arm)
@@ -49,3 +49,8 @@ def diagnose(
     print_result(result, as_json=as_json)
     if not as_json:
         typer.echo(f"report: {out / 'report.html'}")
+        extended = out / f"{found.name}_extended.yaml"
+        values = ["--parameters", str(out / f"{found.name}_parameters.yaml")]
+        words = [*values, *(word for log in (test or []) for word in ("--log", log))]
+        words += [] if options.mapping is None else ["--mapping", str(options.mapping)]
+        typer.echo(f"the extended model against the test record: {command('simulate', extended, '', *words)}")

@@ -50,6 +50,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             "gain_interval_percent": [
                 [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
             ],
+            "with_rest": None if d.identified is None else numbers(d.identified[0]),
             "by_cause": [
                 {
                     "effect": c.effect,

@@ -29,7 +29,9 @@ class Diagnosis:
     rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
     description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
     has its efforts; suspects: what has evidence and failed a check that decides; inertias: of drives before
-    elastic joints and play by coordinate (from 1); log: facts of the records.
+    elastic joints and play by coordinate (from 1); log: facts of the records; identified: RMSE (n,) of
+    the arm as described on the test record as identify has it in this band, samples at rest included, and the
+    cut-off [Hz] that identify would choose, None for free motions.
     """
 
     arm: Arm
@@ -51,6 +53,7 @@ class Diagnosis:
     ranking: History
     added: Sequence[tuple[str, int | None, Mapping[str, float]]]
     log: RecordsInspected
+    identified: tuple[Array, float] | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     suspects: tuple[NamedCause, ...] = ()
     positions: Positions | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
@@ -31,6 +32,9 @@ from modelgen.diagnosis.result.diagnosis import Diagnosis
 from modelgen.diagnosis.result.not_identifiable import not_identifiable
 from modelgen.diagnosis.selection import Cause, Selection, threshold
 from modelgen.diagnosis.validation import Check
+from modelgen.errors import InputError
+from modelgen.identification.identify import errors_of
+from modelgen.numeric import Array
 
 
 def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
@@ -71,6 +75,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         residuals=pair,
         ranking=selection.turns,
         added=added,
+        identified=_identified(study, decision, extension),
         log=inspect_records(
             [r.prepared for r in equations.rows], study.records[-1:], band.chosen, study.lengths
         ),
@@ -78,6 +83,22 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         positions=Positions(decision.remains.feigned, decision.correlated),
         inertias=extension.inertias,
     )
+
+
+def _identified(study: Study, decision: Decision, extension: Extension) -> tuple[Array, float] | None:
+    """RMSE (n,) of the arm as described on the test record as `modelgen identify` has it in this band, with
+    samples at rest, and the cut-off [Hz] that it would choose; None for a free motion, or where it has none.
+    """
+    equations = extension.equations
+    if equations.free:
+        return None
+    train, test = [r.prepared for r in equations.rows], decision.band.test
+    try:
+        found = errors_of(train, [test], study.model, study.evaluator)
+    except InputError:
+        return None
+    chosen = choose(list(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
+    return found.rmse, chosen.cutoff
 
 
 def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:
