@@ -37,10 +37,57 @@ class DatasetThresholds(Group):
         _CHOICE,
     )
     slow_sampling_step: float = entry(
-        0.5, "s", "A longer step is remarked on: stamps may be in milliseconds.", _GUARD
+        0.5, "s", "A longer step is asked about, unless a mapping file declares the stamps' unit.", _GUARD
     )
     fast_sampling_step: float = entry(
-        1e-5, "s", "A shorter step is remarked on: stamps may be in another unit.", _GUARD
+        1e-5, "s", "A shorter step is asked about, unless a mapping file declares the stamps' unit.", _GUARD
+    )
+    doubled_stamps: float = entry(
+        0.05,
+        "of the stamps",
+        "Where so many equal the one before, stamps are coarser than the samples, which are evenly spaced.",
+        _CHOICE,
+    )
+    even_roughness: float = entry(
+        0.5,
+        "1",
+        "Samples are taken as evenly spaced where positions are so much smoother than over the stamps.",
+        _CHOICE,
+    )
+    min_refreshes: int = entry(
+        60, "readings", "Repeated readings are told by so many new ones at least.", _GUARD
+    )
+    min_repeats: float = entry(
+        1.9, "rows", "Readings repeat where a new one comes after so many rows at least.", _GUARD
+    )
+    single_refreshes: float = entry(
+        0.9, "of the readings", "Readings repeat where so many come one refresh after the last.", _CHOICE
+    )
+    whole_refreshes: float = entry(
+        0.98,
+        "of the readings",
+        "Readings repeat where more than that come a whole number of refreshes after the last.",
+        _CHOICE,
+    )
+    refresh_over_resolution: float = entry(
+        2.5,
+        "steps of the resolution",
+        "Readings repeat where one moves by more in the median; a slow, coarse encoder moves by one.",
+        _CHOICE,
+    )
+    remarked_effort: float = entry(1.1, "of the limit", "A larger effort is remarked on.", _GUARD)
+    impossible_effort: float = entry(3.0, "of the limit", "A larger effort is refused.", _GUARD)
+    outlying_effort: float = entry(
+        20.0,
+        "of the 99.9 % quantile",
+        "A reading beyond that, and beyond as many times its neighbours, is refused as impossible.",
+        _GUARD,
+    )
+    misread_efforts: float = entry(
+        0.05, "of the readings", "Where more are beyond the limit, the unit is asked about.", _GUARD
+    )
+    milliampere_readings: float = entry(
+        0.2, "of the readings", "Where more are beyond the limit, milliamperes are asked about.", _GUARD
     )
     max_range_excess: float = entry(
         0.1, "of the range", "Positions that leave a joint's range by more are refused.", _GUARD

@@ -12,7 +12,8 @@ import sympy
 from arms_support import ARMS
 from dataset_support import AXIS, DRIVEN, FREE, LEVER, columns, counts_of, motion, times, write_csv
 
-from modelgen.dataset import check_separate, gather, prepare, read, read_columns, split
+from modelgen.dataset import Settings, Stream, check_separate, gather, prepare, read, read_columns, split
+from modelgen.dataset.inspection import inspect, skeleton
 from modelgen.description import geometry_symbol
 from modelgen.errors import InputError
 from modelgen.transmission import of_joint
@@ -176,9 +177,49 @@ def test_a_gap_is_refused(tmp_path: Path) -> None:
         read(write_csv(tmp_path / "a.csv", table), DRIVEN)
 
 
-def test_a_clock_in_milliseconds_is_remarked(tmp_path: Path) -> None:
-    record = read(write_csv(tmp_path / "a.csv", columns(T) | {"t": 1e3 * T}), DRIVEN)
-    assert record.remarks == ("a sample every 5 s: where t is in milliseconds, a mapping file says so",)
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1e3, r"stamps are 5 apart: are they in ms \(200 Hz\), or in s \(0\.2 Hz\)\? `time: {unit: \.\.\.}`"),
+        (1e6, r"stamps are 5000 apart: are they in us \(200 Hz\), or in s"),
+        (1e9, r"stamps are 5e\+06 apart: are they in ns \(200 Hz\), or in s"),
+        (2e4, r"stamps are 100 apart: are they in ms \(10 Hz\) or us \(10000 Hz\), or in s"),
+        (1 / 3600, r"stamps are 1\.38889e-06 apart: are they in s \(720000 Hz\)\?"),
+    ],
+)
+def test_the_unit_of_the_time_is_asked_for(factor: float, said: str, tmp_path: Path) -> None:
+    table = columns(T) | {"t": factor * T}
+    with pytest.raises(InputError, match=said):
+        read(write_csv(tmp_path / "a.csv", table), DRIVEN)
+    with pytest.raises(InputError, match=said):
+        next(Stream(str(tmp_path / "a.csv"), DRIVEN, Settings(cutoff=0.01)).records())
+    assert any(remark.startswith("stamps are") for remark in inspect(str(tmp_path / "a.csv")).remarks)
+
+
+def test_a_slow_log_is_read_where_the_mapping_says_that_it_is(tmp_path: Path) -> None:
+    q, dq, _ = motion(T)
+    file = write_csv(tmp_path / "a.csv", {"t": 1e3 * T, "q1": 0.1 * q[:, 0], "tau1": dq[:, 0]})
+    skeletons = skeleton(file, AXIS)
+    assert "unit: ms" in skeletons
+    mapping = tmp_path / "m.yaml"
+    mapping.write_text(skeletons, encoding="utf-8")
+    assert read(file, AXIS, mapping).step == pytest.approx(5e-3)
+    mapping.write_text(skeletons.replace("unit: ms", "unit: s"), encoding="utf-8")
+    record = read(file, AXIS, mapping)
+    assert record.step == pytest.approx(5.0)
+    assert record.remarks == ("a sample every 5 s, by the unit that the mapping file declares",)
+
+
+def test_parts_of_a_file_have_one_rate(tmp_path: Path) -> None:
+    """Steps of 3 and 4 ms in turn, of which one is more frequent here and the other there."""
+    random = np.random.default_rng(3)
+    steps = [random.choice([3e-3, 4e-3], size=3000, p=p) for p in ([0.6, 0.4], [0.4, 0.6])]
+    t = np.concatenate([[0.0], np.cumsum(np.concatenate(steps))])
+    file, half = write_csv(tmp_path / "a.csv", columns(t)), t[3000]
+    parts = [read(f"{file}@{ends}", DRIVEN) for ends in (f":{half}", f"{half}:")]
+    assert parts[0].step == pytest.approx(parts[1].step, rel=1e-9)
+    q, _, _ = motion(parts[1].t)
+    assert parts[1].q == pytest.approx(q, abs=1e-3)
 
 
 def test_a_short_record_is_refused(tmp_path: Path) -> None:

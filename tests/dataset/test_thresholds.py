@@ -9,10 +9,22 @@ import numpy as np
 import pytest
 from diagnosis_support import ARM, coarse, record
 
-from modelgen.dataset import DatasetThresholds, Record, Settings, check_different, choose, prepare, read
+from modelgen.dataset import (
+    DatasetThresholds,
+    Record,
+    Settings,
+    check_different,
+    choose,
+    drives_of,
+    prepare,
+    read,
+)
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.settings import chosen_cutoff, motion_bandwidth
+from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Survey
+from modelgen.dataset.reading.plausible import check_efforts
+from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.thresholds import Value
@@ -141,6 +153,18 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "averaging_step": (1.1, averaged),
         "slow_sampling_step": (0.05, reading(folders["slow"], 0.1 * np.arange(100.0))),
         "fast_sampling_step": (0.01, reading(folders["fast"], STEP * np.arange(200.0))),
+        "doubled_stamps": (0.9, stamped(4 * STEP * np.floor(np.arange(200.0) / 4))),
+        "even_roughness": (0.0, stamped(uneven(0.8))),
+        "min_refreshes": (300, repeated()),
+        "min_repeats": (5.0, repeated()),
+        "single_refreshes": (1.1, repeated()),
+        "whole_refreshes": (1.0, repeated()),
+        "refresh_over_resolution": (1e9, repeated()),
+        "remarked_effort": (1.3, efforts(0.85)),
+        "impossible_effort": (1.05, efforts(0.9)),
+        "outlying_effort": (50.0, efforts(np.inf, 30.0, 0.0005)),
+        "misread_efforts": (0.15, efforts(2.0, 10.0, 0.1)),
+        "milliampere_readings": (1.5, efforts(0.1)),
         "steady_step": (0.01, reading(folders["turn"], STEP * np.arange(200.0), turned())),
         "max_range_excess": (0.001, lambda limits: range_seen(limits, spec)),
         "max_shared_samples": (20, shared),
@@ -165,6 +189,33 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "max_given_period_difference": (1e-4, given_period),
         "min_period_samples": (5000, lambda limits: refusal(lambda: period_of(RECORD, 10.0, limits))),
     }
+
+
+def repeated() -> Seen:
+    """200 readings that stand there four times each, at 1 kHz."""
+    fresh = np.repeat(STEP * np.arange(200.0), 4)
+    q = 0.3 * np.sin(np.multiply.outer(fresh, [1.0, 1.3]))
+    columns = np.column_stack([q, np.cos(q)])
+    return lambda limits: refresh_of(columns, limits) is not None
+
+
+def stamped(t: Array) -> Seen:
+    """Even samples under other stamps."""
+    q = 0.3 * np.sin(np.multiply.outer(STEP * np.arange(len(t)), [1.0, 1.3]))
+    return lambda limits: true_stamps(t, q, limits)[1]
+
+
+def efforts(limit: float, high: float = 1.0, share: float = 1.0) -> Seen:
+    """Currents of 1 A, of `high` A in a share of the readings, against the limit of the drive [A]."""
+    joint = ARM.joints[0]
+    drive = replace(joint.drive, limits=replace(joint.drive.limits, current=limit))
+    arm = replace(ARM, joints=(replace(joint, drive=drive), ARM.joints[1]))
+    given = np.ones((2000, 2))
+    given[500 : 500 + round(2000 * share), 0] = high
+    t, q, ones = STEP * np.arange(2000.0), np.zeros((2000, 2)), np.ones((2000, 2))
+    r = Record("log", t, q, q, given, ones, ("A", "A"))
+    drives = drives_of(arm)
+    return lambda limits: refusal(lambda: check_efforts(r, ("i1", "i2"), arm, drives, limits))
 
 
 def averaged(limits: DatasetThresholds) -> str:

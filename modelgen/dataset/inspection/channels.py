@@ -14,11 +14,13 @@ from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.renamed import in_small_letters
 from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.sources import BLOCK, open_source, opened
 from modelgen.dataset.reading.specs import Spec, parse
+from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -94,7 +96,8 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         )
     positions = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
     found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
-    return replace(found, without_numbers=rest, remarks=tuple(remarks))
+    doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
+    return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
 
 
 def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
 
 import numpy as np
 
 from modelgen.dataset.inspection.channels import columns_of_log
-from modelgen.dataset.mapping.units import TIMES
+from modelgen.dataset.mapping.units import plausible_times
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.specs import parse
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-STEPS = (5e-5, 0.2)  # s, between samples of a robot
 _TIME = re.compile(
     r"(^|[^a-z])(t|time|stamp|timestamp|clock)([^a-z]|$)|header\.stamp|time_?stamp", re.IGNORECASE
 )
@@ -77,9 +75,7 @@ def _time(columns: dict[str, Array]) -> str | None:
 
 def _unit_of_time(stamps: Array) -> str:
     """The unit that makes the step one of a robot's logs."""
-    step = float(np.median(np.diff(stamps)))
-    fitting: Sequence[str] = [unit for unit, factor in TIMES.items() if STEPS[0] <= step * factor <= STEPS[1]]
-    return fitting[0] if fitting else "s"
+    return next(iter(plausible_times(float(np.median(np.diff(stamps))))), "s")
 
 
 def _unit_of_angle(values: Array) -> str:

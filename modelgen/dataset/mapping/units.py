@@ -9,6 +9,7 @@ _TURN = 2 * math.pi
 _ANGLE = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "rev": _TURN}
 _LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 TIMES: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+STEPS = (5e-5, 0.2)  # s, between samples of a robot
 POSITIONS: Mapping[str, Mapping[str, float]] = {"rad": _ANGLE, "m": _LENGTH, "unit": {"counts": 1.0}}
 # "rpm" and "rev/s" are common in drives' own logs.
 VELOCITIES: Mapping[str, Mapping[str, float]] = {
@@ -35,3 +36,9 @@ EFFORTS: Mapping[str, tuple[str, float]] = {
     "mV": ("voltage", 1e-3),
 }
 EFFORT_UNITS: Mapping[str, str] = {"current": "A", "torque": "N m", "force": "N", "duty": "1", "voltage": "V"}
+
+
+def plausible_times(step: float) -> dict[str, float]:
+    """Units of stamps that are `step` apart from sample to sample in a robot's log, with the rates [Hz]."""
+    low, high = STEPS
+    return {unit: 1.0 / (step * factor) for unit, factor in TIMES.items() if low <= step * factor <= high}

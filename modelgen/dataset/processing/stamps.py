@@ -7,9 +7,6 @@ import numpy as np
 from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.numeric import Array
 
-DOUBLED = 0.05  # share of stamps equal to the one before, from which stamps are coarser than the samples
-SMOOTHER = 0.5  # of the roughness over the stamps, below which samples are taken as evenly spaced
-
 
 def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str | None]:
     """Stamps (N,) [s], or evenly spaced ones where the positions (N, n) say so; a remark on that.
@@ -29,10 +26,10 @@ def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[
     if period <= 0.0 or apart > limits.max_gap_periods * period or apart <= limits.max_jitter * period:
         return t, None
     if doubled:
-        if doubled < DOUBLED:
+        if doubled < limits.doubled_stamps:
             return t, None
         said = f"{100 * doubled:.0f} % of the stamps equal the one before"
-    elif roughness(even, positions) < SMOOTHER * roughness(t, positions):
+    elif roughness(even, positions) < limits.even_roughness * roughness(t, positions):
         said = f"stamps vary by up to {apart / period:.2g} periods and the positions do not follow them"
     else:
         return t, None

@@ -7,15 +7,25 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset.drives import NumericDrive
+from modelgen.dataset.mapping.units import plausible_times
 from modelgen.dataset.objects import Record
+from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 BITS = (16, 24, 32, 12, 10, 8)
-MARGIN = 1.1  # of a limit, that a remark is made beyond
-IMPOSSIBLE = 3.0  # of a limit, beyond which no effort was measured
-OUTLIER = 20.0  # of the 99.9 % quantile and of the neighbours, for a reading without a limit
+
+
+def doubtful_unit(step: float, limits: DatasetThresholds) -> str:
+    """A question where stamps in s, `step` apart from sample to sample, are no log's; else empty."""
+    if limits.fast_sampling_step <= step < limits.slow_sampling_step:
+        return ""
+    fitting = [f"{unit} ({rate:.6g} Hz)" for unit, rate in plausible_times(step).items() if unit != "s"]
+    asked = f"are they in {' or '.join(fitting)}, or" if fitting else "are they"
+    how = "`time: {unit: ...}`" if step >= limits.slow_sampling_step else "`time: {column: 60 * t}`, say,"
+    where = "in a mapping file (--mapping) decides"
+    return f"stamps are {step:.6g} apart: {asked} in s ({1 / step:.6g} Hz)? {how} {where}"
 
 
 def unsigned_bits(values: Array) -> int | None:
@@ -46,7 +56,11 @@ def check_unsigned(file: str, name: str, values: Array) -> None:
 
 
 def check_efforts(
-    record: Record, names: Sequence[str | None], arm: Arm, drives: Sequence[NumericDrive]
+    record: Record,
+    names: Sequence[str | None],
+    arm: Arm,
+    drives: Sequence[NumericDrive],
+    limits: DatasetThresholds,
 ) -> list[str]:
     """Inputs within the limits of the drives, and no single impossible reading; remarks.
 
@@ -75,20 +89,25 @@ def check_efforts(
             size, limit, unit = np.abs(logged), np.inf, record.effort_unit[k]
         m = int(np.argmax(size))
         place = f"{record.name}: {name} is {logged[m]:.6g} {record.effort_unit[k]} at t = {record.t[m]:.9g} s"
-        if size[m] > IMPOSSIBLE * limit:
+        if size[m] > limits.impossible_effort * limit:
             many = float(np.mean(size > limit))
-            if many > 0.2 and np.quantile(size, 0.999) < 1.1e3 * limit and unit == "A" and name[0] == "i":
+            if (
+                many > limits.milliampere_readings
+                and np.quantile(size, 0.999) < 1.1e3 * limit
+                and unit == "A"
+                and name[0] == "i"
+            ):
                 hint = "these look like milliamperes; declare `unit: mA` in a mapping file (--mapping)"
-            elif many > 0.05:
+            elif many > limits.misread_efforts:
                 hint = "correct its unit or scale in a mapping file (--mapping), or the limit"
             else:
                 hint = "an impossible reading: use the parts beside it, FILE@t0:t1, or correct the limit"
             raise InputError(f"{place}, the limit of joint {joint.name} is {limit:.6g} {unit}; {hint}")
-        if size[m] > MARGIN * limit:
+        if size[m] > limits.remarked_effort * limit:
             remarks.append(f"{place.removeprefix(record.name + ': ')}, the limit is {limit:.6g} {unit}")
         usual = float(np.quantile(size, 0.999))
         beside = max((float(size[j]) for j in (m - 2, m + 2) if 0 <= j < len(size)), default=0.0)
-        if len(size) > 1000 and size[m] > OUTLIER * max(usual, beside) > 0.0:
+        if len(size) > 1000 and size[m] > limits.outlying_effort * max(usual, beside) > 0.0:
             raise InputError(
                 f"{place}, {size[m] / usual:.0f} times as much as 99.9 % of its readings: an impossible "
                 "reading; use the parts beside it, FILE@t0:t1"

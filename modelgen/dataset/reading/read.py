@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
-from modelgen.dataset.reading.plausible import check_efforts, check_unsigned
+from modelgen.dataset.reading.plausible import check_efforts, check_unsigned, doubtful_unit
 from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -46,6 +47,9 @@ def read(
     table, found, repeats = _true_instants(source, table)
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
+    if axis.method != "none" and source.rate is None and repeats == 1.0:
+        rate = _rate_of_file(source)
+        axis = survey(Survey(spec, rate, source.gap, thresholds), table[:, 0], BLOCK)
     if repeats > 1.0 and not source.stated and any(source.signals.effort):
         # Position and effort that are new together were read together, which no controller's output is.
         source = replace(source, hold="instant")
@@ -61,11 +65,23 @@ def read(
     return record
 
 
+def _rate_of_file(source: Source) -> float | None:
+    """Samples per second by the median step of the whole file: its parts have one rate. None for a whole."""
+    spec = source.spec
+    if (spec.begin, spec.end) == (-math.inf, math.inf):
+        return None
+    whole = replace(source, spec=replace(spec, begin=-math.inf, end=math.inf))
+    stamps = np.concatenate(list(whole.blocks(time_alone=True)))[:, 0]
+    steps = np.diff(stamps[np.isfinite(stamps)])
+    steps = steps[steps > 0.0]
+    return 1.0 / float(np.median(steps)) if len(steps) else None
+
+
 def _true_instants(source: Source, table: Array) -> tuple[Array, list[str], float]:
     """The rows of new readings, at instants that the positions agree with; remarks; rows per reading."""
     remarks, repeats = [], 1.0
     t = table[:, 0]
-    found = refresh_of(table[:, 1:])
+    found = refresh_of(table[:, 1:], source.thresholds)
     if found is not None and np.all(np.diff(t) > 0.0):
         rate = (len(t) - 1) / (t[-1] - t[0])
         table, repeats = table[found.first].copy(), found.every
@@ -130,12 +146,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
             f"resampled at {1 / axis.step:.6g} Hz"
         )
-    if axis.step >= limits.slow_sampling_step:
-        remarks.append(
-            f"a sample every {axis.step:.6g} s: where t is in milliseconds, a mapping file says so"
-        )
-    if axis.step < limits.fast_sampling_step:
-        remarks.append(f"a sample every {axis.step:.6g} s: is the unit of the time right?")
+    doubt = doubtful_unit(axis.step, limits)
+    if doubt and not source.timed:
+        raise InputError(f"{file}: {doubt}; `modelgen inspect LOG --skeleton FILE` writes one to start from")
+    if doubt:
+        remarks.append(f"a sample every {axis.step:.6g} s, by the unit that the mapping file declares")
     gain, given, hold = None, None, 0.0
     if any(signals.effort):
         effort, hold = on_axis.efforts(signals.effort)
@@ -172,7 +187,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         jitter=axis.jitter,
         effort_hold=source.hold,
     )
-    beyond = check_efforts(record, signals.effort, arm, drives)
+    beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
 
 

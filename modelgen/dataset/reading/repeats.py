@@ -6,12 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.numeric import Array
-
-LEAST = 60  # changes of a reading, at least, that a refresh rate is told by
-LEAST_REPEATS = 1.9  # rows per reading
-SINGLE = 0.9  # share of changes that come after one refresh, give or take a row
-QUANTA = 2.5  # of its resolution, that a reading moves by from one to the next in the median
 
 
 @dataclass(frozen=True)
@@ -34,7 +30,7 @@ class Refresh:
         return np.asarray(shown[0] + even) if 0.05 * row < np.ptp(late) < 1.5 * row else shown
 
 
-def refresh_of(columns: Array) -> Refresh | None:
+def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | None:
     """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
 
     They do where all columns change together, at instants a refresh apart. A coarse encoder that turns slowly
@@ -42,18 +38,22 @@ def refresh_of(columns: Array) -> Refresh | None:
     """
     changed = np.any(np.diff(columns, axis=0) != 0.0, axis=1)
     rows = np.flatnonzero(changed) + 1
-    if len(rows) < LEAST or len(rows) * LEAST_REPEATS > len(columns):
+    if len(rows) < limits.min_refreshes or len(rows) * limits.min_repeats > len(columns):
         return None
     waits = np.diff(rows)
     every = float(np.median(waits))
-    if every < LEAST_REPEATS:
+    if every < limits.min_repeats:
         return None
     near = np.abs(waits - every) <= max(1.01, 0.1 * every)
     # A refresh may bring the same reading again: its change then comes after several.
     several = np.abs(waits / every - np.rint(waits / every)) * every <= max(1.01, 0.1 * every)
-    if near.mean() < SINGLE or not several.mean() > 0.98 or (waits < 0.5 * every).any():
+    if (
+        near.mean() < limits.single_refreshes
+        or several.mean() <= limits.whole_refreshes
+        or (waits < 0.5 * every).any()
+    ):
         return None
-    if not any(_moves(column[rows]) for column in columns.T):
+    if not any(_moves(column[rows], limits) for column in columns.T):
         return None
     every = float(np.mean(waits[near]))
     counts = np.maximum(np.rint(waits / every), 1).astype(int)
@@ -67,8 +67,9 @@ def refresh_of(columns: Array) -> Refresh | None:
     return Refresh(every, first)
 
 
-def _moves(readings: Array) -> bool:
+def _moves(readings: Array, limits: DatasetThresholds) -> bool:
     """Whether readings (M,) move by more than steps of their own resolution."""
     steps = np.abs(np.diff(readings))
     steps = steps[steps > 0.0]
-    return len(steps) >= LEAST // 2 and float(np.median(steps)) > QUANTA * float(steps.min())
+    enough = len(steps) >= limits.min_refreshes // 2
+    return enough and float(np.median(steps)) > limits.refresh_over_resolution * float(steps.min())

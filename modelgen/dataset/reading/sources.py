@@ -34,7 +34,7 @@ class Source:
     hold: "following", "previous", "instant", or the delay [s] of the effort's samples. rate: of the uniform
     axis [Hz]; gap: longest time without a sample [s]; None: by default. effort_units: by column, where
     they are not those of its name. thresholds: by which the log is refused or resampled. stated: whether
-    the mapping says `hold`.
+    the mapping says `hold`; timed: whether it says the unit of the stamps, or how many there are per second.
     """
 
     spec: Spec
@@ -47,6 +47,7 @@ class Source:
     effort_units: dict[str, str] = field(default_factory=dict)
     thresholds: DatasetThresholds = USUAL
     stated: bool = False
+    timed: bool = False
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -96,10 +97,13 @@ def open_source(
             )
         signals = find_signals(spec.text, reader.names, arm, drives)
         check_units(spec.text, reader, signals, arm, drives)
-        return Source(spec, reader, signals, drives, thresholds=thresholds)
+        timed = "t" in getattr(reader, "units", {})
+        return Source(spec, reader, signals, drives, thresholds=thresholds, timed=timed)
     foreign = load_mapping(mapping)
-    mapped = MappedReader(foreign, opened(spec, foreign.layout), arm, drives)
+    logged = opened(spec, foreign.layout)
+    mapped = MappedReader(foreign, logged, arm, drives)
     time = foreign.document.time
+    declared = "unit" in time.model_fields_set or foreign.document.rate is not None
     return Source(
         spec,
         mapped,
@@ -111,6 +115,7 @@ def open_source(
         mapped.effort_units,
         thresholds,
         "hold" in foreign.document.model_fields_set,
+        declared or time.column in getattr(logged, "instants", ()),
     )
 
 
