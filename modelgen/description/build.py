@@ -11,6 +11,7 @@ from modelgen.description.joints import KnownEffects, coordinate_kind, read_effe
 from modelgen.description.messages import describe
 from modelgen.description.names import arm_name_problem, symbol_name_problem
 from modelgen.description.objects import Arm, Inertial
+from modelgen.description.plausible import ask_gravity, ask_unit
 from modelgen.description.schema import ArmModel, Document
 from modelgen.description.transforms import read_base, read_tools
 from modelgen.errors import suggest
@@ -51,6 +52,7 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
     if density < 0.0:
         raise context.error(f"found {density:g} kg/m^3, expected 0 or more", ["fluid_density"])
     gravity = context.numbers(model.gravity, "plain", ["gravity"])
+    ask_gravity(context, gravity, ["gravity"])
     return Arm(
         name=context.arm,
         joints=joints,
@@ -127,7 +129,9 @@ def _locked(context: Context, model: ArmModel, names: list[str]) -> dict[str, fl
         joint_type = model.joints[names.index(name)].type
         if joint_type == "fixed":
             raise context.error(f"'{name}' is a fixed joint, it has no coordinate to lock", at, key=True)
-        values[name] = context.number(raw, coordinate_kind(joint_type), at)
+        kind = coordinate_kind(joint_type)
+        values[name] = context.number(raw, kind, at)
+        ask_unit(context, raw, "length" if kind == "length" else "range", at)
     return values
 
 

@@ -11,6 +11,7 @@ from modelgen.description.document import Steps
 from modelgen.description.drives import read_drive, within_reach
 from modelgen.description.messages import describe
 from modelgen.description.objects import EffectUse, Joint, Limits
+from modelgen.description.plausible import ask_unit
 from modelgen.description.schema import EffectEntry, JointModel
 from modelgen.errors import suggest
 from modelgen.resources import default_effects
@@ -46,6 +47,10 @@ def read_joint(
         context.quantity(raw, "length", [*at, name]).scalar
         for name, raw in (("d", model.d), ("r", model.r), ("b", model.b))
     )
+    for name, raw in (("alpha", model.alpha), ("theta", model.theta), ("gamma", model.gamma)):
+        ask_unit(context, raw, "angle", [*at, name])
+    for name, raw in (("d", model.d), ("r", model.r), ("b", model.b)):
+        ask_unit(context, raw, "length", [*at, name])
     drive = read_drive(context, model.drive, model.type, [*at, "drive"])
     limits = _limits(context, model, drive, kind, at)
     effects = _effects(context, model, drive, known_effects, at)
@@ -83,6 +88,8 @@ def _limits(context: Context, model: JointModel, drive: Drive, kind: str, joint_
         raise context.error("found limits on a fixed joint, expected none", at, key=True)
     if given.position is not None:
         low, high = context.numbers(given.position, kind, [*at, "position"])
+        for k, raw in enumerate(given.position):
+            ask_unit(context, raw, "length" if kind == "length" else "range", [*at, "position", k])
         if low >= high:
             raise context.error(
                 f"found {show(low, kind)} to {show(high, kind)}, expected the lower end first",
