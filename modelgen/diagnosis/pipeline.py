@@ -17,6 +17,7 @@ from modelgen.diagnosis.extended import Extension, extend
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.result import Diagnosis, reported
 from modelgen.errors import InputError
+from modelgen.identification.misread import check_reading
 from modelgen.jobs import one_thread
 
 
@@ -54,6 +55,7 @@ def decided(study: Study, options: Options, progress: Progress | None = None) ->
     Raises InputError where the records cannot answer.
     """
     for band in bands(study):
+        check_reading([r.prepared for r in band.equations.rows], study.model, study.evaluator)
         check_efforts(band.equations)
         check_one_arm(band)
         decision = decide(band, options, progress)

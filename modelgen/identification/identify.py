@@ -117,10 +117,13 @@ def _columns_by_load(model: Model) -> bool:
 
 def errors_of(
     train: Sequence[Prepared], test: Sequence[Prepared], model: Model, evaluator: Evaluator
-) -> Validation:
-    """Errors on `test` of the model fitted to `train` as `identify` does it by default. Raises InputError."""
+) -> tuple[Solution, Validation]:
+    """The model fitted to `train` as `identify` does it by default, and its errors on `test`.
+
+    Raises InputError.
+    """
     _, solution = _fitted(train, evaluator, model, None, "wls")
-    return validate(evaluator, model, test, solution.theta)
+    return solution, validate(evaluator, model, test, solution.theta)
 
 
 def _fitted(

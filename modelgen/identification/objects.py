@@ -58,7 +58,8 @@ class Validation:
 class Identification:
     """Parameters that the training records give an arm, and its errors on the test records.
 
-    gains: torque constants that were found; `arm` has them.
+    gains: torque constants that were found; `arm` has them. doubts: about what no arm has, or the described
+    one has not.
     """
 
     arm: Arm
@@ -70,3 +71,4 @@ class Identification:
     consistent: Consistent | None = None
     comparison: Comparison | None = None
     gains: tuple[Gain, ...] = ()
+    doubts: tuple[str, ...] = ()

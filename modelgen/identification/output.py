@@ -31,6 +31,7 @@ def to_json(found: Identification) -> dict[str, Any]:
         ],
         "test": None if test is None else errors(test),
         "verdict": verdict(found),
+        "doubts": list(found.doubts),
         "least_squares": _least_squares(found.comparison),
         **_gains(found),
         **_physical(found),

@@ -25,7 +25,7 @@ def verdict(found: Identification) -> str:
     poor = [e for e in found.estimates if e.std is not None and (e.relative or np.inf) > POOR]
     dropped = [e.name for e in found.estimates if e.dropped]
     good = [e.name for e in found.estimates if e.std is not None and (e.relative or np.inf) <= POOR]
-    text = impossible(found.estimates)
+    text = [*impossible(found.estimates), *found.doubts]
     text += [f"{len(good)} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
     if poor:
         text.append(f"Poorly determined: {', '.join(e.name for e in poor)}.")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from modelgen.dataset import (
     Chosen,
@@ -27,10 +29,13 @@ from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.functions import Options
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.doubts import doubts
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
+from modelgen.identification.misread import check_reading
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
 from modelgen.identification.simulated_instruments import Tracking
@@ -174,7 +179,12 @@ def _whole(
             payloads=payloads,
         )
 
+    model, evaluator = build_model(arm, options), Evaluator(reduced(arm, options))
+    if options == Options():
+        check_reading(fitted, model, evaluator)
     found = identified(fitted, held)
+    if options == Options():
+        found = replace(found, doubts=_doubts(fitted, found, evaluator))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
         progress("identifying without the drives", 0, None)
@@ -185,6 +195,12 @@ def _whole(
         parts = folds(training, o.folds, chosen, identified)
     log = inspect_records(fitted, testing, chosen, periods)
     return Outcome(found, others, fitted[0], chosen, log, parts)
+
+
+def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:
+    """Questions about what was found."""
+    s, theta = found.solution, np.array([e.value for e in found.estimates])
+    return tuple(doubts(train, found.model, evaluator, theta, s.covariance, s.determined))
 
 
 def _payloads(

@@ -149,7 +149,7 @@ def harms(d: Diagnosis) -> list[str]:
 
 
 def assumptions(d: Diagnosis) -> list[str]:
-    """Values taken from the description because no record shows them, and those that are missing there."""
+    """Values taken from the description because no record shows them, what is missing there, and doubts."""
     taken = [
         f"The drive's inertia at {_place(number)} is taken as {e.value:.3g} {e.unit}, what was identified "
         "of drive and link together beyond the link's nominal inertials: stiffness and play are found with "
@@ -164,14 +164,14 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return taken + unknown
+    return taken + unknown + ([] if d.identified is None else list(d.identified.doubts))
 
 
 def compared(d: Diagnosis) -> list[str]:
     """Why `modelgen identify` says another error of the test record, where it does."""
     if d.identified is None:
         return []
-    rmse, usual = d.identified
+    rmse, usual = d.identified.rmse, d.identified.cutoff
     cutoff, before = float(d.settings["cutoff_hz"]), d.errors.before
     known = np.isfinite(before)
     rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())

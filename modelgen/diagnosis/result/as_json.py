@@ -23,6 +23,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         "arm": d.arm.name,
         "verdict": d.verdict,
         "reason": d.reason,
+        "doubts": [] if d.identified is None else list(d.identified.doubts),
         "causes": [_cause(c) for c in d.causes],
         "suspects": [_cause(c) for c in d.suspects],
         "not_identifiable": [{"effect": name, "reason": reason} for name, reason in d.not_identifiable],
@@ -50,7 +51,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             "gain_interval_percent": [
                 [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
             ],
-            "with_rest": None if d.identified is None else numbers(d.identified[0]),
+            "with_rest": None if d.identified is None else numbers(d.identified.rmse),
             "by_cause": [
                 {
                     "effect": c.effect,

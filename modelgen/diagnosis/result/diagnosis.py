@@ -20,6 +20,19 @@ VERDICTS = ("named", "suspected", "nothing_missing", "outside_catalogue", "canno
 
 
 @dataclass(frozen=True)
+class AsIdentified:
+    """What `modelgen identify` has of the arm as described in this band, with samples at rest.
+
+    rmse: (n,) on the test record. cutoff: that identify would choose [Hz]. doubts: questions about what no
+    arm has, or the described one has not.
+    """
+
+    rmse: Array
+    cutoff: float
+    doubts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """Everything that was found.
 
@@ -29,9 +42,8 @@ class Diagnosis:
     rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
     description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
     has its efforts; suspects: what has evidence and failed a check that decides; inertias: of drives before
-    elastic joints and play by coordinate (from 1); log: facts of the records; identified: RMSE (n,) of
-    the arm as described on the test record as identify has it in this band, samples at rest included, and the
-    cut-off [Hz] that identify would choose, None for free motions.
+    elastic joints and play by coordinate (from 1); log: facts of the records; identified: what identify
+    has, None for free motions.
     """
 
     arm: Arm
@@ -53,7 +65,7 @@ class Diagnosis:
     ranking: History
     added: Sequence[tuple[str, int | None, Mapping[str, float]]]
     log: RecordsInspected
-    identified: tuple[Array, float] | None = None
+    identified: AsIdentified | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     suspects: tuple[NamedCause, ...] = ()
     positions: Positions | None = None

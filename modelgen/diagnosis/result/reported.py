@@ -28,13 +28,13 @@ from modelgen.diagnosis.extended import (
 )
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.options.thresholds import USUAL, in_band
-from modelgen.diagnosis.result.diagnosis import Diagnosis
+from modelgen.diagnosis.result.diagnosis import AsIdentified, Diagnosis
 from modelgen.diagnosis.result.not_identifiable import not_identifiable
 from modelgen.diagnosis.selection import Cause, Selection, threshold
 from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
+from modelgen.identification.doubts import doubts
 from modelgen.identification.identify import errors_of
-from modelgen.numeric import Array
 
 
 def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
@@ -85,20 +85,21 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     )
 
 
-def _identified(study: Study, decision: Decision, extension: Extension) -> tuple[Array, float] | None:
-    """RMSE (n,) of the arm as described on the test record as `modelgen identify` has it in this band, with
-    samples at rest, and the cut-off [Hz] that it would choose; None for a free motion, or where it has none.
-    """
+def _identified(study: Study, decision: Decision, extension: Extension) -> AsIdentified | None:
+    """What `modelgen identify` has of the records in this band, None of a free motion or where it refuses."""
     equations = extension.equations
     if equations.free:
         return None
     train, test = [r.prepared for r in equations.rows], decision.band.test
     try:
-        found = errors_of(train, [test], study.model, study.evaluator)
+        solution, found = errors_of(train, [test], study.model, study.evaluator)
     except InputError:
         return None
     chosen = choose(list(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
-    return found.rmse, chosen.cutoff
+    about = doubts(
+        train, study.model, study.evaluator, solution.theta, solution.covariance, solution.determined
+    )
+    return AsIdentified(found.rmse, chosen.cutoff, tuple(about))
 
 
 def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:

@@ -1,0 +1,112 @@
+"""Parameters that no arm has, or far from the described one: each doubt with the question that it asks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset import Prepared, drives_of
+from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator, Motion
+from modelgen.functions import Model, grouped
+from modelgen.functions.nominal import nominal_links
+from modelgen.numeric import Array
+
+POSES = 60  # of the records, at which inertia and weight are looked at
+CLEARLY = 3.0  # standard deviations
+FACTOR = 5.0  # between the weight found and that of the nominal links, from which on it is asked about
+NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
+LINK = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
+
+
+def doubts(
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    theta: Array,
+    covariance: Array,
+    determined: NDArray[np.bool_],
+) -> list[str]:
+    """Questions about base parameters theta (p,) by poses of the records; determined: flags (p,)."""
+    q = np.concatenate([p.picked(p.q) for p in train])
+    q = q[:: max(1, len(q) // POSES)]
+    at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
+    return [
+        *_inertia(model, evaluator, q, at_rest, theta, covariance, determined),
+        *_weight(model, q, at_rest, theta, determined),
+    ]
+
+
+def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Array) -> Array:
+    """Regressor (N, n, p) at poses without speed."""
+    motion = Motion(np.arange(len(q)) / 1000.0, q, np.zeros_like(q), ddq)
+    return np.asarray(evaluator.regressor(model, motion, theta))
+
+
+def _inertia(
+    model: Model,
+    evaluator: Evaluator,
+    q: Array,
+    at_rest: Array,
+    theta: Array,
+    covariance: Array,
+    determined: NDArray[np.bool_],
+) -> list[str]:
+    """Joints whose own inertia is below zero clearly, at most of the poses: no body has that."""
+    drives, found = drives_of(model.arm), []
+    for j in range(q.shape[1]):
+        ddq = np.zeros_like(q)
+        ddq[:, j] = 1.0
+        row = (_columns(model, evaluator, q, ddq, theta) - at_rest)[:, j]
+        row = row * np.sign(drives[j].gain(q[:, j]))[:, None]
+        if row[:, ~determined].any():
+            continue
+        size = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", row, covariance, row), 0.0))
+        if np.mean(row @ theta < -CLEARLY * size) > 0.5:
+            found.append(model.arm.joints[model.arm.coordinates[j]].name)
+    if not found:
+        return []
+    return [
+        f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
+        "other way round, are positions and efforts of one joint and instant, are the positions too coarse?"
+    ]
+
+
+def _weight(model: Model, q: Array, at_rest: Array, theta: Array, determined: NDArray[np.bool_]) -> list[str]:
+    """Joints whose weight is far from that of the nominal links, where the description has all of them."""
+    try:
+        links = nominal_links(model)
+    except InputError:
+        return []
+    standard = [links.get(p.name, 0.0) for p in model.standard]
+    nominal = np.array(list(grouped(model, standard).values()))
+    of_links = np.array(
+        [
+            all(model.standard[i].name.rstrip("0123456789") in LINK for i, _ in b.terms)
+            for b in model.grouping.base
+        ]
+    )
+    described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
+    lost = at_rest[:, :, of_links & ~determined].any(axis=(0, 2))
+    gain = np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(model.arm))])
+    power = ((described * gain) ** 2).mean(axis=0)
+    notable = np.maximum(power, ((seen * gain) ** 2).mean(axis=0))
+    said = []
+    for j, i in enumerate(model.arm.coordinates):
+        if lost[j] or notable[j] <= NOTABLE**2 * notable.max() or power[j] <= 0.0:
+            continue
+        weight = described[:, j]
+        scale, name = float(weight @ seen[:, j] / (weight @ weight)), model.arm.joints[i].name
+        if scale < -1.0 / FACTOR:
+            said.append(
+                f"The weight at {name} comes out {scale:.3g} times that of the nominal links, of the other "
+                "sign: do gravity in the description and the sign of the efforts agree?"
+            )
+        elif not 1.0 / FACTOR < scale < FACTOR:
+            said.append(
+                f"The weight at {name} comes out {scale:.3g} times that of the nominal links: is a unit "
+                "another one, of masses and lengths there, of the efforts, or of torque_constant and ratio?"
+            )
+    return said

@@ -1,0 +1,146 @@
+"""Logs that were read wrongly, and results that no arm has: identify and diagnose ask the same question."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import modelgen as mg
+from modelgen.description import loads
+from modelgen.effects import known_effects
+
+ARMS = """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  two:
+    gravity: [0, -9.81, 0]
+    joints:
+      - {name: shoulder, alpha: 0, d: 0, r: 0, drive: {type: direct, ratio: 50, torque_constant: 0.1},
+         effects: [{viscous_friction: {coefficient: 0.002}}, {coulomb_friction: {magnitude: 0.02}}]}
+      - {name: elbow, alpha: 0, d: 0.4, r: 0, drive: {type: direct, ratio: 30, torque_constant: 0.05},
+         effects: [{viscous_friction: {coefficient: 0.001}}, {coulomb_friction: {magnitude: 0.01}}]}
+    links:
+      shoulder: {mass: 4, com: [0.2, 0.01, 0], inertia: [0.01, 0, 0, 0.06, 0, 0.06]}
+      elbow: {mass: 2, com: [0.15, 0.02, 0], inertia: [0.005, 0, 0, 0.02, 0, 0.02]}
+"""
+Table = dict[str, np.ndarray]
+
+
+@pytest.fixture(scope="module")
+def arm() -> mg.Arm:
+    return loads(ARMS, "arms.yaml", known_effects())["two"]
+
+
+@pytest.fixture(scope="module")
+def logs(arm: mg.Arm) -> list[Table]:
+    return [log(arm, seed) for seed in (1, 2)]
+
+
+def log(arm: mg.Arm, seed: int) -> Table:
+    """20 s at 100 Hz of the arm as described."""
+    random = np.random.default_rng(seed)
+    t = np.arange(2000) / 100
+    w = 2 * np.pi * np.outer([0.1, 0.2, 0.3, 0.5], [1.0, 1.1])
+    size, phase = random.uniform(0.1, 0.4, w.shape), random.uniform(0, 6, w.shape)
+    angle = t[:, None, None] * w + phase
+    q = (size * np.sin(angle)).sum(axis=1)
+    dq, ddq = (size * w * np.cos(angle)).sum(axis=1), (-size * w**2 * np.sin(angle)).sum(axis=1)
+    model = mg.build_model(arm)
+    current = np.asarray(
+        model.functions["inverse_dynamics"](
+            q=q, dq=dq, ddq=ddq, parameters=np.array(list(model.nominal.values()))
+        )
+    )
+    current = current + 1e-3 * random.normal(size=current.shape)
+    return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0], "i2": current[:, 1]}
+
+
+def exchanged(table: Table, a: str, b: str) -> Table:
+    return table | {a: table[b], b: table[a]}
+
+
+WRONG: dict[str, Any] = {
+    "efforts of two joints": (
+        lambda x: exchanged(x, "i1", "i2"),
+        "efforts of joints shoulder and elbow exchanged",
+    ),
+    "positions of two joints": (
+        lambda x: exchanged(x, "q1", "q2"),
+        "positions of joints shoulder and elbow exchanged",
+    ),
+    "columns of two joints": (
+        lambda x: exchanged(exchanged(x, "q1", "q2"), "i1", "i2"),
+        "columns of joints shoulder and elbow exchanged",
+    ),
+    "degrees": (
+        lambda x: x | {k: np.degrees(x[k]) for k in ("q1", "q2")},
+        "are the positions in degrees",
+    ),
+    "motor angles": (
+        lambda x: x | {"q1": 50 * x["q1"], "q2": 30 * x["q2"]},
+        "are the positions q1, q2 those of the motors",
+    ),
+    "one motor angle": (
+        lambda x: x | {"q2": 30 * x["q2"]},
+        "are the positions q2 those of the motors",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize("command", ["identify", "diagnose"])
+def test_a_log_that_was_read_wrongly_is_asked_about(
+    command: str, name: str, arm: mg.Arm, logs: list[Table]
+) -> None:
+    change, said = WRONG[name]
+    train, test = [change(x) for x in logs]
+    with pytest.raises(mg.InputError, match=re.escape(said)):
+        getattr(mg, command)(arm, train, test)
+
+
+def test_the_log_as_it_is_raises_no_doubt(arm: mg.Arm, logs: list[Table]) -> None:
+    found = mg.identify(arm, *logs)
+    assert found.to_json()["doubts"] == []
+    assert found.test is not None
+    assert (found.test.nrmse_percent < 2.0).all()
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("mass: 2,", "mass: 0.1,", "The weight at elbow comes out 20"),
+        ("[0.15, 0.02, 0]", "[150, 20, 0]", "The weight at elbow comes out 0.001"),
+        ("[0, -9.81, 0]", "[0, 9.81, 0]", "The weight at shoulder comes out -1 times"),
+        (
+            "ratio: 30, torque_constant: 0.05",
+            "ratio: 30, torque_constant: 0.5",
+            "The weight at elbow comes out 10",
+        ),
+    ],
+)
+def test_a_result_far_from_the_nominal_links_is_asked_about(
+    right: str, wrong: str, said: str, logs: list[Table]
+) -> None:
+    other = loads(ARMS.replace(right, wrong), "arms.yaml", known_effects())["two"]
+    found = mg.identify(other, *logs)
+    assert any(doubt.startswith(said) for doubt in found.to_json()["doubts"])
+    assert said in found.to_json()["verdict"]
+
+
+def test_an_inertia_below_zero_is_called_impossible(arm: mg.Arm, logs: list[Table]) -> None:
+    """Efforts that lag by a quarter of a second look like an inertia below zero."""
+    late = [x | {k: np.roll(x[k], 25) for k in ("i1", "i2")} for x in logs]
+    doubts = mg.identify(arm, *late).to_json()["doubts"]
+    assert any(doubt.startswith("Impossible: the inertia at ") for doubt in doubts)
+
+
+def test_diagnose_has_the_doubts_of_identify(logs: list[Table]) -> None:
+    other = loads(ARMS.replace("mass: 2,", "mass: 0.1,"), "arms.yaml", known_effects())["two"]
+    found = mg.diagnose(other, *logs, experiment=False, effects=["friction_offset:1"])
+    (doubt,) = found.to_json()["doubts"]
+    assert doubt.startswith("The weight at elbow comes out 20")
+    assert doubt in found.shown()
