@@ -10,7 +10,7 @@ from typing import Any
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Shown, Table
 from modelgen.dataset import Record, read
-from modelgen.dataset.inspection import Channel, Inspected, inspect, skeleton
+from modelgen.dataset.inspection import Channel, Inspected, inspect, inspection_svg, skeleton
 from modelgen.description import Arm
 
 
@@ -35,7 +35,8 @@ class Inspection(Shown):
     period : float or None
         Period of the motion [s], None where it does not repeat.
     channels : tuple of Channel
-        By column: name, unit, low, high, resolution, share of repeated readings, missing readings.
+        By column: name, unit, low, high, resolution, shares of repeated readings and of rest, spikes, missing
+        readings; a guess of the unit where nobody has said it.
     """
 
     def __init__(self, found: Inspected) -> None:
@@ -71,12 +72,25 @@ class Inspection(Shown):
                     "resolution": c.resolution,
                     "repeated": c.repeated,
                     "missing": c.missing,
+                    "unit_guess": c.guess or None,
+                    "at_rest": c.at_rest,
+                    "spikes": c.spikes,
                 }
                 for c in x.channels
             ],
             "without_numbers": list(x.without_numbers),
             "remarks": list(x.remarks),
         }
+
+    def picture(self) -> str:
+        """The channels over time, and the time between samples.
+
+        Returns
+        -------
+        str
+            SVG.
+        """
+        return inspection_svg(self.found)
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and a table of the channels.
@@ -95,17 +109,20 @@ class Inspection(Shown):
         rows = [
             [
                 c.name,
-                c.unit,
+                c.unit or (f"{c.guess}?" if c.guess else ""),
                 f"{c.low:.6g}",
                 f"{c.high:.6g}",
                 "" if c.resolution is None else f"{c.resolution:.4g}",
                 f"{100 * c.repeated:.1f}",
+                "" if c.at_rest is None else f"{100 * c.at_rest:.0f}",
+                str(c.spikes or ""),
                 str(c.missing or ""),
             ]
             for c in x.channels
         ]
         columns = {"column": "left", "unit": "left"}
-        columns |= dict.fromkeys(("lowest", "highest", "resolution", "repeated %", "missing"), "right")
+        numbers = ("lowest", "highest", "resolution", "repeated %", "at rest %", "spikes", "missing")
+        columns |= dict.fromkeys(numbers, "right")
         parts.append(Table("", columns, rows))
         if x.without_numbers:
             parts.append(f"no numbers: {', '.join(x.without_numbers)}")

@@ -15,6 +15,7 @@ from modelgen.functions.nominal import nominal_links
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
+PART = 0.1  # of the efforts, that an inertia makes up to be looked at
 CLEARLY = 3.0  # standard deviations
 FACTOR = 5.0  # between the weight found and that of the nominal links, from which on it is asked about
 NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
@@ -30,13 +31,18 @@ def doubts(
     determined: NDArray[np.bool_],
 ) -> list[str]:
     """Questions about base parameters theta (p,) by poses of the records; determined: flags (p,)."""
-    q = np.concatenate([p.picked(p.q) for p in train])
-    q = q[:: max(1, len(q) // POSES)]
+    several = [np.concatenate(x) for x in zip(*map(_motion, train), strict=True)]
+    q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
     return [
-        *_inertia(model, evaluator, q, at_rest, theta, covariance, determined),
+        *_inertia(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined),
         *_weight(model, q, at_rest, theta, determined),
     ]
+
+
+def _motion(p: Prepared) -> tuple[Array, Array, Array]:
+    """Positions, accelerations and inputs at the rows of a record, (M, n) each."""
+    return p.picked(p.q), p.picked(p.ddq), p.effort
 
 
 def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Array) -> Array:
@@ -48,18 +54,24 @@ def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Ar
 def _inertia(
     model: Model,
     evaluator: Evaluator,
-    q: Array,
+    motion: tuple[Array, Array, Array],
     at_rest: Array,
     theta: Array,
     covariance: Array,
     determined: NDArray[np.bool_],
 ) -> list[str]:
-    """Joints whose own inertia is below zero clearly, at most of the poses: no body has that."""
-    drives, found = drives_of(model.arm), []
+    """Joints whose own inertia is below zero clearly, at most of the poses: no body has that.
+
+    Where what it does is a small part of the efforts, errors of the model that are larger may hide in it.
+    """
+    drives, found, (q, accelerations, efforts) = drives_of(model.arm), [], motion
     for j in range(q.shape[1]):
-        ddq = np.zeros_like(q)
-        ddq[:, j] = 1.0
-        row = (_columns(model, evaluator, q, ddq, theta) - at_rest)[:, j]
+        alone = np.zeros_like(q)
+        alone[:, j] = 1.0
+        row = (_columns(model, evaluator, q, alone, theta) - at_rest)[:, j]
+        made = float(np.linalg.norm((row @ theta) * accelerations[:, j]))
+        if made < PART * float(np.linalg.norm(efforts[:, j])):
+            continue
         row = row * np.sign(drives[j].gain(q[:, j]))[:, None]
         if row[:, ~determined].any():
             continue
@@ -89,7 +101,7 @@ def _weight(model: Model, q: Array, at_rest: Array, theta: Array, determined: ND
         ]
     )
     described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
-    lost = at_rest[:, :, of_links & ~determined].any(axis=(0, 2))
+    lost = np.asarray(at_rest[:, :, of_links & ~determined].any(axis=(0, 2)))
     gain = np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(model.arm))])
     power = ((described * gain) ** 2).mean(axis=0)
     notable = np.maximum(power, ((seen * gain) ** 2).mean(axis=0))

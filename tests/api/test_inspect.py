@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import math
 from pathlib import Path
 
@@ -111,3 +112,69 @@ def test_the_columns_of_a_record_are_a_log(arm: mg.Arm, log: dict[str, np.ndarra
     assert len(repr(record)) < 200
     assert "<table>" in record._repr_html_()
     assert mg.inspect_log(record, arm).to_json() == mg.inspect_log(log, arm).to_json()
+
+
+def test_units_are_guessed_and_marked_as_guesses() -> None:
+    t = np.arange(1000) / 100
+    q = np.sin(t)
+    table = {
+        "t": t,
+        "hip_angle": np.degrees(q),
+        "knee_pos": q,
+        "motor_current": 3e3 * q,
+        "drive_temp": 30 + q,
+    }
+    table |= {"encoder": np.round(1e4 * q), "state": q}
+    found = mg.inspect_log(table)
+    guesses = {c["name"]: c["unit_guess"] for c in found.to_json()["channels"]}
+    assert guesses == {
+        "hip_angle": "deg",
+        "knee_pos": "rad",
+        "motor_current": "mA",
+        "drive_temp": "degC",
+        "encoder": "counts",
+        "state": None,
+    }
+    assert all(c.unit == "" for c in found.channels)
+    assert "deg?" in found._repr_html_()
+
+
+def test_rest_and_spikes_are_counted(log: dict[str, np.ndarray]) -> None:
+    q, current = log["q2"].copy(), log["tau2"].copy()
+    q[400:800] = q[400]
+    current[[100, 900]] = 80.0
+    found = {c.name: c for c in mg.inspect_log({"t": log["t"], "q1": q, "tau1": current}).channels}
+    assert found["q1"].at_rest == pytest.approx(0.25, abs=0.02)
+    assert found["q1"].spikes == 0
+    assert found["tau1"].spikes == 2
+    assert found["tau1"].at_rest is None
+
+
+def test_stamps_of_another_name_are_used_by_a_guess(log: dict[str, np.ndarray]) -> None:
+    table = {"stamp_ms": 1e12 + 1e3 * log["t"], "hip_pos": log["q2"]}
+    found = mg.inspect_log(table)
+    assert found.rate == pytest.approx(200, rel=1e-3)
+    assert found.period == pytest.approx(2.0, abs=0.006)
+    assert any("stamp_ms, in ms by a guess" in remark for remark in found.to_json()["remarks"])
+
+
+def test_a_compressed_table_is_read(tmp_path: Path, arm: mg.Arm, log: dict[str, np.ndarray]) -> None:
+    text = ",".join(log) + "\n"
+    text += "\n".join(",".join(f"{x:.9g}" for x in row) for row in zip(*log.values(), strict=True))
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    (tmp_path / "a.csv.gz").write_bytes(gzip.compress(text.encode()))
+    one, two = (mg.read_log(str(tmp_path / name), arm) for name in ("a.csv", "a.csv.gz"))
+    assert np.array_equal(one.q, two.q)
+    assert mg.inspect_log(str(tmp_path / "a.csv.gz")).samples == 1600
+    (tmp_path / "b.csv.gz").write_bytes(gzip.compress(text.encode())[:-900])
+    with pytest.raises(mg.InputError, match="ends too early, or is damaged"):
+        mg.inspect_log(str(tmp_path / "b.csv.gz"))
+
+
+def test_the_picture_has_every_channel_and_its_spikes(log: dict[str, np.ndarray]) -> None:
+    found = mg.inspect_log(log)
+    picture = found.picture()
+    assert picture == mg.inspect_log(log).picture()
+    assert all(f">{name}<" in picture for name in ("q1", "q2", "i1", "tau2"))
+    assert "time between" in picture
+    assert len(picture) < 300_000

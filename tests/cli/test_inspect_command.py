@@ -49,3 +49,8 @@ def test_what_is_no_log_is_one_line(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["inspect", str(tmp_path / "b.csv")])
     assert result.exit_code == 2
     assert "there is no such log" in result.stderr
+
+
+def test_the_picture_is_written(tmp_path: Path) -> None:
+    called(write_csv(tmp_path / "a.csv", columns(times())), "--plot", str(tmp_path / "a.svg"))
+    assert (tmp_path / "a.svg").read_text(encoding="utf-8").startswith("<?xml")

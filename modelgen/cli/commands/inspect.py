@@ -30,6 +30,10 @@ Skeleton = Annotated[
     ),
 ]
 
+Plot = Annotated[
+    Path | None, typer.Option("--plot", metavar="FILE", help="Picture, SVG.", show_default=False)
+]
+
 
 @guarded
 def inspect(
@@ -39,16 +43,22 @@ def inspect(
     arm: OneArm = "",
     mapping: Mapping = None,
     skeleton: Skeleton = None,
+    plot: Plot = None,
     as_json: Json = False,
 ) -> None:
-    """Say what is in a log: columns, rate, jitter, resolution, repeated readings, period."""
+    """Say what is in a log: columns, units, rate, jitter, resolution, repeated readings, period, rest."""
     from modelgen.api.inspect import inspect_log, mapping_skeleton
     from modelgen.cli.arms import one
     from modelgen.cli.output import print_result
-    from modelgen.files import check_writable, write_new
+    from modelgen.files import check_writable, write_new, write_together
 
     found = one(arms, arm) if arms is not None or arm or mapping is not None else None
     if skeleton is not None:
         check_writable("--skeleton", skeleton)
         write_new(skeleton, mapping_skeleton(log, found))
-    print_result(inspect_log(log, found, mapping=mapping), as_json=as_json)
+    if plot is not None:
+        check_writable("--plot", plot)
+    result = inspect_log(log, found, mapping=mapping)
+    if plot is not None:
+        write_together("--plot", plot.parent, {plot.name: result.picture()})
+    print_result(result, as_json=as_json)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from modelgen.dataset.drives import drives_of
+from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_of_time
+from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.reading.column_table import Log
@@ -26,6 +28,9 @@ from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 _POSITION = re.compile(r"qm?[1-9][0-9]*")
+REST_SAMPLES = 5  # on either side, over which a position that stands does not move
+RESTING = 0.01  # of what it moves in as many samples otherwise
+SPIKE = 5.0  # of the 99 % quantile of the steps
 _WHOLE = 0.01  # of a resolution, by which a multiple of it may miss a whole number
 
 
@@ -34,7 +39,9 @@ class Channel:
     """A column of numbers. unit: empty where nobody has said it. low, high: of the finite readings.
 
     resolution: what all differences of readings are multiples of, None where there is no such step.
-    repeated: share of the readings that equal the one before. missing: readings that are not finite.
+    repeated: share of the readings that equal the one before. missing: readings that are not finite. guess:
+    unit by name and size, where nobody has said it. at_rest: share of a position's readings about which it
+    stands. spikes: readings far from those beside them, which agree.
     """
 
     name: str
@@ -44,6 +51,9 @@ class Channel:
     resolution: float | None
     repeated: float
     missing: int
+    guess: str = ""
+    at_rest: float | None = None
+    spikes: int = 0
 
     def coarse(self, share: float) -> bool:
         """Whether a step of the readings is more than a share of their range."""
@@ -56,7 +66,8 @@ class Inspected:
 
     jitter: largest deviation of that time from its median, in medians. backwards: stamps that are not after
     the one before. period: of the motion [s], None where it does not repeat. without_numbers: columns of
-    something else. These are NaN or None where the log has no column t.
+    something else. t, columns: stamps (N,) [s] and readings (N,) by name. Rate, jitter and period are NaN or
+    None where the log has no stamps.
     """
 
     name: str
@@ -69,6 +80,8 @@ class Inspected:
     period: float | None
     channels: tuple[Channel, ...]
     without_numbers: tuple[str, ...] = ()
+    t: Array = field(default_factory=lambda: np.empty(0), compare=False, repr=False)
+    columns: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
     remarks: tuple[str, ...] = ()
 
 
@@ -88,15 +101,26 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     columns, rest = _columns(spec, reader)
     remarks = list(reader.remarks)
     t = columns.pop("t", None)
+    stamps = time_of(columns) if t is None else None
+    if stamps is not None:
+        unit = unit_of_time(columns[stamps])
+        t = TIMES[unit] * (columns[stamps] - columns[stamps][0])
+        remarks.append(
+            f"no column t: times are those of {stamps}, in {unit} by a guess, from the first one on"
+        )
     measured = [x for x in columns.values() if np.isfinite(x).all()]
     refresh = refresh_of(np.stack(measured, axis=1)) if measured else None
     if refresh is not None:
         remarks.append(
             f"every reading stands there {refresh.every:.4g} times: the source is slower than the log"
         )
-    positions = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
+    moving = {name: x for name, x in columns.items() if name != stamps and kind_of(name) == "position"}
+    named = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
+    positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
     found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
     doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
+    axis = np.arange(len(next(iter(columns.values()))), dtype=np.float64) if t is None else t
+    found = replace(found, t=np.asarray(axis, dtype=np.float64), columns=columns)
     return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
 
 
@@ -137,7 +161,7 @@ def _of_record(record: Record, t: Array | None = None) -> Inspected:
     found = _inspected(record.name, record.t if t is None else t, channels, [])
     period = period_of(record, None)
     seconds = None if period is None else period * record.step
-    return replace(found, period=seconds, remarks=record.remarks)
+    return replace(found, period=seconds, remarks=record.remarks, t=record.t, columns=record.columns)
 
 
 def _raw(log: Log, arm: Arm, mapping: Path | str | None) -> Array:
@@ -208,7 +232,33 @@ def _channel(name: str, unit: str, values: Array) -> Channel:
         return Channel(name, unit, math.nan, math.nan, None, 0.0, len(values))
     repeated = float(np.mean(np.diff(values) == 0.0)) if len(values) > 1 else 0.0
     low, high = float(finite.min()), float(finite.max())
-    return Channel(name, unit, low, high, _resolution(finite), repeated, len(values) - len(finite))
+    guess = "" if unit else guessed_unit(name, values)
+    rest = _at_rest(finite) if kind_of(name) == "position" and len(finite) == len(values) else None
+    missing = len(values) - len(finite)
+    return Channel(
+        name, unit, low, high, _resolution(finite), repeated, missing, guess, rest, _spikes(finite)
+    )
+
+
+def _at_rest(values: Array) -> float:
+    """Share of positions (N,) about which the reading stands over several samples."""
+    window = 2 * REST_SAMPLES + 1
+    if len(values) <= window or np.ptp(values) == 0.0:
+        return 1.0
+    spans = np.lib.stride_tricks.sliding_window_view(values, window)
+    travel = np.ptp(spans, axis=1)
+    return float(np.mean(travel <= RESTING * np.quantile(travel, 0.99)))
+
+
+def _spikes(values: Array) -> int:
+    """Readings far from both neighbours, on the same side, while the neighbours agree."""
+    if len(values) < 5:
+        return 0
+    before, here, after = values[:-2], values[1:-1], values[2:]
+    up, down = here - before, here - after
+    usual = float(np.quantile(np.abs(np.diff(values)), 0.99))
+    alone = (up * down > 0.0) & (np.minimum(np.abs(up), np.abs(down)) > SPIKE * max(usual, 1e-300))
+    return int(np.count_nonzero(alone & (np.abs(after - before) < 0.5 * np.abs(up))))
 
 
 def _resolution(values: Array) -> float | None:

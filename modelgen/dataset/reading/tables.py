@@ -13,6 +13,7 @@ from modelgen.dataset.reading.specs import unreadable
 from modelgen.errors import InputError
 
 BAGS = (".bag", ".db3", ".mcap")
+TEXTS = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", "")
 SHEETS = (".xlsx", ".xls", ".xlsm", ".ods")
 
 
@@ -34,8 +35,11 @@ def open_table(path: Path, layout: Layout | None = None) -> Reader:
         return BagReader(path)
     if suffix in (".parquet", ".pq"):
         return ParquetReader(path)
-    if suffix in (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", "") or path.is_fifo():
+    if suffix == ".gz":  # of a table of text
+        suffix = Path(path.stem).suffix.lower()
+        suffix = suffix if suffix in TEXTS else ".gz"
+    if suffix in TEXTS or path.is_fifo():
         return CsvReader(path, layout)
-    kinds = ".csv, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
+    kinds = ".csv, .csv.gz, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
     hint = "; in the spreadsheet, save the sheet as CSV UTF-8" if suffix in SHEETS else ""
     raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}{hint}")

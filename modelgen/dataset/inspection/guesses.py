@@ -1,0 +1,71 @@
+"""What columns seem to be, by their names and numbers; nothing is taken for more than a guess."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from modelgen.dataset.mapping.units import plausible_times
+from modelgen.numeric import Array
+
+_TIME = re.compile(
+    r"(^|[^a-z])(t|time|stamp|timestamp|clock)([^a-z]|$)|header\.stamp|time_?stamp", re.IGNORECASE
+)
+_KINDS = (
+    ("velocity", re.compile(r"vel|speed|(^|[^a-z])(dq|qd|rpm)", re.IGNORECASE)),
+    ("acceleration", re.compile(r"acc|ddq|qdd", re.IGNORECASE)),
+    ("temperature", re.compile(r"temp", re.IGNORECASE)),
+    ("current", re.compile(r"cur|amp|(^|[^a-z])i(_|\d|$|\[)", re.IGNORECASE)),
+    ("torque", re.compile(r"tau|torq|effort|force|load|moment", re.IGNORECASE)),
+    ("position", re.compile(r"pos|angle|(^|[^a-z])(q|qm)(_|\d|$|\[)|enc|deg|rad", re.IGNORECASE)),
+)
+TURNS = 4 * np.pi  # rad, beyond which an angle is taken as degrees
+AMPERES = 200.0  # beyond which a current is taken as milliamperes
+
+
+def kind_of(name: str) -> str | None:
+    """Kind of a column by its name: "position", "velocity", "current"; None where it says nothing."""
+    if _TIME.search(name):
+        return None
+    return next((k for k, pattern in _KINDS if pattern.search(name)), None)
+
+
+def time_of(columns: Mapping[str, Array]) -> str | None:
+    """The column of the stamps: its name says so, and it does not fall; those of messages first."""
+    rising = [
+        name for name, x in columns.items() if len(x) > 1 and np.ptp(x) > 0 and np.all(np.diff(x) >= 0.0)
+    ]
+    named = [name for name in rising if _TIME.search(name)]
+    return next((name for name in named if "header.stamp" in name), next(iter(named), None))
+
+
+def unit_of_time(stamps: Array) -> str:
+    """The unit that makes the step one of a robot's logs."""
+    return next(iter(plausible_times(float(np.median(np.diff(stamps))))), "s")
+
+
+def unit_of_angle(values: Array) -> str:
+    """Degrees where the angle would be more than two turns in radians."""
+    return "rad" if float(np.nanmax(np.abs(values))) < TURNS else "deg"
+
+
+def guessed_unit(name: str, values: Array) -> str:
+    """Unit of a column by its name and the size of its numbers; empty where neither tells."""
+    kind, finite = kind_of(name), values[np.isfinite(values)]
+    if kind is None or not len(finite):
+        return ""
+    if kind == "position" and np.array_equal(finite, np.rint(finite)) and np.ptp(finite) > TURNS:
+        return "counts"
+    largest = float(np.abs(finite).max())
+    angle = unit_of_angle(finite)
+    units = {
+        "position": angle,
+        "velocity": "rad/s" if largest < 10 * TURNS else "deg/s",
+        "acceleration": "rad/s^2" if largest < 100 * TURNS else "deg/s^2",
+        "temperature": "degC",
+        "current": "A" if largest < AMPERES else "mA",
+        "torque": "N m",
+    }
+    return units[kind]
