@@ -29,13 +29,20 @@ def doubts(
     theta: Array,
     covariance: Array,
     determined: NDArray[np.bool_],
+    *,
+    whole: bool = True,
 ) -> list[str]:
-    """Questions about base parameters theta (p,) by poses of the records; determined: flags (p,)."""
+    """Questions about base parameters theta (p,) by poses of the records.
+
+    determined: flags (p,). whole: whether nothing is known to be missing in the model; what is would show in
+    its inertia.
+    """
     several = [np.concatenate(x) for x in zip(*map(_motion, train), strict=True)]
     q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
+    given = model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined
     return [
-        *_inertia(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined),
+        *(_inertia(*given) if whole else []),
         *_weight(model, q, at_rest, theta, determined),
     ]
 
@@ -82,7 +89,8 @@ def _inertia(
         return []
     return [
         f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
-        "other way round, are positions and efforts of one joint and instant, are the positions too coarse?"
+        "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
+        "or does the model lack an effect (modelgen diagnose)?"
     ]
 
 

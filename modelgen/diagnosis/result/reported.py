@@ -96,9 +96,8 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     except InputError:
         return None
     chosen = choose(list(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
-    about = doubts(
-        train, study.model, study.evaluator, solution.theta, solution.covariance, solution.determined
-    )
+    fit = solution.theta, solution.covariance, solution.determined
+    about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
     return AsIdentified(found.rmse, chosen.cutoff, tuple(about))
 
 
