@@ -6,7 +6,7 @@ from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.processing.spectra import described, spectra_svg
 from modelgen.dataset.reading.column_table import ColumnTable, Log, named
-from modelgen.dataset.reading.gathering import check_different, gather
+from modelgen.dataset.reading.gathering import check_different, gather, several
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.sources import read_columns
 from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse, split
@@ -38,6 +38,7 @@ __all__ = [
     "preset",
     "read",
     "read_columns",
+    "several",
     "spectra_svg",
     "split",
 ]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from modelgen.dataset import DatasetThresholds, Record, check_separate, last_quarter_out, read, split
+from modelgen.dataset import DatasetThresholds, Record, check_separate, last_quarter_out, read, several, split
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import check_one_arm
 from modelgen.diagnosis.decision import Decision, Progress, decide
@@ -99,7 +99,7 @@ def records(
     check_separate(train, test)
     if len(test) != 1:
         raise InputError(f"found {len(test)} test records, expected one: --test LOG")
-    found = [read(spec, arm, mapping, thresholds) for spec in train]
+    found = several(train, arm, mapping, thresholds)
     if len(found) == 1:
         found = split(found[0])
     return [*found, read(test[0], arm, mapping, thresholds)]

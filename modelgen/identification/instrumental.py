@@ -93,6 +93,8 @@ def _rows(
             continue
         for j in range(y.shape[1]):
             k = moving[:, j] & z.there[:, j]
+            if not k.any():  # a joint that stands throughout
+                continue
             own, other = table[k, j][:, known], z.columns[k, j][:, known]
             found.append((y[k, j] / sigma[j], own / sigma[j], other / sigma[j], j))
     return found

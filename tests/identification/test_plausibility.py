@@ -144,3 +144,35 @@ def test_diagnose_has_the_doubts_of_identify(logs: list[Table]) -> None:
     (doubt,) = found.to_json()["doubts"]
     assert doubt.startswith("The weight at elbow comes out 20")
     assert doubt in found.shown()
+
+
+@pytest.mark.parametrize("command", ["identify", "diagnose"])
+def test_a_joint_that_stands_in_one_record_is_left_out_there(
+    command: str, arm: mg.Arm, logs: list[Table]
+) -> None:
+    """A second record with the elbow held teaches of the shoulder, and does not spoil the elbow."""
+    held = standing(arm, logs[0])
+    more: dict[str, Any] = (
+        {"experiment": False, "effects": ["friction_offset:1"]} if command == "diagnose" else {}
+    )
+    found = getattr(mg, command)(arm, [logs[0], held], logs[1], **more)
+    remarks = found.to_json()["log"]["remarks"]
+    assert any("left out for elbow, at rest throughout" in remark for remark in remarks)
+    nominal = mg.build_model(arm).nominal
+    for name in ("MX1R", "MX2", "ZZ2"):
+        assert found.parameters[name].value == pytest.approx(nominal[name], rel=0.05)
+    with pytest.raises(mg.InputError, match=r"joint elbow stands at 0\.4 in all samples of all records"):
+        getattr(mg, command)(arm, [held, held | {"i1": held["i1"] + 1e-9}], logs[1], **more)
+
+
+def standing(arm: mg.Arm, table: Table) -> Table:
+    """The shoulder's motion with the elbow at 0.4 rad, held by a brake without any current."""
+    t = table["t"]
+    q = np.column_stack([table["q1"], np.full(len(t), 0.4)])
+    dq = np.gradient(q, t, axis=0, edge_order=2)
+    ddq = np.gradient(dq, t, axis=0, edge_order=2)
+    model = mg.build_model(arm)
+    values = np.array(list(model.nominal.values()))
+    current = np.asarray(model.functions["inverse_dynamics"](q=q, dq=dq, ddq=ddq, parameters=values))
+    noise = 1e-3 * np.random.default_rng(9).normal(size=len(t))
+    return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0] + noise, "i2": np.zeros(len(t))}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -34,11 +34,18 @@ def check_length(file: str, samples: int, least: int) -> None:
 
 
 def check_constant(
-    file: str, arm: Arm, names: tuple[str | None, ...], columns: Array, what: str, samples: int | None = None
+    file: str,
+    arm: Arm,
+    names: tuple[str | None, ...],
+    columns: Array,
+    what: str,
+    samples: int | None = None,
+    held: Collection[int] = (),
 ) -> None:
     """Positions and efforts must change, but for undriven joints without any effort. Raises InputError.
 
-    columns: (N, n), or their lowest and highest values (2, n) over `samples`.
+    columns: (N, n), or their lowest and highest values (2, n) over `samples`. held: joints that may stand, by
+    number of the coordinate from 0.
     """
     count = len(columns) if samples is None else samples
     if what == "position" and len(names) > 1 and not np.ptp(columns, axis=0).any():
@@ -47,7 +54,7 @@ def check_constant(
             "see modelgen excite"
         )
     for k, name in enumerate(names):
-        if name is None or np.ptp(columns[:, k]) > 0.0:
+        if name is None or k in held or np.ptp(columns[:, k]) > 0.0:
             continue
         drive, joint = arm.joints[arm.coordinates[k]].drive, arm.joints[arm.coordinates[k]].name
         if what == "effort" and not drive.driven and columns[0, k] == 0.0:

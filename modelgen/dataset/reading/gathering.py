@@ -29,12 +29,31 @@ def gather(
     record under another name.
     """
     check_separate(train, test)
-    training = [read(spec, arm, mapping, thresholds) for spec in train]
+    training = several(train, arm, mapping, thresholds)
     testing = [read(spec, arm, mapping, thresholds) for spec in test]
     for record in testing:
         for other in training:
             check_different(other, record, thresholds)
     return training, testing
+
+
+def several(
+    logs: Sequence[Log],
+    arm: Arm,
+    mapping: Path | str | None = None,
+    thresholds: DatasetThresholds = USUAL,
+) -> list[Record]:
+    """Records of one purpose: in some of them a joint may stand throughout, not in all. Raises InputError."""
+    found = [read(spec, arm, mapping, thresholds, still=len(logs) > 1) for spec in logs]
+    never = [k for k in range(found[0].n) if not any(np.ptp(r.q[:, k]) for r in found)]
+    if never and len(found[0].t):
+        name = arm.joints[arm.coordinates[never[0]]].name
+        raise InputError(
+            f"{found[0].name}: joint {name} stands at {found[0].q[0, never[0]]:.6g} in all samples of all "
+            "records, expected a motion in one of them; where it was held, lock it in the description, "
+            f"locked: {{{name}: ...}}"
+        )
+    return found
 
 
 def check_different(train: Record, test: Record, limits: DatasetThresholds = USUAL) -> None:

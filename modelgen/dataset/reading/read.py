@@ -29,12 +29,15 @@ def read(
     arm: Arm,
     mapping: Path | str | None = None,
     thresholds: DatasetThresholds = USUAL,
+    *,
+    still: bool = False,
 ) -> Record:
     """The record that `FILE` or `FILE@t0:t1` names, or a table of columns holds, in the arm's coordinates.
 
     Columns are those of docs/logs.md, or what the mapping file makes of the log's own. Raises InputError
     for anything that is missing, doubled, not finite, out of order, constant, too short or out of range. A
-    record is given back as it is; one of another arm is refused.
+    record is given back as it is; one of another arm is refused. still: whether some joints, not all, may
+    stand throughout, with a remark.
     """
     if isinstance(log, Record):
         return _of_arm(log, arm)
@@ -59,9 +62,15 @@ def read(
     record, logged = record_of(source, arm, table, axis, axis.times())
     if found:
         record = replace(record, remarks=(*found, *record.remarks), repeats=repeats)
-    checks.check_constant(spec, arm, source.signals.position, logged, "position")
+    held = tuple(k for k in range(record.n) if still and record.n > 1 and not np.ptp(logged[:, k]))
+    checks.check_constant(spec, arm, source.signals.position, logged, "position", held=held)
     if record.input is not None:
-        checks.check_constant(spec, arm, source.signals.effort, record.input, "effort")
+        checks.check_constant(spec, arm, source.signals.effort, record.input, "effort", held=held)
+    if held:
+        names = ", ".join(arm.joints[arm.coordinates[k]].name for k in held)
+        record = replace(
+            record, remarks=(*record.remarks, f"{spec}: left out for {names}, at rest throughout")
+        )
     return record
 
 
