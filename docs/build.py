@@ -46,7 +46,7 @@ PACKAGES = (
     "jobs",
 )
 GUIDES = {
-    "Start": ["tutorial", "python", "theory"],
+    "Start": ["tutorial", "importing", "python", "theory"],
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
     "What a model lacks": [

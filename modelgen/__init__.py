@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from modelgen.api.excitation import Excitation, excite
     from modelgen.api.generation import Generated, generate
     from modelgen.api.identification import Identification, identify
+    from modelgen.api.importing import ImportedRobot, import_robot
     from modelgen.api.inspect import Inspection, inspect_log, read_log
     from modelgen.api.model import Model, build_model
     from modelgen.api.refinement import Refinement, refine
@@ -48,6 +49,7 @@ __all__ = [
     "GenerationOptions",
     "Identification",
     "IdentificationOptions",
+    "ImportedRobot",
     "InputError",
     "Inspection",
     "Model",
@@ -64,6 +66,7 @@ __all__ = [
     "excite",
     "generate",
     "identify",
+    "import_robot",
     "inspect_log",
     "load_arms",
     "read_log",
@@ -79,6 +82,7 @@ _HOMES = {
     "modelgen.api.excitation": ("Excitation", "excite"),
     "modelgen.api.generation": ("Generated", "generate"),
     "modelgen.api.identification": ("Identification", "identify"),
+    "modelgen.api.importing": ("ImportedRobot", "import_robot"),
     "modelgen.api.inspect": ("Inspection", "inspect_log", "read_log"),
     "modelgen.api.model": ("Model", "build_model"),
     "modelgen.api.refinement": ("Refinement", "refine"),

@@ -15,6 +15,7 @@ from modelgen.cli.commands import (
     fleet,
     generate,
     identify,
+    import_,
     init,
     inspect,
     refine,
@@ -60,9 +61,10 @@ for _command in (
     effects,
     schema,
     init,
+    import_,
     cmake_dir,
 ):
-    app.command()(_command)
+    app.command(_command.__name__.strip("_").replace("_", "-"))(_command)
 
 
 def main() -> None:

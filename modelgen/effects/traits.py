@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from itertools import product
+from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -90,6 +91,7 @@ class Traits(ABC):
     Nonlinear parameters without a grid or forms, whose default is zero or is not given, are departures from
     the model: where no parameter is linear they are estimated, by slopes about zero.
 
+    sources: what robot files call its parameters, at the joint: its own name of each by theirs.
     parts: names of parameters that are also estimated alone, since others often are as they were.
     exact: what it does follows from the arm's own equations or is a constant; its form leaves others nothing.
     needs_effort: it is about what the drives are given, or what working does to them; of no meaning in a free
@@ -111,6 +113,7 @@ class Traits(ABC):
     linear: ClassVar[tuple[Parameter, ...]] = ()
     nonlinear: ClassVar[tuple[Parameter, ...]] = ()
     shown: ClassVar[Mapping[str, float]] = at()
+    sources: ClassVar[Mapping[str, str]] = MappingProxyType({})
     parts: ClassVar[tuple[tuple[str, ...], ...]] = ()
     family: ClassVar[Family] = Family.OTHER
     exact: ClassVar[bool] = False

@@ -29,6 +29,7 @@ ORDER = (
     "backends",
     "packaging",
     "generation",
+    "importing",
     "dataset",
     "evaluation",
     "regression",

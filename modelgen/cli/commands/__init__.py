@@ -8,6 +8,7 @@ from modelgen.cli.commands.excite import excite
 from modelgen.cli.commands.fleet import fleet
 from modelgen.cli.commands.generate import generate
 from modelgen.cli.commands.identify import identify
+from modelgen.cli.commands.import_ import import_
 from modelgen.cli.commands.init import init
 from modelgen.cli.commands.inspect import inspect
 from modelgen.cli.commands.refine import refine
@@ -24,6 +25,7 @@ __all__ = [
     "fleet",
     "generate",
     "identify",
+    "import_",
     "init",
     "inspect",
     "refine",

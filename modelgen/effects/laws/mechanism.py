@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 import sympy as sp
@@ -34,6 +35,7 @@ class DriveInertia(Effect):
     confused_with = ("actuator_mass",)
     experiment = "fast and slow runs of the same path"
     shown = at(inertia=0.0005)
+    sources = MappingProxyType({"armature": "inertia"})
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """IA a."""
@@ -57,6 +59,7 @@ class Spring(Effect):
     confused_with = ("friction_offset", "base_tilt", "encoder_offset")
     experiment = "static holds over the whole range"
     shown = at(stiffness=8.0, preload=-4.0)
+    sources = MappingProxyType({"stiffness": "stiffness", "rest": "rest"})
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """KS q + KO."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -43,6 +44,7 @@ class ViscousFriction(Effect):
     confused_with = ("nonlinear_viscous_friction", "fluid_drag")
     experiment = "a sweep of constant speeds"
     shown = at(coefficient=0.001)
+    sources = MappingProxyType({"damping": "coefficient"})
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FV v."""
@@ -59,6 +61,7 @@ class CoulombFriction(Effect):
     confused_with = ("friction_offset", "presliding", "backlash")
     experiment = "slow reversals"
     shown = at(magnitude=0.1)
+    sources = MappingProxyType({"friction": "magnitude"})
     nonlinear = (SMOOTHING,)
 
     @classmethod

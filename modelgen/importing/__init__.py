@@ -1,0 +1,5 @@
+"""Robots of other formats to arms: URDF, MJCF, tables of standard Denavit-Hartenberg parameters."""
+
+from modelgen.importing.importer import Imported, import_model
+
+__all__ = ["Imported", "import_model"]

@@ -1,0 +1,110 @@
+"""What MJCF ties together besides the tree, and what drives the joints: equalities, tendons, actuators."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.importing.mjcf.settings import ACTUATORS, Defaults
+from modelgen.importing.robot import Closure, SourceJoint
+from modelgen.importing.xml_text import Element
+
+# Attributes by which a tendon acts on what it runs along.
+_ACTS = ("stiffness", "damping", "frictionloss", "armature", "range", "springlength")
+
+
+def closures_of(root: Element, defaults: Defaults) -> Iterator[Closure]:
+    """Equalities and tendons: refused where they hold what moves."""
+    pulled = _pulled(root, defaults)
+    for section in root.all("equality"):
+        for element in section.children:
+            given = defaults.complete(element, None).attributes
+            if given.get("active", "true") != "false":
+                yield _equality(element, given)
+    for section in root.all("tendon"):
+        for element in section.children:
+            tendon = defaults.complete(element, None)
+            name = tendon.attributes.get("name", f"of line {tendon.line}")
+            if name not in pulled and not any(_acts(tendon, which) for which in _ACTS):
+                continue
+            text = f"line {tendon.line}: tendon {name} acts on several joints, which is not described"
+            yield Closure(
+                f"{text}; hold them (--lock), or take it out",
+                joints=tuple(part.text("joint") for part in tendon.all("joint")),
+                links=tuple(part.text("site") for part in tendon.all("site")),
+            )
+
+
+def _equality(element: Element, given: dict[str, str]) -> Closure:
+    name = given.get("name", "")
+    text = (
+        f"line {element.line}: equality {name or element.tag} closes a loop or couples joints, which is not "
+    )
+    joints = tuple(given[key] for key in ("joint1", "joint2") if key in given)
+    links = tuple(given[key] for key in ("body1", "body2", "site1", "site2") if key in given)
+    hint = f"; hold them, --lock {joints[0]}=0" if joints else "; open it: take it out, or hold its joints"
+    return Closure(f"{text}described{hint}", joints, links)
+
+
+def _pulled(root: Element, defaults: Defaults) -> set[str]:
+    """Tendons that an actuator or an equality acts on."""
+    names = set()
+    for section in root.all("actuator", "equality"):
+        for element in section.children:
+            given = defaults.complete(element, None).attributes
+            names |= {given[key] for key in ("tendon", "tendon1", "tendon2") if key in given}
+    return names
+
+
+def _acts(tendon: Element, name: str) -> bool:
+    text = tendon.attributes.get(name, "0")
+    return any(value not in ("0", "0.0", "-1") for value in text.split())
+
+
+def with_actuators(
+    root: Element, defaults: Defaults, joints: Sequence[SourceJoint]
+) -> tuple[list[SourceJoint], list[str]]:
+    """The joints with the gears, efforts and rotors of their actuators, and remarks."""
+    by_name = {joint.name: joint for joint in joints}
+    remarks: list[str] = []
+    seen: dict[str, str] = {}
+    for section in root.all("actuator"):
+        for element in section.children:
+            actuator = defaults.complete(element, None)
+            name = actuator.attributes.get("name", f"of line {actuator.line}")
+            target = actuator.attributes.get("joint") or actuator.attributes.get("jointinparent")
+            if actuator.tag not in ACTUATORS or target is None:
+                remarks.append(f"actuator {name} drives no joint of its own and is left out")
+                continue
+            if target not in by_name:
+                raise actuator.error(f"actuator {name}: there is no joint '{target}'")
+            gear = _gear(actuator)
+            if target in seen:
+                remarks.append(f"joint {target}: {seen[target]} is its drive, actuator {name} is left out")
+                continue
+            seen[target] = f"actuator {name}"
+            by_name[target] = _driven(by_name[target], actuator, gear)
+    return [by_name[joint.name] for joint in joints], remarks
+
+
+def _gear(actuator: Element) -> float:
+    values = actuator.attributes.get("gear", "1").split()
+    gear = Element("gear", {"gear": values[0]}, actuator.file, actuator.line).number("gear")
+    if gear == 0.0:
+        raise actuator.error("<… gear>: found 0, expected a ratio other than 0")
+    return gear
+
+
+def _driven(joint: SourceJoint, actuator: Element, gear: float) -> SourceJoint:
+    properties = dict(joint.properties)
+    for own in ("armature", "damping"):
+        value = actuator.number(own, 0.0)
+        if value:
+            properties[own] = properties.get(own, 0.0) + value * gear**2
+    effort = joint.effort
+    limited = actuator.attributes.get("forcelimited", "auto") != "false"
+    if effort is None and limited and "forcerange" in actuator.attributes:
+        effort = float(np.abs(actuator.vector("forcerange", 2)).max() * abs(gear)) or None
+    return replace(joint, properties=properties, reduction=gear, effort=effort)
