@@ -19,6 +19,7 @@ from modelgen.numeric import Array
 POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
 SOME = 0.05  # of them, that are unexplained at either joint of two that may be exchanged
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
+TURN = 2 * math.pi  # rad, or m
 ROWS = 100  # per parameter, of a record that is asked
 
 
@@ -49,7 +50,7 @@ def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator)
         if other is not None:
             found.append((float(np.sqrt(np.mean(other**2))), reading.question))
     best, question = min(found, default=(math.inf, ""))
-    if best < BETTER * total:
+    if best < min(BETTER * total, POOR):
         raise InputError(
             f"{first.name}: {question}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
             f"the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
@@ -85,7 +86,9 @@ def _readings(record: Record, left: Array) -> Iterator[_Reading]:
     assert record.gain is not None
     joints = [arm.joints[i] for i in arm.coordinates]
     sides = record.motor_side or (False,) * record.n
-    angles = [k for k, j in enumerate(joints) if j.type == "revolute" and not sides[k]]
+    # Of small positions the model is linear in them, as a spring is: none but wide motions are asked.
+    wide = [bool(np.ptp(record.q[:, k]) > TURN) and not sides[k] for k in range(record.n)]
+    angles = [k for k, j in enumerate(joints) if j.type == "revolute" and wide[k]]
     if angles:
         q = record.q.copy()
         q[:, angles] *= math.pi / 180
@@ -93,7 +96,7 @@ def _readings(record: Record, left: Array) -> Iterator[_Reading]:
     geared = [
         k
         for k, drive in enumerate(drives_of(arm))
-        if not sides[k] and drive.ratio is not None and abs(drive.ratio) > 1.0
+        if wide[k] and drive.ratio is not None and abs(drive.ratio) > 1.0
     ]
     for some in [geared, *([k] for k in geared if len(geared) > 1)]:
         if some:

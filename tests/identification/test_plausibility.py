@@ -176,3 +176,13 @@ def standing(arm: mg.Arm, table: Table) -> Table:
     current = np.asarray(model.functions["inverse_dynamics"](q=q, dq=dq, ddq=ddq, parameters=values))
     noise = 1e-3 * np.random.default_rng(9).normal(size=len(t))
     return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0] + noise, "i2": np.zeros(len(t))}
+
+
+def test_a_spring_that_the_model_lacks_is_not_taken_for_another_reading(
+    arm: mg.Arm, logs: list[Table]
+) -> None:
+    """Of small positions the model is linear in them, which explains a spring: no question of units."""
+    sprung = [x | {"i2": x["i2"] + 2.0 * x["q2"]} for x in logs]
+    found = mg.identify(arm, *sprung)
+    assert found.test is not None
+    assert found.test.nrmse_percent[1] > 15.0
