@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solve_toeplitz
+from scipy.linalg import solve_toeplitz, toeplitz
 from scipy.signal import lfilter
 
 from modelgen.numeric import Array
@@ -54,11 +54,30 @@ def autocovariance(parts: Sequence[Array], count: int) -> Array:
 
 
 def autoregression(r: Array) -> tuple[Array, float]:
-    """Taps (1, a1, ...) and power of the innovations by Yule and Walker's equations: always stable."""
-    if len(r) == 1 or r[0] <= 0.0:
-        return np.eye(len(r))[0], max(0.0, float(r[0]))
-    a = solve_toeplitz(r[:-1] + np.eye(len(r) - 1)[0] * 1e-9 * r[0], r[1:])
-    return np.concatenate([[1.0], -a]), max(0.0, float(r[0] - a @ r[1:]))
+    """Taps (1, a1, ...) and power of the innovations by Yule and Walker's equations.
+
+    Lags that no noise can have (a matrix that is not positive definite) would give an unstable filter: the
+    model has the order of the longest run of lags, from zero on, that a noise can have.
+    """
+    level = r + np.eye(len(r))[0] * 1e-9 * r[0]
+    order = len(r) - 1
+    while order > 0 and not _positive(level[: order + 1]):
+        order -= 1
+    taps = np.eye(len(r))[0]
+    if order == 0:
+        return taps, max(0.0, float(r[0]))
+    a = solve_toeplitz(level[:order], r[1 : order + 1])
+    taps[1 : order + 1] = -a
+    return taps, max(0.0, float(r[0] - a @ r[1 : order + 1]))
+
+
+def _positive(r: Array) -> bool:
+    """Whether the matrix of these lags is positive definite."""
+    try:
+        np.linalg.cholesky(toeplitz(r))
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def meat_of(rows: Array, taps: Array, power: float) -> Array:
