@@ -22,7 +22,7 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis import assumptions, compared, harms, sketches, suspicions, unnamed
+from modelgen.report.diagnosis import assumptions, compared, harms, sketches, suspicions, unnamed, worth
 from modelgen.report.experiment import followed
 from modelgen.report.figures import Pen
 from modelgen.report.writing import write
@@ -223,10 +223,7 @@ def sentence(d: Found) -> str:
     """The verdict for a person."""
     if d.verdict == "named":
         said = [f"{c.effect} {'of the arm' if c.joint is None else f'at joint {c.joint}'}" for c in d.causes]
-        gains = d.errors.gain[~(d.errors.gain != d.errors.gain)]
-        best = max(gains, default=0.0)
-        gained = f"{best:.1f} % less error" if best > 0.0 else "no less error"
-        return f"The model lacks {' and '.join(said)}: {gained} on the test record with it."
+        return f"The model lacks {' and '.join(said)}: {worth(d)}."
     return f"{unnamed(d)} {d.reason[0].upper()}{d.reason[1:]}."
 
 

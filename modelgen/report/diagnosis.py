@@ -103,6 +103,8 @@ _SIMULATED = {
     False: "Windows of the test record simulated from their measured initial states with the measured inputs",
 }
 
+_VISIBLE = 0.05  # percent: less is 0.0 in print
+
 
 def unnamed(d: Diagnosis) -> str:
     """The verdict where no cause is named."""
@@ -115,7 +117,26 @@ def _sentence(d: Diagnosis) -> Markup:
     if d.verdict != "named":
         return Markup(unnamed(d))
     found = [Markup("<b>{}</b> at {}").format(c.effect, _place(c.joint)) for c in d.causes]
-    return Markup("The model lacks {}.").format(Markup(" and ").join(found))
+    return Markup("The model lacks {}: {}.").format(Markup(" and ").join(found), worth(d))
+
+
+def worth(d: Diagnosis) -> str:
+    """What the causes are worth on the test record: over all joints, at the best and at the worst."""
+    gains = np.nan_to_num(d.errors.gain)
+    best, worst = int(np.argmax(gains)), int(np.argmin(gains))
+    if np.isnan(d.errors.overall):
+        return "the test record cannot tell what that is worth"
+    said = "the test record is predicted no better"
+    if d.errors.overall >= _VISIBLE:
+        said = f"{d.errors.overall:.1f} % less error on the test record"
+        said += " over all joints" if len(gains) > 1 else ""
+    if gains[best] >= _VISIBLE and len(gains) > 1:
+        said += f", {gains[best]:.1f} % less at {_place(best + 1)}"
+    if gains[worst] <= -_VISIBLE:
+        said += f", {-gains[worst]:.1f} % more at {_place(worst + 1)}"
+    doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
+    names = [f"{c.effect} at {_place(c.joint)}" for c in doubted]
+    return said + (f"; that record does not confirm {' and '.join(names)}" if names else "")
 
 
 # Why a candidate was not taken, by the gate that stayed shut, or taken back.

@@ -9,9 +9,10 @@ from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of
 
 from modelgen.dataset import Record
 from modelgen.description import DirectDrive
-from modelgen.diagnosis.adequacy.checks import confirmed, significant
+from modelgen.diagnosis.adequacy.checks import confirmed, examined, significant
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection import Cause, Ranked, Selection
@@ -26,7 +27,7 @@ def test_every_cause_has_the_same_checks_and_passes_those_that_decide() -> None:
     assert (cause["effect"], cause["joint"], cause["joint_name"]) == ("stribeck_friction", 2, "j2")
     assert [c["name"] for c in cause["checks"]] == NAMES
     assert all(c["passed"] for c in cause["checks"])
-    assert {c["name"] for c in cause["checks"] if not c["decides"]} == {"evidence", "stable", "confirmed"}
+    assert {c["name"] for c in cause["checks"] if not c["decides"]} == {"stable", "confirmed"}
     assert said["suspects"] == []
 
 
@@ -110,6 +111,19 @@ def test_the_runner_up_is_not_the_name(
 def test_what_is_refused_in_the_end_is_held_against_the_cause_too() -> None:
     found = dominance(*chosen(turn(OWN), turn(("presliding", 1, 130.0, "gain", False))))
     assert found.ahead == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize(("joint", "ended"), [(1, True), (2, False)])
+def test_a_suspect_ends_the_naming_at_its_joint(joint: int, ended: bool) -> None:
+    """What is found beside a suspect, and at its joint, has no name either."""
+    suspect, selection = chosen(turn(OWN, ("time_delay", None, 120.0, "gain", False)))
+    place = Candidate("asymmetric_viscous_friction", joint)
+    later = replace(suspect, trial=replace(suspect.trial, candidate=place))
+    both = with_causes(selection.system.equations, [suspect.trial, later.trial])
+    system = System(selection.system.equations, both)
+    first, second = examined(Selection([suspect, later], system, selection.turns), system.equations)
+    assert first.failed
+    assert [c.name for c in second.failed] == (["undominated"] if ended else [])
 
 
 @pytest.mark.parametrize(

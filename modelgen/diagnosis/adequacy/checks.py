@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,23 +31,47 @@ class Examined:
 
 
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
-    """Every cause of the selection with its checks. equations: of the band, all rows that move."""
+    """Every cause of the selection with its checks. equations: of the band, all rows that move.
+
+    A suspect ends the naming at its joint: what is found beside it explains what it leaves.
+    """
     forms = free_forms(selection, equations)
-    return [
-        Examined(
-            cause,
-            (
-                _evidence(cause, selection),
-                significant(k, selection),
-                _admissible(cause, equations),
-                _gain(cause, equations),
-                _undominated(dominance(cause, selection)),
-                _form(forms.get(cause.trial.candidate.joint)),
-                _stable(k, selection),
-            ),
+    found: list[Examined] = []
+    ended: dict[int, Cause] = {}
+    for one in _each(selection, equations, forms):
+        joint = one.cause.trial.candidate.joint
+        if joint is not None and joint in ended and not one.failed:
+            checks = tuple(_behind(check, ended[joint], one.cause) for check in one.checks)
+            found.append(replace(one, checks=checks))
+            continue
+        found.append(one)
+        if joint is not None and one.failed:
+            ended.setdefault(joint, one.cause)
+    return found
+
+
+def _behind(check: Check, suspect: Cause, cause: Cause) -> Check:
+    """The check `undominated` of a cause that was taken beside a suspect of its joint."""
+    if check.name != "undominated":
+        return check
+    text = f"delta BIC by which {suspect.trial.candidate.effect}, a suspect at its joint, is ahead"
+    return replace(check, passed=False, value=suspect.delta_bic - cause.delta_bic, text=text)
+
+
+def _each(
+    selection: Selection, equations: Equations, forms: Mapping[int | None, FreeForm]
+) -> Iterator[Examined]:
+    for k, cause in enumerate(selection.causes):
+        checks = (
+            _evidence(cause, selection),
+            significant(k, selection),
+            _admissible(cause, equations),
+            _gain(cause, equations),
+            _undominated(dominance(cause, selection)),
+            _form(forms.get(cause.trial.candidate.joint)),
+            _stable(k, selection),
         )
-        for k, cause in enumerate(selection.causes)
-    ]
+        yield Examined(cause, checks)
 
 
 def confirmed(gain: float, low: float) -> Check:
@@ -68,7 +92,7 @@ def confirmed(gain: float, low: float) -> Check:
 def _evidence(cause: Cause, selection: Selection) -> Check:
     least = needed_evidence(cause.trial, selection.system)
     text = "evidence (delta BIC) beside all other causes"
-    return Check("evidence", cause.delta_bic >= least, False, cause.delta_bic, least, text)
+    return Check("evidence", cause.delta_bic >= least, True, cause.delta_bic, least, text)
 
 
 def significant(k: int, selection: Selection) -> Check:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.diagnosis.validation import Check
 from modelgen.numeric import Array
@@ -62,6 +64,13 @@ class Errors:
     gain: Array
     low: Array
     high: Array
+
+    @property
+    def overall(self) -> float:
+        """Percent of the error over all joints that have one, each in units of its own error before."""
+        measured = self.before > 0.0
+        ratios = self.after[measured] / self.before[measured]
+        return float(100.0 * (1.0 - np.sqrt(np.mean(ratios**2)))) if measured.any() else float("nan")
 
 
 @dataclass(frozen=True)
