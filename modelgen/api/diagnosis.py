@@ -22,7 +22,8 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis import assumptions, compared, harms, sketches, suspicions, unnamed, worth
+from modelgen.report.diagnosis import sketches
+from modelgen.report.diagnosis_sentences import assumptions, compared, harms, suspicions, unnamed, worth
 from modelgen.report.experiment import followed
 from modelgen.report.figures import Pen
 from modelgen.report.writing import write

@@ -12,9 +12,18 @@ from markupsafe import Markup
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, SUSPECT, Ranked
-from modelgen.diagnosis.validation import Check
-from modelgen.effects import CATALOGUE, Family
+from modelgen.effects import CATALOGUE
 from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
+from modelgen.report.diagnosis_sentences import (
+    assumptions,
+    checked,
+    compared,
+    harms,
+    place_of,
+    suspicions,
+    unnamed,
+    worth,
+)
 from modelgen.report.experiment import described, picture
 from modelgen.report.figures import Sketch
 from modelgen.resources import templates_folder
@@ -85,14 +94,6 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
     return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
 
 
-_SENTENCES = {
-    "nothing_missing": "Nothing is missing that these records could show.",
-    "outside_catalogue": "Something is missing that is not in the catalogue.",
-    "cannot_tell": "These records cannot tell.",
-    "suspected": "Nothing can be named, and something is suspected.",
-}
-
-
 # By whether the test record is a free motion.
 _ERRORS = {
     True: "RMSE of the simulated free motion, from the release on,",
@@ -103,40 +104,12 @@ _SIMULATED = {
     False: "Windows of the test record simulated from their measured initial states with the measured inputs",
 }
 
-_VISIBLE = 0.05  # percent: less is 0.0 in print
-
-
-def unnamed(d: Diagnosis) -> str:
-    """The verdict where no cause is named."""
-    if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
-        return "Something is missing that is none of the effects asked for."
-    return _SENTENCES[d.verdict]
-
 
 def _sentence(d: Diagnosis) -> Markup:
     if d.verdict != "named":
         return Markup(unnamed(d))
-    found = [Markup("<b>{}</b> at {}").format(c.effect, _place(c.joint)) for c in d.causes]
+    found = [Markup("<b>{}</b> at {}").format(c.effect, place_of(c.joint)) for c in d.causes]
     return Markup("The model lacks {}: {}.").format(Markup(" and ").join(found), worth(d))
-
-
-def worth(d: Diagnosis) -> str:
-    """What the causes are worth on the test record: over all joints, at the best and at the worst."""
-    gains = np.nan_to_num(d.errors.gain)
-    best, worst = int(np.argmax(gains)), int(np.argmin(gains))
-    if np.isnan(d.errors.overall):
-        return "the test record cannot tell what that is worth"
-    said = "the test record is predicted no better"
-    if d.errors.overall >= _VISIBLE:
-        said = f"{d.errors.overall:.1f} % less error on the test record"
-        said += " over all joints" if len(gains) > 1 else ""
-    if gains[best] >= _VISIBLE and len(gains) > 1:
-        said += f", {gains[best]:.1f} % less at {_place(best + 1)}"
-    if gains[worst] <= -_VISIBLE:
-        said += f", {-gains[worst]:.1f} % more at {_place(worst + 1)}"
-    doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
-    names = [f"{c.effect} at {_place(c.joint)}" for c in doubted]
-    return said + (f"; that record does not confirm {' and '.join(names)}" if names else "")
 
 
 # Why a candidate was not taken, by the gate that stayed shut, or taken back.
@@ -154,58 +127,7 @@ _REFUSED = {
     SUSPECT: "taken, then taken back: it failed a check, see the suspects",
     COARSE: "taken, then taken back: the positions are too coarse to tell it from others",
 }
-_SAME = 0.01  # of an error or a cut-off, that needs no word
 _SHOWN = 12  # candidates of a turn
-
-
-def harms(d: Diagnosis) -> list[str]:
-    """Warnings about causes that make the test record worse."""
-    return [
-        f"With {c.effect} at {_place(c.joint)} the error on the test record is {-c.share.gain:.1f} % larger "
-        f"({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that record."
-        f"{CATALOGUE[c.effect].caveat}"
-        for c in d.causes
-        if c.share.high < 0.0
-    ]
-
-
-def assumptions(d: Diagnosis) -> list[str]:
-    """Values taken from the description because no record shows them, what is missing there, and doubts."""
-    taken = [
-        f"The drive's inertia at {_place(number)} is taken as {e.value:.3g} {e.unit}, what was identified "
-        "of drive and link together beyond the link's nominal inertials: stiffness and play are found with "
-        "it. A value under drive_inertia in the description is taken instead."
-        for number, e in d.inertias.items()
-    ]
-    compliant = {c.joint for c in d.causes if CATALOGUE[c.effect].family is Family.ELASTIC}
-    unknown = [
-        f"The drive's inertia at {_place(number)} is not told from the link's: the extended model "
-        "cannot be simulated, nor its forward dynamics used, until the description gives "
-        "drive_inertia a value."
-        for drive in d.after.model.grouping.drives
-        if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
-    ]
-    return taken + unknown + ([] if d.identified is None else list(d.identified.doubts))
-
-
-def compared(d: Diagnosis) -> list[str]:
-    """Why `modelgen identify` says another error of the test record, where it does."""
-    if d.identified is None:
-        return []
-    rmse, usual = d.identified.rmse, d.identified.cutoff
-    cutoff, before = float(d.settings["cutoff_hz"]), d.errors.before
-    known = np.isfinite(before)
-    rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())
-    if not rested and abs(usual - cutoff) <= _SAME * cutoff:
-        return []
-    numbers = ", ".join(f"{x:.4g}" for x in rmse)
-    at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is"
-    counted = f"; {at_rest} {numbers} {d.errors.unit}" if rested else ""
-    other = f", identify chooses {usual:.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
-    return [
-        f"The error is that up to {cutoff:.6g} Hz, fitted and judged while the joint moves{counted}{other}; "
-        f"modelgen identify --cutoff {cutoff:.6g} has this band."
-    ]
 
 
 def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
@@ -221,7 +143,7 @@ def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
     for r in turn[:_SHOWN]:
         word = _REFUSED.get(r.refused, "taken" if r.taken else "passes every gate too")
         gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
-        rows.append((r.effect, _place(r.joint), f"{r.delta_bic:.1f}", *gains, word))
+        rows.append((r.effect, place_of(r.joint), f"{r.delta_bic:.1f}", *gains, word))
     return rows
 
 
@@ -232,16 +154,12 @@ def _said(value: object) -> str:
     return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _place(joint: int | None) -> str:
-    return "the whole arm" if joint is None else f"joint {joint}"
-
-
 def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
     c = d.causes[k]
     return {
         "effect": c.effect,
         "text": CATALOGUE[c.effect].text,
-        "place": _place(c.joint),
+        "place": place_of(c.joint),
         "parameters": [
             (n, f"{e.value:.4g}", "" if np.isnan(e.std) else f"{e.std:.2g}", e.unit)
             for n, e in c.parameters.items()
@@ -250,33 +168,12 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
         "gain": f"{c.cross_gain:.1f}",
         "expected": f"{c.expected_gain:.1f}",
         "share": _share(c),
-        "aliases": ", ".join(f"{e} ({_place(j)})" for e, j in c.aliases),
-        "rivals": ", ".join(f"{e} ({_place(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
-        "checks": [_checked(check) for check in c.checks],
+        "aliases": ", ".join(f"{e} ({place_of(j)})" for e, j in c.aliases),
+        "rivals": ", ".join(f"{e} ({place_of(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
+        "checks": [checked(check) for check in c.checks],
         "experiment": CATALOGUE[c.effect].experiment,
         "reference": CATALOGUE[c.effect].reference,
     }
-
-
-def suspicions(d: Diagnosis) -> list[str]:
-    """What has evidence and is not named, each with the check that it failed."""
-    return [
-        f"Suspected: {c.effect} at {_place(c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
-        + "; ".join(f"{name}, {text}" for name, mark, text in map(_checked, c.checks) if mark == "no")
-        + "."
-        for c in d.suspects
-    ]
-
-
-def _checked(c: Check) -> tuple[str, str, str]:
-    """Name, answer and figures of a check."""
-    mark = "not asked" if c.passed is None else "yes" if c.passed else "no"
-    if not c.decides and c.passed is False:
-        mark = "no, which does not decide"
-    figures = (
-        f" ({c.value:.3g}, threshold {c.threshold:.3g})" if np.isfinite([c.value, c.threshold]).all() else ""
-    )
-    return c.name, mark, c.text + figures
 
 
 def _share(c: NamedCause) -> str:

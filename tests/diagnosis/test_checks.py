@@ -9,13 +9,13 @@ from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of
 
 from modelgen.dataset import Record
 from modelgen.description import DirectDrive
-from modelgen.diagnosis.adequacy.checks import confirmed, examined, significant
+from modelgen.diagnosis.adequacy.checks import Examined, confirmed, ended_by_suspects, significant
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
-from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection import Cause, Ranked, Selection
+from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
 
 NAMES = ["evidence", "significant", "admissible", "gain", "undominated", "form", "stable", "confirmed"]
@@ -116,14 +116,13 @@ def test_what_is_refused_in_the_end_is_held_against_the_cause_too() -> None:
 @pytest.mark.parametrize(("joint", "ended"), [(1, True), (2, False)])
 def test_a_suspect_ends_the_naming_at_its_joint(joint: int, ended: bool) -> None:
     """What is found beside a suspect, and at its joint, has no name either."""
-    suspect, selection = chosen(turn(OWN, ("time_delay", None, 120.0, "gain", False)))
+    cause, _ = chosen(turn(OWN))
     place = Candidate("asymmetric_viscous_friction", joint)
-    later = replace(suspect, trial=replace(suspect.trial, candidate=place))
-    both = with_causes(selection.system.equations, [suspect.trial, later.trial])
-    system = System(selection.system.equations, both)
-    first, second = examined(Selection([suspect, later], system, selection.turns), system.equations)
+    later = replace(cause, trial=replace(cause.trial, candidate=place), delta_bic=60.0)
+    checks = [Check("undominated", passed, True, 0.0, 15.0, "") for passed in (False, True)]
+    first, second = ended_by_suspects([Examined(cause, (checks[0],)), Examined(later, (checks[1],))])
     assert first.failed
-    assert [c.name for c in second.failed] == (["undominated"] if ended else [])
+    assert [c.value for c in second.failed] == ([40.0] if ended else [])
 
 
 @pytest.mark.parametrize(

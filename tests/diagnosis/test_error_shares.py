@@ -9,7 +9,8 @@ from diagnosis_support import ARM, record, three
 from modelgen.dataset import Record
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
-from modelgen.report.diagnosis import harms, report
+from modelgen.report.diagnosis import report
+from modelgen.report.diagnosis_sentences import harms
 
 RIPPLE, OFFSET = ("torque_ripple", 1, 0.02), ("friction_offset", 2, 0.04)
 

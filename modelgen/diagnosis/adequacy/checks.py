@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,22 +31,27 @@ class Examined:
 
 
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
-    """Every cause of the selection with its checks. equations: of the band, all rows that move.
-
-    A suspect ends the naming at its joint: what is found beside it explains what it leaves.
-    """
+    """Every cause of the selection with its checks. equations: of the band, all rows that move."""
     forms = free_forms(selection, equations)
+    return ended_by_suspects(list(_each(selection, equations, forms)))
+
+
+def ended_by_suspects(every: Sequence[Examined]) -> list[Examined]:
+    """The same where a suspect ends the naming at its joint: what is found beside it explains what it leaves.
+
+    every: in the order in which they were taken.
+    """
     found: list[Examined] = []
-    ended: dict[int, Cause] = {}
-    for one in _each(selection, equations, forms):
+    suspects: dict[int | None, Cause] = {}
+    for one in every:
         joint = one.cause.trial.candidate.joint
-        if joint is not None and joint in ended and not one.failed:
-            checks = tuple(_behind(check, ended[joint], one.cause) for check in one.checks)
+        if joint is not None and joint in suspects and not one.failed:
+            checks = tuple(_behind(check, suspects[joint], one.cause) for check in one.checks)
             found.append(replace(one, checks=checks))
             continue
         found.append(one)
-        if joint is not None and one.failed:
-            ended.setdefault(joint, one.cause)
+        if one.failed:
+            suspects.setdefault(joint, one.cause)
     return found
 
 
