@@ -1,4 +1,4 @@
-"""Robots of other formats to arms: URDF, MJCF, tables of standard Denavit-Hartenberg parameters."""
+"""Robots of other formats to arms: URDF and MJCF."""
 
 from modelgen.importing.importer import Imported, import_model
 

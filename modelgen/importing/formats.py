@@ -21,4 +21,4 @@ def read_robot(path: Path, rounding: Rounding) -> Robot:
         return read_urdf(root, rounding)
     if root.tag == "mujoco":
         return read_mjcf(root, rounding)
-    raise root.error(f"found <{root.tag}>, expected <robot> (URDF), <mujoco> (MJCF) or a CSV table")
+    raise root.error(f"found <{root.tag}>, expected <robot> (URDF) or <mujoco> (MJCF)")
