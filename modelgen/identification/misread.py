@@ -65,7 +65,7 @@ def _unexplained(record: Record, like: Prepared, model: Model, evaluator: Evalua
         regression = regression_of(evaluator, model, [prepared], np.zeros(p))
         if sum(int(m.sum()) for m in regression.moving) < 3 * p:
             return None
-        theta = regression.solve("ols").theta
+        theta = regression.least_squares()
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None
     error, effort, moving = regression.residuals(theta)[0], regression.effort[0], regression.moving[0]

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import solve_toeplitz, toeplitz
+from scipy.linalg.lapack import dpotrf
 from scipy.signal import lfilter
 
 from modelgen.numeric import Array
@@ -60,24 +61,15 @@ def autoregression(r: Array) -> tuple[Array, float]:
     model has the order of the longest run of lags, from zero on, that a noise can have.
     """
     level = r + np.eye(len(r))[0] * 1e-9 * r[0]
-    order = len(r) - 1
-    while order > 0 and not _positive(level[: order + 1]):
-        order -= 1
+    # LAPACK says the size of the first leading matrix that is not positive definite, 0 where all are.
+    broken = dpotrf(toeplitz(level))[1] or len(r) + 1
+    order = max(0, broken - 2)
     taps = np.eye(len(r))[0]
     if order == 0:
         return taps, max(0.0, float(r[0]))
     a = solve_toeplitz(level[:order], r[1 : order + 1])
     taps[1 : order + 1] = -a
     return taps, max(0.0, float(r[0] - a @ r[1 : order + 1]))
-
-
-def _positive(r: Array) -> bool:
-    """Whether the matrix of these lags is positive definite."""
-    try:
-        np.linalg.cholesky(toeplitz(r))
-    except np.linalg.LinAlgError:
-        return False
-    return True
 
 
 def meat_of(rows: Array, taps: Array, power: float) -> Array:

@@ -111,6 +111,10 @@ class Regression:
         covariance = self._covariance(theta, known, weights)
         return Solution(theta, covariance, known, condition, sigma, self._precision(sigma))
 
+    def least_squares(self) -> Array:
+        """Parameters (p,) by "ols" alone, for whoever does not ask how certain they are."""
+        return self._fit([m.astype(float) for m in self.moving])[0]
+
     def _with_covariance(self) -> Solution:
         solution = self.solve("wls")
         for _ in range(ROUNDS):

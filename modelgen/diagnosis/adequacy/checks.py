@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,7 +33,22 @@ class Examined:
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
     """Every cause of the selection with its checks. equations: of the band, all rows that move."""
     forms = free_forms(selection, equations)
-    return ended_by_suspects(list(_each(selection, equations, forms)))
+    every = [
+        Examined(
+            cause,
+            (
+                _evidence(cause, selection),
+                significant(k, selection),
+                _admissible(cause, equations),
+                _gain(cause, equations),
+                _undominated(dominance(cause, selection)),
+                _form(forms.get(cause.trial.candidate.joint)),
+                _stable(k, selection),
+            ),
+        )
+        for k, cause in enumerate(selection.causes)
+    ]
+    return ended_by_suspects(every)
 
 
 def ended_by_suspects(every: Sequence[Examined]) -> list[Examined]:
@@ -61,22 +76,6 @@ def _behind(check: Check, suspect: Cause, cause: Cause) -> Check:
         return check
     text = f"delta BIC by which {suspect.trial.candidate.effect}, a suspect at its joint, is ahead"
     return replace(check, passed=False, value=suspect.delta_bic - cause.delta_bic, text=text)
-
-
-def _each(
-    selection: Selection, equations: Equations, forms: Mapping[int | None, FreeForm]
-) -> Iterator[Examined]:
-    for k, cause in enumerate(selection.causes):
-        checks = (
-            _evidence(cause, selection),
-            significant(k, selection),
-            _admissible(cause, equations),
-            _gain(cause, equations),
-            _undominated(dominance(cause, selection)),
-            _form(forms.get(cause.trial.candidate.joint)),
-            _stable(k, selection),
-        )
-        yield Examined(cause, checks)
 
 
 def confirmed(gain: float, low: float) -> Check:
