@@ -71,6 +71,7 @@ class Model(Shown):
             "base_parameters": [
                 {"name": p.name, "expression": p.expression, "unit": p.unit} for p in model.grouping.base
             ],
+            "nominal": None if self.nominal is None else dict(self.nominal),
             "without_effect": [model.standard[i].name for i in model.grouping.without_effect],
             "functions": {f.name: dict(f.operations) for f in model.functions},
             "notes": [*arm.notes, *model.remarks],
@@ -92,13 +93,15 @@ class Model(Shown):
         if arm.source:
             parts.append(f"source: {' '.join(arm.source.split())}")
         parts += [f"note: {note}" for note in (*arm.notes, *model.remarks)]
-        base = model.grouping.base
+        base, nominal = model.grouping.base, self.nominal
+        known = {} if nominal is None else {"nominal": "right"}
+        rows = [
+            [str(i), _equation(p), *([f"{nominal[p.name]:.6g}"] if nominal else []), p.unit]
+            for i, p in enumerate(base)
+        ]
+        columns = {"": "right", "base parameter": "left", **known, "unit": "left"}
         parts.append(
-            Table(
-                f"{len(model.standard)} standard parameters, {len(base)} base parameters",
-                {"": "right", "base parameter": "left", "unit": "left"},
-                [[str(i), _equation(p), p.unit] for i, p in enumerate(base)],
-            )
+            Table(f"{len(model.standard)} standard parameters, {len(base)} base parameters", columns, rows)
         )
         without = [model.standard[i].name for i in model.grouping.without_effect]
         if without:
@@ -108,8 +111,8 @@ class Model(Shown):
             [f.name, str(total(f.operations)), *(str(f.operations.get(kind, 0)) for kind in KINDS)]
             for f in model.functions
         ]
-        columns = {"function": "left", "mul+add+neg": "right", **dict.fromkeys(KINDS, "right")}
-        return [*parts, Table("operations", columns, counts)]
+        costs = {"function": "left", "mul+add+neg": "right", **dict.fromkeys(KINDS, "right")}
+        return [*parts, Table("operations", costs, counts)]
 
     def __repr__(self) -> str:
         built = self.built

@@ -9,6 +9,7 @@ from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.kinematic import kinematic_functions
+from modelgen.functions.nominal import base_of, nominal_values
 from modelgen.functions.objects import Function, Model
 from modelgen.functions.options import Options, prepared
 from modelgen.functions.parametric import (
@@ -28,7 +29,8 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
     """The functions of `arm` as programs, with its parameters and their grouping.
 
     Raises InputError for an effect that does not exist or lacks a value, for an unknown link of the
-    Jacobian, and for identified values that are not those of the base parameters.
+    Jacobian, for identified values that are not those of the base parameters, and for nominal ones that
+    the description does not give.
     """
     arm = prepared(arm, options)
     real = Equations(arm, options.runtime_geometry, options.sincos)
@@ -52,6 +54,10 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         _check(arm.name, options, grouping)
         dynamics = Dynamics(base, folded_values(base, grouping, options.identified))
         functions += parametric_functions(a, dynamics, "_identified", [])
+    nominal = _nominal(options, real, grouping)
+    if nominal:
+        dynamics = Dynamics(base, folded_values(base, grouping, nominal))
+        functions += parametric_functions(a, dynamics, "_nominal", [])
     functions += kinematic_functions(a)
     return Model(
         arm,
@@ -61,6 +67,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         packed,
         tuple(arm.symbols) if options.runtime_geometry else (),
         tuple(real.state_names()),
+        tuple(nominal.values()),
         (*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)),
     )
 
@@ -79,6 +86,16 @@ def _gain_remarks(options: Options, arm: Arm) -> list[str]:
             "mass_matrix, forward_dynamics and energy exist for standard parameters only",
         ]
     return []
+
+
+def _nominal(options: Options, equations: Equations, grouping: Grouping) -> dict[str, float]:
+    """Nominal values of the base parameters where they are asked for, else none."""
+    if not options.nominal:
+        return {}
+    if options.gains == "row_wise":
+        raise InputError("--nominal: nominal parameters cannot be folded in with row-wise gains")
+    values = nominal_values(equations.arm, equations.standard)
+    return base_of(grouping, equations.arm, list(values.values()))
 
 
 def _stacked(rows: list[Grouping]) -> Grouping:

@@ -8,31 +8,37 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from modelgen.base_parameters import Grouping
 from modelgen.description.objects import Arm, Inertial
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.functions.objects import Model
+from modelgen.model.parameters import StandardParameter
 
 
 def nominal_standard(model: Model) -> dict[str, float]:
-    """Nominal standard parameters by name, in the model's order and units.
+    """Nominal standard parameters by name, in the model's order and units. Raises as nominal_values does."""
+    return nominal_values(model.arm, model.standard)
+
+
+def nominal_values(arm: Arm, standard: Sequence[StandardParameter]) -> dict[str, float]:
+    """Nominal values of these standard parameters by name, in their order and units.
 
     A link's tensor and first moments are about the origin of its frame: the parallel-axis theorem
     (Huygens, Steiner) moves the tensor there. Raises InputError for a link without nominal inertials,
     for an effect without a nominal value, and for an arm in a fluid, whose volumes have none.
     """
-    arm = model.arm
-    values = nominal_links(model)
+    values = nominal_links(arm)
     for effect in applied_effects(arm):
         for parameter, symbol in effect.parameters:
             if parameter.name in effect.nominal:
                 values[symbol.name] = effect.nominal[parameter.name]
-    for p in model.standard:
+    for p in standard:
         if p.name not in values:
             raise InputError(
                 f"{arm.name}: {p.name}, {p.text}, has no nominal value in the description", arm.where
             )
-    return {p.name: values[p.name] for p in model.standard}
+    return {p.name: values[p.name] for p in standard}
 
 
 def is_nominal(arm: Arm) -> bool:
@@ -41,9 +47,8 @@ def is_nominal(arm: Arm) -> bool:
     return effects and not arm.fluid_density and all(link is not None for link in arm.links)
 
 
-def nominal_links(model: Model) -> dict[str, float]:
+def nominal_links(arm: Arm) -> dict[str, float]:
     """Nominal standard parameters of the links alone, by name. Raises InputError where a link has none."""
-    arm = model.arm
     values: dict[str, float] = {}
     for i, link in enumerate(arm.links):
         if link is None:
@@ -59,11 +64,14 @@ def nominal_base(model: Model) -> dict[str, float]:
 
 def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
     """Base parameters by name that the standard vector gives, both in the model's order."""
+    return base_of(model.grouping, model.arm, standard)
+
+
+def base_of(grouping: Grouping, arm: Arm, standard: Sequence[float]) -> dict[str, float]:
+    """Base parameters by name, in the order of the grouping, that the standard vector gives."""
     return {
-        base.name: float(
-            sum(standard[i] * factor_value(factor, model.arm.symbols) for i, factor in base.terms)
-        )
-        for base in model.grouping.base
+        base.name: float(sum(standard[i] * factor_value(factor, arm.symbols) for i, factor in base.terms))
+        for base in grouping.base
     }
 
 

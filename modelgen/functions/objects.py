@@ -98,4 +98,5 @@ class Model:
     packed: SparsityTable
     geometry: tuple[str, ...] = ()  # names of the run-time geometry, in the order of its input
     states: tuple[str, ...] = ()  # names of the effects' states
+    nominal: tuple[float, ...] = ()  # values of the base parameters, where they were asked for
     remarks: tuple[str, ...] = ()  # for the user: what can be told apart, and what cannot

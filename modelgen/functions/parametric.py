@@ -70,7 +70,7 @@ def parametric_functions(
 ) -> list[Function]:
     """The six functions for one way of giving parameters.
 
-    suffix: "", "_standard" or "_identified"; parameters: names of the parameter inputs, if any.
+    suffix: "", "_standard", "_identified" or "_nominal"; parameters: names of the parameter inputs, if any.
     """
     e, n = dynamics.equations, a.n
     dq, ddq = e.vector("dq"), e.vector("ddq")
@@ -79,6 +79,7 @@ def parametric_functions(
         "": "base parameters",
         "_standard": "standard parameters",
         "_identified": "identified parameters, folded in",
+        "_nominal": "nominal parameters of the description, folded in",
     }[suffix]
     effort = vector("input", n, input_units(e), "inputs: motor currents, efforts where undriven")
     matrix = dynamics.mass_matrix()

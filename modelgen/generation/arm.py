@@ -95,6 +95,8 @@ def shown_options(options: Options) -> dict[str, str]:
         shown["inputs"] = "sines and cosines"
     if options.jacobian_link is not None:
         shown["jacobian"] = options.jacobian_link
+    if options.nominal:
+        shown["nominal"] = "folded in"
     if options.identified:
         values = json.dumps(dict(options.identified), sort_keys=True)
         shown["identified"] = hashlib.sha256(values.encode()).hexdigest()[:16]

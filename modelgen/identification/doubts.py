@@ -97,7 +97,7 @@ def _inertia(
 def _weight(model: Model, q: Array, at_rest: Array, theta: Array, determined: NDArray[np.bool_]) -> list[str]:
     """Joints whose weight is far from that of the nominal links, where the description has all of them."""
     try:
-        links = nominal_links(model)
+        links = nominal_links(model.arm)
     except InputError:
         return []
     standard = [links.get(p.name, 0.0) for p in model.standard]

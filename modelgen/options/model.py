@@ -29,6 +29,10 @@ class ModelOptions:
         False, "Sines and cosines of the joint angles become inputs.", flags=["--sincos-inputs"]
     )
     jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
+    nominal: bool = option(
+        False,
+        "Also fold in the nominal values of links and effects: functions that end in _nominal, and an array.",
+    )
     identified: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

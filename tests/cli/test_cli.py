@@ -146,6 +146,7 @@ def test_show_json_is_the_contract(tmp_path: Path, checkout: Path) -> None:
     assert len(data["base_parameters"]) == 24
     for parameter in data["base_parameters"]:
         assert set(parameter) == {"name", "expression", "unit"}
+    assert list(data["nominal"]) == [p["name"] for p in data["base_parameters"]]
     assert set(data["functions"]) == {f.name for f in made.functions}
     for counts in data["functions"].values():
         assert {"mul", "add", "neg", "div", "sqrt", "trig"} <= set(counts)

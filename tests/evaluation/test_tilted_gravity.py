@@ -30,7 +30,7 @@ def bodies(arm: Arm) -> list[Body]:
 @pytest.mark.parametrize("name", ["ur10e", "ariane4", "scara", "two_fingers", "gravity_arm"])
 def test_a_tilt_weighs_all_of_the_links(name: str) -> None:
     arm, model = ARMS[name], shipped(name).model
-    known = nominal_links(model)
+    known = nominal_links(model.arm)
     base = np.array(list(grouped(model, [known.get(p.name, 0.0) for p in model.standard]).values()))
     m, evaluator = motion(name), Evaluator(arm)
     found = evaluator.contribution("base_tilt", None, m, TILT, base) * shipped(name)("drive_gain", m.q)

@@ -95,6 +95,7 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
             ((p.name, f"{unit(p.unit)} {plain(p.text)}") for p in standard_parameters(model)),
         ),
         "packed": packed,
+        "nominal": bool(model.nominal),
         "functions": functions,
     }
 

@@ -7,12 +7,12 @@ import re
 from collections.abc import Mapping
 
 from modelgen.backends.c.declarations import FunctionText, function_text, header_values
-from modelgen.backends.c.dialect import INDENT
+from modelgen.backends.c.dialect import INDENT, literal
 from modelgen.backends.c.source import statements, unrolled
-from modelgen.backends.documentation import function_sections
-from modelgen.backends.elements import local_names
+from modelgen.backends.documentation import function_sections, unit
+from modelgen.backends.elements import base_parameters, local_names
 from modelgen.backends.provenance import Provenance
-from modelgen.backends.text import render, wrapped, wrapped_code
+from modelgen.backends.text import render, table, wrapped, wrapped_code
 from modelgen.functions.objects import Function, Model
 
 # Stands for the generation's number until every file of it is known.
@@ -45,6 +45,9 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
         files[f"src/{arm}_{function.name}.c"] = render(
             "c/function.c.j2", **common, **_values(model, function, text)
         )
+    if model.nominal:
+        rows = _nominal(model)
+        files[f"src/{arm}_nominal_parameters.c"] = render("c/nominal.c.j2", **common, rows=rows)
     digest = hashlib.sha256("".join(files[name] for name in sorted(files)).encode()).hexdigest()
     return {name: text.replace(_PENDING, f"0x{digest[:8].upper()}UL") for name, text in files.items()}
 
@@ -68,6 +71,14 @@ def _squares(model: Model) -> str:
         return ""
     total = " + ".join(f"x[{i}] * x[{i}]" for i in range(n))
     return wrapped_code(f"return {total} <= limit;", INDENT, INDENT * 2)
+
+
+def _nominal(model: Model) -> list[str]:
+    """Nominal values of the base parameters, each with its name and unit."""
+    return table(
+        (f"{literal(model.arm.name, value)},", f"/* {p.name} {unit(p.unit)} */")
+        for value, p in zip(model.nominal, base_parameters(model), strict=True)
+    )
 
 
 def _values(model: Model, function: Function, text: FunctionText) -> dict[str, object]:

@@ -14,7 +14,7 @@ from modelgen.backends.documentation import (
     remarks,
     unit,
 )
-from modelgen.backends.elements import Element, local_names
+from modelgen.backends.elements import Element, base_parameters, local_names
 from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import plain, render, table, wrapped, wrapped_code
 from modelgen.functions.objects import Function, Model
@@ -33,6 +33,10 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
         provenance=provenance.lines(arm),
         sections=model_sections(model),
         acados={"forward_dynamics", "inverse_dynamics"} <= {f.name for f in model.functions},
+        nominal=[
+            (f"{value!r},", f"# {p.name} {unit(p.unit)}")
+            for value, p in zip(model.nominal, base_parameters(model), strict=bool(model.nominal))
+        ],
         functions=[_values(model, function) for function in model.functions],
     )
     return {f"{arm}_casadi.py": text}

@@ -41,7 +41,7 @@ def told(model: Model, limits: EquationThresholds) -> NominalPrior | None:
     link has no inertials.
     """
     try:
-        known = nominal_links(model)
+        known = nominal_links(model.arm)
     except InputError:
         return None
     size = _sizes(model.arm)
@@ -107,7 +107,7 @@ def estimated(model: Model, limits: EquationThresholds) -> Unknowns:
 def held(model: Model) -> Unknowns:
     """Links as the description has them, effects unknown. Raises InputError where a link has no inertials."""
     try:
-        known = nominal_links(model)
+        known = nominal_links(model.arm)
     except InputError as error:
         raise InputError(
             f"{error.message}: the records have no effort column, and a free motion shows ratios of "

@@ -32,7 +32,7 @@ def inertias(model: Model, base: Array, causes: Sequence[Cause], least: float) -
     link, less than the share `least`.
     """
     try:
-        known = nominal_links(model)
+        known = nominal_links(model.arm)
     except InputError:
         return {}
     compliant = {c.trial.candidate.joint for c in causes if c.trial.candidate.elastic}
