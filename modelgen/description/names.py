@@ -18,6 +18,30 @@ template this thread_local throw true try typeid typename typeof typeof_unqual u
 xor xor_eq
 """
 C_KEYWORDS = frozenset(_C_KEYWORDS.split())
+# <name>.h of ISO C23 and POSIX.1-2017, and what these read: the arm's header would hide it from a program.
+_HEADERS = """
+aio alloca assert complex cpio ctype dirent dlfcn endian errno fcntl features fenv float fmtmsg fnmatch ftw
+glob grp iconv inttypes iso646 langinfo libgen limits locale math monetary mqueue ndbm netdb nl_types poll
+pthread pwd regex sched search semaphore setjmp signal spawn stdalign stdarg stdatomic stdbit stdbool
+stdckdint stddef stdint stdio stdlib stdnoreturn string strings stropts syslimits syslog tar termios tgmath
+threads time uchar ucontext ulimit unistd utime utmpx wchar wctype wordexp
+"""
+HEADERS = frozenset(_HEADERS.split())
+# lib<name> of the C and C++ run time: -l<name> would find the arm's.
+LIBRARIES = frozenset(("c", "crypt", "dl", "gcc", "m", "nosys", "pthread", "rt", "stdcxx", "supc", "util"))
+# Targets that CMake keeps for itself, and folders of every project.
+TARGETS = frozenset(
+    ("all", "clean", "depend", "edit_cache", "help", "install", "list_install_components", "package",
+     "package_source", "rebuild_cache", "test")
+)  # fmt: skip
+# Names of devices, which no file or folder on Windows can have.
+DEVICES = frozenset(("aux", "con", "nul", "prn", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))))
+_TAKEN = (
+    (HEADERS, "hides the C library's header <{}.h>"),
+    (LIBRARIES, "is a library of the C run time, lib{}"),
+    (TARGETS, "is a target that CMake keeps for itself"),
+    (DEVICES, "is the name of a device on Windows, which no folder can have"),
+)
 # Standard parameters are capitals with the number of the joint, base parameters carry an R
 # behind it; signals are numbered as in logs.
 _STANDARD = re.compile(r"[A-Z]{1,4}[0-9]+R?|(q|qm|dq|ddq|dqm|ddqm|tau|i|temperature)[0-9]+")
@@ -30,6 +54,9 @@ def arm_name_problem(name: str) -> str | None:
     """Say why an arm cannot have this name, None where it can."""
     if name in C_KEYWORDS:
         return f"'{name}' is a keyword of C or C++; it prefixes the generated functions, choose another name"
+    for taken, why in _TAKEN:
+        if name.lower() in taken:
+            return f"'{name}' {why.format(name.lower())}; choose another name, for example {name}_arm"
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         return "expected a C identifier that begins with a letter: letters, digits and _ (ASCII)"
     if "__" in name:
