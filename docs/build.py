@@ -35,6 +35,7 @@ PACKAGES = (
     "graph",
     "backends",
     "generation",
+    "drawing",
     "dataset",
     "excitation",
     "calibration",
@@ -46,7 +47,7 @@ PACKAGES = (
     "jobs",
 )
 GUIDES = {
-    "Start": ["tutorial", "importing", "python", "theory"],
+    "Start": ["tutorial", "importing", "drawing", "python", "theory"],
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
     "What a model lacks": [

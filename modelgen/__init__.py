@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from modelgen.api.calibration import Calibration, calibrate
     from modelgen.api.description import load_arms
     from modelgen.api.diagnosis import Diagnosis, diagnose
+    from modelgen.api.drawing import Drawing, draw
     from modelgen.api.effects import EFFECTS
     from modelgen.api.excitation import Excitation, excite
     from modelgen.api.generation import Generated, generate
@@ -43,6 +44,7 @@ __all__ = [
     "CalibrationOptions",
     "Diagnosis",
     "DiagnosisOptions",
+    "Drawing",
     "Excitation",
     "ExcitationOptions",
     "Generated",
@@ -63,6 +65,7 @@ __all__ = [
     "build_model",
     "calibrate",
     "diagnose",
+    "draw",
     "excite",
     "generate",
     "identify",
@@ -78,6 +81,7 @@ _HOMES = {
     "modelgen.api.calibration": ("Calibration", "calibrate"),
     "modelgen.api.description": ("load_arms",),
     "modelgen.api.diagnosis": ("Diagnosis", "diagnose"),
+    "modelgen.api.drawing": ("Drawing", "draw"),
     "modelgen.api.effects": ("EFFECTS",),
     "modelgen.api.excitation": ("Excitation", "excite"),
     "modelgen.api.generation": ("Generated", "generate"),

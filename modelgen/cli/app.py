@@ -10,6 +10,7 @@ from modelgen.cli.commands import (
     calibrate,
     cmake_dir,
     diagnose,
+    draw,
     effects,
     excite,
     fleet,
@@ -50,6 +51,7 @@ def _common(context: typer.Context, version: Version = False) -> None:
 for _command in (
     generate,
     show,
+    draw,
     inspect,
     identify,
     diagnose,

@@ -152,6 +152,13 @@ class Traits(ABC):
         """Factor that it puts on the joint's input, where that is all it does."""
         return None
 
+    @classmethod
+    def pivot_direction(cls, values: Numbers) -> float | None:
+        """Direction [rad] that its values give the actuator's base, from the joint, against x of the joint's
+        frame at q = -theta; None for most.
+        """
+        return None
+
     # -- how its values are found -----------------------------------------------------------
 
     @classmethod

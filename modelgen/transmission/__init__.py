@@ -1,6 +1,7 @@
 """Drives: each kind is one class, one function q_m(q)."""
 
 from modelgen.transmission.actuator import Actuator
+from modelgen.transmission.bars import Bar
 from modelgen.transmission.curves import Curves, curves, curves_over_figures
 from modelgen.transmission.direct import UNDRIVEN, DirectDrive, NoDrive
 from modelgen.transmission.drive import KINDS, NO_LIMITS, Drive, MotorLimits
@@ -16,6 +17,7 @@ __all__ = [
     "STROKE_MARGIN",
     "UNDRIVEN",
     "Actuator",
+    "Bar",
     "Curves",
     "DirectDrive",
     "Drive",

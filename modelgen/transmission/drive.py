@@ -12,6 +12,7 @@ import sympy as sp
 
 from modelgen.symbolic import Range, Scalar, number
 from modelgen.transmission.actuator import Actuator
+from modelgen.transmission.bars import Bar
 from modelgen.transmission.figures import Figure
 
 KINDS: dict[str, type[Drive]] = {}  # by name, in the order of definition
@@ -193,6 +194,10 @@ class Drive(ABC):
     def actuator(self) -> Actuator | None:
         """The linear actuator that swings about its base, None where it has none."""
         return None
+
+    def linkage(self, q: sp.Expr) -> tuple[Bar, ...]:
+        """Bars between motor and joint at q, of a drive whose figures are numbers; none of a gear."""
+        return ()
 
     def with_actuator(self, actuator: Actuator) -> Self:
         """The drive with another actuator, of those kinds that have one."""

@@ -10,6 +10,7 @@ import sympy as sp
 
 from modelgen.symbolic import Range, Scalar
 from modelgen.transmission.actuator import Actuator, inner_angle
+from modelgen.transmission.bars import AXIS, Bar, Point
 from modelgen.transmission.drive import NO_LIMITS, Drive, MotorLimits
 from modelgen.transmission.figures import Figure, FigureError
 
@@ -80,6 +81,17 @@ class LeveredDrive(Drive):
             motor=actuator.motor,
             rev=actuator.rev,
             offset=actuator.offset,
+        )
+
+    def linkage(self, q: sp.Expr) -> tuple[Bar, ...]:
+        """The triangle: both levers, and the actuator between their ends."""
+        angle = self.actuator.angle(q)
+        base: Point = (sp.sympify(self.l1), sp.Integer(0))
+        end: Point = (self.l2 * sp.cos(angle), self.l2 * sp.sin(angle))
+        return (
+            Bar("l1", "before", AXIS, base),
+            Bar("l2", "own", AXIS, end),
+            Bar("actuator", "between", base, end, telescopes=True),
         )
 
     @property

@@ -9,6 +9,7 @@ from typing import Annotated
 import sympy as sp
 
 from modelgen.symbolic import Range, Scalar
+from modelgen.transmission.bars import AXIS, Bar, Point
 from modelgen.transmission.drive import NO_LIMITS, Drive, MotorLimits
 from modelgen.transmission.figures import Figure
 
@@ -41,11 +42,27 @@ class SliderCrank(Drive):
     torque_constant: float
     limits: MotorLimits = NO_LIMITS
 
-    def motor_from_joint(self, q: sp.Expr) -> sp.Expr:
-        """2 pi x / lead with x = lever cos a + sqrt(rod^2 - (height - lever sin a)^2)."""
+    def nut(self, q: sp.Expr) -> sp.Expr:
+        """Place of the nut along the screw [m]: x = lever cos a + sqrt(rod^2 - (height - lever sin a)^2)."""
         a = q - self.offset
         across = self.height - self.lever * sp.sin(a)
-        return 2 * sp.pi / self.lead * (self.lever * sp.cos(a) + sp.sqrt(self.rod**2 - across**2))
+        return self.lever * sp.cos(a) + sp.sqrt(self.rod**2 - across**2)
+
+    def motor_from_joint(self, q: sp.Expr) -> sp.Expr:
+        """2 pi x / lead."""
+        return 2 * sp.pi / self.lead * self.nut(q)
+
+    def linkage(self, q: sp.Expr) -> tuple[Bar, ...]:
+        """Lever, rod, and the screw between the nut's ends."""
+        a = q - self.offset
+        height = sp.sympify(self.height)
+        pin: Point = (self.lever * sp.cos(a), self.lever * sp.sin(a))
+        near, far = (self.nut(sp.Float(end)) for end in self.reach()[::-1])
+        return (
+            Bar("lever", "own", AXIS, pin),
+            Bar("rod", "between", pin, (self.nut(q), height)),
+            Bar("screw", "before", (near, height), (far, height)),
+        )
 
     def joint_from_motor(self, q_m: sp.Expr) -> sp.Expr:
         """The law of cosines in the triangle of axis, pin and nut."""

@@ -30,6 +30,7 @@ ORDER = (
     "packaging",
     "generation",
     "importing",
+    "drawing",
     "dataset",
     "evaluation",
     "regression",

@@ -3,6 +3,7 @@
 from modelgen.cli.commands.calibrate import calibrate
 from modelgen.cli.commands.cmake_dir import cmake_dir
 from modelgen.cli.commands.diagnose import diagnose
+from modelgen.cli.commands.draw import draw
 from modelgen.cli.commands.effects import effects
 from modelgen.cli.commands.excite import excite
 from modelgen.cli.commands.fleet import fleet
@@ -20,6 +21,7 @@ __all__ = [
     "calibrate",
     "cmake_dir",
     "diagnose",
+    "draw",
     "effects",
     "excite",
     "fleet",

@@ -223,6 +223,11 @@ class ActuatorMass(BodyEffect):
         return number is not None and joint_of(arm, number).drive.actuator is not None
 
     @classmethod
+    def pivot_direction(cls, values: Mapping[str, float]) -> float | None:
+        """Its base angle."""
+        return values.get("base_angle")
+
+    @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
         """The place of its base shows only if other joints turn the link that carries it."""
         return [{}] if _carried(arm, number) else [{"base_angle": 0.0}]

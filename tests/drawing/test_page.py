@@ -1,0 +1,138 @@
+"""The page of a drawing: complete, the same each time, and alive in a browser."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawing_support import in_browser
+from typer.testing import CliRunner
+
+import modelgen as mg
+from modelgen.cli.app import app
+from modelgen.drawing import page
+
+
+@pytest.fixture(scope="module")
+def ariane() -> mg.Arm:
+    return mg.load_arms()["ariane4"]
+
+
+def test_the_page_needs_nothing_beside_it(ariane: mg.Arm) -> None:
+    text = page(ariane)
+    assert not re.findall(r"https?:|\bsrc=|<link|@import|url\(|fetch\(|XMLHttp|import\(|WebSocket", text)
+    assert "default-src 'none'" in text  # and a browser holds it to that
+    assert len(text.encode()) < 150_000
+
+
+def test_text_of_a_description_is_no_markup(ariane: mg.Arm) -> None:
+    text = page(replace(ariane, source="</script><script>alert('x')</script> & <b>"))
+    assert "<script>alert" not in text
+    assert "<b>" not in text
+    (data,) = re.findall(r'id="data">(.*?)</script>', text, re.DOTALL)
+    assert json.loads(data)["source"].startswith("</script>")
+
+
+def test_the_same_arm_gives_the_same_bytes(ariane: mg.Arm, tmp_path: Path) -> None:
+    code = f"import modelgen as mg; mg.draw(mg.load_arms()['ariane4'], {str(tmp_path / 'a.html')!r})"
+    environment = os.environ | {"PYTHONHASHSEED": "7"}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    mg.draw(ariane, tmp_path / "b.html")
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+
+
+def test_the_command_draws_what_the_function_draws(ariane: mg.Arm, tmp_path: Path) -> None:
+    out = tmp_path / "arm.html"
+    at = "10 deg, 0.9, 180 deg"
+    done = CliRunner().invoke(app, ["draw", "--arm", "ariane4", "--q", at, "--out", str(out), "--json"])
+    assert done.exit_code == 0, done.output
+    drawn = mg.draw(ariane, q=at)
+    assert out.read_text(encoding="utf-8") == drawn.html
+    assert json.loads(done.stdout) == drawn.to_json()
+    assert drawn.q == pytest.approx([np.radians(10), 0.9, np.pi])
+    assert unescape(re.findall(r'srcdoc="(.*?)"', drawn._repr_html_(), re.DOTALL)[0]) == drawn.html
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            ["--q", "0, 150 deg, 180 deg"],
+            "found 150 deg for joint j2, expected a value within its range 7",
+        ),
+        (["--q", "1, 2"], "found 2 values, expected 1 or 3: j1, j2, j3"),
+        (["--q", "one"], "expected 0.35, 'pi/9' or '20 deg'"),
+        (["--out", "."], "expected the name of a file"),
+        (["--arm", "arian"], "did you mean 'ariane"),
+    ],
+)
+def test_bad_input_is_one_line(
+    words: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["draw", "--arm", "ariane4", *words])
+    assert done.exit_code == 2
+    assert message in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+# Moves the first slider to its end, points at a lever and at a joint, asks for every view and table.
+USED = """
+<script>
+const log = [];
+addEventListener("error", (e) => log.push(e.message));
+const said = (key) => {
+  const hit = hits.find((h) => h.key === key);
+  const [a, b] = hit.line || [0, 0];
+  if (hit.line) hover((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 5);
+  return hit.text().join(" | ");
+};
+{
+  for (const box of document.querySelectorAll("details")) box.open = true;
+  const slider = document.querySelector("#coordinates input[type=range]");
+  slider.value = slider.max;
+  slider.dispatchEvent(new Event("input"));
+  paint();
+  const motor = document.querySelector(".motor").textContent;
+  const found = { motor, lever: said("bar actuator 0"), joint: said("joint 1") };
+  const pixels = pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer;
+  found.colours = new Set(new Uint32Array(pixels)).size;
+  for (const box of document.querySelectorAll("#shown input")) box.click();
+  for (const button of document.querySelectorAll("button")) { button.click(); paint(); }
+  found.wide = document.documentElement.scrollWidth <= innerWidth;
+  found.rows = document.querySelectorAll("#table tr, #masses tr, #pose tr").length;
+  found.log = log;
+  const out = document.createElement("pre");
+  out.id = "found";
+  out.textContent = JSON.stringify(found);
+  document.body.append(out);
+}
+</script>
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 500])
+def test_a_browser_moves_the_arm(width: int, ariane: mg.Arm, tmp_path: Path) -> None:
+    shown = in_browser(page(ariane).replace("</body>", USED + "</body>"), tmp_path, width)
+    found = json.loads(unescape(re.findall(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[0]))
+    assert found["log"] == []
+    # j1 at 32 deg: the law of cosines, with the figures of arms.yaml
+    length = math.sqrt(0.323**2 + 0.058**2 - 2 * 0.323 * 0.058 * math.cos(math.radians(32 + 106.39)))
+    motor = 20850 * (length - 0.267857) / (0.368385 - 0.267857)
+    assert found["motor"] == f"motor {motor:.6g} units (0 to 20850) · actuator {length:.5g} m"
+    assert found["lever"].startswith(f"j1: actuator {length:.5g} m | motor {motor:.6g} units")
+    assert "j2: revolute, q2 = 50.5" in found["joint"]
+    assert found["colours"] > 500  # shaded bodies, not an empty picture
+    assert found["rows"] == 5 + 5 + 4
+    assert found["wide"]  # nothing runs out of the page
