@@ -313,11 +313,13 @@ function resize() {
   view.height = box.height;
   canvas.width = Math.round(box.width * ratio);
   canvas.height = Math.round(box.height * ratio);
-  if (touched) { view.scale *= factor; redraw(); } else fit();
+  if (touched) view.scale *= factor;
+  else fit();
+  paint(); // at once: a canvas of another size is empty
 }
 
 function fit() {
-  view.fit(picture(), Math.min(90, 0.1 * Math.min(view.width, view.height)));
+  view.fit(picture(), Math.min(90, 0.1 * Math.min(view.width, view.height)), 34);
   touched = false;
   redraw();
 }

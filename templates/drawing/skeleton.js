@@ -72,7 +72,8 @@ function linkageDirections(arm) {
       ...arm.tools.flatMap((tool, k) => (tool.link === i ? [origin(tools[k])] : [])),
       ...(joint.link ? [place(f.link, joint.link.com)] : []),
     ]);
-    const behind = towards([origin(f.start)]);
+    const before = joint.antecedent < 0 ? null : frames[joint.antecedent];
+    const behind = towards([origin(f.start), ...(before ? [origin(before.foot)] : [])]); // the latter on its axis
     const fixed = joint.drive.bars.filter((bar) => bar.carrier !== "between").map((bar) => {
       const [x0, y0, x1, y1] = run(bar.pins, coordinate(joint, q));
       const x = (x0 + x1) / 2, y = (y0 + y1) / 2;

@@ -89,7 +89,8 @@ class Solids {
     this.parts.push({
       depth: view.project(at)[2] + 0.5 * r,
       paint: (pen) => {
-        pen.fillStyle = darker(colour, 0.3);
+        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+        pen.fillStyle = this.across(pen, a, (-(b[1] - a[1]) / length) * r, ((b[0] - a[0]) / length) * r, colour);
         cap(pen, a);
         this.piece(pen, a, b, r, colour);
         pen.fillStyle = lighter(colour, 0.22);

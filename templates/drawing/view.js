@@ -39,8 +39,8 @@ class View {
     return [this.scale * dot(v, this.right), -this.scale * dot(v, this.up), this.scale * dot(v, this.near)];
   }
 
-  // Seen so that the points fill the picture. margin: pixels at each side.
-  fit(points, margin) {
+  // Seen so that the points fill the picture. margin: pixels at each side; top: more of them there.
+  fit(points, margin, top) {
     const along = (axis) => points.map((p) => dot(p, axis));
     const range = (values) => [Math.min(...values), Math.max(...values)];
     const [l, r] = range(along(this.right)), [b, t] = range(along(this.up)), [n, f] = range(along(this.near));
@@ -48,7 +48,8 @@ class View {
     this.centre = sum(sum(mix(l, r, this.right), mix(b, t, this.up)), mix(n, f, this.near));
     const size = Math.max(r - l, t - b, 1e-6);
     const room = (pixels) => Math.max(pixels - 2 * margin, 40);
-    this.scale = Math.min(room(this.width) / Math.max(r - l, size / 20), room(this.height) / Math.max(t - b, size / 20));
+    this.scale = Math.min(room(this.width) / Math.max(r - l, size / 20), room(this.height - top) / Math.max(t - b, size / 20));
+    this.pan(0, top / 2);
   }
 
   // The azimuth from which the points spread most, a quarter of a right angle off their plane.
