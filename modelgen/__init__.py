@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from modelgen.api.refinement import Refinement, refine
     from modelgen.api.simulation import Simulation, simulate
     from modelgen.dataset import Record
-    from modelgen.description import Arm
+    from modelgen.description import Arm, starter
     from modelgen.options import (
         CalibrationOptions,
         DiagnosisOptions,
@@ -75,6 +75,7 @@ __all__ = [
     "read_log",
     "refine",
     "simulate",
+    "starter",
 ]
 
 _HOMES = {
@@ -92,7 +93,7 @@ _HOMES = {
     "modelgen.api.refinement": ("Refinement", "refine"),
     "modelgen.api.simulation": ("Simulation", "simulate"),
     "modelgen.dataset": ("Record",),
-    "modelgen.description": ("Arm",),
+    "modelgen.description": ("Arm", "starter"),
     "modelgen.options": (
         "CalibrationOptions",
         "DiagnosisOptions",
