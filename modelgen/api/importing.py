@@ -105,12 +105,14 @@ def import_robot(
     name: str | None = None,
     exact: bool = False,
 ) -> ImportedRobot:
-    """Make an arm of a robot in URDF or MJCF; coordinates are the source's.
+    """Make an arm of a robot in URDF or MJCF, or of a table of standard DH parameters (CSV).
+
+    Coordinates are the source's.
 
     Parameters
     ----------
     source : Path or str
-        The file; what it holds tells the format.
+        The file; what it holds tells the format, .csv, .tsv or .txt a table.
     root : str, optional
         Link that the arm stands on. Default: the source's own.
     tip : str, optional

@@ -1,4 +1,4 @@
-"""Robots of other formats to arms: URDF and MJCF."""
+"""Robots of other formats to arms: URDF, MJCF, tables of standard DH parameters."""
 
 from modelgen.importing.importer import Imported, import_model
 

@@ -54,7 +54,7 @@ def import_model(
     name: str | None = None,
     exact: bool = False,
 ) -> Imported:
-    """The arm of a URDF or an MJCF.
+    """The arm of a URDF, an MJCF, or a table of standard DH parameters.
 
     root, tip: links of the source between which the arm lies; by default all that the source's root carries.
     lock: joints held, by coordinate [rad, m]. name: the arm's, by default the source's. exact: keep angles

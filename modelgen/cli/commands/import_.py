@@ -12,7 +12,12 @@ from modelgen.cli.options import Json
 
 # ruff: noqa: PLC0415 - the help is quick
 
-Source = Annotated[Path, typer.Argument(metavar="FILE", help="URDF or MJCF.", show_default=False)]
+Source = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help="URDF, MJCF, or a CSV table of standard DH parameters.", show_default=False
+    ),
+]
 Root = Annotated[
     str | None,
     typer.Option(metavar="LINK", help="Link that the arm stands on. Default: the first.", show_default=False),
@@ -49,7 +54,7 @@ def import_(
     out: OutFile = Path("arms.yaml"),
     as_json: Json = False,
 ) -> None:
-    """Write the description of a robot in URDF or MJCF."""
+    """Write the description of a robot in URDF or MJCF, or of a table of standard DH parameters."""
     from modelgen.api.importing import import_robot
     from modelgen.cli.output import print_result
     from modelgen.files import check_writable
