@@ -1,9 +1,9 @@
 """Description of arms: arms.yaml to frozen, validated objects."""
 
 from modelgen.description.joints import DEFAULT_EFFECTS
+from modelgen.description.json_schema import json_schema
 from modelgen.description.loading import load, loads
 from modelgen.description.objects import Arm, EffectUse, Inertial, Joint, Limits, Tool, Transform
-from modelgen.description.schema import json_schema
 from modelgen.description.starter import starter
 from modelgen.symbolic import Range, Scalar, geometry_symbol
 from modelgen.transmission import DirectDrive, Drive, LeveredDrive, MotorLimits, NoDrive

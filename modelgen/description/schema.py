@@ -1,4 +1,4 @@
-"""Structure of arms.yaml as pydantic models: keys, types, units in words, and the JSON Schema for editors.
+"""Structure of arms.yaml as pydantic models: keys, types, units in words.
 
 Quantities stay as written here (number or expression); `build` evaluates them, since an expression may use
 the arm's symbols and the unit of some depends on the joint's type.
@@ -6,7 +6,6 @@ the arm's symbols and the unit of some depends on the joint's type.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import (
@@ -245,57 +244,3 @@ class Document(Model):
     arms: Annotated[dict[Annotated[str, Field(pattern=ARM_NAME)], ArmModel], Field(min_length=1)] = Field(
         description="The arms by name; a name becomes the prefix of the generated functions."
     )
-
-
-def json_schema(known_effects: Mapping[str, Collection[str]] | None = None) -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of arms.yaml, for editors.
-
-    `known_effects` maps the names of the effects to the names of their parameters; with it, misspelt effects
-    are marked as well.
-    """
-    schema = Document.model_json_schema(by_alias=True)
-    head: dict[str, Any] = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "modelgen arms",
-    }
-    if known_effects is not None:
-        number = {"type": ["number", "string"]}
-        values = {
-            effect: {
-                "type": "object",
-                "properties": dict.fromkeys(sorted(parameters), number),
-                "additionalProperties": False,
-            }
-            for effect, parameters in sorted(known_effects.items())
-        }
-        entry = {
-            "anyOf": [
-                {"enum": sorted(known_effects)},
-                {
-                    "type": "object",
-                    "properties": values,
-                    "additionalProperties": False,
-                    "minProperties": 1,
-                    "maxProperties": 1,
-                },
-            ]
-        }
-        effects = schema["$defs"]["JointModel"]["properties"]["effects"]
-        for option in effects["anyOf"]:
-            if option.get("type") == "array":
-                option["items"] = entry
-        schema["$defs"]["ArmModel"]["properties"]["effects"]["items"] = entry
-    _close(schema)
-    return head | {key: value for key, value in schema.items() if key != "title"}
-
-
-def _close(schema: Any) -> None:
-    """Forbid other names where names follow a pattern; pydantic leaves that open."""
-    if isinstance(schema, dict):
-        if "patternProperties" in schema:
-            schema["additionalProperties"] = False
-        for value in schema.values():
-            _close(value)
-    elif isinstance(schema, list):
-        for value in schema:
-            _close(value)

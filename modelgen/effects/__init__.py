@@ -13,7 +13,7 @@ from modelgen.effects.base import (
     Swing,
     Values,
 )
-from modelgen.effects.catalogue import CATALOGUE, known_effects
+from modelgen.effects.catalogue import CATALOGUE, effect_texts, known_effects
 from modelgen.effects.traits import Family, Presence, Seen, Shows
 from modelgen.effects.variables import BodyVariables, InputVariables, PointVariables, Variables
 
@@ -42,6 +42,7 @@ __all__ = [
     "Variables",
     "applied_effects",
     "described",
+    "effect_texts",
     "free_symbol",
     "known_effects",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from modelgen.effects.base import Definition
+from modelgen.effects.base import Definition, Parameter
 from modelgen.effects.laws import (
     compliance,
     environment,
@@ -72,3 +72,24 @@ CATALOGUE: dict[str, type[Definition]] = collected(MODULES)
 def known_effects() -> dict[str, tuple[str, ...]]:
     """Names of the parameters that a description may set, by effect."""
     return {name: tuple(p.name for p in effect.accepted()) for name, effect in CATALOGUE.items()}
+
+
+def effect_texts() -> dict[str, str]:
+    """What every effect is, every parameter with its unit, by the names "spring" and "spring.stiffness"."""
+    found = {}
+    for name, effect in CATALOGUE.items():
+        found[name] = f"{effect.text}. {effect.reference}"
+        for parameter in effect.accepted():
+            default = "" if parameter.default is None else f"; default {parameter.default:g}"
+            found[f"{name}.{parameter.name}"] = f"{parameter.text} [{_unit(effect, parameter)}]{default}"
+    return found
+
+
+def _unit(effect: type[Definition], parameter: Parameter) -> str:
+    """In words that hold for every joint and drive."""
+    turning, sliding = (parameter.unit.format(f=f, x=x) for f, x in (("N m", "rad"), ("N", "m")))
+    if turning == sliding:
+        return turning
+    if effect.side == "motor":
+        return f"{turning} at the motor, in its own unit where that is not rad"
+    return f"{turning}; prismatic joint: {sliding}"

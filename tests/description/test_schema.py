@@ -1,6 +1,7 @@
 """The JSON Schema for editors says what the loader says."""
 
 import copy
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from modelgen.description import json_schema, starter
+from modelgen.effects import effect_texts, known_effects
 
 EFFECTS = {
     "viscous_friction": ["coefficient"],
@@ -93,6 +95,25 @@ def test_effects_are_checked_where_the_catalogue_is_known(document: Any) -> None
             assert problems(changed, json_schema()) == []
             assert problems(changed, json_schema(EFFECTS)) != []
             del owner["effects"]
+
+
+def test_an_editor_shows_text_and_unit_of_effects() -> None:
+    schema = json_schema(known_effects(), effect_texts())
+    for owner in ("JointModel", "ArmModel"):
+        effects = schema["$defs"][owner]["properties"]["effects"]
+        items = effects["items"] if "items" in effects else effects["anyOf"][0]["items"]
+        names, values = items["anyOf"]
+        assert {entry["const"] for entry in names["oneOf"]} == set(known_effects())
+        assert all(entry["description"] for entry in names["oneOf"])
+        for name, effect in values["properties"].items():
+            assert effect["description"]
+            for parameter in known_effects()[name]:
+                assert re.search(r"\w.* \[.+\]", effect["properties"][parameter]["description"])
+    properties = values["properties"]
+    friction = properties["viscous_friction"]["properties"]["coefficient"]["description"]
+    assert "[N m s/rad at the motor" in friction
+    stiffness = properties["spring"]["properties"]["stiffness"]["description"]
+    assert "[N m/rad; prismatic joint: N/m]" in stiffness
 
 
 def test_every_field_is_described_and_every_quantity_has_its_unit() -> None:

@@ -32,6 +32,6 @@ def schema(of_mapping: OfMapping = False, of_fleet: OfFleet = False) -> None:
         print_json(mapping_json_schema())
         return
     from modelgen.description import json_schema
-    from modelgen.effects import known_effects
+    from modelgen.effects import effect_texts, known_effects
 
-    print_json(json_schema(known_effects()))
+    print_json(json_schema(known_effects(), effect_texts()))
