@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from modelgen.api.drawing import Drawing, draw
     from modelgen.api.effects import EFFECTS
     from modelgen.api.excitation import Excitation, excite
+    from modelgen.api.exporting import ExportedModel, export
     from modelgen.api.generation import Generated, generate
     from modelgen.api.identification import Identification, identify
     from modelgen.api.importing import ImportedRobot, import_robot
@@ -47,6 +48,7 @@ __all__ = [
     "Drawing",
     "Excitation",
     "ExcitationOptions",
+    "ExportedModel",
     "Generated",
     "GenerationOptions",
     "Identification",
@@ -67,6 +69,7 @@ __all__ = [
     "diagnose",
     "draw",
     "excite",
+    "export",
     "generate",
     "identify",
     "import_robot",
@@ -85,6 +88,7 @@ _HOMES = {
     "modelgen.api.drawing": ("Drawing", "draw"),
     "modelgen.api.effects": ("EFFECTS",),
     "modelgen.api.excitation": ("Excitation", "excite"),
+    "modelgen.api.exporting": ("ExportedModel", "export"),
     "modelgen.api.generation": ("Generated", "generate"),
     "modelgen.api.identification": ("Identification", "identify"),
     "modelgen.api.importing": ("ImportedRobot", "import_robot"),

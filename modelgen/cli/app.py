@@ -13,6 +13,7 @@ from modelgen.cli.commands import (
     draw,
     effects,
     excite,
+    export,
     fleet,
     generate,
     identify,
@@ -64,6 +65,7 @@ for _command in (
     schema,
     init,
     import_,
+    export,
     cmake_dir,
 ):
     app.command(_command.__name__.strip("_").replace("_", "-"))(_command)

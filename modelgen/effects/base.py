@@ -63,6 +63,17 @@ class Definition(Traits):
         return {name: value for name, value in given.items() if name in names}
 
     @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """What a simulator's joint may have that comes nearest to it; empty where nothing does.
+
+        values: of all its parameters. The result is at its own coordinate x: forces that oppose the input,
+        "damping" times v, "quadratic" times |v| v, "cubic" times v^3, "friction" times sign(v), "armature"
+        times the acceleration, "stiffness" times x - "rest", and "force"; or "lag" [s], the time constant by
+        which the effort follows the input.
+        """
+        return {theirs: values[own] for theirs, own in cls.sources.items() if own in values}
+
+    @classmethod
     def held(cls, p: Mapping[str, sp.Expr | float]) -> tuple[str, ...]:
         """Names of the `states` that it has with these values of its parameters; all for most."""
         return cls.states
@@ -133,6 +144,12 @@ class LinkEffect(Definition):
     def moment(self, x: PointVariables, p: Values) -> sp.Matrix:
         """Moment [N m] that it takes besides, 3 x 1, in the axes of the frame; zero for most."""
         return sp.zeros(3, 1)
+
+    def masses(self, p: Values) -> Sequence[tuple[sp.Expr, Sequence[sp.Expr]]]:
+        """Point masses [kg] and their places in the frame of the link [m] that do all that it does; none for
+        most.
+        """
+        return ()
 
     def links(self, arm: Arm, joint: int | None) -> list[int]:
         """Indices of the links it acts on: the joint's own, all of them for the whole arm."""

@@ -7,11 +7,14 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.functions.objects import Model
+from modelgen.numeric import Array
 from modelgen.options import ModelOptions
 
 
@@ -66,6 +69,17 @@ def read_values(who: str, file: Path, arms: Sequence[str]) -> dict[str, float]:
             f"give --arm {data.get('arm')}"
         )
     return {k: float(v) for k, v in values.items()}
+
+
+def base_vector(model: Model, values: Mapping[str, float]) -> Array:
+    """Base parameters (p,) in the model's order. Raises InputError where these are not the arm's."""
+    names = [b.name for b in model.grouping.base]
+    missing = [name for name in names if name not in values]
+    extra = [name for name in values if name not in names]
+    if missing or extra:
+        what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
+        raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
+    return np.array([values[name] for name in names])
 
 
 def parameters_yaml(arm: str, values: Mapping[str, float]) -> str:

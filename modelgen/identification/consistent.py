@@ -51,7 +51,7 @@ def consistent(model: Model, theta: Array, precision: Array) -> Consistent:
     if arm.fluid_density:
         raise InputError(f"{arm.name}: --consistent knows no buoyancy; expected fluid_density 0")
     grouping = base_matrix(model)
-    priors = [_prior(model, i) for i in range(len(arm.links))]
+    priors = [prior_inertia(model, i) for i in range(len(arm.links))]
     links, others = len(priors), len(model.standard) - 10 * len(priors)
     logs, rest = ca.SX.sym("logs", 10, links), ca.SX.sym("rest", others)
     pseudo = [_log_cholesky(logs[:, i]) for i in range(links)]
@@ -90,7 +90,7 @@ def consistent(model: Model, theta: Array, precision: Array) -> Consistent:
 def plain(model: Model, theta: Array) -> Array:
     """Standard parameters (s,) that give theta exactly, closest to the prior in the least squares sense."""
     grouping = base_matrix(model)
-    prior = np.concatenate([*(_values(_prior(model, i)) for i in range(len(model.arm.links)))])
+    prior = np.concatenate([*(_values(prior_inertia(model, i)) for i in range(len(model.arm.links)))])
     start = np.concatenate([prior, np.zeros(len(model.standard) - len(prior))])
     change, *_ = np.linalg.lstsq(grouping, theta - grouping @ start, rcond=None)
     return np.asarray(start + change)
@@ -103,7 +103,7 @@ def violations(model: Model, standard: Array) -> tuple[str, ...]:
         ten = standard[10 * i : 10 * i + 10]
         if ten[9] <= 0:
             found.append(f"{joint.name}: mass {ten[9]:.3g} kg")
-        elif np.linalg.eigvalsh(_pseudo(ten))[0] <= 0:
+        elif np.linalg.eigvalsh(pseudo_inertia(ten))[0] <= 0:
             found.append(f"{joint.name}: impossible inertia")
     return tuple(found)
 
@@ -116,12 +116,12 @@ def _effects(model: Model, theta: Array) -> tuple[Array, Array, Array]:
     return low, high, np.clip(begin, low, high)
 
 
-def _prior(model: Model, link: int) -> Array:
+def prior_inertia(model: Model, link: int) -> Array:
     """Pseudo-inertia of the described link, else of a ball."""
     nominal = model.arm.links[link]
     if nominal is not None:
         values = about_origin(nominal)
-        found = _pseudo(np.array([values[name] for name in TEN]))
+        found = pseudo_inertia(np.array([values[name] for name in TEN]))
         least = 1e-6 * np.trace(found)
         # A point or a rod has no volume: a millionth of its size keeps logarithms finite.
         return found + least * np.eye(4) if np.linalg.eigvalsh(found)[0] < least else found
@@ -129,7 +129,7 @@ def _prior(model: Model, link: int) -> Array:
     return np.diag([mass * radius**2 / 5] * 3 + [mass])
 
 
-def _pseudo(ten: Sequence[float] | Array) -> Array:
+def pseudo_inertia(ten: Sequence[float] | Array) -> Array:
     """4 x 4: second moments of the mass, first moments, mass (Wensing, Kim and Slotine 2018)."""
     xx, xy, xz, yy, yz, zz, mx, my, mz, m = (float(v) for v in ten)
     half = (xx + yy + zz) / 2

@@ -81,3 +81,23 @@ def moved(kind: str, axis: Array, anchor: Array, amount: float) -> Array:
         return pose(np.eye(3), amount * axis)
     turn = from_axis_angle(axis, amount)
     return pose(turn, anchor - turn @ anchor)
+
+
+def to_quaternion(turn: Array) -> Array:
+    """w, x, y, z (4,) of a rotation (3, 3), w not negative (Shepperd, 1978)."""
+    trace = float(np.trace(turn))
+    squares = np.array([trace, turn[0, 0], turn[1, 1], turn[2, 2]])
+    k = int(np.argmax(squares))
+    if k == 0:
+        q = np.array(
+            [1 + trace, *(turn[(i + 2) % 3, (i + 1) % 3] - turn[(i + 1) % 3, (i + 2) % 3] for i in range(3))]
+        )
+    else:
+        i, j, m = k - 1, k % 3, (k + 1) % 3
+        q = np.zeros(4)
+        q[0] = turn[m, j] - turn[j, m]
+        q[1 + i] = 1 + turn[i, i] - turn[j, j] - turn[m, m]
+        q[1 + j] = turn[j, i] + turn[i, j]
+        q[1 + m] = turn[m, i] + turn[i, m]
+    q = q / np.linalg.norm(q)
+    return np.asarray(-q if q[0] < 0 else q)

@@ -16,6 +16,7 @@ from modelgen.numeric import Array
 KINDS = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
 # Kinds of several degrees of freedom: refused later, if they are to move.
 OTHERS = ("floating", "planar", "spherical", "screw")
+UNLIMITED = 1e9  # rad/s, m/s, N m, N: URDF demands limits, and this is none
 _UP = np.array([1.0, 0.0, 0.0])  # the axis of a joint that names none, as URDF has it
 
 
@@ -107,8 +108,8 @@ def _joint(
         pose=_origin(element, rounding),
         axis=_axis(element, name, KINDS.get(word, word)),
         position=position,
-        velocity=velocity if velocity and velocity > 0 else None,
-        effort=effort if effort and effort > 0 else None,
+        velocity=velocity if velocity and 0 < velocity < UNLIMITED else None,
+        effort=effort if effort and 0 < effort < UNLIMITED else None,
         properties=properties,
         reduction=reductions.get(name, 1.0),
         mimic=_mimic(element),

@@ -12,6 +12,7 @@ from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions import Model, grouped, nominal_standard
 from modelgen.functions.nominal import payload_standard
+from modelgen.functions.parameters_file import base_vector
 from modelgen.numeric import Array
 from modelgen.simulation.friction_set import Slip, elastic, slip
 from modelgen.transmission import STROKE_MARGIN, of_joint
@@ -100,13 +101,7 @@ def plant(
     if lock:
         raise InputError("--lock with --parameters: identify the arm with the joint locked instead")
     made = slip(changed)
-    names = [b.name for b in made.model.grouping.base]
-    missing = [name for name in names if name not in parameters]
-    extra = [name for name in parameters if name not in names]
-    if missing or extra:
-        what = f"{missing[0]} is missing" if missing else f"{extra[0]} is none of the arm's"
-        raise InputError(f"--parameters: {what}; expected the arm's {len(names)} base parameters")
-    base = np.array([parameters[name] for name in names])
+    base = base_vector(made.model, parameters)
     base += _grouped(made.model, payload_standard(made.model, payload))
     return Plant(made, base, base)
 

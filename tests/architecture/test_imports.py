@@ -38,6 +38,7 @@ ORDER = (
     "calibration",
     "simulation",
     "identification",
+    "exporting",
     "diagnosis",
     "report",
     "api",

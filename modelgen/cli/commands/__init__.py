@@ -6,6 +6,7 @@ from modelgen.cli.commands.diagnose import diagnose
 from modelgen.cli.commands.draw import draw
 from modelgen.cli.commands.effects import effects
 from modelgen.cli.commands.excite import excite
+from modelgen.cli.commands.export import export
 from modelgen.cli.commands.fleet import fleet
 from modelgen.cli.commands.generate import generate
 from modelgen.cli.commands.identify import identify
@@ -24,6 +25,7 @@ __all__ = [
     "draw",
     "effects",
     "excite",
+    "export",
     "fleet",
     "generate",
     "identify",

@@ -175,6 +175,10 @@ class PayloadChange(LinkEffect):
         """Its place."""
         return [Point((p["x"], p["y"], p["z"]))]
 
+    def masses(self, p: Values) -> Sequence[tuple[sp.Expr, Sequence[sp.Expr]]]:
+        """It."""
+        return [(p["mass"], (p["x"], p["y"], p["z"]))]
+
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """mass times acceleration less gravity."""
         return p["mass"] * x.acceleration

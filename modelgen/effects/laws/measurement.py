@@ -208,6 +208,11 @@ class TimeDelay(InputEffect):
         """Along a motion that is known it is a pure delay."""
         return values["delay"]
 
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """A lag of a first order; a negative delay belongs to the log."""
+        return {"lag": values["delay"]} if values["delay"] > 0 else {}
+
     def effective(self, x: InputVariables, p: Values) -> sp.Expr:
         """The input of a first-order lag that has the delay for its time constant."""
         return x.state["lagged"] if p["delay"] > 0 else x.input

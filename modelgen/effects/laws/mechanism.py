@@ -69,6 +69,14 @@ class Spring(Effect):
         """KS q^2 / 2 + KO q."""
         return p["stiffness"] * x.position**2 / 2 + p["preload"] * x.position
 
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """A spring with its place of rest; without stiffness a constant force."""
+        stiffness, preload = values["stiffness"], values["preload"]
+        if stiffness == 0.0:
+            return {"force": preload}
+        return {"stiffness": stiffness, "rest": -preload / stiffness}
+
     def values(self, given: Mapping[str, float]) -> dict[str, float]:
         """A rest coordinate in the description stands for the preload."""
         values = super().values(given)
@@ -177,6 +185,11 @@ class TransmissionCoupling(Effect):
         """Couple it with every joint before this one, in either direction."""
         assert number is not None
         return [{"other": float(k), "ratio": r} for k in range(1, number) for r in (1.0, -1.0)]
+
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """Its three terms."""
+        return {"armature": values["inertia"], "damping": values["viscous"], "friction": values["dry"]}
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """IC a + FVC v + FCC sign(v) at the coordinate of the coupling."""
