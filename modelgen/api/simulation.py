@@ -87,7 +87,7 @@ class Simulation(Result):
         str
             One HTML file.
         """
-        return animation(self.found.plant, self.t, self.q)
+        return animation(self.arm, self.t, self.q)
 
     def files(self, stem: str = "simulation") -> Mapping[str, str]:
         """Text of the files that `modelgen simulate` writes with --out, --plot and --animation.

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from modelgen.description.objects import Arm
-from modelgen.drawing.scene import scene
+from modelgen.drawing.scene import moving_scene, scene
+from modelgen.numeric import Array
 from modelgen.resources import templates_folder
 
 # In the order in which they use each other.
-SCRIPTS = ("model", "skeleton", "view", "solids", "marks", "labels", "panel", "page")
+SCRIPTS = ("model", "skeleton", "view", "solids", "marks", "labels", "panel", "page", "motion")
 
 
 def page(arm: Arm, q: Sequence[float] | None = None) -> str:
@@ -21,8 +23,16 @@ def page(arm: Arm, q: Sequence[float] | None = None) -> str:
 
     Raises InputError where `q` is not within the joints' limits.
     """
+    return _rendered(arm, scene(arm, q))
+
+
+def moving_page(arm: Arm, t: Array, q: Array) -> str:
+    """HTML of a motion that plays: q (F, n) [rad, m] at equal times t (F,) [s]."""
+    return _rendered(arm, moving_scene(arm, t, q))
+
+
+def _rendered(arm: Arm, data: dict[str, Any]) -> str:
     folder = templates_folder()
-    data = scene(arm, q)
     environment = Environment(
         loader=FileSystemLoader(folder), undefined=StrictUndefined, autoescape=True, trim_blocks=True
     )

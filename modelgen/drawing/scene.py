@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
 from modelgen.description.context import show
@@ -16,10 +17,12 @@ from modelgen.description.objects import Arm, Inertial, Joint, Transform
 from modelgen.drawing.programs import program
 from modelgen.effects import CATALOGUE, described
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 from modelgen.symbolic import Range, number
 from modelgen.transmission import Drive, of_joint
 
 DIGITS = 12  # of ends that are computed; the last ones are another machine's
+PLACES = 5  # [rad, m] of a motion
 _SLACK = 1e-9  # [rad, m] beyond a limit, that comes of writing it with fewer digits
 _FIGURES = ("gamma", "b", "alpha", "d", "theta", "r")
 
@@ -32,6 +35,17 @@ def scene(arm: Arm, q: Sequence[float] | None = None) -> dict[str, Any]:
     arm = described(arm)
     shown = start(arm) if q is None else [float(x) for x in q]
     _check(arm, shown)
+    return _data(arm, shown)
+
+
+def moving_scene(arm: Arm, t: Array, q: Array) -> dict[str, Any]:
+    """The arm as data for the page, with a motion: q (F, n) [rad, m] at equal times t (F,) [s]."""
+    data = _data(described(arm), [float(x) for x in q[0]])
+    motion = {"t": np.round(t, 4).tolist(), "q": np.round(q, PLACES).tolist()}
+    return data | {"motion": motion}
+
+
+def _data(arm: Arm, shown: Sequence[float]) -> dict[str, Any]:
     number_of = {i: n for n, i in enumerate(arm.coordinates)}
     return {
         "name": arm.name,
@@ -46,7 +60,8 @@ def scene(arm: Arm, q: Sequence[float] | None = None) -> dict[str, Any]:
         "tools": [
             {"name": tool.name, "link": tool.link, "transform": _rows(tool.transform)} for tool in arm.tools
         ],
-        "q": shown,
+        "q": list(shown),
+        "motion": None,
     }
 
 

@@ -10,7 +10,9 @@ const PARTS = [
   ["levers", "levers", true], ["masses", "centres of mass", true], ["inertias", "inertias", true],
   ["dimensions", "dimensions", false], ["tools", "tools", true], ["floor", "grid and gravity", true],
 ];
+if (arm.motion) PARTS.push(["trace", "way of the end", true]);
 const show = Object.fromEntries(PARTS.map(([key, , on]) => [key, on]));
+if (arm.motion) show.inertias = false;
 const directions = linkageDirections(arm);
 const up = (() => {
   const g = arm.base ? turn(arm.base, arm.gravity) : arm.gravity;
@@ -135,6 +137,7 @@ function paint() {
     });
   }
   if (show.axes) for (const part of s.travels) paintTravel(c, part);
+  paintTrace(c);
   paintFrames(c, s, labels);
   if (show.masses) {
     for (const m of s.masses) {
@@ -324,9 +327,13 @@ function fit() {
   redraw();
 }
 
-// What has to be seen: the arm with its frames' arrows.
+// What has to be seen: the arm with its frames' arrows, all along a motion.
 function picture() {
-  const s = skeleton(arm, state.q, directions, lift), points = extent(arm, s);
+  return seen().flatMap(pictureAt);
+}
+
+function pictureAt(q) {
+  const s = skeleton(arm, q, directions, lift), points = extent(arm, s);
   if (show.inertias) {
     for (const m of s.masses) {
       // how far the ellipsoid reaches along the picture's axes
@@ -420,7 +427,13 @@ function chosenPose() {
   return kind === "tool" ? current.tools[k] : current.frames[k].link;
 }
 
-const refreshCoordinates = coordinatePanel(document.getElementById("coordinates"), state, redraw);
+// The user has moved a joint: a motion stops.
+function takenOver() {
+  if (player.stop) player.stop();
+  redraw();
+}
+
+const refreshCoordinates = coordinatePanel(document.getElementById("coordinates"), state, takenOver);
 
 function refreshPanel(values) {
   refreshCoordinates(values);
@@ -432,8 +445,8 @@ function refreshPanel(values) {
 
 function buildPanel() {
   const buttons = element("div", { class: "buttons" },
-    element("button", { onclick: () => { state.q = arm.q.slice(); redraw(); } }, "back to start"),
-    element("button", { onclick: () => { state.q = state.q.map((v, n) => { const j = arm.joints.find((x) => x.coordinate === n); return Math.max(j.ends[0], Math.min(j.ends[1], 0)); }); redraw(); } }, "all to zero"));
+    element("button", { onclick: () => { state.q = arm.q.slice(); takenOver(); } }, "back to start"),
+    element("button", { onclick: () => { state.q = state.q.map((v, n) => { const j = arm.joints.find((x) => x.coordinate === n); return Math.max(j.ends[0], Math.min(j.ends[1], 0)); }); takenOver(); } }, "all to zero"));
   const unitButton = (label, flip) => element("button", { onclick: (e) => { flip(); e.target.textContent = label(); redraw(); } }, label());
   buttons.append(unitButton(() => `angles in ${units.angle}`, () => { units.degrees = !units.degrees; }), unitButton(() => `lengths in ${units.length}`, () => { units.millimetres = !units.millimetres; }));
   document.getElementById("coordinates").prepend(buttons);
@@ -460,9 +473,12 @@ function buildPanel() {
   document.getElementById("notes").append(...said.map((text) => element("p", {}, text)));
 }
 
-buildPanel();
-for (const button of document.querySelectorAll("#views button")) button.addEventListener("click", () => look(button.dataset.view));
-dark.addEventListener("change", redraw);
-new ResizeObserver(resize).observe(canvas.parentElement);
-resize();
-look("oblique");
+function begin() {
+  buildPanel();
+  if (motion) buildPlayer();
+  for (const button of document.querySelectorAll("#views button")) button.addEventListener("click", () => look(button.dataset.view));
+  dark.addEventListener("change", redraw);
+  new ResizeObserver(resize).observe(canvas.parentElement);
+  resize();
+  look("oblique");
+}
