@@ -63,7 +63,7 @@ def _link(arm: Arm, i: int, joint: Joint, n: int | None, values: Values) -> Link
         before=joint.antecedent,
         pose=frame,
         body=values.bodies[i],
-        position=limits.position,
+        position=limits.position or (None if n is None else of_joint(arm, joint).joint_range()),
         velocity=limits.velocity,
         effort=limits.effort,
         axis=None if n is None else _axis(arm, i, n),

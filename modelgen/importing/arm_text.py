@@ -11,8 +11,9 @@ from modelgen.description.document import one_line
 from modelgen.importing.bodies import doubt
 from modelgen.importing.frames import Parameters
 from modelgen.importing.poses import to_rpy
+from modelgen.importing.resistance import Entry
 from modelgen.importing.robot import Body
-from modelgen.importing.rounded import near_angle, near_zero, shortest, written_angle
+from modelgen.importing.rounded import near_angle, near_zero, precise, shortest, written_angle
 from modelgen.numeric import Array
 
 _WORDS = {"null", "true", "false", "~"}  # which YAML reads as values
@@ -31,7 +32,7 @@ class JointText:
     position: tuple[float, float] | None = None
     velocity: float | None = None
     effort: float | None = None
-    drive: Mapping[str, float] = field(default_factory=dict)
+    drive: Mapping[str, Entry] = field(default_factory=dict)
     effects: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     body: Body | None = None
     body_note: str = ""
@@ -104,17 +105,22 @@ def _joint(joint: JointText) -> list[str]:
     if limits:
         entries["limits"] = _flow(limits)
     if joint.drive:
-        figures = {name: shortest(value) for name, value in joint.drive.items()}
-        entries["drive"] = _flow({"type": "direct"} | figures)
+        entries["drive"] = _flow({name: _entry(value) for name, value in joint.drive.items()})
     lines = [_noted(f"- name: {_word(joint.name)}", joint.note)]
     lines += [f"  {key}: {value}" for key, value in entries.items()]
     if joint.effects:
         lines.append("  effects:")
         for name, values in joint.effects.items():
-            lines.append(f"    - {name}: {_flow({key: shortest(v) for key, v in values.items()})}")
+            lines.append(f"    - {name}: {_flow({key: precise(v) for key, v in values.items()})}")
     elif joint.drive:
         lines.append("  effects: []")
     return lines
+
+
+def _entry(value: Entry) -> str:
+    if isinstance(value, str):
+        return value
+    return precise(value) if isinstance(value, float) else _list(map(precise, value))
 
 
 def _limits(joint: JointText) -> dict[str, str]:

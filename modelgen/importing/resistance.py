@@ -9,6 +9,9 @@ from collections.abc import Mapping
 
 from modelgen.effects import CATALOGUE
 from modelgen.importing.robot import SourceJoint
+from modelgen.transmission import DirectDrive, LeveredDrive
+
+Entry = str | float | tuple[float, float]
 
 
 def effects_of(joint: SourceJoint) -> dict[str, dict[str, float]]:
@@ -30,11 +33,24 @@ def _scale(unit: str, reduction: float) -> float:
     return float(abs(reduction) ** (unit.count("{f}") + unit.count("{x}")))
 
 
-def drive_of(joint: SourceJoint) -> Mapping[str, float]:
-    """Figures of a direct drive with the joint's gear; nothing where input and effort are the same.
+def drive_of(joint: SourceJoint) -> Mapping[str, Entry]:
+    """Entries of the joint's drive: a gear or a lever; none where input and effort are the same.
 
-    The input is then the motor's own torque or force: sources know no torque constants.
+    Where the source knows no torque constants the input is the motor's own torque or force. The motor
+    coordinate of a lever is counted from the length zero.
     """
-    if joint.reduction == 1.0:
+    lever = joint.lever
+    if lever is not None:
+        return {
+            "type": LeveredDrive.name,
+            "l1": lever.l1,
+            "l2": lever.l2,
+            "length": lever.length,
+            "motor": (joint.reduction * lever.length[0], joint.reduction * lever.length[1]),
+            "rev": float(lever.rev),
+            "offset": lever.offset,
+            "torque_constant": joint.gain,
+        }
+    if joint.reduction == 1.0 and joint.gain == 1.0:
         return {}
-    return {"ratio": joint.reduction, "torque_constant": 1.0}
+    return {"type": DirectDrive.name, "ratio": joint.reduction, "torque_constant": joint.gain}

@@ -44,6 +44,20 @@ class Mimic:
 
 
 @dataclass(frozen=True)
+class SourceLever:
+    """A linear actuator between two points at l1 and l2 [m] from the joint's axis.
+
+    rev, offset: coordinate = rev inner angle + offset [rad]. length: at the ends of the joint's range [m].
+    """
+
+    l1: float
+    l2: float
+    rev: int
+    offset: float
+    length: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class SourceJoint:
     """A joint of the source between two of its links.
 
@@ -51,8 +65,9 @@ class SourceJoint:
     freedom. pose: joint frame in the parent link, drawn pose; the child link's frame is the joint's.
     axis: in the joint frame, of length 1; anchor: a point of it there [m]. reference: coordinate in the
     drawn pose [rad, m]. properties: what the joint resists with and stores, at the joint, by the names
-    that the catalogue of effects gives them (`Traits.sources`). reduction: motor coordinate per joint
-    coordinate. words: what it is called where names are not enough.
+    that the catalogue of effects gives them (`Traits.sources`); with a lever damping, friction and armature
+    are those along the actuator. reduction: motor coordinate per joint coordinate, or per length of the
+    lever's actuator. gain: force at the motor coordinate per input.
     """
 
     name: str
@@ -68,6 +83,8 @@ class SourceJoint:
     effort: float | None = None
     properties: Mapping[str, float] = field(default_factory=dict)
     reduction: float = 1.0
+    gain: float = 1.0
+    lever: SourceLever | None = None
     mimic: Mimic | None = None
     line: int = 0
 

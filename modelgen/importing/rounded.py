@@ -85,6 +85,11 @@ def shortest(value: float, within: float = 1e-13) -> str:
     return _plain(text)
 
 
+def precise(value: float) -> str:
+    """The number with the fewest digits within 1e-13 of its size."""
+    return shortest(value, 1e-13 * abs(value) / max(1.0, abs(value)))
+
+
 def written_angle(value: float) -> str:
     """An angle [rad] as people write it: a fraction of pi, whole degrees, or radians."""
     twelfths = round(value / PART)

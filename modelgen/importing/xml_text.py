@@ -68,6 +68,10 @@ class Element:
             return default
         return np.array(self._numbers(name, size))
 
+    def numbers(self, name: str) -> list[float]:
+        """An attribute as numbers, however many."""
+        return self._numbers(name, len(self.text(name).split()))
+
     def angles(self, name: str, size: int, rounding: Rounding) -> Array:
         """As `vector`, angles [rad], rounded ones as `rounding` takes them."""
         values = self._numbers(name, size)

@@ -28,7 +28,7 @@ def back(arm: mg.Arm, parameters: dict[str, float] | None, folder: Path) -> mg.M
     return mg.build_model(mg.import_robot(file, exact=True).arm)
 
 
-@pytest.mark.parametrize("name", ["gravity_arm", "yaw3pitch"])
+@pytest.mark.parametrize("name", ["gravity_arm", "yaw3pitch", "ariane4_free"])
 def test_what_was_exported_is_imported_with_the_same_base_parameters(name: str, tmp_path: Path) -> None:
     model = mg.build_model(ARMS[name])
     assert model.nominal is not None

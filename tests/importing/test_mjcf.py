@@ -55,6 +55,12 @@ MODELS = {
     + bodies(f'<joint name="a"/>{MASS}', f'<joint name="b" class="wrist"/>{MASS}'),
     "gears": bodies(f'<joint name="a" axis="0 1 0" armature="0.3"/>{MASS}', f'<joint name="b"/>{FULL}')
     + '<actuator><motor joint="a" gear="40"/><motor joint="b" gear="-8"/></actuator>',
+    "a linear actuator on a lever": '<worldbody><body name="b0" euler="20 30 40">'
+    f'<joint name="a" axis="0 1 0"/>{MASS}<site name="foot" pos="0.3 0.1 0.3"/>'
+    '<body name="b1" pos="0.2 0 0.3"><joint name="b" axis="0 0 -1" pos="0.1 0.2 0" range="-100 30"/>'
+    f'{FULL}<site name="pin" pos="0.22 0.1 0"/></body></body></worldbody>'
+    '<tendon><spatial name="rod" damping="30" armature="4"><site site="foot"/><site site="pin"/></spatial>'
+    '</tendon><actuator><general name="screw" tendon="rod" gear="-900" gainprm="0.02"/></actuator>',
     "shapes as inertia": bodies(
         '<joint name="a" axis="0 1 0"/><geom type="box" size="0.1 0.05 0.2" pos="0.1 0 0" euler="10 0 20"/>'
         '<geom type="sphere" size="0.07" pos="0 0.1 0" mass="0.3"/>',
@@ -100,6 +106,14 @@ REFUSED = {
         r"equality pair closes a loop or couples joints",
     ),
     "an axis of zero": (bodies(f'<joint name="a" axis="0 0 0"/>{MASS}'), r"joint a: its axis is zero"),
+    "a tendon out of the plane of a lever": (
+        bodies('<joint name="a"/><site name="pin" pos="0.1 0 0.2"/>' + MASS).replace(
+            "<worldbody>", '<worldbody><site name="foot" pos="1 0 0"/>'
+        )
+        + '<tendon><spatial name="rope" damping="3"><site site="foot"/><site site="pin"/></spatial>'
+        "</tendon>",
+        r"tendon rope acts on several joints",
+    ),
     "a mesh as inertia": (
         bodies('<joint name="a"/><geom type="mesh" mesh="part"/>'),
         r"only simple shapes are taken",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from modelgen.importing.mjcf.levers import Levers
 from modelgen.importing.mjcf.settings import ACTUATORS, Defaults
 from modelgen.importing.robot import Closure, SourceJoint
 from modelgen.importing.xml_text import Element
@@ -15,8 +16,8 @@ from modelgen.importing.xml_text import Element
 _ACTS = ("stiffness", "damping", "frictionloss", "armature", "range", "springlength")
 
 
-def closures_of(root: Element, defaults: Defaults) -> Iterator[Closure]:
-    """Equalities and tendons: refused where they hold what moves."""
+def closures_of(root: Element, defaults: Defaults, levers: Collection[str]) -> Iterator[Closure]:
+    """Equalities and tendons, but for those that are levers: refused where they hold what moves."""
     pulled = _pulled(root, defaults)
     for section in root.all("equality"):
         for element in section.children:
@@ -27,7 +28,7 @@ def closures_of(root: Element, defaults: Defaults) -> Iterator[Closure]:
         for element in section.children:
             tendon = defaults.complete(element, None)
             name = tendon.attributes.get("name", f"of line {tendon.line}")
-            if name not in pulled and not any(_acts(tendon, which) for which in _ACTS):
+            if name in levers or (name not in pulled and not any(_acts(tendon, which) for which in _ACTS)):
                 continue
             text = f"line {tendon.line}: tendon {name} acts on several joints, which is not described"
             yield Closure(
@@ -63,18 +64,18 @@ def _acts(tendon: Element, name: str) -> bool:
     return any(value not in ("0", "0.0", "-1") for value in text.split())
 
 
-def with_actuators(
-    root: Element, defaults: Defaults, joints: Sequence[SourceJoint]
-) -> tuple[list[SourceJoint], list[str]]:
+def with_actuators(root: Element, defaults: Defaults, levers: Levers) -> tuple[list[SourceJoint], list[str]]:
     """The joints with the gears, efforts and rotors of their actuators, and remarks."""
-    by_name = {joint.name: joint for joint in joints}
+    by_name = {joint.name: joint for joint in levers.joints}
+    turned = {tendon: joint for joint, tendon in levers.tendons.items()}
     remarks: list[str] = []
     seen: dict[str, str] = {}
     for section in root.all("actuator"):
         for element in section.children:
             actuator = defaults.complete(element, None)
             name = actuator.attributes.get("name", f"of line {actuator.line}")
-            target = actuator.attributes.get("joint") or actuator.attributes.get("jointinparent")
+            given = actuator.attributes
+            target = given.get("joint") or given.get("jointinparent") or turned.get(given.get("tendon", ""))
             if actuator.tag not in ACTUATORS or target is None:
                 remarks.append(f"actuator {name} drives no joint of its own and is left out")
                 continue
@@ -86,7 +87,7 @@ def with_actuators(
                 continue
             seen[target] = f"actuator {name}"
             by_name[target] = _driven(by_name[target], actuator, gear)
-    return [by_name[joint.name] for joint in joints], remarks
+    return [by_name[joint.name] for joint in levers.joints], remarks
 
 
 def _gear(actuator: Element) -> float:
@@ -107,4 +108,10 @@ def _driven(joint: SourceJoint, actuator: Element, gear: float) -> SourceJoint:
     limited = actuator.attributes.get("forcelimited", "auto") != "false"
     if effort is None and limited and "forcerange" in actuator.attributes:
         effort = float(np.abs(actuator.vector("forcerange", 2)).max() * abs(gear)) or None
-    return replace(joint, properties=properties, reduction=gear, effort=effort)
+    gain = actuator.numbers("gainprm")[0] if actuator.tag == "general" and _fixed(actuator) else 1.0
+    return replace(joint, properties=properties, reduction=gear, effort=effort, gain=gain or 1.0)
+
+
+def _fixed(actuator: Element) -> bool:
+    """Whether its force is a gain times the input."""
+    return "gainprm" in actuator.attributes and actuator.attributes.get("gaintype", "fixed") == "fixed"

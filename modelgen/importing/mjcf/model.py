@@ -6,6 +6,7 @@ import numpy as np
 
 from modelgen.importing.mjcf.bodies import GENERATED, WORLD, Bodies
 from modelgen.importing.mjcf.couplings import closures_of, with_actuators
+from modelgen.importing.mjcf.levers import with_levers
 from modelgen.importing.mjcf.settings import Compiler, Defaults
 from modelgen.importing.robot import Robot
 from modelgen.importing.rounded import Rounding
@@ -29,7 +30,8 @@ def read_mjcf(root: Element, rounding: Rounding) -> Robot:
     defaults.read(root)
     bodies = Bodies(compiler, defaults)
     bodies.read(root)
-    joints, remarks = with_actuators(root, defaults, bodies.joints)
+    levers = with_levers(root, compiler, defaults, bodies.joints)
+    joints, remarks = with_actuators(root, defaults, levers)
     gravity = _UP
     for option in root.all("option"):
         gravity = option.vector("gravity", 3, gravity)
@@ -43,9 +45,9 @@ def read_mjcf(root: Element, rounding: Rounding) -> Robot:
         name=root.attributes.get("model", "").strip(),
         form="MJCF",
         root=WORLD,
-        links=bodies.links,
+        links={name: link for name, link in bodies.links.items() if name not in levers.sites},
         joints=tuple(joints),
         gravity=gravity,
-        closures=tuple(closures_of(root, defaults)),
+        closures=tuple(closures_of(root, defaults, levers.tendons.values())),
         remarks=(*bodies.remarks, *remarks),
     )
