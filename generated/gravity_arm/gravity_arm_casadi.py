@@ -251,7 +251,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [10]             base parameters; norm at most 1e+09
     out  ddq         [2]   [rad/s^2]  joint accelerations
 
-    Operations: 54 (32 mul, 22 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other.
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 10)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -266,30 +266,32 @@ def _forward_dynamics(name: str) -> ca.Function:
     t4 = 1.0 / ZZ2
     t5 = t3 * t4
     ZZ1R = parameters[0]  # kg m^2
-    t6 = ZZ1R + (ZZ2 + -1.077068 * t2) - t3 * t5
-    t7 = ca.cos(q[0])
-    t8 = -9.81 * t7
-    t9 = t8 + -0.538534 * (dq[0] * dq[0])
-    t10 = ca.sin(q[0])
-    t11 = -9.81 * t10
-    t12 = MX2 * (t0 * t9 + t1 * t11) + MY2 * (t1 * t9 - t0 * t11)
-    t13 = dq[0] + dq[1]
-    t14 = t13 * t13
-    t15 = 0.538534 * (t0 * (MX2 * t14) + t1 * (MY2 * t14))
-    t16 = ca.sign(dq[0])
+    t6 = ZZ1R + (ZZ2 + -1.077068 * t2)
+    t7 = t6 - t3 * t5
+    t8 = t7 + -1e-09 * t6
+    t9 = ca.cos(q[0])
+    t10 = -9.81 * t9
+    t11 = t10 + -0.538534 * (dq[0] * dq[0])
+    t12 = ca.sin(q[0])
+    t13 = -9.81 * t12
+    t14 = MX2 * (t0 * t11 + t1 * t13) + MY2 * (t1 * t11 - t0 * t13)
+    t15 = dq[0] + dq[1]
+    t16 = t15 * t15
+    t17 = 0.538534 * (t0 * (MX2 * t16) + t1 * (MY2 * t16))
+    t18 = ca.sign(dq[0])
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     FV1 = parameters[6]  # N m s/rad
     FC1 = parameters[7]  # N m
-    t17 = MX1R * t11 + MY1 * t8 + (t12 + t15) - (FV1 * dq[0] + FC1 * t16)
-    t18 = ca.sign(dq[1])
+    t19 = MX1R * t13 + MY1 * t10 + (t14 + t17) - (FV1 * dq[0] + FC1 * t18)
+    t20 = ca.sign(dq[1])
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
-    t19 = input[1] - (FV2 * dq[1] + FC2 * t18 - t12)
-    t20 = 1.0 / t6
-    t21 = (input[0] + t17 + t19 * t5) * t20
-    out[0] = t21
-    out[1] = t19 * t4 + t5 * t21
+    t21 = input[1] - (FV2 * dq[1] + FC2 * t20 - t14)
+    t22 = 1.0 / t7
+    t23 = (input[0] + t19 + t21 * t5) * t22
+    out[0] = t23
+    out[1] = t21 * t4 + t5 * t23
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]
@@ -747,7 +749,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [24]             standard parameters; norm at most 1e+09
     out  ddq         [2]   [rad/s^2]  joint accelerations
 
-    Operations: 61 (36 mul, 25 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other.
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 24)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -765,32 +767,33 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     M2 = parameters[19]  # kg
     t6 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + -2.0 * t2))
     t7 = t6 - t3 * t5
-    t8 = ca.cos(q[0])
-    t9 = -9.81 * t8
-    t10 = t9 + -0.538534 * (dq[0] * dq[0])
-    t11 = ca.sin(q[0])
-    t12 = -9.81 * t11
-    t13 = t0 * t12 - t1 * t10
-    t14 = dq[0] + dq[1]
-    t15 = t14 * t14
-    t16 = t0 * t10 + t1 * t12
-    t17 = t0 * (M2 * t13 + t15 * MX2) + t1 * (M2 * t16 + t15 * MY2)
-    t18 = MX2 * t16 - MY2 * t13
+    t8 = t7 + -1e-09 * t6
+    t9 = ca.cos(q[0])
+    t10 = -9.81 * t9
+    t11 = t10 + -0.538534 * (dq[0] * dq[0])
+    t12 = ca.sin(q[0])
+    t13 = -9.81 * t12
+    t14 = t0 * t13 - t1 * t11
+    t15 = dq[0] + dq[1]
+    t16 = t15 * t15
+    t17 = t0 * t11 + t1 * t13
+    t18 = t0 * (M2 * t14 + t16 * MX2) + t1 * (M2 * t17 + t16 * MY2)
+    t19 = MX2 * t17 - MY2 * t14
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
-    t19 = t12 * MX1 + t9 * MY1 + (t18 + 0.538534 * t17)
-    t20 = ca.sign(dq[0])
-    t21 = ca.sign(dq[1])
+    t20 = t13 * MX1 + t10 * MY1 + (t19 + 0.538534 * t18)
+    t21 = ca.sign(dq[0])
+    t22 = ca.sign(dq[1])
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
-    t22 = input[1] - (dq[1] * FV2 + t21 * FC2 - t18)
+    t23 = input[1] - (dq[1] * FV2 + t22 * FC2 - t19)
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
-    t23 = input[0] + (t19 - (dq[0] * FV1 + t20 * FC1)) + t22 * t5
-    t24 = 1.0 / t7
-    t25 = t23 * t24
-    out[0] = t25
-    out[1] = t22 * t4 + t5 * t25
+    t24 = input[0] + (t20 - (dq[0] * FV1 + t21 * FC1)) + t23 * t5
+    t25 = 1.0 / t7
+    t26 = t24 * t25
+    out[0] = t26
+    out[1] = t23 * t4 + t5 * t26
     outputs = [_vector(out)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq"]

@@ -57,14 +57,14 @@ class Dynamics:
         return [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(links, effects, strict=True)]
 
     def forward_dynamics(self, dq: Sequence[Expr], given: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
-        """Joint accelerations for the inputs `given`, and the pivots that must be positive."""
+        """Joint accelerations for the inputs `given`, and what must be positive: see `solve`."""
         e = self.equations
         rates = Rates(dq, e.zeros())
         effects = EffectForces(e, rates, self.values)
         added = effects.efforts()
         ideal = effects.effective(given)
         matrix = self.mass_matrix(dq)
-        pivots: list[list[Expr]] = []
+        positive: list[list[Expr]] = []
 
         def form(frames: Frames) -> list[Expr]:
             efforts = joint_efforts(frames, link_motions(frames, rates), e.link_values(self.values))
@@ -73,10 +73,10 @@ class Dynamics:
                 for i, gain, effort, extra in zip(ideal, self.gains(), efforts, added, strict=True)
             ]
             accelerations, found = solve(matrix, right)
-            pivots.append(found)
+            positive.append(found)
             return accelerations
 
-        return self.cheapest(form), pivots[0]
+        return self.cheapest(form), positive[0]
 
     def loads(self) -> list[Expr]:
         """Forces at the motor coordinates that the links' weight takes."""

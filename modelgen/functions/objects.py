@@ -13,7 +13,7 @@ from modelgen.model.parameters import StandardParameter
 STATUS_STROKE = 1  # a lever has left its stroke
 STATUS_PIVOT = 2  # a pivot of the mass matrix has vanished
 # Least pivot of a mass matrix [kg m^2, kg]: its reciprocal is bounded, which a proof can use.
-SMALLEST_PIVOT = 1e-9
+SMALLEST_PIVOT = 1e-12
 STATUS_INPUT = 4  # an input is not finite or beyond its bound
 
 

@@ -83,7 +83,7 @@ def parametric_functions(
     }[suffix]
     effort = vector("input", n, input_units(e), "inputs: motor currents, efforts where undriven")
     matrix = dynamics.mass_matrix()
-    accelerations, pivots = dynamics.forward_dynamics(dq, e.vector("input"))
+    accelerations, positive = dynamics.forward_dynamics(dq, e.vector("input"))
     kinetic, potential = dynamics.energy(dq)
     functions = [
         a.function(
@@ -115,7 +115,7 @@ def parametric_functions(
             f"Accelerations that the inputs give in the state q, dq; {with_what}.",
             ["q", "dq", "input", *parameters],
             [(vector("ddq", n, joint_units(e.arm, "/s^2"), "joint accelerations"), accelerations)],
-            guards=[(pivot, STATUS_PIVOT) for pivot in pivots],
+            guards=[(value, STATUS_PIVOT) for value in positive],
         ),
         a.function(
             f"energy{suffix}",

@@ -9,6 +9,9 @@ from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 from modelgen.model.dynamics import Parameters
 
+# Share of a diagonal element that a pivot must exceed.
+VANISHED = 1e-9
+
 Body = tuple[Expr, ...]  # XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M
 
 
@@ -113,18 +116,23 @@ def _shifted(body: Body, origin: Vector) -> Body:
 
 
 def solve(matrix: Sequence[Sequence[Expr]], right: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
-    """matrix^-1 right for a symmetric matrix, and the pivots that must be positive.
+    """matrix^-1 right for a symmetric matrix, and what must be positive for it to be one of an arm.
 
     matrix = L' D L, unrolled from the last row to the first: that order keeps the zeros of branches
-    that do not touch (Featherstone 2008, section 6.5).
+    that do not touch (Featherstone 2008, section 6.5). Positive must be every pivot, and what it
+    exceeds VANISHED of its diagonal element by: less is what rounding leaves of nothing, in arms of
+    any size.
     """
     n = len(matrix)
     lower = [[matrix[i][j] for j in range(i + 1)] for i in range(n)]
     x = list(right)
-    pivots = [lower[i][i] for i in range(n)]
+    positive: list[Expr] = []
     for k in reversed(range(n)):
-        pivots[k] = lower[k][k]
-        inverse = 1.0 / pivots[k]
+        pivot, diagonal = lower[k][k], matrix[k][k]
+        positive.append(pivot)
+        if pivot is not diagonal:
+            positive.append(pivot - diagonal * VANISHED)
+        inverse = 1.0 / pivot
         for i in reversed(range(k)):
             if lower[k][i].is_zero:
                 continue
@@ -138,4 +146,4 @@ def solve(matrix: Sequence[Sequence[Expr]], right: Sequence[Expr]) -> tuple[list
         for i in range(k):
             if not lower[k][i].is_zero:
                 x[k] = x[k] - lower[k][i] * x[i]
-    return x, pivots
+    return x, positive

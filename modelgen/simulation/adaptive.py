@@ -19,6 +19,8 @@ METHODS = ("DOP853", "RK45", "LSODA", "Radau", "BDF")
 LEFT = -1  # the event of a coordinate that leaves its range
 BENT = -2  # that of a law that bends: play that closes or opens
 _EVENTS = 10_000  # of one interval: more is no motion
+# Evaluations, and the time [s] that they must cover: what is slower comes to no end.
+_STRETCH, _COVERED = 5000, 5e-5
 
 
 @dataclass(frozen=True)
@@ -128,8 +130,9 @@ class Adaptive:
         events += [self._bend(k, t, y, u, modes) for k in range(bends)]
         if np.isfinite(low).any() or np.isfinite(high).any():
             events.append(_Left(self.plant.n, low, high))
+        watched = _Watched(lambda at, x: self.rate(at, x, u, modes), t)
         found = solve_ivp(
-            lambda at, x: self.rate(at, x, u, modes),
+            watched,
             (t, end),
             y,
             method=self.method,
@@ -213,6 +216,24 @@ class Adaptive:
         }
         names = [function.name_in(i) for i in range(function.n_in())]
         return np.asarray(function(*(given.get(name, np.zeros(1)) for name in names)), dtype=float).ravel()
+
+
+class _Watched:
+    """A rate that ends an integration whose steps become too short to come to an end."""
+
+    def __init__(self, rate: Callable[[float, Array], Array], begin: float) -> None:
+        self._rate, self._since, self._count = rate, begin, 0
+
+    def __call__(self, t: float, y: Array) -> Array:
+        self._count += 1
+        if self._count % _STRETCH == 0:
+            if t - self._since < _COVERED:
+                raise RuntimeError(
+                    f"{_STRETCH} evaluations covered {max(t - self._since, 0.0):.2g} s: its speeds grow "
+                    "without bound, or the method is not one for stiff arms"
+                )
+            self._since = t
+        return self._rate(t, y)
 
 
 class _Left:

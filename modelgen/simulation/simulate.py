@@ -17,6 +17,7 @@ from modelgen.simulation.fixed import ENDS, Stepper
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.sundials import Sundials
 from modelgen.simulation.trajectory import Trajectory
+from modelgen.simulation.weightless import check_inertia
 
 MOST = 2e7  # samples: all are kept in memory
 STEP = 1e-3  # s, longest fixed step
@@ -46,10 +47,11 @@ def simulate(
     for effects with states) without control, fixed with it, where there is a C compiler. A lever that
     leaves its stroke ends the motion, so do, if wanted, the description's limits: `ended` then says
     so and when. States of effects begin at zero. Raises InputError for a state outside the stroke, a
-    length or method that makes no sense.
+    length or method that makes no sense, and a start at which joints move no inertia.
     """
     q, dq = (np.broadcast_to(np.asarray(x, dtype=float), (plant.n,)).copy() for x in (q0, dq0))
     _check(plant, q, dq, duration, rate)
+    check_inertia(plant, q)
     if step is not None and not (np.isfinite(step) and step > 0):
         raise InputError(f"--step: found {step:g}, expected more than 0")
     count = round(duration * rate) + 1
@@ -188,7 +190,10 @@ def fastest(plant: Plant, y: Array) -> float:
     jacobian = np.empty((size, size))
     for k in range(size):
         step = 1e-6 * max(1.0, abs(y[k])) * np.eye(size)[k]
-        ahead, back = (integrator.rate(0.0, y + s * step, u, modes) for s in (1, -1))
+        try:
+            ahead, back = (integrator.rate(0.0, y + s * step, u, modes) for s in (1, -1))
+        except FloatingPointError:
+            return 0.0
         jacobian[:, k] = (ahead - back) / (2 * step[k])
     return float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
 

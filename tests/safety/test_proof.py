@@ -48,7 +48,7 @@ def test_no_run_time_error_in_the_sine_and_cosine(tmp_path: Path, real: str) -> 
 @pytest.mark.parametrize(
     ("name", "guard", "without"),
     [
-        ("forward_dynamics", "> ARIANE4_C(1.0e-9)", "> ARIANE4_C(0.0)"),
+        ("forward_dynamics", "> ARIANE4_C(1.0e-12)", "> ARIANE4_C(0.0)"),
         ("gravity", "out[0] = ARIANE4_C(0.0);", ";"),
         ("gravity", "parameters[MX2R]", "parameters[24]"),
     ],

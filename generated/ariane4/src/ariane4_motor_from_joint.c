@@ -22,7 +22,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xFD33349DUL
+#if ARIANE4_GENERATION != 0xFA724CDEUL
 #error "ariane4.h and ariane4_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

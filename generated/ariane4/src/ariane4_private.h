@@ -12,7 +12,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0xFD33349DUL
+#if ARIANE4_GENERATION != 0xFA724CDEUL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 

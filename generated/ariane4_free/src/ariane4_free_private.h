@@ -12,7 +12,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x4F4B7123UL
+#if ARIANE4_FREE_GENERATION != 0x037F07AEUL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 

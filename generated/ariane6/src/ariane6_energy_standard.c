@@ -105,7 +105,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBC5AAFE2UL
+#if ARIANE6_GENERATION != 0x9EF5CF37UL
 #error "ariane6.h and ariane6_energy_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -79,7 +79,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBC5AAFE2UL
+#if ARIANE6_GENERATION != 0x9EF5CF37UL
 #error "ariane6.h and ariane6_mass_matrix.c are of different generations: generate the arm again"
 #endif
 

@@ -36,7 +36,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x1495714CUL
+#define GRAVITY_ARM_GENERATION 0x8127DE8CUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_ARM_REAL
@@ -66,7 +66,7 @@ typedef GRAVITY_ARM_REAL gravity_arm_real_t;
 
 #define GRAVITY_ARM_STATUS_OK     0
 #define GRAVITY_ARM_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_ARM_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
+#define GRAVITY_ARM_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
 #define GRAVITY_ARM_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
@@ -193,7 +193,7 @@ int gravity_arm_mass_matrix(
  * @param[out]  out         [2]   [rad/s^2]  joint accelerations
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 54 (32 mul, 22 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other.
  */
 int gravity_arm_forward_dynamics(
     const gravity_arm_real_t q[],
@@ -372,7 +372,7 @@ int gravity_arm_mass_matrix_standard(
  * @param[out]  out         [2]   [rad/s^2]  joint accelerations
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 61 (36 mul, 25 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other.
  */
 int gravity_arm_forward_dynamics_standard(
     const gravity_arm_real_t q[],

@@ -47,7 +47,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x1495714CUL
+#if GRAVITY_ARM_GENERATION != 0x8127DE8CUL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -27,7 +27,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x95278CD8UL
+#if GRAVITY_LINK1_GENERATION != 0x81A407D6UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,7 +54,7 @@ int gravity_link1_forward_dynamics(
 
     gravity_link1_real_t t1, t2;
     GRAVITY_LINK1_SINCOS(q[0], &t1, &t2);
-    if (!(parameters[ZZ1] > GRAVITY_LINK1_C(1.0e-9))) {
+    if (!(parameters[ZZ1] > GRAVITY_LINK1_C(1.0e-12))) {
         gravity_link1_zero(out, 1);
         return GRAVITY_LINK1_STATUS_PIVOT;
     }

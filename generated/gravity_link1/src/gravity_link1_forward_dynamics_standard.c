@@ -35,7 +35,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x95278CD8UL
+#if GRAVITY_LINK1_GENERATION != 0x81A407D6UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -62,7 +62,7 @@ int gravity_link1_forward_dynamics_standard(
 
     gravity_link1_real_t t1, t2;
     GRAVITY_LINK1_SINCOS(q[0], &t1, &t2);
-    if (!(parameters[ZZ1] > GRAVITY_LINK1_C(1.0e-9))) {
+    if (!(parameters[ZZ1] > GRAVITY_LINK1_C(1.0e-12))) {
         gravity_link1_zero(out, 1);
         return GRAVITY_LINK1_STATUS_PIVOT;
     }

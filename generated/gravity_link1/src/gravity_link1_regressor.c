@@ -23,7 +23,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x95278CD8UL
+#if GRAVITY_LINK1_GENERATION != 0x81A407D6UL
 #error "gravity_link1.h and gravity_link1_regressor.c are of different generations: generate the arm again"
 #endif
 

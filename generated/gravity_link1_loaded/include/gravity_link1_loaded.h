@@ -28,7 +28,7 @@
 #define GRAVITY_LINK1_LOADED_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_LOADED_GENERATION 0x0C126FCBUL
+#define GRAVITY_LINK1_LOADED_GENERATION 0x41193864UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef GRAVITY_LINK1_LOADED_REAL
@@ -59,7 +59,7 @@ typedef GRAVITY_LINK1_LOADED_REAL gravity_link1_loaded_real_t;
 
 #define GRAVITY_LINK1_LOADED_STATUS_OK     0
 #define GRAVITY_LINK1_LOADED_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_LINK1_LOADED_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
+#define GRAVITY_LINK1_LOADED_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
 #define GRAVITY_LINK1_LOADED_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

@@ -44,7 +44,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x0C126FCBUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x41193864UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_energy_standard.c are of different generations: generate the arm again"
 #endif
 

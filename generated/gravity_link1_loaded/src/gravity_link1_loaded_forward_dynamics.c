@@ -27,7 +27,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x0C126FCBUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x41193864UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,7 +54,7 @@ int gravity_link1_loaded_forward_dynamics(
 
     gravity_link1_loaded_real_t t1, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t1, &t2);
-    if (!(parameters[ZZ1R] > GRAVITY_LINK1_LOADED_C(1.0e-9))) {
+    if (!(parameters[ZZ1R] > GRAVITY_LINK1_LOADED_C(1.0e-12))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }

@@ -45,7 +45,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x0C126FCBUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x41193864UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -76,7 +76,7 @@ int gravity_link1_loaded_forward_dynamics_standard(
     const gravity_link1_loaded_real_t t0 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2]
         + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2]));
-    if (!(t0 > GRAVITY_LINK1_LOADED_C(1.0e-9))) {
+    if (!(t0 > GRAVITY_LINK1_LOADED_C(1.0e-12))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }

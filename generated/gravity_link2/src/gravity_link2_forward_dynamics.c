@@ -27,7 +27,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xDC1687F7UL
+#if GRAVITY_LINK2_GENERATION != 0x43E33B34UL
 #error "gravity_link2.h and gravity_link2_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -54,7 +54,7 @@ int gravity_link2_forward_dynamics(
 
     gravity_link2_real_t t1, t2;
     GRAVITY_LINK2_SINCOS(q[0], &t1, &t2);
-    if (!(parameters[ZZ1] > GRAVITY_LINK2_C(1.0e-9))) {
+    if (!(parameters[ZZ1] > GRAVITY_LINK2_C(1.0e-12))) {
         gravity_link2_zero(out, 1);
         return GRAVITY_LINK2_STATUS_PIVOT;
     }

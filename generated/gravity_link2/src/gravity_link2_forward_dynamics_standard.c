@@ -35,7 +35,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xDC1687F7UL
+#if GRAVITY_LINK2_GENERATION != 0x43E33B34UL
 #error "gravity_link2.h and gravity_link2_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -62,7 +62,7 @@ int gravity_link2_forward_dynamics_standard(
 
     gravity_link2_real_t t1, t2;
     GRAVITY_LINK2_SINCOS(q[0], &t1, &t2);
-    if (!(parameters[ZZ1] > GRAVITY_LINK2_C(1.0e-9))) {
+    if (!(parameters[ZZ1] > GRAVITY_LINK2_C(1.0e-12))) {
         gravity_link2_zero(out, 1);
         return GRAVITY_LINK2_STATUS_PIVOT;
     }

@@ -32,7 +32,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xDC1687F7UL
+#if GRAVITY_LINK2_GENERATION != 0x43E33B34UL
 #error "gravity_link2.h and gravity_link2_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -26,7 +26,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x07781CA7UL
+#if IIWA14_GENERATION != 0x58FA4077UL
 #error "iiwa14.h and iiwa14_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 

@@ -36,7 +36,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x07781CA7UL
+#if IIWA14_GENERATION != 0x58FA4077UL
 #error "iiwa14.h and iiwa14_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 

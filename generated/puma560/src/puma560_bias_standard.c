@@ -104,7 +104,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0F130238UL
+#if PUMA560_GENERATION != 0x6741B84AUL
 #error "puma560.h and puma560_bias_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -25,7 +25,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xE46EFB10UL
+#if RX90_GENERATION != 0x8E0D47A6UL
 #error "rx90.h and rx90_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 

@@ -29,7 +29,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x283E8186UL
+#if SCARA_GENERATION != 0x88B46CEEUL
 #error "scara.h and scara_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 

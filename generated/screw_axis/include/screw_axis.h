@@ -28,7 +28,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0xE24AA1A4UL
+#define SCREW_AXIS_GENERATION 0x4B42EA3DUL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef SCREW_AXIS_REAL
@@ -58,7 +58,7 @@ typedef SCREW_AXIS_REAL screw_axis_real_t;
 
 #define SCREW_AXIS_STATUS_OK     0
 #define SCREW_AXIS_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define SCREW_AXIS_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
+#define SCREW_AXIS_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
 #define SCREW_AXIS_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */

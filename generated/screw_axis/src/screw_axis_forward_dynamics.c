@@ -25,7 +25,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xE24AA1A4UL
+#if SCREW_AXIS_GENERATION != 0x4B42EA3DUL
 #error "screw_axis.h and screw_axis_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -50,7 +50,7 @@ int screw_axis_forward_dynamics(
         return status;
     }
 
-    if (!(parameters[M1R] > SCREW_AXIS_C(1.0e-9))) {
+    if (!(parameters[M1R] > SCREW_AXIS_C(1.0e-12))) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }

@@ -35,7 +35,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xE24AA1A4UL
+#if SCREW_AXIS_GENERATION != 0x4B42EA3DUL
 #error "screw_axis.h and screw_axis_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -61,7 +61,7 @@ int screw_axis_forward_dynamics_standard(
     }
 
     const screw_axis_real_t t0 = parameters[M1] + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1];
-    if (!(t0 > SCREW_AXIS_C(1.0e-9))) {
+    if (!(t0 > SCREW_AXIS_C(1.0e-12))) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }

@@ -22,7 +22,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xE24AA1A4UL
+#if SCREW_AXIS_GENERATION != 0x4B42EA3DUL
 #error "screw_axis.h and screw_axis_regressor_packed.c are of different generations: generate the arm again"
 #endif
 

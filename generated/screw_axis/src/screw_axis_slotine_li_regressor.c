@@ -24,7 +24,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xE24AA1A4UL
+#if SCREW_AXIS_GENERATION != 0x4B42EA3DUL
 #error "screw_axis.h and screw_axis_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 

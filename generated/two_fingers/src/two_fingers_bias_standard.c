@@ -90,7 +90,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x92121BF2UL
+#if TWO_FINGERS_GENERATION != 0xF0A07E25UL
 #error "two_fingers.h and two_fingers_bias_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -78,7 +78,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x6EE4F4C1UL
+#if UR10E_GENERATION != 0x7A7E8752UL
 #error "ur10e.h and ur10e_gravity.c are of different generations: generate the arm again"
 #endif
 

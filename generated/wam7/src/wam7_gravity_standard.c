@@ -117,7 +117,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7907522BUL
+#if WAM7_GENERATION != 0x84464E7DUL
 #error "wam7.h and wam7_gravity_standard.c are of different generations: generate the arm again"
 #endif
 

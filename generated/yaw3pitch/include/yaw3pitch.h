@@ -49,7 +49,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0xBDD95105UL
+#define YAW3PITCH_GENERATION 0x2858D870UL
 
 /** Type of every real number: float or double, the same for all files of the arm. */
 #ifndef YAW3PITCH_REAL
@@ -79,7 +79,7 @@ typedef YAW3PITCH_REAL yaw3pitch_real_t;
 
 #define YAW3PITCH_STATUS_OK     0
 #define YAW3PITCH_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define YAW3PITCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix is below 1e-9, or the result beyond 1e15 */
+#define YAW3PITCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
 #define YAW3PITCH_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
@@ -234,7 +234,7 @@ int yaw3pitch_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 391 (216 mul, 175 add, 0 neg), 4 div, 6 trig.
+ * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig.
  */
 int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t q[],
@@ -413,7 +413,7 @@ int yaw3pitch_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 457 (242 mul, 215 add, 0 neg), 4 div, 6 trig.
+ * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig.
  */
 int yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t q[],

@@ -47,7 +47,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xBDD95105UL
+#if YAW3PITCH_GENERATION != 0x2858D870UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 

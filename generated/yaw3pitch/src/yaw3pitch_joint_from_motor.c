@@ -23,7 +23,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xBDD95105UL
+#if YAW3PITCH_GENERATION != 0x2858D870UL
 #error "yaw3pitch.h and yaw3pitch_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 

@@ -29,7 +29,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xBDD95105UL
+#if YAW3PITCH_GENERATION != 0x2858D870UL
 #error "yaw3pitch.h and yaw3pitch_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
