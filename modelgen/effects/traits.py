@@ -104,6 +104,8 @@ class Traits(ABC):
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
     simpler: the law of the catalogue that this one comes to at a limit of its values.
+    varies: laws of the catalogue that this one lets vary, over time, place, load or speed. Where a
+        description lacks one of them, what is constant in this law comes first (marginality, Nelder 1977).
     series: its law is the first terms of a series in the joint's position; another function of the position
         and the direction is the same cause.
     claims: names of parameters without which it would not be there; their values are above zero.
@@ -127,6 +129,7 @@ class Traits(ABC):
     overlooked: ClassVar[tuple[float, float]] = (math.inf, 0.0)
     reading: ClassVar[Reading | None] = None
     simpler: ClassVar[type[Traits] | None] = None
+    varies: ClassVar[tuple[type[Traits], ...]] = ()
     series: ClassVar[bool] = False
     claims: ClassVar[tuple[str, ...]] = ()
 

@@ -45,6 +45,18 @@ def test_what_was_put_in_is_named_and_the_gain_measured(effect: str, joint: int,
     assert to_json(found)["causes"][0]["evidence"]["delta_bic"] > 15
 
 
+def test_friction_that_the_description_lacks_is_no_variation_of_it() -> None:
+    """A warm-up holds a constant part, which alone has more evidence here than dry friction has by itself."""
+    first, second = ARM.joints
+    viscous = tuple(use for use in second.effects if use.name != "coulomb_friction")
+    arm = replace(ARM, joints=(first, replace(second, effects=viscous)))
+    found = diagnose(arm, [replace(r, arm=arm) for r in three(None, 1, 0.0, 1)])
+    (cause,) = found.causes
+    assert (cause.effect, cause.joint) == ("coulomb_friction", 2)
+    assert all(check.passed for check in cause.checks if check.decides)
+    assert 2 not in [joint for _, joint, _ in cause.ambiguous_with]
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_nothing_is_named_where_nothing_was_put_in(seed: int) -> None:
     found = diagnose(ARM, three(None, 1, 0.0, seed))

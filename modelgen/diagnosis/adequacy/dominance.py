@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.diagnosis.candidates import Candidate, Place
-from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection
+from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection, lets_vary
 
 # Refusals for want of evidence, of values that can be, or of a form of itself: they leave a cause its name.
 _LESSER = ("", "evidence", "values", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
@@ -53,6 +53,6 @@ def _over(r: Ranked, evidence: float, most: float) -> Dominance:
 
 def _dominates(r: Ranked, c: Candidate, named: Collection[Place]) -> bool:
     """Whether what was refused, then and for good, could be there instead of the candidate."""
-    if r.refused in _LESSER or r.place in named:
+    if r.refused in _LESSER or r.place in named or lets_vary(r.effect, r.joint, c):
         return False
     return r.joint is None or r.joint == c.joint

@@ -11,6 +11,7 @@ from modelgen.diagnosis.selection.history import (
     History,
     Ranked,
 )
+from modelgen.diagnosis.selection.marginality import lets_vary
 from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness, with_trials
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
@@ -28,6 +29,7 @@ __all__ = [
     "alternatives",
     "best_beside",
     "forward_selection",
+    "lets_vary",
     "needed_evidence",
     "refit_stiffness",
     "threshold",

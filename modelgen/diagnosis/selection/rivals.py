@@ -13,6 +13,7 @@ from modelgen.diagnosis.evidence import System, mean_squares
 from modelgen.diagnosis.options.thresholds import SelectionThresholds
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.selection.compliance import Judged, alternatives
+from modelgen.diagnosis.selection.marginality import varied
 from modelgen.diagnosis.validation import Gates
 
 Rival = tuple[FittedCandidate, float]  # and by how much delta BIC it is behind
@@ -20,7 +21,8 @@ Rival = tuple[FittedCandidate, float]  # and by how much delta BIC it is behind
 
 def rivals_of(chosen: Judged, eligible: Sequence[Judged], system: System) -> list[Rival]:
     """Candidates that passed as well and are behind by little: in evidence, or in what they gain by less than
-    errors of coarse positions could feign. system: without the chosen one.
+    errors of coarse positions could feign. What lets the chosen one vary is asked for beside it, in the next
+    turn, and no rival. system: without the chosen one.
     """
     best, by = chosen
     limits = system.equations.thresholds.selection
@@ -30,7 +32,7 @@ def rivals_of(chosen: Judged, eligible: Sequence[Judged], system: System) -> lis
         behind = best.gain.delta_bic - t.gain.delta_bic
         less = 100.0 * (by.gain - other.gain) / (100.0 - other.gain)
         near = behind <= needed_behind(best, t, limits) or less <= margin
-        if t.candidate != best.candidate and near:
+        if t.candidate != best.candidate and near and not varied(t.candidate, best.candidate):
             found.append((t, max(0.0, behind)))
     return found
 
@@ -41,7 +43,8 @@ def lesser_rivals(best: FittedCandidate, faint: Sequence[FittedCandidate], gates
     """
     most = gates.equations.thresholds.selection.rival_margin_bic
     behind = [(t, best.gain.delta_bic - t.gain.delta_bic) for t in faint]
-    near = [(t, max(0.0, by)) for t, by in behind if by <= most and t.candidate != best.candidate]
+    others = [(t, by) for t, by in behind if by <= most and t.candidate != best.candidate]
+    near = [(t, max(0.0, by)) for t, by in others if not varied(t.candidate, best.candidate)]
     return [(t, by) for t, by in near if not gates.judged(t).refused]
 
 

@@ -31,6 +31,7 @@ from modelgen.diagnosis.selection.history import (
     ranked,
     taken_back,
 )
+from modelgen.diagnosis.selection.marginality import constant_first
 from modelgen.diagnosis.selection.refit import refit
 from modelgen.diagnosis.selection.rivals import ambiguity_set, given_way, lesser_rivals, rivals_of
 from modelgen.diagnosis.validation import Gates, instrumented
@@ -93,7 +94,7 @@ class _Steps:
         if not eligible:
             self.turns.append(best_of_each(ranking, None))
             return False
-        best, by = member(eligible[0], eligible, self.equations.thresholds)
+        best, by = constant_first(member(eligible[0], eligible, self.equations.thresholds), eligible)
         self.turns.append(best_of_each(ranking, best.candidate.place))
         rivals, lesser = rivals_of((best, by), eligible, self.system), lesser_rivals(best, faint, gates)
         own = [t for t in settled if t.candidate == best.candidate]

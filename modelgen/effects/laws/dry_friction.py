@@ -8,7 +8,13 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, Parameter, Values, at
-from modelgen.effects.laws.velocity_friction import SMOOTHING, Friction, direction
+from modelgen.effects.laws.velocity_friction import (
+    SMOOTHING,
+    CoulombFriction,
+    Friction,
+    ViscousFriction,
+    direction,
+)
 from modelgen.effects.traits import Numbers, Presence, Seen, Shows
 from modelgen.effects.variables import Variables
 
@@ -22,6 +28,7 @@ class StribeckFriction(Friction):
     name = "stribeck_friction"
     text = "dry friction in excess of Coulomb's at low speed"
     reference = "Stribeck 1902; Bo and Pavelescu 1982"
+    varies = (CoulombFriction,)
     linear = (Parameter("magnitude", "{f}", "excess of static over Coulomb friction", "FS"),)
     nonlinear = (
         Parameter(
@@ -61,6 +68,7 @@ class LoadDependentFriction(Friction):
     seen_over = "position"
     text = "dry friction in proportion to the load that the transmission carries"
     reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
+    varies = (CoulombFriction,)
     linear = (Parameter("coefficient", "1", "friction per load", "FL"),)
     nonlinear = (
         SMOOTHING,
@@ -106,6 +114,7 @@ class PositionDependentFriction(Friction):
     seen_over = "position"
     text = "dry friction that changes with the joint coordinate"
     reference = "Armstrong 1988; Popovic and Goldenberg 1998"
+    varies = (CoulombFriction,)
     linear = (
         Parameter("slope", "{f}", "change per rad or m of the joint", "FP", bounds=ANY),
         Parameter("curvature", "{f}", "the same per square of the joint coordinate", "FQ", bounds=ANY),
@@ -134,6 +143,7 @@ class FrictionWarmUp(Friction):
     seen_over = "time"
     text = "friction that falls as the drive's own motion warms it up, from a cold start"
     reference = "Bittencourt and Gunnarsson 2012; Simoni, Beschi, Legnani and Visioli 2015"
+    varies = (CoulombFriction, ViscousFriction)
     linear = (
         Parameter("dry", "{f}", "excess of dry friction, cold", "FCW", bounds=ANY),
         Parameter("viscous", "{f} s/{x}", "excess of viscous friction, cold", "FVW", bounds=ANY),
@@ -195,6 +205,7 @@ class Presliding(Friction):
     name = "presliding"
     text = "dry friction that builds up over a distance after a reversal"
     reference = "Dahl 1968"
+    varies = (CoulombFriction,)
     linear = (Parameter("magnitude", "{f}", "friction once it has built up", "FD"),)
     nonlinear = (
         Parameter(

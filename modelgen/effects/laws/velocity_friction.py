@@ -108,6 +108,7 @@ class AsymmetricViscousFriction(Effect):
     name = "asymmetric_viscous_friction"
     text = "viscous friction of different size in the two directions"
     reference = "Elhami and Brookfield 1996"
+    varies = (ViscousFriction,)
     linear = (Parameter("coefficient", "{f} s/{x}", "half the difference of the two", "FA", bounds=ANY),)
     confused_with = ("friction_offset",)
     experiment = "constant speeds, several in each direction"
@@ -124,6 +125,7 @@ class NonlinearViscousFriction(Friction):
     name = "nonlinear_viscous_friction"
     text = "friction in proportion to a power of the speed, besides the viscous one"
     reference = "Grotjahn, Daemi and Heimann 2001; Wolf and Iskandar 2018"
+    varies = (ViscousFriction,)
     linear = (Parameter("coefficient", "{f}", "friction at the speed `scale`", "FN", bounds=ANY),)
     nonlinear = (
         Parameter(
