@@ -15,7 +15,20 @@ from modelgen.numeric import Array
 from modelgen.resources import templates_folder
 
 # In the order in which they use each other.
-SCRIPTS = ("model", "skeleton", "view", "solids", "marks", "labels", "panel", "page", "motion")
+SCRIPTS = (
+    "model",
+    "skeleton",
+    "view",
+    "solids",
+    "marks",
+    "labels",
+    "svg",
+    "panel",
+    "painting",
+    "hits",
+    "page",
+    "motion",
+)
 
 
 def page(arm: Arm, q: Sequence[float] | None = None) -> str:

@@ -24,20 +24,22 @@ class Solids {
     const { view } = this, r = radius * view.scale;
     const length = norm(difference(to, from));
     const count = Math.max(1, Math.min(80, Math.ceil(length / this.piecesOf)));
+    const start = view.project(from);
     for (let k = 0; k < count; k++) {
       const a = view.project(sum(from, times(k / count, difference(to, from))));
       const b = view.project(sum(from, times((k + 1) / count, difference(to, from))));
-      this.parts.push({ depth: (a[2] + b[2]) / 2, paint: (pen) => this.piece(pen, a, b, r, colour) });
+      this.parts.push({ depth: (a[2] + b[2]) / 2, paint: (pen) => this.piece(pen, a, b, r, colour, start) });
     }
     if (round) for (const end of [from, to]) this.ball(end, radius, colour);
   }
 
-  piece(pen, a, b, r, colour) {
+  // start: a point of the bar's middle line; all pieces have one shading.
+  piece(pen, a, b, r, colour, start) {
     const dx = b[0] - a[0], dy = b[1] - a[1], length = Math.hypot(dx, dy);
     if (length < 0.3) return;
     const nx = (-dy / length) * r, ny = (dx / length) * r;
     const ex = (dx / length) * 0.4, ey = (dy / length) * 0.4; // no seams between pieces
-    pen.fillStyle = this.across(pen, a, nx, ny, colour);
+    pen.fillStyle = this.across(pen, start, nx, ny, colour);
     pen.beginPath();
     pen.moveTo(a[0] + nx - ex, a[1] + ny - ey);
     pen.lineTo(b[0] + nx + ex, b[1] + ny + ey);
@@ -92,7 +94,7 @@ class Solids {
         const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
         pen.fillStyle = this.across(pen, a, (-(b[1] - a[1]) / length) * r, ((b[0] - a[0]) / length) * r, colour);
         cap(pen, a);
-        this.piece(pen, a, b, r, colour);
+        this.piece(pen, a, b, r, colour, a);
         pen.fillStyle = lighter(colour, 0.22);
         cap(pen, b);
         pen.strokeStyle = darker(colour, 0.45);
