@@ -16,7 +16,7 @@ from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.excitation.fourier import Basis, basis
 from modelgen.excitation.limits import Bound, bounds, ranges, speeds
-from modelgen.functions import build_model
+from modelgen.functions import EVALUATED, build_model
 from modelgen.functions.nominal import nominal_base
 from modelgen.numeric import Array
 from modelgen.options import Box, ExcitationOptions
@@ -140,7 +140,7 @@ class _Functions:
 
 
 def _functions(arm: Arm, limits: Sequence[Bound], settings: ExcitationOptions) -> _Functions:
-    model = build_model(arm)
+    model = build_model(arm, EVALUATED)
     if model.states:
         raise InputError(
             f"{arm.name}: its effects have states ({', '.join(model.states)}), which depend on the past; "

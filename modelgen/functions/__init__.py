@@ -13,9 +13,10 @@ from modelgen.functions.objects import (
     Output,
     SparsityTable,
 )
-from modelgen.functions.options import GAINS, PARTS, Options
+from modelgen.functions.options import EVALUATED, GAINS, PARTS, Options
 
 __all__ = [
+    "EVALUATED",
     "GAINS",
     "PARTS",
     "STATUS_INPUT",

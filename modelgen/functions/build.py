@@ -7,6 +7,7 @@ from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
+from modelgen.functions.derivatives import derivative_functions, row_wise_derivatives
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.kinematic import kinematic_functions
 from modelgen.functions.nominal import base_of, nominal_values
@@ -40,25 +41,30 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
     grouping = _stacked(rows) if rows else group(plain)
     a = Assembly(options, real, base, grouping)
     functions: list[Function] = []
+    given = {"": ["parameters"], "_standard": ["standard_parameters"], "_identified": [], "_nominal": []}
+    dynamics: dict[str, Dynamics] = {}
     if rows:
         functions += row_wise_functions(a, rows)
     else:
-        dynamics = Dynamics(base, base_values(base, grouping))
-        functions += parametric_functions(a, dynamics, "", ["parameters"])
+        dynamics[""] = Dynamics(base, base_values(base, grouping))
+        functions += parametric_functions(a, dynamics[""], "", given[""])
     regressors, packed = regressor_functions(a, _representatives(a.n, grouping, rows))
     functions += regressors
-    functions += parametric_functions(
-        a, Dynamics(real, standard_values(real)), "_standard", ["standard_parameters"]
-    )
+    dynamics["_standard"] = Dynamics(real, standard_values(real))
+    functions += parametric_functions(a, dynamics["_standard"], "_standard", given["_standard"])
     if options.identified:
         _check(arm.name, options, grouping)
-        dynamics = Dynamics(base, folded_values(base, grouping, options.identified))
-        functions += parametric_functions(a, dynamics, "_identified", [])
+        dynamics["_identified"] = Dynamics(base, folded_values(base, grouping, options.identified))
+        functions += parametric_functions(a, dynamics["_identified"], "_identified", [])
     nominal = _nominal(options, real, grouping)
     if nominal:
-        dynamics = Dynamics(base, folded_values(base, grouping, nominal))
-        functions += parametric_functions(a, dynamics, "_nominal", [])
+        dynamics["_nominal"] = Dynamics(base, folded_values(base, grouping, nominal))
+        functions += parametric_functions(a, dynamics["_nominal"], "_nominal", [])
     functions += kinematic_functions(a)
+    if options.derivatives:
+        functions += row_wise_derivatives(a, rows)
+        for suffix in [suffix for suffix in given if suffix in dynamics]:
+            functions += derivative_functions(a, dynamics[suffix], suffix, given[suffix])
     return Model(
         arm,
         real.standard,

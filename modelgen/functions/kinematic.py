@@ -113,7 +113,7 @@ def _drive_gain(a: Assembly) -> Function:
 def _effective_input(a: Assembly) -> list[Function]:
     """Only where an effect stands between input and effort."""
     e = a.real
-    if not any(part.place == "input" for effect in e.effects for part in effect.parts):
+    if e.ideal_inputs:
         return []
     given = e.vector("input")
     ideal = EffectForces(e, Rates(e.zeros(), e.zeros())).effective(given)

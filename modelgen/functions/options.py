@@ -11,8 +11,10 @@ from modelgen.options import GAINS, PARTS, ModelOptions
 from modelgen.transmission import UNDRIVEN
 
 Options = ModelOptions
+# Of models that are evaluated and not printed: derivatives are most of the work.
+EVALUATED = Options(derivatives=False)
 
-__all__ = ["GAINS", "PARTS", "Options", "prepared"]
+__all__ = ["EVALUATED", "GAINS", "PARTS", "Options", "prepared"]
 
 
 def prepared(arm: Arm, options: Options) -> Arm:

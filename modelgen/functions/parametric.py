@@ -14,6 +14,14 @@ from modelgen.functions.objects import STATUS_PIVOT, Function, Output
 from modelgen.graph import Expr
 from modelgen.model.equations import Equations
 
+# Suffix of the functions of each way of giving parameters, and what their texts say of it.
+WITH = {
+    "": "base parameters",
+    "_standard": "standard parameters",
+    "_identified": "identified parameters, folded in",
+    "_nominal": "nominal parameters of the description, folded in",
+}
+
 
 def standard_values(equations: Equations) -> list[Expr]:
     """All standard parameters as inputs."""
@@ -75,12 +83,7 @@ def parametric_functions(
     e, n = dynamics.equations, a.n
     dq, ddq = e.vector("dq"), e.vector("ddq")
     zeros = e.zeros()
-    with_what = {
-        "": "base parameters",
-        "_standard": "standard parameters",
-        "_identified": "identified parameters, folded in",
-        "_nominal": "nominal parameters of the description, folded in",
-    }[suffix]
+    with_what = WITH[suffix]
     effort = vector("input", n, input_units(e), "inputs: motor currents, efforts where undriven")
     matrix = dynamics.mass_matrix()
     accelerations, positive = dynamics.forward_dynamics(dq, e.vector("input"))
@@ -149,6 +152,13 @@ def _of_effects(
     return functions
 
 
+def row_wise_dynamics(a: Assembly, rows: Sequence[Grouping]) -> list[Dynamics]:
+    """The dynamics whose row counts, for every row with base parameters of its own scale."""
+    firsts = [sum(len(g.base) for g in rows[:k]) for k in range(len(rows))]
+    values = [base_values(a.base, g, first) for g, first in zip(rows, firsts, strict=True)]
+    return [Dynamics(a.base, v) for v in values]
+
+
 def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
     """Inverse dynamics and its parts where every row has base parameters of its own scale.
 
@@ -162,8 +172,7 @@ def row_wise_functions(a: Assembly, rows: Sequence[Grouping]) -> list[Function]:
                 e.arm.where,
             )
     effort = vector("input", a.n, input_units(e), "inputs: motor currents, efforts where undriven")
-    firsts = [sum(len(g.base) for g in rows[:k]) for k in range(len(rows))]
-    by_row = [Dynamics(e, base_values(e, g, first)) for g, first in zip(rows, firsts, strict=True)]
+    by_row = row_wise_dynamics(a, rows)
 
     def inputs(dq: Sequence[Expr], ddq: Sequence[Expr]) -> list[Expr]:
         return [dynamics.inverse_dynamics(dq, ddq)[k] for k, dynamics in enumerate(by_row)]

@@ -93,6 +93,8 @@ def shown_options(options: Options) -> dict[str, str]:
         shown["geometry"] = "at run time"
     if options.sincos:
         shown["inputs"] = "sines and cosines"
+    if not options.derivatives:
+        shown["derivatives"] = "none"
     if options.jacobian_link is not None:
         shown["jacobian"] = options.jacobian_link
     if options.nominal:

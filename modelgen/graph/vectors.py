@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from modelgen.graph.graph import Expr
+from modelgen.graph.graph import Expr, Number
 
 Vector: TypeAlias = tuple[Expr, Expr, Expr]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
@@ -24,6 +24,16 @@ def minus(a: Vector, b: Vector) -> Vector:
 def cross(a: Vector, b: Vector) -> Vector:
     """a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def scaled(k: Expr | Number, v: Vector) -> Vector:
+    """k v."""
+    return (v[0] * k, v[1] * k, v[2] * k)
+
+
+def transposed(m: Matrix) -> Matrix:
+    """The matrix with rows and columns exchanged."""
+    return (column(m, 0), column(m, 1), column(m, 2))
 
 
 def dot(a: Sequence[Expr], b: Sequence[Expr]) -> Expr:

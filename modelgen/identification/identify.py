@@ -70,7 +70,9 @@ def identify(
         raise InputError(f"--method: found '{method}', expected {', '.join(METHODS)}")
     options = options or Options()
     _refuse(options, method, physical=physical, payloads=bool(payloads))
-    known = replace(options, gains="known") if options.gains == "estimated" else options
+    known = replace(options, derivatives=False)
+    if options.gains == "estimated":
+        known = replace(known, gains="known")
     model, evaluator = build_model(arm, known), Evaluator(reduced(arm, known))
     carried = payloads or {}
     added = [payload_base(model, carried.get(k, ())) for k in range(len(train) + len(test))]

@@ -15,20 +15,26 @@ Parameters = Sequence[Sequence[Expr]]  # link by link: 10, or 14 in a fluid
 
 def joint_efforts(frames: Frames, motions: Sequence[LinkMotion], parameters: Parameters) -> list[Expr]:
     """Effort of every coordinate [N m or N]: backward recursion (Luh, Walker and Paul 1980)."""
+    efforts = [frames.graph.zero] * len(frames.coordinates)
+    for frame, (force, moment) in zip(frames.frames, wrenches(frames, motions, parameters), strict=True):
+        if frame.coordinate is not None:
+            efforts[frame.coordinate] = force[2] if frame.prismatic else moment[2]
+    return efforts
+
+
+def wrenches(frames: Frames, motions: Sequence[LinkMotion], parameters: Parameters) -> list[Wrench]:
+    """Wrench that every joint passes on to its link and all beyond it, at the link's origin in its axes."""
     graph, density = frames.graph, frames.arm.fluid_density
     zero: Vector = (graph.zero, graph.zero, graph.zero)
     total: dict[int | None, Wrench] = {None: (zero, zero)}
     for i, motion in enumerate(motions):
         total[i] = wrench(motion, parameters[i], density)
-    efforts = [graph.zero] * len(frames.coordinates)
     for i in reversed(frames.order):
         frame = frames[i]
-        force, moment = total[i]
-        if frame.coordinate is not None:
-            efforts[frame.coordinate] = force[2] if frame.prismatic else moment[2]
         if frame.antecedent is not None:
+            force, moment = total[i]
             f, n = total[frame.antecedent]
             back = frame.to_antecedent(force)
             turned = add(frame.to_antecedent(moment), cross(frame.origin, back))
             total[frame.antecedent] = add(f, back), add(n, turned)
-    return efforts
+    return [total[i] for i in range(len(motions))]

@@ -90,6 +90,11 @@ class Equations:
         self.standard = standard_parameters(arm, self.effects)
         self.per_link = 14 if arm.fluid_density else 10
 
+    @property
+    def ideal_inputs(self) -> bool:
+        """Whether no effect stands between the inputs and the efforts."""
+        return not any(part.place == "input" for effect in self.effects for part in effect.parts)
+
     def vector(self, name: str) -> list[Expr]:
         """The input vector `name`, one element per coordinate."""
         return [self.graph.input(name, i) for i in range(self.n)]

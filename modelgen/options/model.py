@@ -28,6 +28,13 @@ class ModelOptions:
     sincos: bool = option(
         False, "Sines and cosines of the joint angles become inputs.", flags=["--sincos-inputs"]
     )
+    derivatives: bool = option(
+        True,
+        "Leave out the derivatives of the dynamics, the largest functions.",
+        flags=["--no-derivatives"],
+        inverted=True,
+        doc="Whether there are derivatives of the dynamics, the largest functions.",
+    )
     jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
     nominal: bool = option(
         False,

@@ -82,7 +82,8 @@ def _condition(evaluated: Mapping[str, NumpyFunction], f: Function, given: Mappi
     """Condition number of the mass matrix that a forward dynamics solves with, 0 elsewhere."""
     if not f.name.startswith("forward_dynamics"):
         return 0.0
-    mass = evaluated[f.name.replace("forward_dynamics", "mass_matrix")]
+    suffix = f.name.removeprefix("forward_dynamics").removeprefix("_derivatives")
+    mass = evaluated[f"mass_matrix{suffix}"]
     matrix = mass(*(given[a.name] for a in mass.function.arguments))
     return float(np.linalg.cond(np.reshape(matrix, (len(matrix), -1))))
 

@@ -8,7 +8,7 @@ from modelgen.description import Arm, DirectDrive, Inertial, Joint, LeveredDrive
 from modelgen.effects import CATALOGUE, Definition, Parameter
 from modelgen.evaluation import Evaluator, Motion, places
 from modelgen.figures import COLOURS, figure, svg
-from modelgen.functions import build_model
+from modelgen.functions import EVALUATED, build_model
 from modelgen.functions.nominal import nominal_base
 
 _LINK = Inertial(6.0, (0.25, 0.0, 0.0), (0.01, 0.0, 0.0, 0.12, 0.0, 0.12))
@@ -39,7 +39,7 @@ def motion() -> Motion:
 
 def parameters(arm: Arm) -> np.ndarray:
     """Base parameters of the arm from its nominal links and no friction."""
-    return np.array(list(nominal_base(build_model(arm)).values()))
+    return np.array(list(nominal_base(build_model(arm, EVALUATED)).values()))
 
 
 def picture(name: str, evaluator: Evaluator, along: Motion, base: np.ndarray) -> str:

@@ -18,7 +18,7 @@ from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm, EffectUse
 from modelgen.effects import TIME_STEP, AppliedEffect, Part, Variables, applied_effects
 from modelgen.errors import InputError
-from modelgen.functions import Function, Model, Options, build_model
+from modelgen.functions import EVALUATED, Function, Model, build_model
 from modelgen.functions.bare import bare
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.parametric import base_values, standard_values
@@ -58,7 +58,7 @@ def slip(arm: Arm, *, standard: bool = False) -> Slip:
     standard: they take the standard parameters in place of the base parameters, which do not tell the
     inertia of an elastic joint's drive from that of its link.
     """
-    model = build_model(unsmoothed(arm), Options())
+    model = build_model(unsmoothed(arm), EVALUATED)
     e = Equations(model.arm if standard else slid(model.arm))
     values = standard_values(e) if standard else base_values(e, model.grouping)
     suffix = "_standard" if standard else ""

@@ -64,7 +64,7 @@ def casadi_functions(made: Model) -> dict[str, object]:
 
 def conditions(made: Model, function: Function, samples: list[list[np.ndarray]]) -> np.ndarray:
     """Condition numbers of the mass matrix at the inputs of a forward dynamics."""
-    suffix = function.name.removeprefix("forward_dynamics")
+    suffix = function.name.removeprefix("forward_dynamics").removeprefix("_derivatives")
     (mass,) = [f for f in made.functions if f.name == f"mass_matrix{suffix}"]
     names = [a.name for a in function.arguments]
     n = len(made.arm.coordinates)

@@ -41,7 +41,8 @@ def test_the_figures_hold_for_what_they_are(target: str, made: GeneratedArm) -> 
     assert set(found) == set(made.operations)
     assert found["forward_dynamics"].flash > found["bias"].flash > found["gravity"].flash > 200
     assert found["forward_dynamics"].stack > found["drive_gain"].stack
-    assert all(0 <= size.stack < 4096 and size.flash < 20000 for size in found.values())
+    assert all(0 <= size.stack < 4096 for size in found.values())
+    assert all(size.flash < (30000 if "derivatives" in name else 20000) for name, size in found.items())
 
 
 def test_flash_is_what_the_linker_would_count(made: GeneratedArm, tmp_path: Path) -> None:

@@ -26,7 +26,8 @@ from modelgen.description import (
 from modelgen.functions import Function, Model, Options, build_model
 from witness.geometry import number
 
-BARE = Options(without=frozenset({"drives", "effects"}))
+# Without derivatives, which have tests of their own and take as long as all the rest.
+BARE = Options(without=frozenset({"drives", "effects"}), derivatives=False)
 
 
 class Emitted:
@@ -188,7 +189,7 @@ def random_arm(seed: int, dressed: bool = False) -> Arm:
 @cache
 def generated(seed: int, dressed: bool = False) -> Emitted:
     """A random arm, built once a worker."""
-    return build(random_arm(seed, dressed), Options())
+    return build(random_arm(seed, dressed), Options(derivatives=False))
 
 
 def _param(arm: str, make: Callable[[], Emitted], variant: str = "") -> Any:

@@ -13,7 +13,7 @@ from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.options.thresholds import Thresholds
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
-from modelgen.functions import Model, build_model
+from modelgen.functions import EVALUATED, Model, build_model
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
     if period is not None and all(p is None for p in lengths):
         raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
     narrower = options.cutoff is None and not free
-    return Study(build_model(arm), Evaluator(arm), found, lengths, settings, thresholds, narrower)
+    return Study(build_model(arm, EVALUATED), Evaluator(arm), found, lengths, settings, thresholds, narrower)
 
 
 def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thresholds) -> Settings:

@@ -19,7 +19,7 @@ from modelgen.diagnosis.selection import Selection, refit_stiffness
 from modelgen.effects import CATALOGUE, Family, Presence, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
-from modelgen.functions import Model, build_model
+from modelgen.functions import EVALUATED, Model, build_model
 from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
 from modelgen.simulation.windows import Windows, simulated_windows
@@ -84,7 +84,7 @@ def extended(before: FittedModel, selection: Selection, equations: Equations) ->
     if not causes:
         return before
     bigger = extended_arm(equations.arm, causes)
-    model = build_model(bigger)
+    model = build_model(bigger, EVALUATED)
     known = held(model) if equations.free else estimated(model, equations.thresholds.equations)
     # links that weigh nothing swing on no spring: not from zero
     beside = zip(before.model.grouping.base, selection.system.base, strict=True)

@@ -1,0 +1,40 @@
+"""Inputs of a graph's values replaced by other values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from modelgen.graph.graph import ADD, DIV, INPUT, MUL, Expr
+from modelgen.graph.lowering import reachable
+
+
+def substituted(values: Sequence[Expr], given: Mapping[tuple[str, int], Expr]) -> list[Expr]:
+    """The values with the elements (input vector, element) of `given` replaced, in the same graph."""
+    if not values:
+        return []
+    graph = values[0].graph
+    changed: dict[int, Expr] = {}
+
+    def now(key: int) -> Expr:
+        found = changed.get(key >> 1)
+        if found is None:
+            return Expr(graph, key)
+        return -found if key & 1 else found
+
+    for node in reachable(graph, [e.key for e in values]):
+        op, keys = graph.op[node], graph.args[node]
+        if op == INPUT:
+            found = given.get((graph.name[node], int(graph.number[node])))
+            if found is not None:
+                changed[node] = found
+        elif any(key >> 1 in changed for key in keys):
+            x = [now(key) for key in keys]
+            if op == ADD:
+                changed[node] = x[0] + x[1]
+            elif op == MUL:
+                changed[node] = x[0] * x[1]
+            elif op == DIV:
+                changed[node] = x[0] / x[1]
+            else:
+                changed[node] = graph.call(graph.name[node], *x)
+    return [now(e.key) for e in values]
