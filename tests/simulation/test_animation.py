@@ -14,7 +14,6 @@ from simulation_support import middle, shipped
 
 from modelgen.report.animation import animation
 
-
 NAMESPACE = "http://www.w3.org/2000/svg"  # of the pictures that a page can save: a name, no address
 
 
