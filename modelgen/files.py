@@ -48,3 +48,13 @@ def write_new(path: Path, text: str) -> None:
         raise InputError(f"{path} exists and is left as it is; choose another file with --out") from None
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror}") from None
+
+
+def write_whole(option: str, path: Path, content: bytes) -> None:
+    """Write a file, complete before it appears; one that exists is replaced. Raises InputError."""
+    try:
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".new-") as new:
+            (Path(new) / path.name).write_bytes(content)
+            (Path(new) / path.name).replace(path)
+    except OSError as error:
+        raise InputError(f"{option}: cannot write {path}: {error.strerror or error}") from error

@@ -8,8 +8,8 @@ from typing import Any
 
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
-from modelgen.exporting import Exported, Row, check_file, export_model, format_of
-from modelgen.files import write_together
+from modelgen.exporting import Exported, Row, check_file, check_format, export_model
+from modelgen.files import write_whole
 from modelgen.functions.nominal import is_nominal
 from modelgen.functions.parameters_file import values_beside, values_of
 from modelgen.options import ModelOptions
@@ -28,7 +28,9 @@ class ExportedModel(Shown):
     arm : Arm
         The arm as described.
     text : str
-        The file.
+        The file; of an FMU its modelDescription.xml.
+    content : bytes
+        The file as it is written.
     rows : tuple of Row
         What the file has of each effect: `status` "exact", "approximated" or "left out", `error` the largest
         [N m, N] over sampled states within the limits, None where it is not known.
@@ -40,6 +42,7 @@ class ExportedModel(Shown):
         self.found = found
         self.arm = found.arm
         self.text = found.text
+        self.content = found.content
         self.rows: tuple[Row, ...] = found.rows
         self.notes = found.notes
 
@@ -57,7 +60,7 @@ class ExportedModel(Shown):
             Where its folder does not exist or cannot be written.
         """
         check_file("--out", Path(path))
-        write_together("--out", Path(path).parent, {Path(path).name: self.text})
+        write_whole("--out", Path(path), self.content)
 
     def to_json(self) -> dict[str, Any]:
         """Plain data: what `modelgen export --json` prints.
@@ -80,7 +83,7 @@ class ExportedModel(Shown):
         ]
         return {
             "arm": self.arm.name,
-            "format": self.found.form.name,
+            "format": self.found.form,
             "effects": effects,
             "notes": list(self.notes),
         }
@@ -101,7 +104,7 @@ class ExportedModel(Shown):
     def __repr__(self) -> str:
         n = len(self.arm.coordinates)
         joints = f"{n} joint{'' if n == 1 else 's'}"
-        return f"{self.arm.name} as {self.found.form.title}: {joints}, {len(self.rows)} effects"
+        return f"{self.arm.name} as {self.found.title}: {joints}, {len(self.rows)} effects"
 
 
 def export(
@@ -111,14 +114,14 @@ def export(
     out: Path | str | None = None,
     parameters: Path | str | Mapping[str, Any] | None = None,
 ) -> ExportedModel:
-    """Make the model of a simulator of an arm: MuJoCo's MJCF, or URDF.
+    """Make the model of a simulator of an arm: MuJoCo's MJCF, URDF, or an FMU for co-simulation.
 
     Parameters
     ----------
     arm : Arm
         An arm whose links have inertials, or with `parameters`.
     to : str
-        The format: "mjcf" or "urdf".
+        The format: "mjcf", "urdf" or "fmu".
     out : Path or str, optional
         File to write; one that exists is replaced. Default: none.
     parameters : path or mapping, optional
@@ -137,7 +140,7 @@ def export(
         For a format that does not exist, links without inertials, parameters that are not the arm's, and a
         file that cannot be written.
     """
-    format_of(to)
+    check_format(to)
     if out is not None:
         check_file("--out", Path(out))
     values, note = values_of(parameters, [arm.name]) or None, ""

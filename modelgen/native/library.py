@@ -19,6 +19,9 @@ _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 _FAST = ("-std=gnu99", "-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
 
 
+NO_COMPILER = "found no C compiler, expected cc, gcc or clang in PATH, or its name in CC"
+
+
 @cache
 def compiler() -> str | None:
     """Find the machine's C compiler: $CC, cc, gcc or clang; None where it has no compiler."""
@@ -27,6 +30,17 @@ def compiler() -> str | None:
         if found:
             return found
     return None
+
+
+def library_bytes(files: Mapping[str, str], main: str) -> bytes:
+    """The library of the source `main` as a file. Raises RuntimeError as `shared_library` does."""
+    tool = compiler()
+    if tool is None:
+        raise RuntimeError(NO_COMPILER)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "made.so"
+        _build(tool, _FLAGS, files, main, path)
+        return path.read_bytes()
 
 
 def shared_library(files: Mapping[str, str], main: str, *, fast: bool = False) -> ctypes.CDLL:
@@ -40,7 +54,7 @@ def shared_library(files: Mapping[str, str], main: str, *, fast: bool = False) -
     """
     tool = compiler()
     if tool is None:
-        raise RuntimeError("found no C compiler, expected cc, gcc or clang in PATH, or its name in CC")
+        raise RuntimeError(NO_COMPILER)
     flags = _FAST if fast else _FLAGS
     own = _processor(tool) if fast else ""
     text = "\0".join(

@@ -18,6 +18,7 @@ from modelgen.native import shared_library
 from modelgen.numeric import Array
 from modelgen.simulation.plant import Plant
 
+MAIN = "simulation.c"
 # How a run may end: enumeration of driver.c.
 ENDS = {
     1: "left its stroke or its limits",
@@ -85,15 +86,20 @@ def _at(x: NDArray[np.generic]) -> ctypes.c_void_p:
 
 
 def _library(plant: Plant) -> ctypes.CDLL:
+    return shared_library(sources(plant), MAIN)
+
+
+def sources(plant: Plant, more: Sequence[Function] = ()) -> dict[str, str]:
+    """C of the steps by path, of which MAIN includes the others. more: functions besides."""
     own = plant.slip
-    functions = [own.accelerations, *([own.rates] if own.rates else [])]
+    functions = [own.accelerations, *([own.rates] if own.rates else []), *more]
     bounded = tuple(_bounded(f) for f in functions)
     model = replace(own.model, functions=bounded)
     files = c_files(model, Provenance("simulation", "0" * 64))
     name = plant.arm.name
-    sources = [f for f in files if f.endswith(".c")]
+    generated = [f for f in files if f.endswith(".c")]
     driver = Path(__file__).with_name("driver.c").read_text(encoding="utf-8")
-    lines = [f'#include "{source}"' for source in sources]
+    lines = [f'#include "{source}"' for source in generated]
     lines += _definitions(plant)
     lines += [_call("slip", f"{name}_{own.accelerations.name}", own.accelerations, acceleration=False)]
     rates = own.rates
@@ -101,10 +107,11 @@ def _library(plant: Plant) -> ctypes.CDLL:
         _call("drift", f"{name}_{rates.name}", rates)
         if rates
         else "static int drift(double t, const double *q, const double *dq, const double *ddq, "
-        "const double *u, const double *p, const double *z, double *out) { return 0; }"
+        "const double *u, const double *p, const double *z, double *out) { "
+        "(void)t, (void)q, (void)dq, (void)ddq, (void)u, (void)p, (void)z, (void)out; return 0; }"
     ]
-    files["simulation.c"] = "\n".join([*lines, driver])
-    return shared_library(files, "simulation.c")
+    files[MAIN] = "\n".join([*lines, driver])
+    return files
 
 
 def _definitions(plant: Plant) -> list[str]:

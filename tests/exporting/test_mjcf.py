@@ -10,6 +10,7 @@ import pytest
 from exporting_support import Motion, close, mujoco_accelerations, only_exact
 
 import modelgen as mg
+from modelgen.exporting.states import States
 
 SHIPPED = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
 
@@ -106,12 +107,12 @@ def test_every_kind_of_joint_and_effect_that_mujoco_knows_is_exact(many: mg.Arm)
 
 
 def test_frames_and_tools_stand_where_the_arm_has_them(many: mg.Arm) -> None:
-    motion = Motion(mg.load_arms(Path(many.where.file))["many"]) if many.where else Motion(many)
     model = mujoco.MjModel.from_xml_string(mg.export(many, to="mjcf").text)
     data = mujoco.MjData(model)
-    data.qpos[:] = motion.q[3]
+    q = States(many).q[3]
+    data.qpos[:] = q
     mujoco.mj_kinematics(model, data)
-    poses = motion.model.functions["forward_kinematics"](q=motion.q[3])
+    poses = mg.build_model(many).functions["forward_kinematics"](q=q)
     assert len(poses) == len(many.joints) + len(many.tools)
     for joint, pose in zip(many.joints, poses, strict=False):
         body = data.body(joint.name)

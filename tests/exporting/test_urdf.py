@@ -19,7 +19,7 @@ def pinocchio_efforts(text: str, motion: Motion) -> Array:
     """Efforts (N, n) at the joints, damping and dry friction taken in."""
     model = pin.buildModelFromXML(text)
     data = model.createData()
-    names = [motion.model.arm.joints[i].name for i in motion.model.arm.coordinates]
+    names = [motion.arm.joints[i].name for i in motion.arm.coordinates]
     joints = [model.joints[model.getJointId(name)] for name in names]
     order = [joint.idx_v for joint in joints]
     assert model.nv == len(order)

@@ -9,8 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import modelgen as mg
+from modelgen.backends import NumpyFunction
+from modelgen.effects import described
 from modelgen.exporting.states import States
 from modelgen.exporting.values import nominal, standard_of
+from modelgen.functions import Function
+from modelgen.functions.bare import bare
+from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.parametric import standard_values
+from modelgen.model.equations import Equations
 
 Array = NDArray[np.float64]
 SAMPLES = 200
@@ -29,24 +36,30 @@ def only_exact(arm: mg.Arm, model: mg.ExportedModel) -> mg.Arm:
 
 
 class Motion:
-    """States within the limits, inputs, and the accelerations that the arm's own functions give (N, n)."""
+    """States within the limits, inputs, efforts and the accelerations of the arm's own equations (N, n)."""
 
     def __init__(self, arm: mg.Arm) -> None:
-        self.model = mg.build_model(arm)
-        known = standard_of(nominal(arm))
-        parameters = np.array([known[p.name] for p in self.model.built.standard])
-        states = States(arm)
+        self.arm = arm
+        states, known = States(arm), standard_of(nominal(arm))
         self.q, self.dq, self.ddq = (x[:SAMPLES] for x in (states.q, states.dq, states.ddq))
-        functions, state = self.model.functions, {}
-        if self.model.built.states:
-            state = {"state": np.zeros((SAMPLES, len(self.model.built.states)))}
-        self.inputs: Array = functions["inverse_dynamics_standard"](
-            q=self.q, dq=self.dq, ddq=self.ddq, parameters=parameters, **state
-        )
-        self.efforts: Array = self.inputs * functions["drive_gain"](self.q)
-        self.accelerations: Array = functions["forward_dynamics_standard"](
-            q=self.q, dq=self.dq, input=self.inputs, parameters=parameters, **state
-        )
+        e = Equations(described(arm))
+        dynamics = Dynamics(e, standard_values(e))
+        count, dq = len(e.standard), e.vector("dq")
+        self.given = {
+            "q": self.q,
+            "dq": self.dq,
+            "ddq": self.ddq,
+            "parameters": np.array([known[p.name] for p in e.standard]),
+        }
+        self.inputs = self._of(bare("inputs", e, count, dynamics.inverse_dynamics(dq, e.vector("ddq"))))
+        self.efforts: Array = self.inputs * self._of(bare("gains", e, count, dynamics.gains()))
+        self.given["input"] = self.inputs
+        accelerations, _ = dynamics.forward_dynamics(dq, e.vector("input"))
+        self.accelerations = self._of(bare("accelerations", e, count, accelerations))
+
+    def _of(self, function: Function) -> Array:
+        given = {a.name: self.given.get(a.name, np.zeros(a.size)) for a in function.arguments}
+        return np.asarray(NumpyFunction(function)(**given))
 
 
 def mujoco_accelerations(text: str, motion: Motion) -> Array:

@@ -12,7 +12,7 @@ from modelgen.cli.options import Arms, Json, OneArm, Parameters
 
 # ruff: noqa: PLC0415 - the help is quick
 
-To = Annotated[str, typer.Option("--to", metavar="FORMAT", help="mjcf or urdf.", show_default=False)]
+To = Annotated[str, typer.Option("--to", metavar="FORMAT", help="mjcf, urdf or fmu.", show_default=False)]
 OutFile = Annotated[
     Path, typer.Option("-o", "--out", metavar="FILE", help="File to write.", show_default=False)
 ]

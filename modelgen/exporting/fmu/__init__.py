@@ -1,0 +1,5 @@
+"""FMU: an arm as a unit for co-simulation after FMI 2.0, with its C inside."""
+
+from modelgen.exporting.fmu.unit import export_fmu
+
+__all__ = ["export_fmu"]

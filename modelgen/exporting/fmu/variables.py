@@ -1,0 +1,72 @@
+"""Variables of a unit, in the order of their value references."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from modelgen.dataset import drives_of
+from modelgen.numeric import Array
+from modelgen.simulation.plant import Plant
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One real variable. causality: "input", "output", "parameter" or "local"; start: None where computed."""
+
+    name: str
+    unit: str
+    text: str
+    causality: str
+    variability: str
+    start: float | None = None
+
+
+def variables(
+    plant: Plant, names: Sequence[str], units: Sequence[str], q: Array, step: float
+) -> list[Variable]:
+    """All of them. names, units: of the parameters; q: where the joints begin; step: the longest [s]."""
+    arm = plant.arm
+    joints = [arm.joints[i] for i in arm.coordinates]
+    drives = drives_of(arm)
+    own = ["m" if joint.type == "prismatic" else "rad" for joint in joints]
+    efforts = ["N" if joint.type == "prismatic" else "N m" for joint in joints]
+    found = [
+        Variable(
+            f"{joint.name}.input",
+            "A" if drive.driven else effort,
+            "current of the drive" if drive.driven else "effort at the joint",
+            "input",
+            "continuous",
+            0.0,
+        )
+        for joint, drive, effort in zip(joints, drives, efforts, strict=True)
+    ]
+    outputs = (
+        ("q", "coordinate of the joint", "", own),
+        ("dq", "its rate", "/s", own),
+        ("motor", "coordinate of the motor", "", [drive.unit for drive in drives]),
+        ("motor_rate", "its rate", "/s", [drive.unit for drive in drives]),
+    )
+    for name, text, per, kinds in outputs:
+        found += [
+            Variable(f"{joint.name}.{name}", f"{unit}{per}", text, "output", "continuous")
+            for joint, unit in zip(joints, kinds, strict=True)
+        ]
+    found += [
+        Variable(f"state.{name}", "", "state of an effect", "output", "continuous")
+        for name in plant.model.states
+    ]
+    for name, text, per, starts in (
+        ("q_start", "coordinate at the beginning", "", q.tolist()),
+        ("dq_start", "rate at the beginning", "/s", [0.0] * len(joints)),
+    ):
+        found += [
+            Variable(f"{joint.name}.{name}", f"{unit}{per}", text, "parameter", "fixed", start)
+            for joint, unit, start in zip(joints, own, starts, strict=True)
+        ]
+    found.append(Variable("step", "s", "longest step of the integrator", "parameter", "fixed", step))
+    return found + [
+        Variable(f"parameter.{name}", unit, "parameter of the model", "parameter", "tunable", float(value))
+        for name, unit, value in zip(names, units, plant.parameters, strict=True)
+    ]

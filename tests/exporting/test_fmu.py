@@ -1,0 +1,175 @@
+"""An exported FMU in FMPy moves as `simulate` does, dry friction and levers included."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exporting_support import Array
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+from fmpy.validation import validate_fmu
+
+import modelgen as mg
+from modelgen.dataset import drives_of
+from modelgen.native import compiler, library
+from modelgen.simulation.plant import plant
+from modelgen.simulation.simulate import simulate
+
+ARMS = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
+RATE, SAMPLES = 500.0, 101
+
+pytestmark = pytest.mark.skipif(compiler() is None, reason="needs a C compiler")
+
+
+class Unit:
+    """A unit in FMPy, initialised."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        described = read_model_description(str(path), validate=True)
+        self.variables = {v.name: v for v in described.modelVariables}
+        self.slave = FMU2Slave(
+            guid=described.guid,
+            unzipDirectory=extract(str(path), unzipdir=str(folder)),
+            modelIdentifier=described.coSimulation.modelIdentifier,
+            instanceName="arm",
+        )
+        self.slave.instantiate()
+        self.begin()
+
+    def begin(self, **start: float) -> None:
+        self.slave.setupExperiment(startTime=0.0)
+        self.slave.enterInitializationMode()
+        for name, value in start.items():
+            self[name] = value
+        self.slave.exitInitializationMode()
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.slave.getReal([self.variables[name].valueReference])[0])
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self.slave.setReal([self.variables[name].valueReference], [float(value)])
+
+    def moved(self, names: list[str], inputs: Array, first: int = 0) -> Array:
+        """Coordinates (S, n) with inputs (S, n) held from sample to sample, the last of no effect."""
+        path = [[self[f"{name}.q"] for name in names]]
+        for k, row in enumerate(inputs[:-1], first):
+            for name, value in zip(names, row, strict=True):
+                self[f"{name}.input"] = value
+            self.slave.doStep(k / RATE, 1 / RATE)
+            path.append([self[f"{name}.q"] for name in names])
+        return np.array(path)
+
+
+def names_of(arm: mg.Arm) -> list[str]:
+    return [arm.joints[i].name for i in arm.coordinates]
+
+
+def waves(*sizes: float) -> Array:
+    t = np.arange(SAMPLES) / RATE
+    return np.stack([a * np.sin(2 * np.pi * (2 + k) * t) for k, a in enumerate(sizes)], axis=1)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Unit]:
+    folder = tmp_path_factory.mktemp("unit")
+    mg.export(ARMS["gravity_arm"], to="fmu", out=folder / "arm.fmu")
+    made = Unit(folder / "arm.fmu", folder / "unit")
+    yield made
+    made.slave.freeInstance()
+
+
+@pytest.fixture
+def unit(made: Unit) -> Unit:
+    made.slave.reset()
+    made.begin()
+    return made
+
+
+@pytest.mark.parametrize(("name", "sizes"), [("gravity_arm", (4.0, 1.5)), ("ariane4", (2.0, 2.5, 1.5))])
+def test_the_motion_is_that_of_simulate(name: str, sizes: tuple[float, ...], tmp_path: Path) -> None:
+    arm, path = ARMS[name], tmp_path / "arm.fmu"
+    model = mg.export(arm, to="fmu", out=path)
+    assert {row.status for row in model.rows} == {"exact"}
+    assert validate_fmu(str(path)) == []
+    names, inputs = names_of(arm), waves(*sizes)
+    made = Unit(path, tmp_path / "unit")
+    q0 = [made[f"{joint}.q"] for joint in names]
+    found = made.moved(names, inputs)
+    expected = simulate(plant(arm), q0, 0.0, (SAMPLES - 1) / RATE, RATE, inputs, method="DOP853")
+    assert expected.ended == ""
+    assert np.ptp(expected.q, axis=0).min() > 1e-3
+    assert np.abs(found - expected.q).max() <= 1e-9
+    for n, (joint, drive) in enumerate(zip(names, drives_of(arm), strict=True)):
+        q, dq = found[-1:, n], made[f"{joint}.dq"]
+        assert made[f"{joint}.motor"] == pytest.approx(drive.motor(q)[0], rel=1e-12)
+        assert made[f"{joint}.motor_rate"] == pytest.approx(drive.k1(q)[0] * dq, rel=1e-9)
+    made.slave.freeInstance()
+
+
+def test_parameters_are_tuned_while_it_moves(unit: Unit) -> None:
+    arm, inputs = ARMS["gravity_arm"], waves(4.0, 1.5)
+    nominal = mg.build_model(arm).nominal
+    assert nominal is not None
+    assert {f"parameter.{name}": value for name, value in nominal.items()} == pytest.approx(
+        {v: unit[v] for v in unit.variables if v.startswith("parameter.")}
+    )
+    names = names_of(arm)
+    unit.slave.reset()
+    unit.begin(**{"j1.q_start": 0.3, "j2.dq_start": -0.2})
+    unit["parameter.FC1"] = 1.5
+    found = unit.moved(names, inputs)
+    changed = plant(arm, {**nominal, "FC1": 1.5})
+    duration = (SAMPLES - 1) / RATE
+    expected = simulate(changed, [0.3, 0.0], [0.0, -0.2], duration, RATE, inputs, method="DOP853")
+    assert np.abs(found - expected.q).max() <= 1e-9
+
+
+def test_a_state_is_kept_and_taken_up_again(unit: Unit) -> None:
+    names, inputs = names_of(ARMS["gravity_arm"]), waves(4.0, 1.5)
+    unit.moved(names, inputs[:50])
+    kept = unit.slave.serializeFMUstate(unit.slave.getFMUstate())
+    first = unit.moved(names, inputs[50:], 50)
+    unit.slave.setFMUstate(unit.slave.deSerializeFMUstate(kept))
+    assert np.array_equal(unit.moved(names, inputs[50:], 50), first)
+
+
+def test_what_it_refuses(unit: Unit) -> None:
+    for name, value in (("j1.q", 1.0), ("step", 0.0), ("j1.q_start", 1.0), ("j1.input", float("nan"))):
+        with pytest.raises(Exception, match=r"fmi2SetReal|status"):
+            unit[name] = value
+
+
+def test_it_compiles_elsewhere_and_is_the_same_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here = mg.export(ARMS["ariane4"], to="fmu", out=tmp_path / "here.fmu")
+    monkeypatch.setattr(library, "compiler", lambda: None)
+    there = mg.export(ARMS["ariane4"], to="fmu", out=tmp_path / "there.fmu")
+    assert any("no compiled library" in note for note in there.notes)
+    with zipfile.ZipFile(tmp_path / "here.fmu") as a, zipfile.ZipFile(tmp_path / "there.fmu") as b:
+        sources = [name for name in b.namelist() if name.startswith("sources/")]
+        assert {name: a.read(name) for name in sources} == {name: b.read(name) for name in sources}
+        assert not any(name.startswith("binaries/") for name in b.namelist())
+        b.extractall(tmp_path / "there")
+    assert here.text.partition("<CoSimulation")[2] == there.text.partition("<CoSimulation")[2]
+    tool = compiler()
+    assert tool is not None
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared"]
+    command = [tool, *flags, "fmu.c", "-o", "x.so", "-lm"]
+    done = subprocess.run(
+        command, cwd=tmp_path / "there" / "sources", capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_what_has_no_value_begins_at_zero_and_it_is_said() -> None:
+    rows = mg.export(ARMS["screw_axis"], to="fmu").rows
+    assert {row.status for row in rows} == {"exact"}
+    joint = ARMS["screw_axis"].joints[0]
+    effects = tuple(replace(use, values={}) for use in joint.effects)
+    bare = replace(ARMS["screw_axis"], joints=(replace(joint, effects=effects),))
+    assert {(row.status, row.error) for row in mg.export(bare, to="fmu").rows} == {("left out", None)}
