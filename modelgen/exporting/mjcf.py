@@ -203,6 +203,10 @@ def remarks(machine: Machine) -> list[str]:
             "MuJoCo's solver keeps frictionloss: exact while a joint slides; at rest, where the largest "
             "error is, it creeps"
         )
+    if any({"quadratic", "cubic"} & set(p) for p in machine.properties()):
+        found.append(
+            "damping has several coefficients, which older releases of MuJoCo do not read (4.0 does)"
+        )
     if fast:
         found.append(f"limits of speed are left out: MuJoCo has none ({', '.join(fast)})")
     return found
@@ -210,8 +214,8 @@ def remarks(machine: Machine) -> list[str]:
 
 _LAWS: Mapping[str, str] = {
     "damping": "damping",
-    "quadratic": "damping, second coefficient (MuJoCo 4)",
-    "cubic": "damping, third coefficient (MuJoCo 4)",
+    "quadratic": "damping, second coefficient",
+    "cubic": "damping, third coefficient",
     "friction": "frictionloss",
     "armature": "armature",
     "stiffness": "stiffness",

@@ -43,6 +43,7 @@ arms:
         drive: {type: direct, ratio: -40, torque_constant: 0.07}
         effects:
           - viscous_friction: {coefficient: 2.0e-3}
+          - friction_offset: {offset: 0.02}
           - drive_inertia: {inertia: 3.0e-4}
           - spring: {stiffness: 30, rest: 0.4}
           - encoder_offset: {offset: 0.05}
@@ -60,6 +61,8 @@ arms:
                 offset: 1.2, torque_constant: 2.0e-3}
         effects:
           - viscous_friction: {coefficient: 1.0e-6}
+          - nonlinear_viscous_friction: {coefficient: 1.0e-5, exponent: 2, scale: 100}
+          - friction_offset: {offset: 1.0e-3}
           - drive_inertia: {inertia: 3.0e-8}
           - spring: {stiffness: 5, preload: -2}
           - lever_geometry: {l2: 0.003}
@@ -71,6 +74,7 @@ arms:
         effects:
           - viscous_friction: {coefficient: 0.3}
           - spring: {stiffness: 0, preload: 0.7}
+          - nonlinear_viscous_friction: {coefficient: 0.2, exponent: 3, scale: 0.5}
           - transmission_coupling: {inertia: 0.02, viscous: 0.1, dry: 0, other: 1, ratio: -1.5}
       - {name: edge, type: fixed, alpha: 0.3, d: 0.2, r: 0.1}
       - name: slide

@@ -223,6 +223,11 @@ class Presliding(Friction):
     experiment = "reversals of small amplitude, at several amplitudes and speeds"
     shown = at(magnitude=0.1, distance=6.0)
 
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """What it comes to over distances."""
+        return {"friction": values["magnitude"]}
+
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FD z, where z is the bend of the bristles, from -1 to 1."""
         return p["magnitude"] * x.state["bend"]

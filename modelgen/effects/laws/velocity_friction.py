@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from types import MappingProxyType
 
 import sympy as sp
@@ -93,6 +94,11 @@ class FrictionOffset(Effect):
     shown = at(offset=0.05)
     linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=ANY),)
 
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """A constant force."""
+        return {"force": values["offset"]}
+
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FO."""
         return p["offset"]
@@ -155,6 +161,13 @@ class NonlinearViscousFriction(Friction):
         """The least power is dry friction that is lower near rest."""
         least = cls.nonlinear[0].grid[0]
         return Shows.NEAR_REST if values.get("exponent", math.inf) < NEAR_REST * least else None
+
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """A term of a polynomial where the power is whole."""
+        exponent = values["exponent"]
+        word = {1.0: "damping", 2.0: "quadratic", 3.0: "cubic"}.get(exponent)
+        return {} if word is None else {word: values["coefficient"] / values["scale"] ** exponent}
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FN |v / scale|^exponent sign(v)."""
