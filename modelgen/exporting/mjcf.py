@@ -205,7 +205,7 @@ def remarks(machine: Machine) -> list[str]:
         )
     if any({"quadratic", "cubic"} & set(p) for p in machine.properties()):
         found.append(
-            "damping has several coefficients, which older releases of MuJoCo do not read (4.0 does)"
+            "damping has several coefficients, which MuJoCo 4.0 reads and older releases do not"
         )
     if fast:
         found.append(f"limits of speed are left out: MuJoCo has none ({', '.join(fast)})")
