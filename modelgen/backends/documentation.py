@@ -59,7 +59,7 @@ def function_sections(model: Model, function: Function) -> list[Section]:
         found = elements(model, function, argument)
         if found:
             sections.append(Section(f"Elements of {argument.name}", _numbered(found)))
-    if "regressor" in function.name:
+    if any("regressor" in name for name in (function.name, *function.parts)):
         standard = function.name.endswith("_standard")
         of = "standard" if standard else "base"
         names = [p.name for p in (model.standard if standard else model.grouping.base)]

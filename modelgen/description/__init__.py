@@ -3,7 +3,7 @@
 from modelgen.description.joints import DEFAULT_EFFECTS
 from modelgen.description.json_schema import json_schema
 from modelgen.description.loading import load, loads
-from modelgen.description.objects import Arm, EffectUse, Inertial, Joint, Limits, Tool, Transform
+from modelgen.description.objects import Arm, Combined, EffectUse, Inertial, Joint, Limits, Tool, Transform
 from modelgen.description.starter import starter
 from modelgen.symbolic import Range, Scalar, geometry_symbol
 from modelgen.transmission import DirectDrive, Drive, LeveredDrive, MotorLimits, NoDrive
@@ -11,6 +11,7 @@ from modelgen.transmission import DirectDrive, Drive, LeveredDrive, MotorLimits,
 __all__ = [
     "DEFAULT_EFFECTS",
     "Arm",
+    "Combined",
     "DirectDrive",
     "Drive",
     "EffectUse",

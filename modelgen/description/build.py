@@ -10,7 +10,7 @@ from modelgen.description.inertials import read_inertial
 from modelgen.description.joints import KnownEffects, coordinate_kind, read_effects, read_joint
 from modelgen.description.messages import describe
 from modelgen.description.names import arm_name_problem, symbol_name_problem
-from modelgen.description.objects import Arm, Inertial
+from modelgen.description.objects import Arm, Combined, Inertial
 from modelgen.description.plausible import ask_gravity, ask_unit
 from modelgen.description.schema import ArmModel, Document
 from modelgen.description.transforms import read_base, read_tools
@@ -65,6 +65,7 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
         effects=read_effects(context, model.effects, known_effects, ["effects"], "arm"),
         base=read_base(context, model),
         tools=read_tools(context, model, names),
+        combined=_combined(context, model),
         where=context.where([], key=True),
     )
 
@@ -77,6 +78,16 @@ def _symbols(context: Context, model: ArmModel) -> dict[str, float]:
             raise context.error(problem, ["symbols", name], key=True)
         values[name] = context.number(raw, "any", ["symbols", name])
     return values
+
+
+def _combined(context: Context, model: ArmModel) -> tuple[Combined, ...]:
+    """Whether the functions exist is known where these are made."""
+    found = []
+    for name, functions in model.combined.items():
+        places = tuple(context.where(["combined", name, i]) for i in range(len(functions)))
+        at = context.where(["combined", name], key=True)
+        found.append(Combined(name, tuple(functions), at, places))
+    return tuple(found)
 
 
 def _joint_names(context: Context, model: ArmModel) -> list[str]:

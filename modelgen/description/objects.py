@@ -18,6 +18,7 @@ from modelgen.transmission import UNDRIVEN, Drive
 __all__ = [
     "OPTIONAL",
     "Arm",
+    "Combined",
     "EffectUse",
     "Inertial",
     "Joint",
@@ -116,6 +117,18 @@ class Tool:
 
 
 @dataclass(frozen=True)
+class Combined:
+    """A function that does the work of several at once. `at`: place of its name in the file; `where`: of each
+    of the others.
+    """
+
+    name: str
+    functions: tuple[str, ...]
+    at: Location | None = field(default=None, compare=False)
+    where: tuple[Location, ...] = field(default=(), compare=False)
+
+
+@dataclass(frozen=True)
 class Arm:
     """One arm, as its description has it.
 
@@ -143,6 +156,8 @@ class Arm:
         World <- base frame, None where that is the world.
     tools : tuple of Tool
         Named frames on links.
+    combined : tuple of Combined
+        Functions that do the work of several at once.
     where : Location, optional
         Where the arm stands in its file.
     document : str
@@ -160,6 +175,7 @@ class Arm:
     effects: tuple[EffectUse, ...] = field(default=(), metadata=OPTIONAL)
     base: Transform | None = field(default=None, metadata=OPTIONAL)
     tools: tuple[Tool, ...] = field(default=(), metadata=OPTIONAL)
+    combined: tuple[Combined, ...] = field(default=(), metadata=OPTIONAL)
     where: Location | None = field(default=None, compare=False)
     document: str = field(default="", compare=False, repr=False)
 

@@ -26,6 +26,7 @@ from modelgen.transmission import KINDS, Drive, NoDrive
 
 JOINT_NAME = r"^[A-Za-z_][A-Za-z0-9_-]*$"
 ARM_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
+FUNCTION_NAME = r"^[a-z][a-z0-9_]*$"
 SYMBOL_NAME = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
 
@@ -226,6 +227,13 @@ class ArmModel(Model):
     )
     tools: dict[JointName, ToolModel] = Field(
         default={}, description="Named frames on links: name to link and transform, for poses and Jacobian."
+    )
+    combined: dict[
+        Annotated[str, Field(pattern=FUNCTION_NAME)], Annotated[list[str], Field(min_length=1)]
+    ] = Field(
+        default={},
+        description="Functions that do the work of several in one call: name to the functions that it stands "
+        "for, {tick: [inverse_dynamics, mass_matrix]}.",
     )
     links: dict[str, LinkModel] = Field(
         default={}, description="Nominal inertials by the name of the link's joint."

@@ -7,6 +7,7 @@ from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
+from modelgen.functions.combined import combined_functions
 from modelgen.functions.derivatives import derivative_functions, row_wise_derivatives
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.kinematic import kinematic_functions
@@ -65,6 +66,8 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         functions += row_wise_derivatives(a, rows)
         for suffix in [suffix for suffix in given if suffix in dynamics]:
             functions += derivative_functions(a, dynamics[suffix], suffix, given[suffix])
+    if options.combined:
+        functions += combined_functions(arm, functions)
     return Model(
         arm,
         real.standard,

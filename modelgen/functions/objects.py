@@ -66,7 +66,7 @@ class Function:
 
     Elements of an output that `program` does not set are zero. A statement ("guard", bit) of the
     program demands that its term is positive. With `stacked` the outputs are one array where a
-    backend knows arrays only.
+    backend knows arrays only. `parts` names the functions whose work it does at once, if it does.
     """
 
     name: str
@@ -77,6 +77,7 @@ class Function:
     operations: Mapping[str, int]
     ranges: tuple[InputRange, ...] = ()
     stacked: bool = False
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from modelgen.options import GAINS, PARTS, ModelOptions
 from modelgen.transmission import UNDRIVEN
 
 Options = ModelOptions
-# Of models that are evaluated and not printed: derivatives are most of the work.
-EVALUATED = Options(derivatives=False)
+EVALUATED = Options().evaluated
 
 __all__ = ["EVALUATED", "GAINS", "PARTS", "Options", "prepared"]
 

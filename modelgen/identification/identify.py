@@ -70,7 +70,7 @@ def identify(
         raise InputError(f"--method: found '{method}', expected {', '.join(METHODS)}")
     options = options or Options()
     _refuse(options, method, physical=physical, payloads=bool(payloads))
-    known = replace(options, derivatives=False)
+    known = options.evaluated
     if options.gains == "estimated":
         known = replace(known, gains="known")
     model, evaluator = build_model(arm, known), Evaluator(reduced(arm, known))

@@ -8,7 +8,6 @@ records of their own there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +49,7 @@ def identify_streamed(
     if method not in ("ols", "wls"):
         raise InputError(f"--method {method}: a streamed log knows ols and wls only; give a part, FILE@t0:t1")
     options = options or Options()
-    model, evaluator = build_model(arm, replace(options, derivatives=False)), Evaluator(reduced(arm, options))
+    model, evaluator = build_model(arm, options.evaluated), Evaluator(reduced(arm, options))
     rows = Rows(model, evaluator)
     (function,) = [f for f in model.functions if f.name == "regressor"]
     if {"load", "state"} & {a.name for a in function.arguments}:

@@ -179,7 +179,7 @@ def _whole(
             payloads=payloads,
         )
 
-    model, evaluator = build_model(arm, replace(options, derivatives=False)), Evaluator(reduced(arm, options))
+    model, evaluator = build_model(arm, options.evaluated), Evaluator(reduced(arm, options))
     if options == Options():
         check_reading(fitted, model, evaluator)
     found = identified(fitted, held)

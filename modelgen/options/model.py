@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from modelgen.errors import InputError, suggest
 from modelgen.options.field import documented, option
@@ -12,7 +12,12 @@ GAINS = ("known", "estimated", "row_wise")
 PARTS = ("drives", "effects")
 
 
-@documented(fields_beside={"identified": "Values of the base parameters by name, to be folded in."})
+@documented(
+    fields_beside={
+        "identified": "Values of the base parameters by name, to be folded in.",
+        "combined": "Whether there are the functions that the description combines of others.",
+    }
+)
 @dataclass(frozen=True)
 class ModelOptions:
     """How the functions of an arm are made; see docs/theory.md for the drive gains.
@@ -41,10 +46,16 @@ class ModelOptions:
         "Also fold in the nominal values of links and effects: functions that end in _nominal, and an array.",
     )
     identified: Mapping[str, float] = field(default_factory=dict)
+    combined: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "without", parts_of(self.without))
         check_gains(self.gains)
+
+    @property
+    def evaluated(self) -> ModelOptions:
+        """The same for a model that is evaluated and not printed: without what is made of other functions."""
+        return replace(self, derivatives=False, combined=False)
 
 
 def parts_of(given: str | Collection[str]) -> frozenset[str]:

@@ -80,9 +80,10 @@ def _check(
 
 def _condition(evaluated: Mapping[str, NumpyFunction], f: Function, given: Mapping[str, Array]) -> float:
     """Condition number of the mass matrix that a forward dynamics solves with, 0 elsewhere."""
-    if not f.name.startswith("forward_dynamics"):
+    name = next((n for n in (f.name, *f.parts) if n.startswith("forward_dynamics")), None)
+    if name is None:
         return 0.0
-    suffix = f.name.removeprefix("forward_dynamics").removeprefix("_derivatives")
+    suffix = name.removeprefix("forward_dynamics").removeprefix("_derivatives")
     mass = evaluated[f"mass_matrix{suffix}"]
     matrix = mass(*(given[a.name] for a in mass.function.arguments))
     return float(np.linalg.cond(np.reshape(matrix, (len(matrix), -1))))
