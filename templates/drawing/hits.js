@@ -36,7 +36,7 @@ function collectHits(s, values) {
     for (const m of s.masses) {
       point(`mass ${m.joint}`, m.at, 7, 4, () => [`link ${arm.joints[m.joint].name}: ${digits(m.link.mass)} kg`,
         `centre of mass ${xyz(m.link.com)} ${units.length}`, `inertia about it ${m.link.inertia.map((v) => digits(v, 4)).join(", ")} kg m²`,
-        m.body.real ? `even ellipsoid of half axes ${m.body.half.map((v) => units.showLength(Number(v.toPrecision(3)))).join(", ")}` : "no body has this inertia: a principal moment is more than the other two"]);
+        m.body.real ? `even ellipsoid of half axes ${m.body.half.map((v) => units.showLength(Number(v.toPrecision(3)))).join(", ")}${tooLarge(m.body) ? ": larger than the arm" : ""}` : "no body has this inertia: a principal moment is more than the other two"]);
     }
   }
   if (show.tools) s.tools.forEach((pose, k) => point(`tool ${k}`, origin(pose), 6, 5, () => [`tool ${arm.tools[k].name} on link ${arm.joints[arm.tools[k].link].name}`, `origin in the ${ground}: ${xyz(origin(pose))} ${units.length}`]));

@@ -82,8 +82,8 @@ function drawCentre(pen, p, r, colour, paper) {
   pen.stroke();
 }
 
-// Outline and principal sections of an ellipsoid about `at`; half: three vectors [m].
-function drawEllipsoid(pen, view, at, half, colour, strong) {
+// Outline and principal sections of an ellipsoid about `at`; half: three vectors [m]. hollow: not filled.
+function drawEllipsoid(pen, view, at, half, colour, strong, hollow) {
   const c = view.project(at), d = half.map((v) => view.direction(v));
   const ring = (u, v) => Array.from({ length: 49 }, (_, k) => {
     const t = (k * Math.PI) / 24;
@@ -98,7 +98,7 @@ function drawEllipsoid(pen, view, at, half, colour, strong) {
   pen.ellipse(c[0], c[1], a, b, tilt, 0, 7);
   pen.fillStyle = pen.strokeStyle = colour;
   pen.globalAlpha = strong ? 0.22 : 0.06;
-  pen.fill();
+  if (!hollow) pen.fill();
   pen.globalAlpha = strong ? 1 : 0.4;
   pen.lineWidth = 1;
   pen.stroke();

@@ -48,7 +48,8 @@ function pictureAt(q) {
       // how far the ellipsoid reaches along the picture's axes
       for (const axis of [view.right, view.up]) {
         const far = Math.sqrt([0, 1, 2].reduce((t, k) => t + (m.body.half[k] * dot(axis, principalAxis(m, k))) ** 2, 0));
-        for (const side of [-1, 1]) points.push(sum(m.at, times(side * far, axis)));
+        // one that is larger than the arm may be cut off: the arm is to be seen
+        for (const side of [-1, 1]) points.push(sum(m.at, times(side * Math.min(far, 0.4 * reach), axis)));
       }
     }
   }
@@ -119,7 +120,7 @@ canvas.addEventListener("keydown", (e) => {
 
 // -- the panel ---------------------------------------------------------------------------
 
-const bodies = new Map(first.masses.map((m) => [m.joint, m.body]));
+const bodies = new Map(first.masses.map((m) => [m.joint, Object.assign(m.body, { large: tooLarge(m.body) })]));
 const tables = {
   table: () => parameterTable(arm, units),
   masses: () => linkTable(arm, bodies, units),

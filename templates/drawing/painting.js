@@ -29,7 +29,9 @@ const reach = (() => {
   const points = extent(arm, first), middle = times(1 / points.length, points.reduce(sum));
   return Math.max(...points.map((p) => norm(difference(p, middle)))) || 0.1;
 })();
-const thick = 0.026 * reach, frameLength = 0.17 * reach, gridStep = roundStep(reach / 2.5);
+// Many joints are drawn finer, so that they do not hide each other.
+const crowd = Math.min(1, (9 / arm.joints.length) ** 0.45);
+const thick = 0.026 * reach * crowd, frameLength = 0.17 * reach * crowd, gridStep = roundStep(reach / 2.5);
 for (const joint of arm.joints) {
   const wide = joint.type === "prismatic" ? reach : Math.PI;
   joint.ends = joint.range || [-wide, wide];
@@ -144,7 +146,7 @@ function draw(c) {
   if (show.inertias) {
     for (const m of s.masses) {
       const half = [0, 1, 2].map((k) => times(m.body.half[k], principalAxis(m, k)));
-      if (m.body.real) drawEllipsoid(pen, view, m.at, half, c.mass, hovered === `mass ${m.joint}`);
+      if (m.body.real) drawEllipsoid(pen, view, m.at, half, c.mass, hovered === `mass ${m.joint}`, tooLarge(m.body));
     }
   }
   if (show.axes) {
@@ -196,6 +198,9 @@ function paintTravel(c, part) {
   for (const p of [a, b]) stroke(pen, [[p[0] - nx, p[1] - ny], [p[0] + nx, p[1] + ny]], c.chain, 2.4);
 }
 
+// An inertia of a body that would be larger than the arm: a slip in its units, mostly.
+const tooLarge = (body) => body.real && Math.max(...body.half) > reach;
+
 const principalAxis = (m, k) => turn(m.pose, m.body.axes.map((row) => row[k]));
 
 const middleOf = (part) => {
@@ -209,7 +214,7 @@ function paintFrames(c, s, labels) {
     if (arm.base) drawFrame(pen, view, labels, IDENTITY, frameLength, true, c);
     s.frames.forEach((f, i) => {
       const apart = norm(difference(origin(f.link), origin(base))) > 0.2 * frameLength;
-      drawFrame(pen, view, labels, f.link, frameLength * shrink[i], apart && shrink[i] === 1, c);
+      drawFrame(pen, view, labels, f.link, frameLength * shrink[i], apart && shrink[i] === 1 && crowd > 0.8, c);
     });
   }
   if (show.tools) {
@@ -225,8 +230,8 @@ function paintFrames(c, s, labels) {
 
 function paintNames(c, s, labels) {
   if (!show.names) return;
-  const small = view.width < 560;
-  const name = (pose, text, colour, important) => labels.add(view.project(origin(pose)), text, colour, { important, bold: true, size: small ? 12 : 13 });
+  const small = view.width < 560, size = (small ? 12 : 13) - (crowd < 0.8 ? 1.5 : 0);
+  const name = (pose, text, colour, important) => labels.add(view.project(origin(pose)), text, colour, { important, bold: crowd > 0.8, size });
   name(base, "base", c.quiet, 2);
   if (arm.base) name(IDENTITY, "world", c.quiet, 1);
   s.frames.forEach((f, i) => name(f.link, arm.joints[i].name, c.ink, 3));

@@ -60,7 +60,7 @@ function coordinatePanel(host, state, changed) {
       else changed();
     });
     const row = element("div", { class: "row", "data-joint": joint.index },
-      element("div", { class: "line" }, element("b", {}, joint.name), ends, number, unit), slider, motor);
+      element("div", { class: "line" }, element("b", {}, joint.name), ends, element("span", { class: "value" }, number, unit)), slider, motor);
     host.append(row);
     rows.push({ joint, n, slider, number, unit, ends, motor });
   });
@@ -121,17 +121,25 @@ function parameterTable(arm, units) {
   return table;
 }
 
+// Of the even ellipsoid, the longest last; one that is larger than the arm is marked.
+function halfAxes(body, factor) {
+  if (!body || !body.real) return element("td", {}, "–");
+  const text = [...body.half].sort((a, b) => a - b).map((v) => digits(v * factor, 3)).join(", ");
+  return element("td", {}, text, body.large ? element("span", { class: "wrong" }, " larger than the arm") : "");
+}
+
 function linkTable(arm, bodies, units) {
   const table = element("table", {});
-  table.append(element("tr", {}, ...["link", "mass [kg]", `centre [${units.length}]`, "principal moments [kg m²]"].map((t) => element("th", {}, t))));
+  table.append(element("tr", {}, ...["link", "mass [kg]", `centre [${units.length}]`, "principal moments [kg m²]", `half axes [${units.length}]`].map((t) => element("th", {}, t))));
   for (const joint of arm.joints) {
     const cells = [element("td", {}, joint.name)];
     if (joint.link) {
       const body = bodies.get(joint.index), factor = units.millimetres ? 1000 : 1;
       const moments = body ? [...body.moments].sort((a, b) => a - b).map((m) => digits(m, 4)).join(", ") : "–";
       cells.push(element("td", {}, digits(joint.link.mass)), element("td", {}, joint.link.com.map((v) => digits(v * factor, 4)).join(", ")),
-        element("td", {}, moments, body && !body.real ? element("span", { class: "wrong" }, " no body has these") : ""));
-    } else cells.push(element("td", { colspan: 3, class: "quiet" }, "not given"));
+        element("td", {}, moments, body && !body.real ? element("span", { class: "wrong" }, " no body has these") : ""),
+        halfAxes(body, factor));
+    } else cells.push(element("td", { colspan: 4, class: "quiet" }, "not given"));
     table.append(element("tr", {}, ...cells));
   }
   return table;
