@@ -108,7 +108,8 @@ const said = (key) => {
   const pixels = pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer;
   found.colours = new Set(new Uint32Array(pixels)).size;
   for (const box of document.querySelectorAll("#shown input")) box.click();
-  for (const button of document.querySelectorAll("button")) { button.click(); paint(); }
+  svgPicture();
+  for (const button of document.querySelectorAll("button:not([data-view=save])")) { button.click(); paint(); }
   found.wide = document.documentElement.scrollWidth <= innerWidth;
   found.rows = document.querySelectorAll("#table tr, #masses tr, #pose tr").length;
   found.log = log;

@@ -34,6 +34,8 @@ def in_browser(html: str, folder: Path, width: int = 1280) -> str:
             "--no-sandbox",
             "--disable-gpu",
             "--no-first-run",
+            "--disable-quic",
+            "--disable-background-networking",
             f"--user-data-dir={profile}",
         ]
         size = [f"--window-size={width},900", "--virtual-time-budget=2000", "--dump-dom"]
