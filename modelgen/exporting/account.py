@@ -127,7 +127,7 @@ class Account:
     def _kept(self, effect: AppliedEffect, properties: Mapping[str, float]) -> Properties:
         """Those that the format has at the place of the effect."""
         place = effect.parts[0].place
-        known = set(self.to.laws) | {"rest"}
+        known = set(self.to.laws) | ({"rest"} if "stiffness" in self.to.laws else set())
         if place == "pair":
             known = known - {"force", "lag"} if self.to.pairs else set()
         elif place == "input":

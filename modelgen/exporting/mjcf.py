@@ -204,9 +204,7 @@ def remarks(machine: Machine) -> list[str]:
             "error is, it creeps"
         )
     if any({"quadratic", "cubic"} & set(p) for p in machine.properties()):
-        found.append(
-            "damping has several coefficients, which MuJoCo 4.0 reads and older releases do not"
-        )
+        found.append("damping has several coefficients, which MuJoCo 4.0 reads and older releases do not")
     if fast:
         found.append(f"limits of speed are left out: MuJoCo has none ({', '.join(fast)})")
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from exporting_support import Array, Motion, close, only_exact
 
 import modelgen as mg
+from modelgen.description.objects import EffectUse
 
 SHIPPED = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
 SOME = ["ariane4_free", "gravity_arm", "ur10e", "scara", "screw_axis", "two_fingers"]
@@ -68,6 +70,14 @@ def test_what_urdf_cannot_say_is_listed() -> None:
     assert all(row.error is not None and row.error > 0 for row in model.rows)
     assert any("linkages of j1, j2, j3" in note for note in model.notes)
     assert any("upright" in note for note in mg.export(SHIPPED["gravity_arm"], to="urdf").notes)
+
+
+def test_a_spring_is_left_out_with_its_size() -> None:
+    arm = SHIPPED["gravity_link1"].without_effects()
+    use = EffectUse("spring", {"stiffness": 8.0, "rest": 0.0})
+    sprung = replace(arm, joints=(replace(arm.joints[0], effects=(use,)),))
+    (row,) = mg.export(sprung, to="urdf").rows
+    assert (row.status, row.error) == ("left out", pytest.approx(8.0 * np.pi, rel=0.02))
 
 
 def test_tools_and_held_joints_are_fixed() -> None:
