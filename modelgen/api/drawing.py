@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 from pathlib import Path
 from typing import Any
 
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
-from modelgen.drawing import page, start
+from modelgen.drawing import framed, page, start
 from modelgen.files import check_writable, write_together
 from modelgen.simulation.values import by_joint
 
@@ -88,8 +87,7 @@ class Drawing(Shown):
         return f"{self.arm.name} at {at}"
 
     def _repr_html_(self) -> str:
-        frame = f'srcdoc="{escape(self.html)}" style="width: 100%; height: {_HEIGHT}px; border: 0"'
-        return f'<iframe title="drawing of {escape(self.arm.name)}" {frame}></iframe>'
+        return str(framed(self.html, f"drawing of {self.arm.name}", _HEIGHT))
 
 
 def draw(arm: Arm, out: Path | str | None = None, q: str | float | Sequence[float] | None = None) -> Drawing:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from modelgen.description.objects import Arm
 from modelgen.drawing.scene import moving_scene, scene
@@ -31,12 +31,22 @@ SCRIPTS = (
 )
 
 
-def page(arm: Arm, q: Sequence[float] | None = None) -> str:
+def page(arm: Arm, q: Sequence[float] | None = None, marks: Mapping[str, str] | None = None) -> str:
     """HTML of the arm, drawn at the coordinates `q` (n,) [rad, m]; by default as `scene.start` says.
 
-    Raises InputError where `q` is not within the joints' limits.
+    marks: what is said of some joints, by their names; these are drawn in another colour. Raises InputError
+    where `q` is not within the joints' limits.
     """
-    return _rendered(arm, scene(arm, q))
+    data = scene(arm, q)
+    for joint in data["joints"]:
+        joint["mark"] = (marks or {}).get(joint["name"], "")
+    return _rendered(arm, data)
+
+
+def framed(html: str, title: str, height: int) -> Markup:
+    """A page as a part of another one. height: [pixels]."""
+    style = f"width: 100%; height: {height}px; border: 0"
+    return Markup(f'<iframe title="{escape(title)}" srcdoc="{escape(html)}" style="{style}"></iframe>')
 
 
 def moving_page(arm: Arm, t: Array, q: Array) -> str:

@@ -99,6 +99,7 @@ def _joint(arm: Arm, joint: Joint, coordinate: int, link: Inertial | None) -> di
     ends = joint_range(arm, joint) if joint.moving else None
     return {
         "name": joint.name,
+        "mark": "",
         "type": joint.type,
         "antecedent": -1 if joint.antecedent is None else joint.antecedent,
         "coordinate": coordinate,

@@ -26,6 +26,7 @@ from modelgen.report.diagnosis_sentences import (
 )
 from modelgen.report.experiment import described, picture
 from modelgen.report.figures import Sketch
+from modelgen.report.named_joints import named_joints
 from modelgen.resources import templates_folder
 
 EFFORT, LEFT_OVER, REPLAY, NEXT = "effort", "left over", "replay", "next experiment"
@@ -66,6 +67,7 @@ def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
         arm=d.arm.name,
         verdict=d.verdict,
         sentence=_sentence(d),
+        arm_drawing=named_joints(d),
         reason=d.reason,
         causes=[_cause(d, k) for k in range(len(d.causes))],
         harms=harms(d),

@@ -46,6 +46,7 @@ function jointText(joint, i, values) {
   if (joint.type === "fixed") return [`${joint.name}: fixed`];
   if (joint.coordinate < 0) return [`${joint.name}: ${joint.type}, held at ${units.show(joint, joint.locked)}`];
   const n = joint.coordinate, lines = [`${joint.name}: ${joint.type}, q${n + 1} = ${units.show(joint, state.q[n])}`];
+  if (joint.mark) lines.push(joint.mark);
   lines.push(joint.range ? `range ${units.show(joint, joint.range[0])} to ${units.show(joint, joint.range[1])}` : "no limits given");
   const slides = joint.type === "prismatic", { velocity, acceleration, effort } = joint.limits;
   const most = [velocity && `${units.show(joint, velocity)}/s`, acceleration && `${units.show(joint, acceleration)}/s²`, effort && `${digits(effort)} ${slides ? "N" : "N m"}`].filter(Boolean);

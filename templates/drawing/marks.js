@@ -5,13 +5,13 @@ const COLOURS = {
   light: {
     paper: "#fbfcfc", ink: "#1d2833", quiet: "#5d6873", grid: "#e2e6ea", chain: "#9a5b33", mass: "#6b2fb3",
     gravity: "#3c4752", x: "#d12f2f", y: "#1d8a34", z: "#2463d1", tool: "#a3148c", dimension: "#0f766e",
-    links: [[110, 129, 150], [158, 170, 182]], base: [128, 130, 134], revolute: [228, 128, 48],
+    links: [[110, 129, 150], [158, 170, 182]], base: [128, 130, 134], revolute: [228, 128, 48], marked: [200, 30, 60],
     prismatic: [30, 148, 140], fixed: [140, 143, 147], lever: [150, 118, 44], body: [72, 120, 84], rod: [186, 194, 190],
   },
   dark: {
     paper: "#14191e", ink: "#e6ebef", quiet: "#9aa6b1", grid: "#29323a", chain: "#d39a70", mass: "#c39bf5",
     gravity: "#c3ccd4", x: "#ff6b6b", y: "#5fce74", z: "#74a7ff", tool: "#f08ad8", dimension: "#5ad0c4",
-    links: [[104, 124, 146], [142, 156, 170]], base: [112, 116, 122], revolute: [222, 128, 56],
+    links: [[104, 124, 146], [142, 156, 170]], base: [112, 116, 122], revolute: [222, 128, 56], marked: [255, 92, 116],
     prismatic: [36, 150, 142], fixed: [122, 126, 132], lever: [176, 142, 64], body: [84, 138, 98], rod: [176, 186, 181],
   },
 };

@@ -52,6 +52,8 @@ function redraw() {
 
 const carrierColour = (c, i) => (i < 0 ? c.base : c.links[i % 2]);
 
+const jointColour = (c, joint) => (joint.mark ? c.marked : joint.coordinate < 0 ? c.fixed : joint.type === "prismatic" ? c.prismatic : c.revolute);
+
 function paintSolids(c, s) {
   const solids = new Solids(view, 1.1 * thick);
   if (show.links) {
@@ -65,10 +67,10 @@ function paintSolids(c, s) {
       const f = s.frames[i], z = axis(f.link, 2), k = shrink[i];
       if (joint.type === "prismatic") {
         const half = [times(1.7 * thick, axis(f.foot, 0)), times(1.7 * thick, axis(f.foot, 1)), times(2.4 * thick, z)];
-        solids.box(origin(f.foot), half, joint.coordinate < 0 ? c.fixed : c.prismatic);
+        solids.box(origin(f.foot), half, jointColour(c, joint));
         solids.drum(origin(f.link), z, 0.5 * thick, 1.5 * thick, carrierColour(c, i));
       } else if (joint.type === "revolute") {
-        solids.drum(origin(f.link), z, 2.1 * thick * (1 + 0.9 * (1 - k)), 1.75 * thick * k, joint.coordinate < 0 ? c.fixed : c.revolute);
+        solids.drum(origin(f.link), z, 2.1 * thick * (1 + 0.9 * (1 - k)), 1.75 * thick * k, jointColour(c, joint));
       }
     });
   }
@@ -234,7 +236,10 @@ function paintNames(c, s, labels) {
   const name = (pose, text, colour, important) => labels.add(view.project(origin(pose)), text, colour, { important, bold: crowd > 0.8, size });
   name(base, "base", c.quiet, 2);
   if (arm.base) name(IDENTITY, "world", c.quiet, 1);
-  s.frames.forEach((f, i) => name(f.link, arm.joints[i].name, c.ink, 3));
+  s.frames.forEach((f, i) => {
+    const { mark, name: text } = arm.joints[i];
+    name(f.link, mark ? `${text}: ${mark}` : text, mark ? grey(c.marked) : c.ink, mark ? 6 : 3);
+  });
   if (show.tools) s.tools.forEach((pose, k) => name(pose, arm.tools[k].name, c.tool, 2));
 }
 

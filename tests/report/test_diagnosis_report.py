@@ -1,11 +1,13 @@
 """The report in a browser."""
 
+import json
 import multiprocessing
 import os
 import re
 import shutil
 import subprocess
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +37,14 @@ def test_the_report_stands_alone_and_is_the_same_again(found: Diagnosis) -> None
         assert outside not in page
     assert page.count("<svg") >= 5
     assert all(word in page for word in WORDS)
+
+
+def test_the_arm_is_drawn_with_the_joint_that_is_named(found: Diagnosis) -> None:
+    (frame,) = re.findall(r'<iframe title="the arm [^"]*" srcdoc="(.*?)"', report(found), re.DOTALL)
+    (data,) = re.findall(r'id="data">(.*?)</script>', unescape(frame), re.DOTALL)
+    marks = {joint["name"]: joint["mark"] for joint in json.loads(data)["joints"]}
+    second = found.arm.joints[found.arm.coordinates[1]].name
+    assert {name: text for name, text in marks.items() if text} == {second: "stribeck_friction"}
 
 
 def test_one_value_in_the_answer_the_description_and_the_table(found: Diagnosis) -> None:
