@@ -109,6 +109,29 @@ const said = (key) => {
   found.colours = new Set(new Uint32Array(pixels)).size;
   for (const box of document.querySelectorAll("#shown input")) box.click();
   svgPicture();
+  canvas.setPointerCapture = () => {};  // of pointers that there are
+  const point = (type, id, x, y, more = {}) => {
+    const at = canvas.getBoundingClientRect();
+    const given = { pointerId: id, clientX: at.left + x, clientY: at.top + y, pointerType: "touch", ...more };
+    canvas.dispatchEvent(new PointerEvent(type, given));
+  };
+  const seen_ = () => [view.azimuth, view.elevation, view.scale, ...view.centre];
+  look("front");
+  found.front = seen_();
+  point("pointerdown", 1, 100, 100);
+  point("pointermove", 1, 170, 100);
+  found.turned = seen_();
+  point("pointerdown", 2, 270, 100);
+  point("pointermove", 2, 370, 100);
+  found.pinched = seen_();
+  point("pointerup", 1, 170, 100);
+  point("pointerup", 2, 370, 100);
+  canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 200, cancelable: true }));
+  found.wheeled = seen_();
+  paint();
+  const [px, py] = view.project(origin(current.frames[1].link));
+  point("pointermove", 3, px, py, { pointerType: "mouse" });
+  found.tip = tip.hidden ? "" : tip.textContent;
   for (const button of document.querySelectorAll("button:not([data-view=save])")) { button.click(); paint(); }
   found.wide = document.documentElement.scrollWidth <= innerWidth;
   found.rows = document.querySelectorAll("#table tr, #masses tr, #pose tr").length;
@@ -134,6 +157,13 @@ def test_a_browser_moves_the_arm(width: int, ariane: mg.Arm, tmp_path: Path) -> 
     assert found["motor"] == f"motor {motor:.6g} units (0 to 20850) · actuator {length:.5g} m"
     assert found["lever"].startswith(f"j1: actuator {length:.5g} m | motor {motor:.6g} units")
     assert "j2: revolute, q2 = 50.5" in found["joint"]
+    assert found["turned"][0] == pytest.approx(
+        found["front"][0] - 70 / 140
+    )  # half a radian by a thumb's width
+    assert found["turned"][1:3] == pytest.approx(found["front"][1:3])
+    assert found["pinched"][2] == pytest.approx(2 * found["turned"][2])  # fingers twice as far apart
+    assert found["wheeled"][2] == pytest.approx(found["pinched"][2] * math.exp(-0.3))
+    assert "j2: revolute" in found["tip"]
     assert found["colours"] > 500  # shaded bodies, not an empty picture
     assert found["rows"] == 5 + 5 + 4
     assert found["wide"]  # nothing runs out of the page
