@@ -21,6 +21,7 @@ _OTHERS = {  # other words for columns
 _SIGNS = str.maketrans({"α": "alpha", "θ": "theta", "ϑ": "theta", "π": "pi", "°": " deg", "−": "-", "–": "-"})
 _UNIT = re.compile(r"(.*?)\s*[\[(/]\s*([A-Za-z]+)(?:/s)?\s*[\])]?")
 _VARIABLE = re.compile(r"(?<![A-Za-z0-9_.])(?:(?:q|theta|th|d)_?\{?[0-9]*\}?\*?|\*)(?![A-Za-z0-9_.(])")
+_DECIMAL = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _QUOTES = "\"'` "
 
 
@@ -56,6 +57,8 @@ def rows_of(file: str, text: str) -> list[list[Cell]]:
         for part in line.split(mark):
             lead = len(part) - len(part.lstrip(_QUOTES))
             word = part.strip(_QUOTES).translate(_SIGNS).strip()
+            if mark != ",":  # as spreadsheets save where decimals have a comma
+                word = _DECIMAL.sub(".", word)
             cells.append(Cell(word, Location(file, number, column + lead)))
             column += len(part) + 1
         if rows and len(cells) != len(rows[0]):

@@ -158,15 +158,17 @@ class _Row:
         unit = self.columns[name].unit
         try:
             value = evaluate(cell.text, kind).value
-            if unit and _plain(cell.text):
+            if unit and unit != "rad" and _plain(cell.text):
                 return evaluate(f"({cell.text}) {unit}", kind).value
         except ExpressionError as error:
             raise InputError(f"{name}: found '{cell.text[:40]}': {error}", cell.where) from None
         number = _number(cell.text)
         if number is None:
             return value
-        if kind in MOST and abs(value) > (
-            2 * MOST[kind] if name in ("lower", "upper", "velocity") else MOST[kind]
+        if (
+            not unit
+            and kind in MOST
+            and abs(value) > (2 * MOST[kind] if name in ("lower", "upper", "velocity") else MOST[kind])
         ):
             units = '"deg" or "rad"' if kind == "angle" else '"mm" or "m"'
             shown = "alpha [deg]" if kind == "angle" else "a [mm]"

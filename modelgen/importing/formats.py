@@ -38,6 +38,6 @@ def _text(path: Path) -> str:
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such file") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: this is no text in UTF-8") from None
+        raise InputError(f"{path}: this is no text in UTF-8, save it as such (CSV UTF-8)") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None

@@ -81,7 +81,7 @@ def test_marks_units_and_separators(tmp_path: Path) -> None:
         '"base turn";θ1;412;0;-90;;\n'
         "shoulder;q_2 - pi/2;154 mm;0;90°;-100 deg;100 deg\n"
         "slide;−90 deg;d3* + 50;0;0;100 mm;0.9\n"
-        "flange;0.5;0.1 m;25 mm;180;;\n"
+        "flange;0,5;0.1 m;25,0 mm;180;;\n"
     )
     arm = mg.import_robot(table(tmp_path, text), exact=True).arm
     assert [(joint.name, joint.type) for joint in arm.joints] == [
@@ -145,3 +145,12 @@ def test_bad_input_is_one_line_with_its_place(
     assert re.match(rf"table\.csv.*{message}|table\.csv{message}", done.stderr), done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not Path("arms.yaml").exists()
+
+
+def test_a_rounded_right_angle_is_one(tmp_path: Path) -> None:
+    for heading in ("alpha", "alpha [rad]"):
+        text = f"a,{heading},d,theta\n0.1,1.5708,0,q1\n0,0,0,q2\n"
+        arm = mg.import_robot(table(tmp_path, text)).arm
+        assert arm.joints[1].alpha == np.pi / 2
+        (row,) = [r for r in mg.import_robot(table(tmp_path, text)).remarks if "multiples of 15 deg" in r]
+        assert "1.5708" in row
