@@ -114,7 +114,7 @@ def export(
     out: Path | str | None = None,
     parameters: Path | str | Mapping[str, Any] | None = None,
 ) -> ExportedModel:
-    """Make the model of a simulator of an arm: MuJoCo's MJCF, URDF, or an FMU for co-simulation.
+    """Make the model of a simulator of an arm: MuJoCo's MJCF, URDF, or an FMU.
 
     Parameters
     ----------

@@ -54,7 +54,9 @@ def _body(machine: Machine, index: int, before: Array, length: float) -> list[st
         inside += _anchor(machine.links[i], np.eye(4)) + _shown(machine.links[i], length)
     for i in machine.carried(index):
         inside += _body(machine, i, np.eye(4), length)
-    return element("body", inside, name=link.name, **_pose(place))
+    # the ground has this name
+    name = f"{link.name}_" if link.name == "world" else link.name
+    return element("body", inside, name=name, **_pose(place))
 
 
 def _pose(frame: Array) -> dict[str, str | None]:

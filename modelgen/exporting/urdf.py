@@ -28,14 +28,16 @@ def write_urdf(machine: Machine, table: Sequence[str]) -> str:
         link = machine.links[i]
         inside += element("link", _inertial(link.body), name=_name(link))
         inside += _joint(machine, link, root if link.before is None else np.eye(4))
+    taken = {ROOT, *map(_name, machine.links)}
     for tool in machine.tools:
-        inside += element("link", name=tool.name)
+        name = f"{tool.name}_" if tool.name in taken else tool.name
         ends = [
             *_origin(tool.frame),
             *element("parent", link=_name(machine.links[tool.link])),
-            *element("child", link=tool.name),
+            *element("child", link=name),
         ]
-        inside += element("joint", ends, name=f"{tool.name}_joint", type="fixed")
+        inside += element("link", name=name)
+        inside += element("joint", ends, name=f"{name}_joint", type="fixed")
     for link in machine.moving:
         inside += _transmission(link)
     return "\n".join(['<?xml version="1.0"?>', *element("robot", inside, name=machine.name)]) + "\n"

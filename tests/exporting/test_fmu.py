@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exporting_support import Array
-from fmpy import extract, read_model_description
+from fmpy import extract, read_model_description, simulate_fmu
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
@@ -110,6 +110,28 @@ def test_the_motion_is_that_of_simulate(name: str, sizes: tuple[float, ...], tmp
         assert made[f"{joint}.motor"] == pytest.approx(drive.motor(q)[0], rel=1e-12)
         assert made[f"{joint}.motor_rate"] == pytest.approx(drive.k1(q)[0] * dq, rel=1e-9)
     made.slave.freeInstance()
+
+
+def test_model_exchange_finds_where_an_arm_comes_to_rest(tmp_path: Path) -> None:
+    arm, path = ARMS["gravity_link1"], tmp_path / "arm.fmu"
+    mg.export(arm, to="fmu", out=path)
+    found = simulate_fmu(
+        str(path),
+        fmi_type="ModelExchange",
+        solver="CVode",
+        relative_tolerance=1e-11,
+        stop_time=16.0,
+        output_interval=0.05,
+        start_values={"j1.q_start": 0.4},
+        output=["j1.q", "j1.dq"],
+    )
+    duration = float(found["time"][-1])
+    expected = simulate(plant(arm), 0.4, 0.0, duration, 20.0, method="DOP853", rtol=1e-12, atol=1e-13)
+    at = np.searchsorted(found["time"], expected.t + 1e-9, side="right") - 1
+    assert np.abs(found["j1.q"][at] - expected.q[:, 0]).max() <= 1e-8
+    # it has swung several times, and rests where dry friction holds it
+    assert np.count_nonzero(np.diff(np.sign(expected.dq[:, 0]))) > 4
+    assert found["j1.dq"][-1] == 0.0
 
 
 def test_parameters_are_tuned_while_it_moves(unit: Unit) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -123,3 +124,10 @@ def test_frames_and_tools_stand_where_the_arm_has_them(many: mg.Arm) -> None:
         close(np.append(body.xpos, body.xmat), np.append(pose[:3, 3], pose[:3, :3]))
     site = data.site("tip")
     close(np.append(site.xpos, site.xmat), np.append(poses[-1][:3, 3], poses[-1][:3, :3]))
+
+
+def test_a_joint_may_be_called_as_the_ground_is() -> None:
+    arm = SHIPPED["gravity_link1"].without_effects()
+    named = replace(arm, joints=(replace(arm.joints[0], name="world"),))
+    model = mujoco.MjModel.from_xml_string(mg.export(named, to="mjcf").text)
+    assert model.joint("world").id == 0

@@ -1,5 +1,6 @@
 /*
- * FMI 2.0 for co-simulation around the fixed steps of an arm (Functional Mock-up Interface 2.0.4).
+ * FMI 2.0 around the fixed steps of an arm (Functional Mock-up Interface 2.0.4): for co-simulation the steps
+ * themselves, for model exchange their rates, with an indicator for every contact that slides or sticks.
  *
  * The text before this one defines N coordinates, P parameters, Y and Z states, C contacts, begin() and run(),
  *   motors(q, dq, out)   out: N motor coordinates, then their N rates
@@ -46,7 +47,8 @@ enum {
     V_MOTOR = V_DQ + N,
     V_MOTOR_RATE = V_MOTOR + N,
     V_STATE = V_MOTOR_RATE + N,
-    V_Q_START = V_STATE + Z,
+    V_RATE = V_STATE + Z,
+    V_Q_START = V_RATE + Y,
     V_DQ_START = V_Q_START + N,
     V_STEP = V_DQ_START + N,
     V_PARAMETER = V_STEP + 1,
@@ -59,6 +61,15 @@ typedef struct {
     int mode[AT_LEAST_1(C)];
     int initialised, moving;
 } State;
+
+typedef struct {
+    fmi2Boolean newDiscreteStatesNeeded;
+    fmi2Boolean terminateSimulation;
+    fmi2Boolean nominalsOfContinuousStatesChanged;
+    fmi2Boolean valuesOfContinuousStatesChanged;
+    fmi2Boolean nextEventTimeDefined;
+    fmi2Real nextEventTime;
+} fmi2EventInfo;
 
 typedef struct {
     State state;
@@ -96,8 +107,11 @@ static double *value(State *s, fmi2ValueReference r)
     if (k < V_STATE) {
         return NULL;
     }
-    if (k < V_Q_START) {
+    if (k < V_RATE) {
         return &s->y[2 * N + k - V_STATE];
+    }
+    if (k < V_Q_START) {
+        return NULL;
     }
     if (k < V_DQ_START) {
         return &s->q_start[k - V_Q_START];
@@ -109,6 +123,20 @@ static double *value(State *s, fmi2ValueReference r)
         return &s->step;
     }
     return k < V_COUNT ? &s->p[k - V_PARAMETER] : NULL;
+}
+
+/* Modes of the contacts, once the beginning is known. */
+static int start(State *s)
+{
+    const int status = s->moving ? DONE : begin(s->t, s->y, s->u, s->p, s->mode);
+    s->moving = s->moving || status == DONE;
+    return status;
+}
+
+static int rates(State *s, Rate *now)
+{
+    const int status = start(s);
+    return status != DONE ? status : evaluate(s->t, s->y, s->u, s->p, s->mode, now);
 }
 
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -132,8 +160,9 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         x->call = *functions;
     }
     strncpy(x->name, name == NULL ? "" : name, sizeof x->name - 1);
-    if (type != fmi2CoSimulation || guid == NULL || strcmp(guid, GUID) != 0) {
-        complain(x, type != fmi2CoSimulation ? "this unit is for co-simulation alone" : "the GUID is that of another unit");
+    (void)type;
+    if (guid == NULL || strcmp(guid, GUID) != 0) {
+        complain(x, "the GUID is that of another unit");
         free(x);
         return NULL;
     }
@@ -195,6 +224,12 @@ EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], siz
                 return complain(x, "there is no motor coordinate at this place");
             }
             out[i] = both[(long)r[i] - V_MOTOR];
+        } else if ((long)r[i] >= V_RATE && (long)r[i] < V_Q_START) {
+            Rate now;
+            if (rates(&x->state, &now) != DONE) {
+                return complain(x, "the accelerations are not finite");
+            }
+            out[i] = now.dy[(long)r[i] - V_RATE];
         } else {
             return complain(x, "there is no such variable");
         }
@@ -235,11 +270,9 @@ EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real h, fmi2Boo
     if (!(h > 0.0)) {
         return complain(x, "the step is not above zero");
     }
-    if (!s->moving) {
-        if (begin(from, s->y, s->u, s->p, s->mode) != DONE) {
-            return complain(x, "the accelerations at the beginning are not finite");
-        }
-        s->moving = 1;
+    s->t = from;
+    if (start(s) != DONE) {
+        return complain(x, "the accelerations at the beginning are not finite");
     }
     const double count = ceil(h / s->step - 1e-9);
     const long steps = count < 1.0 ? 1 : (long)count;
@@ -251,6 +284,120 @@ EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real h, fmi2Boo
     }
     s->t = from + h;
     return fmi2OK;
+}
+
+/* -- model exchange ------------------------------------------------------------------------- */
+
+#define SLACK 1e-9 /* of an indicator: what begins to slide has no speed yet */
+
+EXPORT fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t)
+{
+    ((Instance *)c)->state.t = t;
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real y[], size_t count)
+{
+    (void)count;
+    memcpy(((Instance *)c)->state.y, y, Y * sizeof(double));
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real y[], size_t count)
+{
+    (void)count;
+    memcpy(y, ((Instance *)c)->state.y, Y * sizeof(double));
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real y[], size_t count)
+{
+    (void)c;
+    for (size_t i = 0; i < count; ++i) {
+        y[i] = 1.0;
+    }
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dy[], size_t count)
+{
+    Instance *x = c;
+    Rate now;
+    (void)count;
+    if (rates(&x->state, &now) != DONE) {
+        return complain(x, "the accelerations are not finite");
+    }
+    memcpy(dy, now.dy, Y * sizeof(double));
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real out[], size_t count)
+{
+    Instance *x = c;
+    State *s = &x->state;
+    Rate now;
+    if (rates(s, &now) != DONE) {
+        return complain(x, "the accelerations are not finite");
+    }
+    for (size_t i = 0; i < count && i < C; ++i) {
+        out[i] = margin((int)i, s->mode, s->y, &now) + SLACK;
+    }
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2EnterEventMode(fmi2Component c)
+{
+    (void)c;
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
+{
+    (void)c;
+    return fmi2OK;
+}
+
+/* Contacts that came to rest stick, those that are pulled beyond their limit slide. */
+EXPORT fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
+{
+    Instance *x = c;
+    State *s = &x->state;
+    Rate now;
+    int open[AT_LEAST_1(C)], changed = 0;
+    memset(info, 0, sizeof *info);
+    if (rates(s, &now) != DONE) {
+        return complain(x, "the accelerations are not finite");
+    }
+    for (int k = 0; k < C; ++k) {
+        const int over = margin(k, s->mode, s->y, &now) <= 0.0;
+        open[k] = s->mode[k] == 0;
+        if (over && s->mode[k] != 0 && speed(k, s->y + N) * s->mode[k] < 0.0) {
+            stop(k, s->y);
+            s->mode[k] = 0;
+            open[k] = 1;
+            changed = 1;
+        } else if (over && s->mode[k] == 0) {
+            changed = 1;
+        }
+    }
+    if (changed && (slip(s->t, s->y, s->y + N, s->u, s->p, s->y + 2 * N, now.out) != 0
+            || settle(now.out, open, s->mode) != DONE)) {
+        return complain(x, "dry friction changes its direction without end");
+    }
+    info->valuesOfContinuousStatesChanged = changed;
+    return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2CompletedIntegratorStep(
+    fmi2Component c, fmi2Boolean final, fmi2Boolean *event, fmi2Boolean *end)
+{
+    const State *s = &((Instance *)c)->state;
+    (void)final;
+    *event = *end = 0;
+    for (int n = 0; n < N; ++n) {
+        *end |= !(s->y[n] >= LOW[n] && s->y[n] <= HIGH[n]);
+    }
+    return *end ? complain(c, "a joint left the stroke of its drive") : fmi2OK;
 }
 
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) { return complain(c, "no step is pending"); }

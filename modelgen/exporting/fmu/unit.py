@@ -132,7 +132,7 @@ def _sources(plant: Plant, q: Array, step: float) -> dict[str, str]:
     name = plant.arm.name
     low, high = (np.where(np.isfinite(x), x, np.sign(x) * 1e300) for x in plant.strokes)
     lines = [
-        f"/* {name} as a unit after FMI 2.0 for co-simulation. This file includes all others. */",
+        f"/* {name} as a unit after FMI 2.0. This file includes all others. */",
         f"#define begin {name}_begin",
         f"#define run {name}_run",
         f'#include "{fixed.MAIN}"',
@@ -171,14 +171,18 @@ def _guid(files: Mapping[str, str], listed: Sequence[Variable]) -> str:
 
 def _description(arm: Arm, plant: Plant, guid: str, listed: Sequence[Variable], table: Sequence[str]) -> str:
     name = plant.arm.name
-    simulation = element(
-        "CoSimulation",
-        element("SourceFiles", element("File", name=MAIN)),
-        modelIdentifier=name,
-        canHandleVariableCommunicationStepSize="true",
-        canGetAndSetFMUstate="true",
-        canSerializeFMUstate="true",
-    )
+    sources = element("SourceFiles", element("File", name=MAIN))
+    kept = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
+    simulation = [
+        *element("ModelExchange", sources, modelIdentifier=name, **kept),
+        *element(
+            "CoSimulation",
+            sources,
+            modelIdentifier=name,
+            canHandleVariableCommunicationStepSize="true",
+            **kept,
+        ),
+    ]
     units = [
         line for unit in sorted({v.unit for v in listed if v.unit}) for line in element("Unit", name=unit)
     ]
@@ -189,7 +193,17 @@ def _description(arm: Arm, plant: Plant, guid: str, listed: Sequence[Variable], 
         if variable.causality == "output"
         for line in element("Unknown", index=str(k))
     ]
-    structure = [*element("Outputs", outputs), *element("InitialUnknowns", outputs)]
+    rates = [
+        line
+        for k, variable in enumerate(listed, 1)
+        if variable.rate_of is not None
+        for line in element("Unknown", index=str(k))
+    ]
+    structure = [
+        *element("Outputs", outputs),
+        *element("Derivatives", rates),
+        *element("InitialUnknowns", [*outputs, *rates]),
+    ]
     inside = [
         *comment(table),
         *simulation,
@@ -207,7 +221,7 @@ def _description(arm: Arm, plant: Plant, guid: str, listed: Sequence[Variable], 
         description=" ".join(arm.source.split()) or None,
         generationTool="modelgen",
         variableNamingConvention="flat",
-        numberOfEventIndicators="0",
+        numberOfEventIndicators=str(len(plant.slip.contacts)),
     )
     return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *root]) + "\n"
 
@@ -216,13 +230,18 @@ def _scalar(reference: int, v: Variable) -> list[str]:
     start = None if v.start is None else figure(v.start)
     return element(
         "ScalarVariable",
-        element("Real", unit=v.unit or None, start=start),
+        element(
+            "Real",
+            unit=v.unit or None,
+            start=start,
+            derivative=None if v.rate_of is None else str(v.rate_of + 1),
+        ),
         name=v.name,
         valueReference=str(reference),
         description=v.text,
         causality=v.causality,
         variability=v.variability,
-        initial="calculated" if v.causality == "output" else None,
+        initial="calculated" if v.causality in ("output", "local") else None,
     )
 
 

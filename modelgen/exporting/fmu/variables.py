@@ -12,7 +12,10 @@ from modelgen.simulation.plant import Plant
 
 @dataclass(frozen=True)
 class Variable:
-    """One real variable. causality: "input", "output", "parameter" or "local"; start: None where computed."""
+    """One real variable. causality: "input", "output", "parameter" or "local"; start: None where computed.
+
+    rate_of: number from 0 of the variable whose time derivative it is.
+    """
 
     name: str
     unit: str
@@ -20,6 +23,7 @@ class Variable:
     causality: str
     variability: str
     start: float | None = None
+    rate_of: int | None = None
 
 
 def variables(
@@ -57,6 +61,9 @@ def variables(
         Variable(f"state.{name}", "", "state of an effect", "output", "continuous")
         for name in plant.model.states
     ]
+    n = len(joints)
+    states = [*range(n, 3 * n), *range(5 * n, len(found))]
+    found += [_rate(found[k], k) for k in states]
     for name, text, per, starts in (
         ("q_start", "coordinate at the beginning", "", q.tolist()),
         ("dq_start", "rate at the beginning", "/s", [0.0] * len(joints)),
@@ -70,3 +77,9 @@ def variables(
         Variable(f"parameter.{name}", unit, "parameter of the model", "parameter", "tunable", float(value))
         for name, unit, value in zip(names, units, plant.parameters, strict=True)
     ]
+
+
+def _rate(v: Variable, number: int) -> Variable:
+    """The time derivative of a state."""
+    unit = f"{v.unit.removesuffix('/s')}/s^2" if v.unit.endswith("/s") else f"{v.unit}/s" if v.unit else ""
+    return Variable(f"der({v.name})", unit, "its rate", "local", "continuous", rate_of=number)
