@@ -17,6 +17,10 @@ class Provenance:
     description: str
     options: dict[str, str] = field(default_factory=dict)
 
+    def head(self, arm: str) -> list[str]:
+        """The statement in print, and the licence: generated code belongs to who generates it."""
+        return [*self.lines(arm), "SPDX-License-Identifier: 0BSD"]
+
     def lines(self, arm: str) -> list[str]:
         """The statement in print."""
         options = ", ".join(f"{key}: {value}" for key, value in self.options.items())

@@ -60,6 +60,7 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
         gravity=(gravity[0], gravity[1], gravity[2]),
         fluid_density=density,
         source=model.source,
+        version=model.version,
         symbols=MappingProxyType(dict(context.symbols)),
         notes=tuple(context.notes),
         effects=read_effects(context, model.effects, known_effects, ["effects"], "arm"),

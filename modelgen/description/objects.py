@@ -146,6 +146,8 @@ class Arm:
         Of the fluid around the arm [kg/m^3]; above 0 adds the buoyancy parameters.
     source : str
         Where the figures come from.
+    version : str
+        Version of the description, "" where it has none.
     symbols : mapping of str to float
         Values of the geometry's symbols [m, rad] by name.
     notes : tuple of str
@@ -176,6 +178,7 @@ class Arm:
     base: Transform | None = field(default=None, metadata=OPTIONAL)
     tools: tuple[Tool, ...] = field(default=(), metadata=OPTIONAL)
     combined: tuple[Combined, ...] = field(default=(), metadata=OPTIONAL)
+    version: str = field(default="", metadata=OPTIONAL)
     where: Location | None = field(default=None, compare=False)
     document: str = field(default="", compare=False, repr=False)
 

@@ -27,6 +27,7 @@ from modelgen.transmission import KINDS, Drive, NoDrive
 JOINT_NAME = r"^[A-Za-z_][A-Za-z0-9_-]*$"
 ARM_NAME = r"^[A-Za-z][A-Za-z0-9_]*$"
 FUNCTION_NAME = r"^[a-z][a-z0-9_]*$"
+VERSION = r"^[A-Za-z0-9.+_-]{0,64}$"
 SYMBOL_NAME = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
 
@@ -205,6 +206,9 @@ class ArmModel(Model):
     """One arm: joints in the order of the coordinates, and what surrounds it."""
 
     source: str = Field(default="", description="Where the figures come from; free text.")
+    version: Annotated[str, Field(pattern=VERSION)] = Field(
+        default="", description="Version of this description, which the generated code states; '1.2.0', say."
+    )
     gravity: Triple = Field(
         default=[0.0, 0.0, -9.81], description="Acceleration of gravity, base frame [m/s^2]."
     )

@@ -59,7 +59,8 @@ def _jacobian(a: Assembly) -> Function:
     else:
         rows, what = jacobian(frames, names.index(name)), f"link {name}"
     axes = "base" if arm.base is None else "world"
-    unit = "m, 1 over 1, 1/m" if any(j.type == "prismatic" for j in joints) else "m over 1"
+    sliding = any(j.type == "prismatic" for j in joints)
+    unit = "m and rad per rad or m" if sliding else "m and rad per rad"
     output = Output("jacobian", 6, a.n, unit, f"linear over angular, {axes} axes")
     text = f"Velocity of the origin of {what} over its angular velocity, per joint velocity."
     return a.function("jacobian", text, ["q"], [(output, [x for row in rows for x in row])], drives=False)

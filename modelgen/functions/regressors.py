@@ -108,5 +108,5 @@ def _matrix(
     zero = e.graph.zero
     flat = [columns[k].get(n, zero) for n in range(a.n) for k in range(count)]
     order = [("matrix", n * count + k) for k in range(count) for n in range(a.n)]
-    output = Output("matrix", a.n, count, unit, text[:-1].lower())
+    output = Output("matrix", a.n, count, unit, f"{text[0].lower()}{text[1:-1]}")
     return a.function(name, text, inputs, [(output, flat)], order=order)

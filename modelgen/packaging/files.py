@@ -35,29 +35,29 @@ def packaging_files(
     values = {
         "arm": arm,
         "macro": macro,
-        "provenance": provenance.lines(arm),
-        "version": version(),
+        "provenance": provenance.head(arm),
+        "version": version(model.arm.version),
         "real": f"${{{macro}_REAL}}",
         "sources": sorted(path for path in paths if path.endswith(".c")),
     }
     files = {path: render(template, **values) for path, template in _TEMPLATES.items()}
     files[f"src/{arm}.h"] = render("package/forward.h.j2", **values)
-    files["library.json"] = _platformio(arm, provenance)
+    files["library.json"] = _platformio(arm, version(model.arm.version), provenance)
     files["examples/self_test/main.c"] = self_test(model, provenance)
     files["README.md"] = readme(model, provenance, sizes)
     return files
 
 
-def version() -> str:
-    """Three numbers, as every one of the build systems reads them."""
-    found = re.match(r"\d+\.\d+\.\d+", __version__)
+def version(given: str = "") -> str:
+    """Three numbers, as every one of the build systems reads them: the arm's version, else the tool's."""
+    found = re.match(r"\d+\.\d+\.\d+", given) or re.match(r"\d+\.\d+\.\d+", __version__)
     return found.group() if found else "0.0.0"
 
 
-def _platformio(arm: str, provenance: Provenance) -> str:
+def _platformio(arm: str, version: str, provenance: Provenance) -> str:
     content = {
         "name": arm,
-        "version": version(),
+        "version": version,
         "description": " ".join([f"Dynamic model of the robot arm {arm}.", *provenance.lines(arm)]),
         "keywords": ["robotics", "dynamics"],
         "authors": [{"name": "modelgen"}],

@@ -25,7 +25,7 @@ def readme(model: Model, provenance: Provenance, sizes: Sequence[Sequence[str]] 
         "readme.md.j2",
         arm=arm,
         macro=arm.upper(),
-        provenance=provenance.lines(arm),
+        provenance=provenance.head(arm),
         summary=wrapped(plain(model.arm.source) or f"Dynamic model of the arm {arm}.").split("\n"),
         coordinates=_table(["", "joint", "unit", ""], rows),
         functions=_table(["function", "inputs", "outputs", "operations", "meaning"], functions),

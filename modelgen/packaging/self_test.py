@@ -50,7 +50,7 @@ def self_test(model: Model, provenance: Provenance) -> str:
         "package/self_test.c.j2",
         arm=arm,
         macro=arm.upper(),
-        provenance=provenance.lines(arm),
+        provenance=provenance.head(arm),
         count=STATES,
         arrays=declared,
         largest=max(sum(arrays(f).values()) for f in model.functions),

@@ -276,6 +276,8 @@ FRAMEWORKS = {
         "function(zephyr_include_directories)\n  target_include_directories(component PUBLIC ${ARGV})\n"
         "endfunction()\n"
         "function(zephyr_compile_definitions)\n  target_compile_definitions(component PUBLIC ${ARGV})\n"
+        "endfunction()\n"
+        "function(zephyr_library_compile_options)\n  target_compile_options(component PRIVATE ${ARGV})\n"
         "endfunction()\ncmake_policy(SET CMP0076 NEW)\n",
         "/zephyr",
     ),

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from modelgen.backends.c.dialect import arrays, destinations
+from modelgen.backends.c.lengths import argument_length, array_lengths
 from modelgen.backends.documentation import (
     argument_row,
     function_operations,
@@ -50,8 +51,8 @@ def function_text(model: Model, function: Function) -> FunctionText:
             span = f"{array}[{offset}] to [{offset + output.size - 1}]"
             text = f"{span}: {output.name}, {output_text(output)}"
             rows.append(("", "", "", unit(output.unit), text))
-    declared = [f"const {real} {a.name}[]" for a in function.arguments]
-    declared += [f"{real} {name}[]" for name in lengths]
+    declared = [f"const {real} {a.name}[{argument_length(model, function, a)}]" for a in function.arguments]
+    declared += [f"{real} {name}[{length}]" for name, length in array_lengths(model, function).items()]
     arguments = ",\n".join(f"    {argument}" for argument in declared)
     return FunctionText(
         name=function.name,

@@ -32,13 +32,16 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     common = {
         "arm": arm,
         "macro": arm.upper(),
-        "provenance": provenance.lines(arm),
+        "provenance": provenance.head(arm),
         "generation": _PENDING,
     }
     texts = [function_text(model, function) for function in model.functions]
     files = {
-        f"include/{arm}.h": render("c/header.h.j2", **common, **header_values(model, texts)),
+        f"include/{arm}.h": render(
+            "c/header.h.j2", **common, **header_values(model, texts), model=_identity(model, provenance)
+        ),
         f"src/{arm}_private.h": render("c/private.h.j2", **common, squares=_squares(model)),
+        f"src/{arm}_model.c": render("c/model.c.j2", **common),
         f"src/{arm}_sincos.c": render("c/sincos.c.j2", **common),
     }
     for function, text in zip(model.functions, texts, strict=True):
@@ -62,6 +65,11 @@ def c_symbols(arm: str, files: Mapping[str, str]) -> set[str]:
         for word in _IDENTIFIER.findall(_COMMENT.sub(" ", text))
         if word.lower().startswith(prefix)
     }
+
+
+def _identity(model: Model, provenance: Provenance) -> str:
+    """The description's hash, and the version where the description has one."""
+    return f"{provenance.description} {model.arm.version}".rstrip()
 
 
 def _squares(model: Model) -> str:

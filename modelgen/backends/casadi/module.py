@@ -30,7 +30,7 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
         "casadi/module.py.j2",
         arm=arm,
         remarks=remarks(model),
-        provenance=provenance.lines(arm),
+        provenance=provenance.head(arm),
         sections=model_sections(model),
         acados={"forward_dynamics", "inverse_dynamics"} <= {f.name for f in model.functions},
         nominal=[

@@ -1,0 +1,98 @@
+"""What the compiled code says of itself, and what its header tells a compiler."""
+
+import ctypes
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from arms_support import ARMS, model
+from c_support import C_COMPILERS, shared_library, write
+
+from modelgen.backends.c.dialect import arrays
+from modelgen.description import loads
+from modelgen.effects import known_effects
+from modelgen.errors import InputError
+from modelgen.functions import EVALUATED, build_model
+from modelgen.generation.arm import print_model
+
+TEXT = """schema: 1
+convention: khalil_kleinfinger
+arms:
+  bench:
+    version: %s
+    joints:
+      - {name: j1}
+"""
+
+
+def bench(version: str) -> dict[str, str]:
+    (arm,) = loads(TEXT % version, "arms.yaml", known_effects()).values()
+    return dict(print_model(build_model(arm, EVALUATED), arm, {}).files)
+
+
+def test_the_binary_says_which_model_it_is(tmp_path: Path) -> None:
+    files = bench('"1.2.0-rc1"')
+    write(files, tmp_path)
+    library = ctypes.CDLL(str(shared_library(tmp_path, "bench", "double")))
+    library.bench_model.restype = ctypes.c_char_p
+    digest, version = library.bench_model().decode().split(" ")
+    assert digest == json.loads(files["manifest.json"])["description_sha256"]
+    assert re.fullmatch("[0-9a-f]{64}", digest)
+    assert version == "1.2.0-rc1"
+    assert json.loads(files["library.json"])["version"] == "1.2.0"
+
+
+def test_a_version_is_a_word(tmp_path: Path) -> None:
+    for given in ("1.2", '"one two"', "'\"'"):
+        with pytest.raises(InputError, match=r"arms.yaml:5:\d+"):
+            bench(given)
+
+
+def test_without_a_version_it_is_the_hash_alone() -> None:
+    made = print_model(build_model(ARMS["gravity_arm"], EVALUATED), ARMS["gravity_arm"], {})
+    (line,) = [x for x in made.files["include/gravity_arm.h"].splitlines() if "define GRAVITY_ARM_MODEL" in x]
+    assert re.fullmatch('#define GRAVITY_ARM_MODEL "[0-9a-f]{64}"', line)
+
+
+def test_every_file_states_its_licence() -> None:
+    files = print_model(build_model(ARMS["gravity_arm"], EVALUATED), ARMS["gravity_arm"], {}).files
+    for name, text in files.items():
+        if not name.endswith(".json"):
+            assert "SPDX-License-Identifier: 0BSD" in text, name
+
+
+def test_lengths_in_prototypes_are_those_of_the_functions() -> None:
+    made = model("ur10e")
+    text = print_model(made, ARMS["ur10e"], {}).files["include/ur10e.h"]
+    values = {name: int(value) for name, value in re.findall(r"#define UR10E_(N_\w+)\s+(\d+)", text)}
+    for f in made.functions:
+        (signature,) = re.findall(rf"int ur10e_{f.name}\((.*?)\);", text, re.DOTALL)
+        lengths = [
+            eval(re.sub(r"UR10E_(N_\w+)", lambda m: str(values[m[1]]), x))  # noqa: S307 - a product of numbers
+            for x in re.findall(r"\[(.*?)\]", signature)
+        ]
+        assert lengths == [*(a.size for a in f.arguments), *arrays(f).values()], f.name
+    assert "const ur10e_real_t parameters[UR10E_N_PARAMETERS]" in text
+    assert "ur10e_real_t input_by_q[UR10E_N_JOINTS * UR10E_N_JOINTS]" in text
+
+
+@pytest.mark.skipif("gcc" not in C_COMPILERS, reason="gcc warns of it")
+def test_a_compiler_warns_of_an_array_that_is_too_short(tmp_path: Path) -> None:
+    write(print_model(build_model(ARMS["gravity_arm"], EVALUATED), ARMS["gravity_arm"], {}).files, tmp_path)
+    program = """#include "gravity_arm.h"
+int f(const double parameters[GRAVITY_ARM_N_PARAMETERS], double out[2]);
+int f(const double parameters[GRAVITY_ARM_N_PARAMETERS], double out[2])
+{
+    const double q[%d] = {0};
+    return gravity_arm_gravity(q, parameters, out);
+}
+"""
+    found = []
+    for length in (1, 2):
+        (tmp_path / "short.c").write_text(program % length, encoding="utf-8")
+        command = ["gcc", "-O2", "-Wall", "-c", "short.c", "-Iinclude", "-o", "short.o"]
+        found.append(subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stderr)
+    assert "gravity_arm_gravity" in found[0]
+    assert not found[1]
