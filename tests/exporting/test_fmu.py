@@ -24,7 +24,10 @@ from modelgen.simulation.simulate import simulate
 ARMS = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
 RATE, SAMPLES = 500.0, 101
 
-pytestmark = pytest.mark.skipif(compiler() is None, reason="needs a C compiler")
+pytestmark = [
+    pytest.mark.skipif(compiler() is None, reason="needs a C compiler"),
+    pytest.mark.slow,  # every unit is compiled
+]
 
 
 class Unit:
