@@ -308,6 +308,7 @@ def test_one_file_for_each_function() -> None:
     assert set(FILES) == {
         "include/planar.h",
         "src/planar_private.h",
+        "src/planar_check_parameters.c",
         "src/planar_model.c",
         "src/planar_sincos.c",
         *(f"src/planar_{name}.c" for name in FUNCTIONS),

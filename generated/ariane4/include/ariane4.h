@@ -61,7 +61,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0x68A281B7UL
+#define ARIANE4_GENERATION 0xE075B8BAUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_MODEL "8a3fccb07c9b67498d750a5b873df117b4723e20699a1d2172320a7751cb2c94"
@@ -189,6 +189,22 @@ extern const unsigned short ariane4_regressor_columns[ARIANE4_N_PACKED];
  * @return ARIANE4_MODEL as it was when the sources were compiled, a constant string
  */
 const char *ariane4_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE4_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE4_STATUS_OK or ARIANE4_STATUS_INPUT
+ */
+int ariane4_check_parameters(const ariane4_real_t parameters[ARIANE4_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE4_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE4_STATUS_OK or ARIANE4_STATUS_INPUT
+ */
+int ariane4_check_parameters_standard(const ariane4_real_t parameters[ARIANE4_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

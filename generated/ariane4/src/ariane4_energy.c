@@ -50,7 +50,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x68A281B7UL
+#if ARIANE4_GENERATION != 0xE075B8BAUL
 #error "ariane4.h and ariane4_energy.c are of different generations: generate the arm again"
 #endif
 
@@ -67,7 +67,7 @@ int ariane4_energy(
 
     if (!ariane4_within_joints(q, ARIANE4_C(1.0e8))
         || !ariane4_within_joints(dq, ARIANE4_C(1.0e10))
-        || !ariane4_within(parameters, 24, ARIANE4_C(1.0e18))) {
+        || !ARIANE4_PARAMETERS_USABLE(ariane4_within(parameters, 24, ARIANE4_C(1.0e18)))) {
         status |= ARIANE4_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_C(-1.5716884535778393) || q[0] > ARIANE4_C(0.5593921517178333)

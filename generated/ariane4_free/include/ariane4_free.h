@@ -69,7 +69,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x3DEB5B38UL
+#define ARIANE4_FREE_GENERATION 0xAC634FC1UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_FREE_MODEL "79391f27012d8ce47144bfbc151d699a1e5dab86799c694096ed4c590478ba07"
@@ -211,6 +211,22 @@ extern const unsigned short ariane4_free_regressor_columns[ARIANE4_FREE_N_PACKED
  * @return ARIANE4_FREE_MODEL as it was when the sources were compiled, a constant string
  */
 const char *ariane4_free_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE4_FREE_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE4_FREE_STATUS_OK or ARIANE4_FREE_STATUS_INPUT
+ */
+int ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE4_FREE_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE4_FREE_STATUS_OK or ARIANE4_FREE_STATUS_INPUT
+ */
+int ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

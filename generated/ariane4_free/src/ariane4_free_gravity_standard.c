@@ -76,7 +76,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x3DEB5B38UL
+#if ARIANE4_FREE_GENERATION != 0xAC634FC1UL
 #error "ariane4_free.h and ariane4_free_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -91,7 +91,7 @@ int ariane4_free_gravity_standard(
     int status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
-        || !ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18))) {
+        || !ARIANE4_FREE_PARAMETERS_USABLE(ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18)))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
     }
     if (q[0] < ARIANE4_FREE_C(-1.5716884535778393) || q[0] > ARIANE4_FREE_C(0.5593921517178333)

@@ -13,7 +13,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x3DEB5B38UL
+#if ARIANE4_FREE_GENERATION != 0xAC634FC1UL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int ariane4_free_within_joints(const ariane4_free_real_t x[], aria
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
+
+/* Left out of every call with -DARIANE4_FREE_PARAMETERS_CHECKED, for parameters that ariane4_free_check_parameters has seen. */
+#ifdef ARIANE4_FREE_PARAMETERS_CHECKED
+#define ARIANE4_FREE_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define ARIANE4_FREE_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void ariane4_free_zero(ariane4_free_real_t x[], int n)
 {

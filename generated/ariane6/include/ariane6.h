@@ -86,7 +86,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x96C51D80UL
+#define ARIANE6_GENERATION 0x6F48A938UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE6_MODEL "ac2a59ce556c2f1c818a485f9d0c6d4da754ef25a07a354dfa818a9b37990eec"
@@ -273,6 +273,22 @@ extern const unsigned short ariane6_regressor_columns[ARIANE6_N_PACKED];
  * @return ARIANE6_MODEL as it was when the sources were compiled, a constant string
  */
 const char *ariane6_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE6_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE6_STATUS_OK or ARIANE6_STATUS_INPUT
+ */
+int ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DARIANE6_PARAMETERS_CHECKED.
+ *
+ * @return ARIANE6_STATUS_OK or ARIANE6_STATUS_INPUT
+ */
+int ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

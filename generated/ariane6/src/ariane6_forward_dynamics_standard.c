@@ -107,7 +107,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x96C51D80UL
+#if ARIANE6_GENERATION != 0x6F48A938UL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -127,7 +127,7 @@ int ariane6_forward_dynamics_standard(
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within_joints(input, ARIANE6_C(1.0e18))
-        || !ariane6_within(parameters, 78, ARIANE6_C(1.0e18))) {
+        || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 78, ARIANE6_C(1.0e18)))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)

@@ -86,7 +86,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x96C51D80UL
+#if ARIANE6_GENERATION != 0x6F48A938UL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -108,7 +108,7 @@ int ariane6_inverse_dynamics_derivatives(
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
         || !ariane6_within_joints(ddq, ARIANE6_C(1.0e16))
-        || !ariane6_within(parameters, 54, ARIANE6_C(1.0e18))) {
+        || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 54, ARIANE6_C(1.0e18)))) {
         status |= ARIANE6_STATUS_INPUT;
     }
     if (q[0] < ARIANE6_C(-0.8457240141102617) || q[0] > ARIANE6_C(1.060099494598758)

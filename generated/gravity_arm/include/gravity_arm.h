@@ -37,7 +37,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x5BD97C95UL
+#define GRAVITY_ARM_GENERATION 0x0AD04BE8UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_ARM_MODEL "61deec9d45de431e2e63e171a7898e38e261561ed5e7a2fea1451953288e9321"
@@ -126,6 +126,22 @@ extern const unsigned short gravity_arm_regressor_columns[GRAVITY_ARM_N_PACKED];
  * @return GRAVITY_ARM_MODEL as it was when the sources were compiled, a constant string
  */
 const char *gravity_arm_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_ARM_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_ARM_STATUS_OK or GRAVITY_ARM_STATUS_INPUT
+ */
+int gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_ARM_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_ARM_STATUS_OK or GRAVITY_ARM_STATUS_INPUT
+ */
+int gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -52,7 +52,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x5BD97C95UL
+#if GRAVITY_ARM_GENERATION != 0x0AD04BE8UL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -73,7 +73,7 @@ int gravity_arm_inverse_dynamics_derivatives_standard(
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
         || !gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e16))
-        || !gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18))) {
+        || !GRAVITY_ARM_PARAMETERS_USABLE(gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18)))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
     }
     if (status != GRAVITY_ARM_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x5BD97C95UL
+#if GRAVITY_ARM_GENERATION != 0x0AD04BE8UL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int gravity_arm_within_joints(const gravity_arm_real_t x[], gravit
 {
     return x[0] * x[0] + x[1] * x[1] <= limit;
 }
+
+/* Left out of every call with -DGRAVITY_ARM_PARAMETERS_CHECKED, for parameters that gravity_arm_check_parameters has seen. */
+#ifdef GRAVITY_ARM_PARAMETERS_CHECKED
+#define GRAVITY_ARM_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define GRAVITY_ARM_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void gravity_arm_zero(gravity_arm_real_t x[], int n)
 {

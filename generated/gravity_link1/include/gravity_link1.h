@@ -29,7 +29,7 @@
 #define GRAVITY_LINK1_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_GENERATION 0x528ABF94UL
+#define GRAVITY_LINK1_GENERATION 0xFBA3DE51UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_MODEL "e56ff0e07e464bfef58a0f9831f2c8207c525071b6209ad434ed6783885b3a0a"
@@ -102,6 +102,22 @@ extern const unsigned short gravity_link1_regressor_columns[GRAVITY_LINK1_N_PACK
  * @return GRAVITY_LINK1_MODEL as it was when the sources were compiled, a constant string
  */
 const char *gravity_link1_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK1_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK1_STATUS_OK or GRAVITY_LINK1_STATUS_INPUT
+ */
+int gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK1_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK1_STATUS_OK or GRAVITY_LINK1_STATUS_INPUT
+ */
+int gravity_link1_check_parameters_standard(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -39,7 +39,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x528ABF94UL
+#if GRAVITY_LINK1_GENERATION != 0xFBA3DE51UL
 #error "gravity_link1.h and gravity_link1_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -59,7 +59,7 @@ int gravity_link1_inverse_dynamics_derivatives_standard(
     if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
         || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
         || !gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e16))
-        || !gravity_link1_within(parameters, 12, GRAVITY_LINK1_C(1.0e18))) {
+        || !GRAVITY_LINK1_PARAMETERS_USABLE(gravity_link1_within(parameters, 12, GRAVITY_LINK1_C(1.0e18)))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "gravity_link1.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x528ABF94UL
+#if GRAVITY_LINK1_GENERATION != 0xFBA3DE51UL
 #error "gravity_link1.h and gravity_link1_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int gravity_link1_within_joints(const gravity_link1_real_t x[], gr
 {
     return x[0] * x[0] <= limit;
 }
+
+/* Left out of every call with -DGRAVITY_LINK1_PARAMETERS_CHECKED, for parameters that gravity_link1_check_parameters has seen. */
+#ifdef GRAVITY_LINK1_PARAMETERS_CHECKED
+#define GRAVITY_LINK1_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define GRAVITY_LINK1_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void gravity_link1_zero(gravity_link1_real_t x[], int n)
 {

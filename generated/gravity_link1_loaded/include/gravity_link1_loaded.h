@@ -29,7 +29,7 @@
 #define GRAVITY_LINK1_LOADED_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_LOADED_GENERATION 0x501437E5UL
+#define GRAVITY_LINK1_LOADED_GENERATION 0xB3C46B54UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_LOADED_MODEL "35cb3f0e339eb026e7d13df10e390c03982cefd083db334d922518eb90e3f495"
@@ -112,6 +112,22 @@ extern const unsigned short gravity_link1_loaded_regressor_columns[GRAVITY_LINK1
  * @return GRAVITY_LINK1_LOADED_MODEL as it was when the sources were compiled, a constant string
  */
 const char *gravity_link1_loaded_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK1_LOADED_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK1_LOADED_STATUS_OK or GRAVITY_LINK1_LOADED_STATUS_INPUT
+ */
+int gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK1_LOADED_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK1_LOADED_STATUS_OK or GRAVITY_LINK1_LOADED_STATUS_INPUT
+ */
+int gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -43,7 +43,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x501437E5UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xB3C46B54UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -57,7 +57,7 @@ int gravity_link1_loaded_mass_matrix_standard(
     int status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
-        || !gravity_link1_loaded_within(parameters, 22, GRAVITY_LINK1_LOADED_C(1.0e18))) {
+        || !GRAVITY_LINK1_LOADED_PARAMETERS_USABLE(gravity_link1_loaded_within(parameters, 22, GRAVITY_LINK1_LOADED_C(1.0e18)))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK1_LOADED_STATUS_OK) {

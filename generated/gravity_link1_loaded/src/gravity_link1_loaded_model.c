@@ -8,7 +8,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x501437E5UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xB3C46B54UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_model.c are of different generations: generate the arm again"
 #endif
 

@@ -13,7 +13,7 @@
 
 #include "gravity_link1_loaded.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x501437E5UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xB3C46B54UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int gravity_link1_loaded_within_joints(const gravity_link1_loaded_
 {
     return x[0] * x[0] <= limit;
 }
+
+/* Left out of every call with -DGRAVITY_LINK1_LOADED_PARAMETERS_CHECKED, for parameters that gravity_link1_loaded_check_parameters has seen. */
+#ifdef GRAVITY_LINK1_LOADED_PARAMETERS_CHECKED
+#define GRAVITY_LINK1_LOADED_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define GRAVITY_LINK1_LOADED_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void gravity_link1_loaded_zero(gravity_link1_loaded_real_t x[], int n)
 {

@@ -29,7 +29,7 @@
 #define GRAVITY_LINK2_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK2_GENERATION 0xEE2824D1UL
+#define GRAVITY_LINK2_GENERATION 0xE067EAD6UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK2_MODEL "1ddde3a17ccda7a0e65720f8a04e520c2a47c634edf20149046c6a68c38abc01"
@@ -102,6 +102,22 @@ extern const unsigned short gravity_link2_regressor_columns[GRAVITY_LINK2_N_PACK
  * @return GRAVITY_LINK2_MODEL as it was when the sources were compiled, a constant string
  */
 const char *gravity_link2_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK2_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK2_STATUS_OK or GRAVITY_LINK2_STATUS_INPUT
+ */
+int gravity_link2_check_parameters(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DGRAVITY_LINK2_PARAMETERS_CHECKED.
+ *
+ * @return GRAVITY_LINK2_STATUS_OK or GRAVITY_LINK2_STATUS_INPUT
+ */
+int gravity_link2_check_parameters_standard(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

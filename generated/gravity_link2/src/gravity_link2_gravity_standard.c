@@ -33,7 +33,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xEE2824D1UL
+#if GRAVITY_LINK2_GENERATION != 0xE067EAD6UL
 #error "gravity_link2.h and gravity_link2_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -46,7 +46,7 @@ int gravity_link2_gravity_standard(
     int status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
-        || !gravity_link2_within(parameters, 12, GRAVITY_LINK2_C(1.0e18))) {
+        || !GRAVITY_LINK2_PARAMETERS_USABLE(gravity_link2_within(parameters, 12, GRAVITY_LINK2_C(1.0e18)))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;
     }
     if (status != GRAVITY_LINK2_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "gravity_link2.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xEE2824D1UL
+#if GRAVITY_LINK2_GENERATION != 0xE067EAD6UL
 #error "gravity_link2.h and gravity_link2_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int gravity_link2_within_joints(const gravity_link2_real_t x[], gr
 {
     return x[0] * x[0] <= limit;
 }
+
+/* Left out of every call with -DGRAVITY_LINK2_PARAMETERS_CHECKED, for parameters that gravity_link2_check_parameters has seen. */
+#ifdef GRAVITY_LINK2_PARAMETERS_CHECKED
+#define GRAVITY_LINK2_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define GRAVITY_LINK2_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void gravity_link2_zero(gravity_link2_real_t x[], int n)
 {

@@ -94,7 +94,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0xE568FD46UL
+#define IIWA14_GENERATION 0x71A81B4DUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define IIWA14_MODEL "4f01a5afe35e97fd79f71d51c6869d227bc33b1f7e6bd5668229ee16abfa0d3e"
@@ -302,6 +302,22 @@ extern const unsigned short iiwa14_regressor_columns[IIWA14_N_PACKED];
  * @return IIWA14_MODEL as it was when the sources were compiled, a constant string
  */
 const char *iiwa14_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DIIWA14_PARAMETERS_CHECKED.
+ *
+ * @return IIWA14_STATUS_OK or IIWA14_STATUS_INPUT
+ */
+int iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DIIWA14_PARAMETERS_CHECKED.
+ *
+ * @return IIWA14_STATUS_OK or IIWA14_STATUS_INPUT
+ */
+int iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xE568FD46UL
+#if IIWA14_GENERATION != 0x71A81B4DUL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -119,7 +119,7 @@ int iiwa14_forward_dynamics_derivatives(
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
         || !iiwa14_within_joints(input, IIWA14_C(1.0e18))
-        || !iiwa14_within(parameters, 62, IIWA14_C(1.0e18))) {
+        || !IIWA14_PARAMETERS_USABLE(iiwa14_within(parameters, 62, IIWA14_C(1.0e18)))) {
         status |= IIWA14_STATUS_INPUT;
     }
     if (status != IIWA14_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0xE568FD46UL
+#if IIWA14_GENERATION != 0x71A81B4DUL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 
@@ -122,6 +122,13 @@ static inline int iiwa14_within_joints(const iiwa14_real_t x[], iiwa14_real_t li
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
         limit;
 }
+
+/* Left out of every call with -DIIWA14_PARAMETERS_CHECKED, for parameters that iiwa14_check_parameters has seen. */
+#ifdef IIWA14_PARAMETERS_CHECKED
+#define IIWA14_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define IIWA14_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void iiwa14_zero(iiwa14_real_t x[], int n)
 {

@@ -85,7 +85,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0xA72209A2UL
+#define PUMA560_GENERATION 0x35FE5CAFUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define PUMA560_MODEL "e8eb13fe224405b26bd20c4ed5e9d26e90682bc514ecddfa30f598ec8b9ba255"
@@ -270,6 +270,22 @@ extern const unsigned short puma560_regressor_columns[PUMA560_N_PACKED];
  * @return PUMA560_MODEL as it was when the sources were compiled, a constant string
  */
 const char *puma560_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DPUMA560_PARAMETERS_CHECKED.
+ *
+ * @return PUMA560_STATUS_OK or PUMA560_STATUS_INPUT
+ */
+int puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DPUMA560_PARAMETERS_CHECKED.
+ *
+ * @return PUMA560_STATUS_OK or PUMA560_STATUS_INPUT
+ */
+int puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -79,7 +79,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xA72209A2UL
+#if PUMA560_GENERATION != 0x35FE5CAFUL
 #error "puma560.h and puma560_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -94,7 +94,7 @@ int puma560_mass_matrix(
     int status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
-        || !puma560_within(parameters, 52, PUMA560_C(1.0e18))) {
+        || !PUMA560_PARAMETERS_USABLE(puma560_within(parameters, 52, PUMA560_C(1.0e18)))) {
         status |= PUMA560_STATUS_INPUT;
     }
     if (status != PUMA560_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0xA72209A2UL
+#if PUMA560_GENERATION != 0x35FE5CAFUL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int puma560_within_joints(const puma560_real_t x[], puma560_real_t
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
+
+/* Left out of every call with -DPUMA560_PARAMETERS_CHECKED, for parameters that puma560_check_parameters has seen. */
+#ifdef PUMA560_PARAMETERS_CHECKED
+#define PUMA560_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define PUMA560_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void puma560_zero(puma560_real_t x[], int n)
 {

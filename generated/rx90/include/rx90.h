@@ -82,7 +82,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0xF5CC9ED8UL
+#define RX90_GENERATION 0x064D79A3UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"
@@ -267,6 +267,22 @@ extern const unsigned short rx90_regressor_columns[RX90_N_PACKED];
  * @return RX90_MODEL as it was when the sources were compiled, a constant string
  */
 const char *rx90_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DRX90_PARAMETERS_CHECKED.
+ *
+ * @return RX90_STATUS_OK or RX90_STATUS_INPUT
+ */
+int rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DRX90_PARAMETERS_CHECKED.
+ *
+ * @return RX90_STATUS_OK or RX90_STATUS_INPUT
+ */
+int rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

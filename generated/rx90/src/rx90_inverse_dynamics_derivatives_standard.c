@@ -110,7 +110,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xF5CC9ED8UL
+#if RX90_GENERATION != 0x064D79A3UL
 #error "rx90.h and rx90_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -133,7 +133,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
         || !rx90_within_joints(ddq, RX90_C(1.0e16))
-        || !rx90_within(parameters, 78, RX90_C(1.0e18))) {
+        || !RX90_PARAMETERS_USABLE(rx90_within(parameters, 78, RX90_C(1.0e18)))) {
         status |= RX90_STATUS_INPUT;
     }
     if (status != RX90_STATUS_OK) {

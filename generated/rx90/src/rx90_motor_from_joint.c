@@ -26,7 +26,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xF5CC9ED8UL
+#if RX90_GENERATION != 0x064D79A3UL
 #error "rx90.h and rx90_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

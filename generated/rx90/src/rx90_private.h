@@ -13,7 +13,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0xF5CC9ED8UL
+#if RX90_GENERATION != 0x064D79A3UL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int rx90_within_joints(const rx90_real_t x[], rx90_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
 }
+
+/* Left out of every call with -DRX90_PARAMETERS_CHECKED, for parameters that rx90_check_parameters has seen. */
+#ifdef RX90_PARAMETERS_CHECKED
+#define RX90_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define RX90_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void rx90_zero(rx90_real_t x[], int n)
 {

@@ -53,7 +53,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0xD455D24AUL
+#define SCARA_GENERATION 0x8701BA89UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCARA_MODEL "c1d518ff4a0020fbd2ee0fb14fc12a05e9368b5ecb740059a83582da6419b7fa"
@@ -179,6 +179,22 @@ extern const unsigned short scara_regressor_columns[SCARA_N_PACKED];
  * @return SCARA_MODEL as it was when the sources were compiled, a constant string
  */
 const char *scara_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DSCARA_PARAMETERS_CHECKED.
+ *
+ * @return SCARA_STATUS_OK or SCARA_STATUS_INPUT
+ */
+int scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DSCARA_PARAMETERS_CHECKED.
+ *
+ * @return SCARA_STATUS_OK or SCARA_STATUS_INPUT
+ */
+int scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

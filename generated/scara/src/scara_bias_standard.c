@@ -77,7 +77,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xD455D24AUL
+#if SCARA_GENERATION != 0x8701BA89UL
 #error "scara.h and scara_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -94,7 +94,7 @@ int scara_bias_standard(
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
-        || !scara_within(parameters, 52, SCARA_C(1.0e18))) {
+        || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 52, SCARA_C(1.0e18)))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {

@@ -43,7 +43,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xD455D24AUL
+#if SCARA_GENERATION != 0x8701BA89UL
 #error "scara.h and scara_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -57,7 +57,7 @@ int scara_mass_matrix(
     int status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
-        || !scara_within(parameters, 19, SCARA_C(1.0e18))) {
+        || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 19, SCARA_C(1.0e18)))) {
         status |= SCARA_STATUS_INPUT;
     }
     if (status != SCARA_STATUS_OK) {

@@ -8,7 +8,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xD455D24AUL
+#if SCARA_GENERATION != 0x8701BA89UL
 #error "scara.h and scara_model.c are of different generations: generate the arm again"
 #endif
 

@@ -29,7 +29,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0xAC353359UL
+#define SCREW_AXIS_GENERATION 0x1E5FC142UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCREW_AXIS_MODEL "9d21e4307785b4a34c4e1b8ce4a51c6dc39e1230071915159dd74f3b2739f09b"
@@ -100,6 +100,22 @@ extern const unsigned short screw_axis_regressor_columns[SCREW_AXIS_N_PACKED];
  * @return SCREW_AXIS_MODEL as it was when the sources were compiled, a constant string
  */
 const char *screw_axis_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DSCREW_AXIS_PARAMETERS_CHECKED.
+ *
+ * @return SCREW_AXIS_STATUS_OK or SCREW_AXIS_STATUS_INPUT
+ */
+int screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DSCREW_AXIS_PARAMETERS_CHECKED.
+ *
+ * @return SCREW_AXIS_STATUS_OK or SCREW_AXIS_STATUS_INPUT
+ */
+int screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

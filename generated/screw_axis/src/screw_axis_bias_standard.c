@@ -35,7 +35,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xAC353359UL
+#if SCREW_AXIS_GENERATION != 0x1E5FC142UL
 #error "screw_axis.h and screw_axis_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -50,7 +50,7 @@ int screw_axis_bias_standard(
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
-        || !screw_axis_within(parameters, 13, SCREW_AXIS_C(1.0e18))) {
+        || !SCREW_AXIS_PARAMETERS_USABLE(screw_axis_within(parameters, 13, SCREW_AXIS_C(1.0e18)))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }
     if (status != SCREW_AXIS_STATUS_OK) {

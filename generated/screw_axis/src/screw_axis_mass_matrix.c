@@ -24,7 +24,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0xAC353359UL
+#if SCREW_AXIS_GENERATION != 0x1E5FC142UL
 #error "screw_axis.h and screw_axis_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -37,7 +37,7 @@ int screw_axis_mass_matrix(
     int status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
-        || !screw_axis_within(parameters, 3, SCREW_AXIS_C(1.0e18))) {
+        || !SCREW_AXIS_PARAMETERS_USABLE(screw_axis_within(parameters, 3, SCREW_AXIS_C(1.0e18)))) {
         status |= SCREW_AXIS_STATUS_INPUT;
     }
     if (status != SCREW_AXIS_STATUS_OK) {

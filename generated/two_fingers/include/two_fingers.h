@@ -71,7 +71,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0xEE0E8D88UL
+#define TWO_FINGERS_GENERATION 0x58B7EA77UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define TWO_FINGERS_MODEL "a6b389943be5f64e02da02beae8c9b13d86a3cb7770757fcfde02c5d63e64a26"
@@ -232,6 +232,22 @@ extern const unsigned short two_fingers_regressor_columns[TWO_FINGERS_N_PACKED];
  * @return TWO_FINGERS_MODEL as it was when the sources were compiled, a constant string
  */
 const char *two_fingers_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DTWO_FINGERS_PARAMETERS_CHECKED.
+ *
+ * @return TWO_FINGERS_STATUS_OK or TWO_FINGERS_STATUS_INPUT
+ */
+int two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DTWO_FINGERS_PARAMETERS_CHECKED.
+ *
+ * @return TWO_FINGERS_STATUS_OK or TWO_FINGERS_STATUS_INPUT
+ */
+int two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -91,7 +91,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xEE0E8D88UL
+#if TWO_FINGERS_GENERATION != 0x58B7EA77UL
 #error "two_fingers.h and two_fingers_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -109,7 +109,7 @@ int two_fingers_bias_standard(
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
-        || !two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18))) {
+        || !TWO_FINGERS_PARAMETERS_USABLE(two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18)))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {

@@ -70,7 +70,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xEE0E8D88UL
+#if TWO_FINGERS_GENERATION != 0x58B7EA77UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -89,7 +89,7 @@ int two_fingers_forward_dynamics(
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
         || !two_fingers_within_joints(input, TWO_FINGERS_C(1.0e18))
-        || !two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18))) {
+        || !TWO_FINGERS_PARAMETERS_USABLE(two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18)))) {
         status |= TWO_FINGERS_STATUS_INPUT;
     }
     if (status != TWO_FINGERS_STATUS_OK) {

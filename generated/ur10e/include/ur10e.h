@@ -83,7 +83,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0xC3DEAAD8UL
+#define UR10E_GENERATION 0xF8137B29UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define UR10E_MODEL "7af72714a52b4b6a026bb82666db6346a9dd95fbc89b18b5f169b9ced95f8107"
@@ -268,6 +268,22 @@ extern const unsigned short ur10e_regressor_columns[UR10E_N_PACKED];
  * @return UR10E_MODEL as it was when the sources were compiled, a constant string
  */
 const char *ur10e_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DUR10E_PARAMETERS_CHECKED.
+ *
+ * @return UR10E_STATUS_OK or UR10E_STATUS_INPUT
+ */
+int ur10e_check_parameters(const ur10e_real_t parameters[UR10E_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DUR10E_PARAMETERS_CHECKED.
+ *
+ * @return UR10E_STATUS_OK or UR10E_STATUS_INPUT
+ */
+int ur10e_check_parameters_standard(const ur10e_real_t parameters[UR10E_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xC3DEAAD8UL
+#if UR10E_GENERATION != 0xF8137B29UL
 #error "ur10e.h and ur10e_bias_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,7 +123,7 @@ int ur10e_bias_standard(
 
     if (!ur10e_within_joints(q, UR10E_C(1.0e8))
         || !ur10e_within_joints(dq, UR10E_C(1.0e10))
-        || !ur10e_within(parameters, 78, UR10E_C(1.0e18))) {
+        || !UR10E_PARAMETERS_USABLE(ur10e_within(parameters, 78, UR10E_C(1.0e18)))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {

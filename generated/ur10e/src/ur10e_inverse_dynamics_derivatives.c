@@ -85,7 +85,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xC3DEAAD8UL
+#if UR10E_GENERATION != 0xF8137B29UL
 #error "ur10e.h and ur10e_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -107,7 +107,7 @@ int ur10e_inverse_dynamics_derivatives(
     if (!ur10e_within_joints(q, UR10E_C(1.0e8))
         || !ur10e_within_joints(dq, UR10E_C(1.0e10))
         || !ur10e_within_joints(ddq, UR10E_C(1.0e16))
-        || !ur10e_within(parameters, 52, UR10E_C(1.0e18))) {
+        || !UR10E_PARAMETERS_USABLE(ur10e_within(parameters, 52, UR10E_C(1.0e18)))) {
         status |= UR10E_STATUS_INPUT;
     }
     if (status != UR10E_STATUS_OK) {

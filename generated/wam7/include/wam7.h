@@ -96,7 +96,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x70E013E0UL
+#define WAM7_GENERATION 0x4874A670UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define WAM7_MODEL "552353c9ea1f05cf3522da2330779db9d5ae95abc9b7ddc1779c790670b7dd0e"
@@ -304,6 +304,22 @@ extern const unsigned short wam7_regressor_columns[WAM7_N_PACKED];
  * @return WAM7_MODEL as it was when the sources were compiled, a constant string
  */
 const char *wam7_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DWAM7_PARAMETERS_CHECKED.
+ *
+ * @return WAM7_STATUS_OK or WAM7_STATUS_INPUT
+ */
+int wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DWAM7_PARAMETERS_CHECKED.
+ *
+ * @return WAM7_STATUS_OK or WAM7_STATUS_INPUT
+ */
+int wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -90,7 +90,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x70E013E0UL
+#if WAM7_GENERATION != 0x4874A670UL
 #error "wam7.h and wam7_bias.c are of different generations: generate the arm again"
 #endif
 
@@ -108,7 +108,7 @@ int wam7_bias(
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
-        || !wam7_within(parameters, 62, WAM7_C(1.0e18))) {
+        || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 62, WAM7_C(1.0e18)))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {

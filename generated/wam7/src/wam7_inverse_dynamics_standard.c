@@ -120,7 +120,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x70E013E0UL
+#if WAM7_GENERATION != 0x4874A670UL
 #error "wam7.h and wam7_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -141,7 +141,7 @@ int wam7_inverse_dynamics_standard(
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
         || !wam7_within_joints(ddq, WAM7_C(1.0e16))
-        || !wam7_within(parameters, 91, WAM7_C(1.0e18))) {
+        || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 91, WAM7_C(1.0e18)))) {
         status |= WAM7_STATUS_INPUT;
     }
     if (status != WAM7_STATUS_OK) {

@@ -27,7 +27,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x70E013E0UL
+#if WAM7_GENERATION != 0x4874A670UL
 #error "wam7.h and wam7_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

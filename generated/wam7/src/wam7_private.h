@@ -13,7 +13,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0x70E013E0UL
+#if WAM7_GENERATION != 0x4874A670UL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 
@@ -122,6 +122,13 @@ static inline int wam7_within_joints(const wam7_real_t x[], wam7_real_t limit)
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
         limit;
 }
+
+/* Left out of every call with -DWAM7_PARAMETERS_CHECKED, for parameters that wam7_check_parameters has seen. */
+#ifdef WAM7_PARAMETERS_CHECKED
+#define WAM7_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define WAM7_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void wam7_zero(wam7_real_t x[], int n)
 {

@@ -50,7 +50,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0xE13E6CC3UL
+#define YAW3PITCH_GENERATION 0x9DCBDEABUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define YAW3PITCH_MODEL "839ceb1d876030e9f1e9ebe843a695b9ac89cde5dc1ab9d51167fc98b5e5466f"
@@ -167,6 +167,22 @@ extern const unsigned short yaw3pitch_regressor_columns[YAW3PITCH_N_PACKED];
  * @return YAW3PITCH_MODEL as it was when the sources were compiled, a constant string
  */
 const char *yaw3pitch_model(void);
+
+/**
+ * Whether base parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DYAW3PITCH_PARAMETERS_CHECKED.
+ *
+ * @return YAW3PITCH_STATUS_OK or YAW3PITCH_STATUS_INPUT
+ */
+int yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS]);
+
+/**
+ * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
+ * it as well, unless all of src/ is compiled with -DYAW3PITCH_PARAMETERS_CHECKED.
+ *
+ * @return YAW3PITCH_STATUS_OK or YAW3PITCH_STATUS_INPUT
+ */
+int yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.

@@ -53,7 +53,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0xE13E6CC3UL
+#if YAW3PITCH_GENERATION != 0x9DCBDEABUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -74,7 +74,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
         || !yaw3pitch_within_joints(input, YAW3PITCH_C(1.0e18))
-        || !yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18))) {
+        || !YAW3PITCH_PARAMETERS_USABLE(yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18)))) {
         status |= YAW3PITCH_STATUS_INPUT;
     }
     if (status != YAW3PITCH_STATUS_OK) {

@@ -13,7 +13,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0xE13E6CC3UL
+#if YAW3PITCH_GENERATION != 0x9DCBDEABUL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -121,6 +121,13 @@ static inline int yaw3pitch_within_joints(const yaw3pitch_real_t x[], yaw3pitch_
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
+
+/* Left out of every call with -DYAW3PITCH_PARAMETERS_CHECKED, for parameters that yaw3pitch_check_parameters has seen. */
+#ifdef YAW3PITCH_PARAMETERS_CHECKED
+#define YAW3PITCH_PARAMETERS_USABLE(test) ((void)sizeof(test), 1)
+#else
+#define YAW3PITCH_PARAMETERS_USABLE(test) (test)
+#endif
 
 static inline void yaw3pitch_zero(yaw3pitch_real_t x[], int n)
 {

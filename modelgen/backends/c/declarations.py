@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from modelgen.backends.c.dialect import arrays, destinations
+from modelgen.backends.c.dialect import arrays, destinations, literal
 from modelgen.backends.c.lengths import argument_length, array_lengths
 from modelgen.backends.documentation import (
     argument_row,
@@ -61,6 +61,31 @@ def function_text(model: Model, function: Function) -> FunctionText:
         operations=function_operations(function),
         signature=f"int {arm}_{function.name}(\n{arguments})",
     )
+
+
+@dataclass(frozen=True)
+class ParameterCheck:
+    """A vector of parameters checked alone: prototype, what it is, its length, its bound squared."""
+
+    signature: str
+    text: str
+    size: int
+    limit: str
+
+
+def parameter_checks(model: Model) -> list[ParameterCheck]:
+    """A check for each vector of parameters that a function takes. Raises ValueError as `literal` does."""
+    arm = model.arm.name
+    found: dict[str, ParameterCheck] = {}
+    for function in model.functions:
+        for a in function.arguments:
+            suffix = "_standard" if function.name.endswith("_standard") else ""
+            if a.name == "parameters" and a.size and suffix not in found:
+                length = argument_length(model, function, a)
+                signature = f"int {arm}_check_parameters{suffix}(const {arm}_real_t parameters[{length}])"
+                limit = literal(arm, a.bound * a.bound)
+                found[suffix] = ParameterCheck(signature, a.text, a.size, limit)
+    return list(found.values())
 
 
 def header_values(model: Model, functions: list[FunctionText]) -> dict[str, object]:

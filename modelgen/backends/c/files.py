@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Mapping
 
-from modelgen.backends.c.declarations import FunctionText, function_text, header_values
+from modelgen.backends.c.declarations import FunctionText, function_text, header_values, parameter_checks
 from modelgen.backends.c.dialect import INDENT, literal
 from modelgen.backends.c.source import statements, unrolled
 from modelgen.backends.documentation import function_sections, unit
@@ -29,18 +29,20 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     single precision.
     """
     arm = model.arm.name
-    common = {
+    common: dict[str, object] = {
         "arm": arm,
         "macro": arm.upper(),
         "provenance": provenance.head(arm),
         "generation": _PENDING,
     }
     texts = [function_text(model, function) for function in model.functions]
+    common["checks"] = parameter_checks(model)
     files = {
         f"include/{arm}.h": render(
             "c/header.h.j2", **common, **header_values(model, texts), model=_identity(model, provenance)
         ),
         f"src/{arm}_private.h": render("c/private.h.j2", **common, squares=_squares(model)),
+        f"src/{arm}_check_parameters.c": render("c/check_parameters.c.j2", **common),
         f"src/{arm}_model.c": render("c/model.c.j2", **common),
         f"src/{arm}_sincos.c": render("c/sincos.c.j2", **common),
     }

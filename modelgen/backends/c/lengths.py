@@ -60,7 +60,9 @@ def _parameters(model: Model, function: Function) -> tuple[str, int]:
 
 
 def _printed(model: Model, factors: Factors, size: int) -> str:
-    """The product of the factors where it is the size, else the number."""
+    """The product of the factors where it is the size, else the number; nothing of a size of 0."""
+    if size == 0:
+        return ""
     if prod(value for _, value in factors) != size or not all(text for text, _ in factors):
         return str(size)
     macro = model.arm.name.upper()

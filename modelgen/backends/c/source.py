@@ -45,9 +45,12 @@ def _checks(arm: str, function: Function, joints: int) -> list[str]:
     for a in function.arguments:
         if a.size:
             limit = literal(arm, a.bound * a.bound)
-            outside = f"!{arm}_within({a.name}, {a.size}, {limit})"
+            inside = f"{arm}_within({a.name}, {a.size}, {limit})"
             if a.size == joints and unrolled(joints):
-                outside = f"!{arm}_within_joints({a.name}, {limit})"
+                inside = f"{arm}_within_joints({a.name}, {limit})"
+            if a.name == "parameters":
+                inside = f"{arm.upper()}_PARAMETERS_USABLE({inside})"
+            outside = f"!{inside}"
             tests.setdefault(STATUS_INPUT, []).append(outside)
     for r in function.ranges:
         element = f"{r.argument}[{r.index}]"
