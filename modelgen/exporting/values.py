@@ -14,7 +14,7 @@ from modelgen.exporting.completion import completed
 from modelgen.functions import Model
 from modelgen.functions.nominal import about_origin
 from modelgen.functions.parameters_file import base_vector
-from modelgen.identification.consistent import TEN
+from modelgen.identification.bodies import TEN
 from modelgen.importing.bodies import body_of
 from modelgen.importing.poses import pose
 from modelgen.importing.robot import Body

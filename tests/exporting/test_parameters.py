@@ -11,7 +11,7 @@ import pytest
 import modelgen as mg
 from modelgen.exporting.completion import completed
 from modelgen.functions.nominal import base_matrix
-from modelgen.identification.consistent import violations
+from modelgen.identification.bodies import violations
 from modelgen.numeric import Array
 
 ARMS = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")

@@ -17,7 +17,7 @@ from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.functions.nominal import base_matrix
 from modelgen.identification import identify
-from modelgen.identification.consistent import plain, violations
+from modelgen.identification.bodies import plain, violations
 
 
 def record(arm: Arm, bodies: list[Body], noise: float, seed: int) -> Record:
