@@ -17,6 +17,7 @@ from fmpy.validation import validate_fmu
 
 import modelgen as mg
 from modelgen.dataset import drives_of
+from modelgen.description.objects import EffectUse
 from modelgen.native import compiler, library
 from modelgen.simulation.plant import plant
 from modelgen.simulation.simulate import simulate
@@ -112,6 +113,28 @@ def test_the_motion_is_that_of_simulate(name: str, sizes: tuple[float, ...], tmp
         q, dq = found[-1:, n], made[f"{joint}.dq"]
         assert made[f"{joint}.motor"] == pytest.approx(drive.motor(q)[0], rel=1e-12)
         assert made[f"{joint}.motor_rate"] == pytest.approx(drive.k1(q)[0] * dq, rel=1e-9)
+    made.slave.freeInstance()
+
+
+def test_states_of_effects_move_along(tmp_path: Path) -> None:
+    uses = (
+        EffectUse("joint_flexibility", {"stiffness": 0.5, "damping": 1e-3}),
+        EffectUse("drive_inertia", {"inertia": 3e-4}),
+        EffectUse("coulomb_friction", {"magnitude": 0.02, "smoothing": 0.1}),
+        EffectUse("friction_warm_up", {"dry": 0.01, "viscous": 1e-4, "time": 2.0, "speed": 10.0}),
+    )
+    link, geared = ARMS["gravity_link1"], ARMS["puma560"].joints[0].drive
+    arm = replace(link, joints=(replace(link.joints[0], drive=geared, effects=uses),))
+    model = mg.export(arm, to="fmu", out=tmp_path / "arm.fmu")
+    assert [row.status for row in model.rows] == ["exact", "exact", "approximated", "exact"]
+    made, inputs = Unit(tmp_path / "arm.fmu", tmp_path / "unit"), waves(6.0)
+    found = made.moved(["j1"], inputs)
+    duration = (SAMPLES - 1) / RATE
+    expected = simulate(plant(arm), 0.0, 0.0, duration, RATE, inputs, method="LSODA", rtol=1e-11, atol=1e-12)
+    assert np.abs(found - expected.q).max() <= 1e-9
+    states = [made[name] for name in made.variables if name.startswith("state.")]
+    assert states == pytest.approx(expected.states[-1].tolist(), abs=1e-7)
+    assert min(np.abs(states)) > 1e-4
     made.slave.freeInstance()
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from modelgen.description.objects import Arm
 from modelgen.effects import applied_effects, described
 from modelgen.errors import InputError
-from modelgen.exporting.account import EXACT, LEFT_OUT, Row, described_rows
+from modelgen.exporting.account import APPROXIMATED, EXACT, LEFT_OUT, Row, described_rows
 from modelgen.exporting.build import range_of
 from modelgen.exporting.exported import Exported, heading
 from modelgen.exporting.fmu.variables import Variable, variables
@@ -26,7 +26,7 @@ from modelgen.functions.parameters_file import base_vector
 from modelgen.native import library_bytes
 from modelgen.numeric import Array
 from modelgen.simulation import fixed
-from modelgen.simulation.friction_set import elastic, slip
+from modelgen.simulation.friction_set import elastic, slip, unsmoothed
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.simulate import STEP, STIFF, fastest
 
@@ -110,11 +110,15 @@ def _parameters(plant: Plant) -> tuple[list[str], list[str]]:
 
 def _rows(arm: Arm, missing: Sequence[str]) -> list[Row]:
     found = []
-    for effect in applied_effects(arm):
+    for effect, sharp in zip(applied_effects(arm), applied_effects(unsmoothed(arm)), strict=True):
         joint = None if effect.joint is None else arm.joints[effect.joint].name
         zero = [p.name for p, symbol in effect.parameters if symbol.name in missing]
-        text = f"no value for {' and '.join(zero)}: zero to begin with" if zero else "as in the equations"
-        found.append(Row(effect.effect.name, joint, LEFT_OUT if zero else EXACT, None if zero else 0.0, text))
+        status, text = EXACT, "as in the equations"
+        if zero:
+            status, text = LEFT_OUT, f"no value for {' and '.join(zero)}: zero to begin with"
+        elif effect.values != sharp.values:
+            status, text = APPROXIMATED, "its direction is not smoothed, a joint at rest sticks"
+        found.append(Row(effect.effect.name, joint, status, 0.0 if status == EXACT else None, text))
     return found
 
 
