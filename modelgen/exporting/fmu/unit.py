@@ -111,14 +111,16 @@ def _parameters(plant: Plant) -> tuple[list[str], list[str]]:
 def _rows(arm: Arm, missing: Sequence[str]) -> list[Row]:
     found = []
     for effect, sharp in zip(applied_effects(arm), applied_effects(unsmoothed(arm)), strict=True):
-        joint = None if effect.joint is None else arm.joints[effect.joint].name
+        joint = None if effect.joint is None else arm.joints[effect.joint]
+        unit = "N" if joint is not None and joint.type == "prismatic" else "N m"
         zero = [p.name for p, symbol in effect.parameters if symbol.name in missing]
         status, text = EXACT, "as in the equations"
         if zero:
             status, text = LEFT_OUT, f"no value for {' and '.join(zero)}: zero to begin with"
         elif effect.values != sharp.values:
             status, text = APPROXIMATED, "its direction is not smoothed, a joint at rest sticks"
-        found.append(Row(effect.effect.name, joint, status, 0.0 if status == EXACT else None, text))
+        name, error = None if joint is None else joint.name, 0.0 if status == EXACT else None
+        found.append(Row(effect.effect.name, name, status, error, text, unit))
     return found
 
 
