@@ -146,8 +146,6 @@ class Arm:
         Of the fluid around the arm [kg/m^3]; above 0 adds the buoyancy parameters.
     source : str
         Where the figures come from.
-    version : str
-        Version of the description, "" where it has none.
     symbols : mapping of str to float
         Values of the geometry's symbols [m, rad] by name.
     notes : tuple of str
@@ -160,6 +158,8 @@ class Arm:
         Named frames on links.
     combined : tuple of Combined
         Functions that do the work of several at once.
+    version : str
+        Version of the description, "" where it has none.
     where : Location, optional
         Where the arm stands in its file.
     document : str
