@@ -1,6 +1,7 @@
 """A cause is named only where every check that decides lets it: the same checks for all."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,13 @@ from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of
 
 from modelgen.dataset import Record
 from modelgen.description import DirectDrive
-from modelgen.diagnosis.adequacy.checks import Examined, confirmed, ended_by_suspects, significant
+from modelgen.diagnosis.adequacy.checks import (
+    Examined,
+    admissible,
+    confirmed,
+    ended_by_suspects,
+    significant,
+)
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
 from modelgen.diagnosis.pipeline import diagnose
@@ -168,3 +175,29 @@ def test_the_test_record_confirms_or_does_not_and_decides_nothing() -> None:
     for low, passed in ((0.5, True), (-0.5, False), (float("nan"), None)):
         check = confirmed(1.0, low)
         assert (check.passed, check.decides) == (passed, False)
+
+
+@pytest.mark.parametrize(
+    ("joint", "delay", "joints", "passed"),
+    [
+        (2, 0.004, 2, False),  # channels read one after the other within a sample
+        (2, -0.0099, 2, False),
+        (2, 0.0101, 2, True),
+        (None, 0.004, 2, True),  # of all alike: none is out of step with another
+        (1, 0.004, 1, True),
+    ],
+)
+def test_a_delay_of_one_joint_within_a_sample_may_be_the_log_s(
+    joint: int | None, delay: float, joints: int, passed: bool
+) -> None:
+    cause, _ = chosen(effect="time_delay")
+    found = replace(cause.trial.gain, values=np.array([delay]))
+    trial = replace(
+        cause.trial, candidate=Candidate("time_delay", joint), values={"delay": delay}, gain=found
+    )
+    row = SimpleNamespace(prepared=SimpleNamespace(record=SimpleNamespace(step=0.01)))
+    equations: Any = SimpleNamespace(arm=ARM, n=joints, rows=[row])
+    check = admissible(replace(cause, trial=trial), equations)
+    assert check.decides
+    assert check.passed == passed
+    assert passed or "is less than a sample of 10 ms" in check.text

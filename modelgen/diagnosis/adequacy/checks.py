@@ -39,7 +39,7 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
             (
                 _evidence(cause, selection),
                 significant(k, selection),
-                _admissible(cause, equations),
+                admissible(cause, equations),
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection)),
                 _form(forms.get(cause.trial.candidate.joint)),
@@ -123,11 +123,28 @@ def _estimated(k: int, selection: Selection) -> tuple[Mapping[str, float], Mappi
     return dict(values), dict(zip(names, spread[own].tolist(), strict=True))
 
 
-def _admissible(cause: Cause, equations: Equations) -> Check:
+def admissible(cause: Cause, equations: Equations) -> Check:
+    """Whether its values can be those of an arm, as far as these records tell. equations: of the band."""
     c = cause.trial.candidate
     why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
+    why = why or _out_of_step(cause, equations)
     text = why or "nothing in its values speaks against it"
     return Check("admissible", not why, True, float("nan"), float("nan"), text)
+
+
+def _out_of_step(cause: Cause, equations: Equations) -> str:
+    """Why a delay of one joint among others is none of the arm: a log may read its channels in turn."""
+    c = cause.trial.candidate
+    delay = c.definition.delays(cause.trial.parameters)
+    if delay is None or c.joint is None or equations.n == 1:
+        return ""
+    interval = max(r.prepared.record.step for r in equations.rows)
+    if abs(delay) >= interval:
+        return ""
+    return (
+        f"{1e3 * delay:.2g} ms at one joint is less than a sample of {1e3 * interval:.2g} ms, in which a log "
+        "may read one channel after the other; log faster to tell"
+    )
 
 
 def _gain(cause: Cause, equations: Equations) -> Check:
