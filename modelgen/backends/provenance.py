@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+LICENCE = "SPDX-License-Identifier: 0BSD"  # of everything that is generated
+
 
 @dataclass(frozen=True)
 class Provenance:
@@ -19,7 +21,7 @@ class Provenance:
 
     def head(self, arm: str) -> list[str]:
         """The statement in print, and the licence: generated code belongs to who generates it."""
-        return [*self.lines(arm), "SPDX-License-Identifier: 0BSD"]
+        return [*self.lines(arm), LICENCE]
 
     def lines(self, arm: str) -> list[str]:
         """The statement in print."""

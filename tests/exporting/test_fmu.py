@@ -202,6 +202,7 @@ def test_it_compiles_elsewhere_and_is_the_same_there(tmp_path: Path, monkeypatch
         sources = [name for name in b.namelist() if name.startswith("sources/")]
         assert {name: a.read(name) for name in sources} == {name: b.read(name) for name in sources}
         assert not any(name.startswith("binaries/") for name in b.namelist())
+        assert all(b"SPDX-License-Identifier: 0BSD" in b.read(name) for name in sources)
         b.extractall(tmp_path / "there")
     assert here.text.partition("<CoSimulation")[2] == there.text.partition("<CoSimulation")[2]
     tool = compiler()

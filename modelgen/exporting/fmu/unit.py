@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from modelgen.backends.provenance import LICENCE
 from modelgen.description.objects import Arm
 from modelgen.effects import applied_effects, described
 from modelgen.errors import InputError
@@ -133,11 +134,14 @@ def _sources(plant: Plant, q: Array, step: float) -> dict[str, str]:
     """C by name, all in one folder; MAIN includes the others."""
     motors = next(f for f in plant.model.functions if f.name == "motor_from_joint")
     files = {}
+    licence = f"/* {LICENCE} */"
     for path, text in fixed.sources(plant, [motors]).items():
         files[path.rpartition("/")[2]] = text.replace('#include "src/', '#include "')
+    files[fixed.MAIN] = f"{licence}\n{files[fixed.MAIN]}"
     name = plant.arm.name
     low, high = (np.where(np.isfinite(x), x, np.sign(x) * 1e300) for x in plant.strokes)
     lines = [
+        licence,
         f"/* {name} as a unit after FMI 2.0. This file includes all others. */",
         f"#define begin {name}_begin",
         f"#define run {name}_run",
