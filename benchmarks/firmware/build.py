@@ -67,7 +67,14 @@ def zig_version() -> str:
 def function_sizes(program: Path) -> dict[str, int]:
     """Bytes of every function of a program."""
     with program.open("rb") as file:
-        return {s.name: s["st_size"] for s in symbols(ELFFile(file)) if s["st_info"]["type"] == "STT_FUNC"}
+        return {
+            plain(s.name): s["st_size"] for s in symbols(ELFFile(file)) if s["st_info"]["type"] == "STT_FUNC"
+        }
+
+
+def plain(name: str) -> str:
+    """A function's name as the source has it: single precision adds a suffix to what is linked."""
+    return name.removesuffix("_float")
 
 
 def symbols(elf: ELFFile) -> Iterator[Symbol]:
@@ -121,7 +128,7 @@ def read_object(path: Path) -> Object:
 
 
 def _undefined(elf: ELFFile) -> frozenset[str]:
-    return frozenset(s.name for s in symbols(elf) if s["st_shndx"] == "SHN_UNDEF" and s.name)
+    return frozenset(plain(s.name) for s in symbols(elf) if s["st_shndx"] == "SHN_UNDEF" and s.name)
 
 
 def link(

@@ -12,7 +12,7 @@ from elftools.elf.elffile import ELFFile
 from numpy.typing import NDArray
 from unicorn import arm_const
 
-from firmware.build import symbols
+from firmware.build import plain, symbols
 from firmware.targets import Target
 
 # Half typed: what it exports is not declared.
@@ -92,7 +92,7 @@ class Machine:
                 if segment["p_type"] == "PT_LOAD" and segment["p_filesz"]:
                     self._emulator.mem_write(segment["p_vaddr"], segment.data())
             return {
-                symbol.name: symbol["st_value"] & ~1
+                plain(symbol.name): symbol["st_value"] & ~1
                 for symbol in symbols(elf)
                 if symbol["st_info"]["type"] == "STT_FUNC"
             }

@@ -19,6 +19,11 @@ class Provenance:
     description: str
     options: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def real(self) -> str:
+        """Type of the real numbers in C where no macro says another."""
+        return self.options.get("real", "double")
+
     def head(self, arm: str) -> list[str]:
         """The statement in print, and the licence: generated code belongs to who generates it."""
         return [*self.lines(arm), LICENCE]

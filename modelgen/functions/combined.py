@@ -57,7 +57,7 @@ def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function
 def _check(one: Combined, known: Mapping[str, Function]) -> None:
     plain = [name for name in known if not name.endswith(tuple(filter(None, WITH)))]
     suffixes = [suffix for suffix in WITH if suffix]
-    if one.name in TAKEN or one.name in known or one.name.endswith(tuple(suffixes)):
+    if one.name in TAKEN or one.name in known or one.name.endswith((*suffixes, "_float")):
         listed = ", ".join(suffixes)
         raise InputError(
             f"'{one.name}' is taken or ends in one of {listed}; choose another name",

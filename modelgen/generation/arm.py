@@ -99,6 +99,8 @@ def shown_options(options: Options) -> dict[str, str]:
         shown["jacobian"] = options.jacobian_link
     if options.nominal:
         shown["nominal"] = "folded in"
+    if options.real != "double":
+        shown["real"] = options.real
     if options.identified:
         values = json.dumps(dict(options.identified), sort_keys=True)
         shown["identified"] = hashlib.sha256(values.encode()).hexdigest()[:16]

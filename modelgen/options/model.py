@@ -10,6 +10,7 @@ from modelgen.options.field import documented, option
 
 GAINS = ("known", "estimated", "row_wise")
 PARTS = ("drives", "effects")
+REALS = ("double", "float")
 
 
 @documented(
@@ -41,6 +42,9 @@ class ModelOptions:
         doc="Whether there are derivatives of the dynamics, the largest functions.",
     )
     jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
+    real: str = option(
+        "double", "Real numbers in C where the compiler is not told: float or double.", choices=REALS
+    )
     nominal: bool = option(
         False,
         "Also fold in the nominal values of links and effects: functions that end in _nominal, and an array.",
@@ -51,6 +55,9 @@ class ModelOptions:
     def __post_init__(self) -> None:
         object.__setattr__(self, "without", parts_of(self.without))
         check_gains(self.gains)
+        if self.real not in REALS:
+            hint = suggest(self.real, REALS)
+            raise InputError(f"--real: found '{self.real}', expected {' or '.join(REALS)}{hint}")
 
     @property
     def evaluated(self) -> ModelOptions:

@@ -37,6 +37,7 @@ def packaging_files(
         "macro": macro,
         "provenance": provenance.head(arm),
         "version": version(model.arm.version),
+        "default": provenance.real,
         "real": f"${{{macro}_REAL}}",
         "sources": sorted(path for path in paths if path.endswith(".c")),
     }

@@ -26,6 +26,8 @@ def readme(model: Model, provenance: Provenance, sizes: Sequence[Sequence[str]] 
         arm=arm,
         macro=arm.upper(),
         provenance=provenance.head(arm),
+        real=provenance.real,
+        other="float" if provenance.real == "double" else "double",
         summary=wrapped(plain(model.arm.source) or f"Dynamic model of the arm {arm}.").split("\n"),
         coordinates=_table(["", "joint", "unit", ""], rows),
         functions=_table(["function", "inputs", "outputs", "operations", "meaning"], functions),

@@ -165,7 +165,7 @@ def test_float_code_calls_nothing_double_and_has_no_state(name: str, compiled: C
     called = {symbol.split("@")[0] for symbol, kind in symbols if kind in "Uw"}
     assert not called & (math | {"sincos", "malloc", "calloc", "free"})
     own = {symbol: kind for symbol, kind in symbols if symbol.startswith(f"{name}_")}
-    assert {f"{name}_{f.name}" for f in model(name).functions} <= set(own)
+    assert {f"{name}_{f.name}_float" for f in model(name).functions} <= set(own)
     assert set(own.values()) <= set("TtRr"), "code and constants"
 
 

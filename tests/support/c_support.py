@@ -86,7 +86,8 @@ class Library:
         given = [np.ascontiguousarray(x, dtype=self.type) for x in inputs]
         assert [x.size for x in given] == [a.size for a in function.arguments]
         results = {key: np.full(size, np.nan, dtype=self.type) for key, size in arrays(function).items()}
-        symbol = getattr(self.library, f"{self.arm}_{name}")
+        suffix = "_float" if self.type == np.float32 else ""
+        symbol = getattr(self.library, f"{self.arm}_{name}{suffix}")
         symbol.restype = ctypes.c_int
         status = symbol(*(ctypes.c_void_p(x.ctypes.data) for x in [*given, *results.values()]))
         return status, results

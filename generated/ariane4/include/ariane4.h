@@ -61,7 +61,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0xE075B8BAUL
+#define ARIANE4_GENERATION 0xC28FDE5FUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_MODEL "8a3fccb07c9b67498d750a5b873df117b4723e20699a1d2172320a7751cb2c94"
@@ -78,6 +78,47 @@
 #define ARIANE4_REAL_IS_double 1
 #if !ARIANE4_JOIN(ARIANE4_REAL_IS_, ARIANE4_REAL)
 #error "ARIANE4_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define ARIANE4_SINGLE_float 1
+#define ARIANE4_SINGLE_double 0
+#define ARIANE4_SINGLE ARIANE4_JOIN(ARIANE4_SINGLE_, ARIANE4_REAL)
+#if ARIANE4_SINGLE
+#define ariane4_inverse_dynamics ariane4_inverse_dynamics_float
+#define ariane4_gravity ariane4_gravity_float
+#define ariane4_bias ariane4_bias_float
+#define ariane4_mass_matrix ariane4_mass_matrix_float
+#define ariane4_forward_dynamics ariane4_forward_dynamics_float
+#define ariane4_energy ariane4_energy_float
+#define ariane4_regressor ariane4_regressor_float
+#define ariane4_regressor_standard ariane4_regressor_standard_float
+#define ariane4_regressor_packed ariane4_regressor_packed_float
+#define ariane4_slotine_li_regressor ariane4_slotine_li_regressor_float
+#define ariane4_inverse_dynamics_standard ariane4_inverse_dynamics_standard_float
+#define ariane4_gravity_standard ariane4_gravity_standard_float
+#define ariane4_bias_standard ariane4_bias_standard_float
+#define ariane4_mass_matrix_standard ariane4_mass_matrix_standard_float
+#define ariane4_forward_dynamics_standard ariane4_forward_dynamics_standard_float
+#define ariane4_energy_standard ariane4_energy_standard_float
+#define ariane4_forward_kinematics ariane4_forward_kinematics_float
+#define ariane4_jacobian ariane4_jacobian_float
+#define ariane4_motor_from_joint ariane4_motor_from_joint_float
+#define ariane4_joint_from_motor ariane4_joint_from_motor_float
+#define ariane4_drive_gain ariane4_drive_gain_float
+#define ariane4_inverse_dynamics_derivatives ariane4_inverse_dynamics_derivatives_float
+#define ariane4_forward_dynamics_derivatives ariane4_forward_dynamics_derivatives_float
+#define ariane4_inverse_dynamics_derivatives_standard ariane4_inverse_dynamics_derivatives_standard_float
+#define ariane4_forward_dynamics_derivatives_standard ariane4_forward_dynamics_derivatives_standard_float
+#define ariane4_check_parameters ariane4_check_parameters_float
+#define ariane4_check_parameters_standard ariane4_check_parameters_standard_float
+#define ariane4_model ariane4_model_float
+#define ariane4_sincos ariane4_sincos_float
+#define ariane4_regressor_rows ariane4_regressor_rows_float
+#define ariane4_regressor_columns ariane4_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

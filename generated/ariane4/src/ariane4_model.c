@@ -8,7 +8,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE075B8BAUL
+#if ARIANE4_GENERATION != 0xC28FDE5FUL
 #error "ariane4.h and ariane4_model.c are of different generations: generate the arm again"
 #endif
 

@@ -13,7 +13,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0xE075B8BAUL
+#if ARIANE4_GENERATION != 0xC28FDE5FUL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DARIANE4_SINCOS=my_sincos, or with both of
  * -DARIANE4_SIN=my_sin -DARIANE4_COS=my_cos; -include my_header.h declares it.
  */
-#define ARIANE4_SINGLE_float 1
-#define ARIANE4_SINGLE_double 0
-#define ARIANE4_SINGLE ARIANE4_JOIN(ARIANE4_SINGLE_, ARIANE4_REAL)
 #if !defined(ARIANE4_SINCOS) && !defined(ARIANE4_SIN) && !defined(ARIANE4_COS)
 #define ARIANE4_OWN_SINCOS 1
 #else

@@ -69,7 +69,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0xAC634FC1UL
+#define ARIANE4_FREE_GENERATION 0x216087AEUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_FREE_MODEL "79391f27012d8ce47144bfbc151d699a1e5dab86799c694096ed4c590478ba07"
@@ -86,6 +86,47 @@
 #define ARIANE4_FREE_REAL_IS_double 1
 #if !ARIANE4_FREE_JOIN(ARIANE4_FREE_REAL_IS_, ARIANE4_FREE_REAL)
 #error "ARIANE4_FREE_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define ARIANE4_FREE_SINGLE_float 1
+#define ARIANE4_FREE_SINGLE_double 0
+#define ARIANE4_FREE_SINGLE ARIANE4_FREE_JOIN(ARIANE4_FREE_SINGLE_, ARIANE4_FREE_REAL)
+#if ARIANE4_FREE_SINGLE
+#define ariane4_free_inverse_dynamics ariane4_free_inverse_dynamics_float
+#define ariane4_free_gravity ariane4_free_gravity_float
+#define ariane4_free_bias ariane4_free_bias_float
+#define ariane4_free_mass_matrix ariane4_free_mass_matrix_float
+#define ariane4_free_forward_dynamics ariane4_free_forward_dynamics_float
+#define ariane4_free_energy ariane4_free_energy_float
+#define ariane4_free_regressor ariane4_free_regressor_float
+#define ariane4_free_regressor_standard ariane4_free_regressor_standard_float
+#define ariane4_free_regressor_packed ariane4_free_regressor_packed_float
+#define ariane4_free_slotine_li_regressor ariane4_free_slotine_li_regressor_float
+#define ariane4_free_inverse_dynamics_standard ariane4_free_inverse_dynamics_standard_float
+#define ariane4_free_gravity_standard ariane4_free_gravity_standard_float
+#define ariane4_free_bias_standard ariane4_free_bias_standard_float
+#define ariane4_free_mass_matrix_standard ariane4_free_mass_matrix_standard_float
+#define ariane4_free_forward_dynamics_standard ariane4_free_forward_dynamics_standard_float
+#define ariane4_free_energy_standard ariane4_free_energy_standard_float
+#define ariane4_free_forward_kinematics ariane4_free_forward_kinematics_float
+#define ariane4_free_jacobian ariane4_free_jacobian_float
+#define ariane4_free_motor_from_joint ariane4_free_motor_from_joint_float
+#define ariane4_free_joint_from_motor ariane4_free_joint_from_motor_float
+#define ariane4_free_drive_gain ariane4_free_drive_gain_float
+#define ariane4_free_inverse_dynamics_derivatives ariane4_free_inverse_dynamics_derivatives_float
+#define ariane4_free_forward_dynamics_derivatives ariane4_free_forward_dynamics_derivatives_float
+#define ariane4_free_inverse_dynamics_derivatives_standard ariane4_free_inverse_dynamics_derivatives_standard_float
+#define ariane4_free_forward_dynamics_derivatives_standard ariane4_free_forward_dynamics_derivatives_standard_float
+#define ariane4_free_check_parameters ariane4_free_check_parameters_float
+#define ariane4_free_check_parameters_standard ariane4_free_check_parameters_standard_float
+#define ariane4_free_model ariane4_free_model_float
+#define ariane4_free_sincos ariane4_free_sincos_float
+#define ariane4_free_regressor_rows ariane4_free_regressor_rows_float
+#define ariane4_free_regressor_columns ariane4_free_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0xAC634FC1UL
+#if ARIANE4_FREE_GENERATION != 0x216087AEUL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DARIANE4_FREE_SINCOS=my_sincos, or with both of
  * -DARIANE4_FREE_SIN=my_sin -DARIANE4_FREE_COS=my_cos; -include my_header.h declares it.
  */
-#define ARIANE4_FREE_SINGLE_float 1
-#define ARIANE4_FREE_SINGLE_double 0
-#define ARIANE4_FREE_SINGLE ARIANE4_FREE_JOIN(ARIANE4_FREE_SINGLE_, ARIANE4_FREE_REAL)
 #if !defined(ARIANE4_FREE_SINCOS) && !defined(ARIANE4_FREE_SIN) && !defined(ARIANE4_FREE_COS)
 #define ARIANE4_FREE_OWN_SINCOS 1
 #else

@@ -86,7 +86,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x6F48A938UL
+#define ARIANE6_GENERATION 0x06FAE0A9UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE6_MODEL "ac2a59ce556c2f1c818a485f9d0c6d4da754ef25a07a354dfa818a9b37990eec"
@@ -103,6 +103,47 @@
 #define ARIANE6_REAL_IS_double 1
 #if !ARIANE6_JOIN(ARIANE6_REAL_IS_, ARIANE6_REAL)
 #error "ARIANE6_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define ARIANE6_SINGLE_float 1
+#define ARIANE6_SINGLE_double 0
+#define ARIANE6_SINGLE ARIANE6_JOIN(ARIANE6_SINGLE_, ARIANE6_REAL)
+#if ARIANE6_SINGLE
+#define ariane6_inverse_dynamics ariane6_inverse_dynamics_float
+#define ariane6_gravity ariane6_gravity_float
+#define ariane6_bias ariane6_bias_float
+#define ariane6_mass_matrix ariane6_mass_matrix_float
+#define ariane6_forward_dynamics ariane6_forward_dynamics_float
+#define ariane6_energy ariane6_energy_float
+#define ariane6_regressor ariane6_regressor_float
+#define ariane6_regressor_standard ariane6_regressor_standard_float
+#define ariane6_regressor_packed ariane6_regressor_packed_float
+#define ariane6_slotine_li_regressor ariane6_slotine_li_regressor_float
+#define ariane6_inverse_dynamics_standard ariane6_inverse_dynamics_standard_float
+#define ariane6_gravity_standard ariane6_gravity_standard_float
+#define ariane6_bias_standard ariane6_bias_standard_float
+#define ariane6_mass_matrix_standard ariane6_mass_matrix_standard_float
+#define ariane6_forward_dynamics_standard ariane6_forward_dynamics_standard_float
+#define ariane6_energy_standard ariane6_energy_standard_float
+#define ariane6_forward_kinematics ariane6_forward_kinematics_float
+#define ariane6_jacobian ariane6_jacobian_float
+#define ariane6_motor_from_joint ariane6_motor_from_joint_float
+#define ariane6_joint_from_motor ariane6_joint_from_motor_float
+#define ariane6_drive_gain ariane6_drive_gain_float
+#define ariane6_inverse_dynamics_derivatives ariane6_inverse_dynamics_derivatives_float
+#define ariane6_forward_dynamics_derivatives ariane6_forward_dynamics_derivatives_float
+#define ariane6_inverse_dynamics_derivatives_standard ariane6_inverse_dynamics_derivatives_standard_float
+#define ariane6_forward_dynamics_derivatives_standard ariane6_forward_dynamics_derivatives_standard_float
+#define ariane6_check_parameters ariane6_check_parameters_float
+#define ariane6_check_parameters_standard ariane6_check_parameters_standard_float
+#define ariane6_model ariane6_model_float
+#define ariane6_sincos ariane6_sincos_float
+#define ariane6_regressor_rows ariane6_regressor_rows_float
+#define ariane6_regressor_columns ariane6_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "ariane6.h"
 
-#if ARIANE6_GENERATION != 0x6F48A938UL
+#if ARIANE6_GENERATION != 0x06FAE0A9UL
 #error "ariane6.h and ariane6_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DARIANE6_SINCOS=my_sincos, or with both of
  * -DARIANE6_SIN=my_sin -DARIANE6_COS=my_cos; -include my_header.h declares it.
  */
-#define ARIANE6_SINGLE_float 1
-#define ARIANE6_SINGLE_double 0
-#define ARIANE6_SINGLE ARIANE6_JOIN(ARIANE6_SINGLE_, ARIANE6_REAL)
 #if !defined(ARIANE6_SINCOS) && !defined(ARIANE6_SIN) && !defined(ARIANE6_COS)
 #define ARIANE6_OWN_SINCOS 1
 #else

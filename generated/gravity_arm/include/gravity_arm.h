@@ -37,7 +37,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x0AD04BE8UL
+#define GRAVITY_ARM_GENERATION 0x3A69DECDUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_ARM_MODEL "61deec9d45de431e2e63e171a7898e38e261561ed5e7a2fea1451953288e9321"
@@ -54,6 +54,47 @@
 #define GRAVITY_ARM_REAL_IS_double 1
 #if !GRAVITY_ARM_JOIN(GRAVITY_ARM_REAL_IS_, GRAVITY_ARM_REAL)
 #error "GRAVITY_ARM_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define GRAVITY_ARM_SINGLE_float 1
+#define GRAVITY_ARM_SINGLE_double 0
+#define GRAVITY_ARM_SINGLE GRAVITY_ARM_JOIN(GRAVITY_ARM_SINGLE_, GRAVITY_ARM_REAL)
+#if GRAVITY_ARM_SINGLE
+#define gravity_arm_inverse_dynamics gravity_arm_inverse_dynamics_float
+#define gravity_arm_gravity gravity_arm_gravity_float
+#define gravity_arm_bias gravity_arm_bias_float
+#define gravity_arm_mass_matrix gravity_arm_mass_matrix_float
+#define gravity_arm_forward_dynamics gravity_arm_forward_dynamics_float
+#define gravity_arm_energy gravity_arm_energy_float
+#define gravity_arm_regressor gravity_arm_regressor_float
+#define gravity_arm_regressor_standard gravity_arm_regressor_standard_float
+#define gravity_arm_regressor_packed gravity_arm_regressor_packed_float
+#define gravity_arm_slotine_li_regressor gravity_arm_slotine_li_regressor_float
+#define gravity_arm_inverse_dynamics_standard gravity_arm_inverse_dynamics_standard_float
+#define gravity_arm_gravity_standard gravity_arm_gravity_standard_float
+#define gravity_arm_bias_standard gravity_arm_bias_standard_float
+#define gravity_arm_mass_matrix_standard gravity_arm_mass_matrix_standard_float
+#define gravity_arm_forward_dynamics_standard gravity_arm_forward_dynamics_standard_float
+#define gravity_arm_energy_standard gravity_arm_energy_standard_float
+#define gravity_arm_forward_kinematics gravity_arm_forward_kinematics_float
+#define gravity_arm_jacobian gravity_arm_jacobian_float
+#define gravity_arm_motor_from_joint gravity_arm_motor_from_joint_float
+#define gravity_arm_joint_from_motor gravity_arm_joint_from_motor_float
+#define gravity_arm_drive_gain gravity_arm_drive_gain_float
+#define gravity_arm_inverse_dynamics_derivatives gravity_arm_inverse_dynamics_derivatives_float
+#define gravity_arm_forward_dynamics_derivatives gravity_arm_forward_dynamics_derivatives_float
+#define gravity_arm_inverse_dynamics_derivatives_standard gravity_arm_inverse_dynamics_derivatives_standard_float
+#define gravity_arm_forward_dynamics_derivatives_standard gravity_arm_forward_dynamics_derivatives_standard_float
+#define gravity_arm_check_parameters gravity_arm_check_parameters_float
+#define gravity_arm_check_parameters_standard gravity_arm_check_parameters_standard_float
+#define gravity_arm_model gravity_arm_model_float
+#define gravity_arm_sincos gravity_arm_sincos_float
+#define gravity_arm_regressor_rows gravity_arm_regressor_rows_float
+#define gravity_arm_regressor_columns gravity_arm_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

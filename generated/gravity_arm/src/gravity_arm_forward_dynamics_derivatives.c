@@ -39,7 +39,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x0AD04BE8UL
+#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 

@@ -13,7 +13,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x0AD04BE8UL
+#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DGRAVITY_ARM_SINCOS=my_sincos, or with both of
  * -DGRAVITY_ARM_SIN=my_sin -DGRAVITY_ARM_COS=my_cos; -include my_header.h declares it.
  */
-#define GRAVITY_ARM_SINGLE_float 1
-#define GRAVITY_ARM_SINGLE_double 0
-#define GRAVITY_ARM_SINGLE GRAVITY_ARM_JOIN(GRAVITY_ARM_SINGLE_, GRAVITY_ARM_REAL)
 #if !defined(GRAVITY_ARM_SINCOS) && !defined(GRAVITY_ARM_SIN) && !defined(GRAVITY_ARM_COS)
 #define GRAVITY_ARM_OWN_SINCOS 1
 #else

@@ -29,7 +29,7 @@
 #define GRAVITY_LINK1_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_GENERATION 0xFBA3DE51UL
+#define GRAVITY_LINK1_GENERATION 0x6B2F8086UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_MODEL "e56ff0e07e464bfef58a0f9831f2c8207c525071b6209ad434ed6783885b3a0a"
@@ -46,6 +46,47 @@
 #define GRAVITY_LINK1_REAL_IS_double 1
 #if !GRAVITY_LINK1_JOIN(GRAVITY_LINK1_REAL_IS_, GRAVITY_LINK1_REAL)
 #error "GRAVITY_LINK1_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define GRAVITY_LINK1_SINGLE_float 1
+#define GRAVITY_LINK1_SINGLE_double 0
+#define GRAVITY_LINK1_SINGLE GRAVITY_LINK1_JOIN(GRAVITY_LINK1_SINGLE_, GRAVITY_LINK1_REAL)
+#if GRAVITY_LINK1_SINGLE
+#define gravity_link1_inverse_dynamics gravity_link1_inverse_dynamics_float
+#define gravity_link1_gravity gravity_link1_gravity_float
+#define gravity_link1_bias gravity_link1_bias_float
+#define gravity_link1_mass_matrix gravity_link1_mass_matrix_float
+#define gravity_link1_forward_dynamics gravity_link1_forward_dynamics_float
+#define gravity_link1_energy gravity_link1_energy_float
+#define gravity_link1_regressor gravity_link1_regressor_float
+#define gravity_link1_regressor_standard gravity_link1_regressor_standard_float
+#define gravity_link1_regressor_packed gravity_link1_regressor_packed_float
+#define gravity_link1_slotine_li_regressor gravity_link1_slotine_li_regressor_float
+#define gravity_link1_inverse_dynamics_standard gravity_link1_inverse_dynamics_standard_float
+#define gravity_link1_gravity_standard gravity_link1_gravity_standard_float
+#define gravity_link1_bias_standard gravity_link1_bias_standard_float
+#define gravity_link1_mass_matrix_standard gravity_link1_mass_matrix_standard_float
+#define gravity_link1_forward_dynamics_standard gravity_link1_forward_dynamics_standard_float
+#define gravity_link1_energy_standard gravity_link1_energy_standard_float
+#define gravity_link1_forward_kinematics gravity_link1_forward_kinematics_float
+#define gravity_link1_jacobian gravity_link1_jacobian_float
+#define gravity_link1_motor_from_joint gravity_link1_motor_from_joint_float
+#define gravity_link1_joint_from_motor gravity_link1_joint_from_motor_float
+#define gravity_link1_drive_gain gravity_link1_drive_gain_float
+#define gravity_link1_inverse_dynamics_derivatives gravity_link1_inverse_dynamics_derivatives_float
+#define gravity_link1_forward_dynamics_derivatives gravity_link1_forward_dynamics_derivatives_float
+#define gravity_link1_inverse_dynamics_derivatives_standard gravity_link1_inverse_dynamics_derivatives_standard_float
+#define gravity_link1_forward_dynamics_derivatives_standard gravity_link1_forward_dynamics_derivatives_standard_float
+#define gravity_link1_check_parameters gravity_link1_check_parameters_float
+#define gravity_link1_check_parameters_standard gravity_link1_check_parameters_standard_float
+#define gravity_link1_model gravity_link1_model_float
+#define gravity_link1_sincos gravity_link1_sincos_float
+#define gravity_link1_regressor_rows gravity_link1_regressor_rows_float
+#define gravity_link1_regressor_columns gravity_link1_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

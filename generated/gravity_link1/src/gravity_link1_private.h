@@ -13,7 +13,7 @@
 
 #include "gravity_link1.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xFBA3DE51UL
+#if GRAVITY_LINK1_GENERATION != 0x6B2F8086UL
 #error "gravity_link1.h and gravity_link1_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DGRAVITY_LINK1_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK1_SIN=my_sin -DGRAVITY_LINK1_COS=my_cos; -include my_header.h declares it.
  */
-#define GRAVITY_LINK1_SINGLE_float 1
-#define GRAVITY_LINK1_SINGLE_double 0
-#define GRAVITY_LINK1_SINGLE GRAVITY_LINK1_JOIN(GRAVITY_LINK1_SINGLE_, GRAVITY_LINK1_REAL)
 #if !defined(GRAVITY_LINK1_SINCOS) && !defined(GRAVITY_LINK1_SIN) && !defined(GRAVITY_LINK1_COS)
 #define GRAVITY_LINK1_OWN_SINCOS 1
 #else

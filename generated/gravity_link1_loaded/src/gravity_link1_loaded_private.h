@@ -13,7 +13,7 @@
 
 #include "gravity_link1_loaded.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xB3C46B54UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x07B7E6A6UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DGRAVITY_LINK1_LOADED_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK1_LOADED_SIN=my_sin -DGRAVITY_LINK1_LOADED_COS=my_cos; -include my_header.h declares it.
  */
-#define GRAVITY_LINK1_LOADED_SINGLE_float 1
-#define GRAVITY_LINK1_LOADED_SINGLE_double 0
-#define GRAVITY_LINK1_LOADED_SINGLE GRAVITY_LINK1_LOADED_JOIN(GRAVITY_LINK1_LOADED_SINGLE_, GRAVITY_LINK1_LOADED_REAL)
 #if !defined(GRAVITY_LINK1_LOADED_SINCOS) && !defined(GRAVITY_LINK1_LOADED_SIN) && !defined(GRAVITY_LINK1_LOADED_COS)
 #define GRAVITY_LINK1_LOADED_OWN_SINCOS 1
 #else

@@ -29,7 +29,7 @@
 #define GRAVITY_LINK2_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK2_GENERATION 0xE067EAD6UL
+#define GRAVITY_LINK2_GENERATION 0x7CDDE2B6UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK2_MODEL "1ddde3a17ccda7a0e65720f8a04e520c2a47c634edf20149046c6a68c38abc01"
@@ -46,6 +46,47 @@
 #define GRAVITY_LINK2_REAL_IS_double 1
 #if !GRAVITY_LINK2_JOIN(GRAVITY_LINK2_REAL_IS_, GRAVITY_LINK2_REAL)
 #error "GRAVITY_LINK2_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define GRAVITY_LINK2_SINGLE_float 1
+#define GRAVITY_LINK2_SINGLE_double 0
+#define GRAVITY_LINK2_SINGLE GRAVITY_LINK2_JOIN(GRAVITY_LINK2_SINGLE_, GRAVITY_LINK2_REAL)
+#if GRAVITY_LINK2_SINGLE
+#define gravity_link2_inverse_dynamics gravity_link2_inverse_dynamics_float
+#define gravity_link2_gravity gravity_link2_gravity_float
+#define gravity_link2_bias gravity_link2_bias_float
+#define gravity_link2_mass_matrix gravity_link2_mass_matrix_float
+#define gravity_link2_forward_dynamics gravity_link2_forward_dynamics_float
+#define gravity_link2_energy gravity_link2_energy_float
+#define gravity_link2_regressor gravity_link2_regressor_float
+#define gravity_link2_regressor_standard gravity_link2_regressor_standard_float
+#define gravity_link2_regressor_packed gravity_link2_regressor_packed_float
+#define gravity_link2_slotine_li_regressor gravity_link2_slotine_li_regressor_float
+#define gravity_link2_inverse_dynamics_standard gravity_link2_inverse_dynamics_standard_float
+#define gravity_link2_gravity_standard gravity_link2_gravity_standard_float
+#define gravity_link2_bias_standard gravity_link2_bias_standard_float
+#define gravity_link2_mass_matrix_standard gravity_link2_mass_matrix_standard_float
+#define gravity_link2_forward_dynamics_standard gravity_link2_forward_dynamics_standard_float
+#define gravity_link2_energy_standard gravity_link2_energy_standard_float
+#define gravity_link2_forward_kinematics gravity_link2_forward_kinematics_float
+#define gravity_link2_jacobian gravity_link2_jacobian_float
+#define gravity_link2_motor_from_joint gravity_link2_motor_from_joint_float
+#define gravity_link2_joint_from_motor gravity_link2_joint_from_motor_float
+#define gravity_link2_drive_gain gravity_link2_drive_gain_float
+#define gravity_link2_inverse_dynamics_derivatives gravity_link2_inverse_dynamics_derivatives_float
+#define gravity_link2_forward_dynamics_derivatives gravity_link2_forward_dynamics_derivatives_float
+#define gravity_link2_inverse_dynamics_derivatives_standard gravity_link2_inverse_dynamics_derivatives_standard_float
+#define gravity_link2_forward_dynamics_derivatives_standard gravity_link2_forward_dynamics_derivatives_standard_float
+#define gravity_link2_check_parameters gravity_link2_check_parameters_float
+#define gravity_link2_check_parameters_standard gravity_link2_check_parameters_standard_float
+#define gravity_link2_model gravity_link2_model_float
+#define gravity_link2_sincos gravity_link2_sincos_float
+#define gravity_link2_regressor_rows gravity_link2_regressor_rows_float
+#define gravity_link2_regressor_columns gravity_link2_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "gravity_link2.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xE067EAD6UL
+#if GRAVITY_LINK2_GENERATION != 0x7CDDE2B6UL
 #error "gravity_link2.h and gravity_link2_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DGRAVITY_LINK2_SINCOS=my_sincos, or with both of
  * -DGRAVITY_LINK2_SIN=my_sin -DGRAVITY_LINK2_COS=my_cos; -include my_header.h declares it.
  */
-#define GRAVITY_LINK2_SINGLE_float 1
-#define GRAVITY_LINK2_SINGLE_double 0
-#define GRAVITY_LINK2_SINGLE GRAVITY_LINK2_JOIN(GRAVITY_LINK2_SINGLE_, GRAVITY_LINK2_REAL)
 #if !defined(GRAVITY_LINK2_SINCOS) && !defined(GRAVITY_LINK2_SIN) && !defined(GRAVITY_LINK2_COS)
 #define GRAVITY_LINK2_OWN_SINCOS 1
 #else

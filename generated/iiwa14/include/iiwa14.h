@@ -94,7 +94,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0x71A81B4DUL
+#define IIWA14_GENERATION 0xBA2C631AUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define IIWA14_MODEL "4f01a5afe35e97fd79f71d51c6869d227bc33b1f7e6bd5668229ee16abfa0d3e"
@@ -111,6 +111,47 @@
 #define IIWA14_REAL_IS_double 1
 #if !IIWA14_JOIN(IIWA14_REAL_IS_, IIWA14_REAL)
 #error "IIWA14_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define IIWA14_SINGLE_float 1
+#define IIWA14_SINGLE_double 0
+#define IIWA14_SINGLE IIWA14_JOIN(IIWA14_SINGLE_, IIWA14_REAL)
+#if IIWA14_SINGLE
+#define iiwa14_inverse_dynamics iiwa14_inverse_dynamics_float
+#define iiwa14_gravity iiwa14_gravity_float
+#define iiwa14_bias iiwa14_bias_float
+#define iiwa14_mass_matrix iiwa14_mass_matrix_float
+#define iiwa14_forward_dynamics iiwa14_forward_dynamics_float
+#define iiwa14_energy iiwa14_energy_float
+#define iiwa14_regressor iiwa14_regressor_float
+#define iiwa14_regressor_standard iiwa14_regressor_standard_float
+#define iiwa14_regressor_packed iiwa14_regressor_packed_float
+#define iiwa14_slotine_li_regressor iiwa14_slotine_li_regressor_float
+#define iiwa14_inverse_dynamics_standard iiwa14_inverse_dynamics_standard_float
+#define iiwa14_gravity_standard iiwa14_gravity_standard_float
+#define iiwa14_bias_standard iiwa14_bias_standard_float
+#define iiwa14_mass_matrix_standard iiwa14_mass_matrix_standard_float
+#define iiwa14_forward_dynamics_standard iiwa14_forward_dynamics_standard_float
+#define iiwa14_energy_standard iiwa14_energy_standard_float
+#define iiwa14_forward_kinematics iiwa14_forward_kinematics_float
+#define iiwa14_jacobian iiwa14_jacobian_float
+#define iiwa14_motor_from_joint iiwa14_motor_from_joint_float
+#define iiwa14_joint_from_motor iiwa14_joint_from_motor_float
+#define iiwa14_drive_gain iiwa14_drive_gain_float
+#define iiwa14_inverse_dynamics_derivatives iiwa14_inverse_dynamics_derivatives_float
+#define iiwa14_forward_dynamics_derivatives iiwa14_forward_dynamics_derivatives_float
+#define iiwa14_inverse_dynamics_derivatives_standard iiwa14_inverse_dynamics_derivatives_standard_float
+#define iiwa14_forward_dynamics_derivatives_standard iiwa14_forward_dynamics_derivatives_standard_float
+#define iiwa14_check_parameters iiwa14_check_parameters_float
+#define iiwa14_check_parameters_standard iiwa14_check_parameters_standard_float
+#define iiwa14_model iiwa14_model_float
+#define iiwa14_sincos iiwa14_sincos_float
+#define iiwa14_regressor_rows iiwa14_regressor_rows_float
+#define iiwa14_regressor_columns iiwa14_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

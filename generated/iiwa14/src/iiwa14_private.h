@@ -13,7 +13,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0x71A81B4DUL
+#if IIWA14_GENERATION != 0xBA2C631AUL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DIIWA14_SINCOS=my_sincos, or with both of
  * -DIIWA14_SIN=my_sin -DIIWA14_COS=my_cos; -include my_header.h declares it.
  */
-#define IIWA14_SINGLE_float 1
-#define IIWA14_SINGLE_double 0
-#define IIWA14_SINGLE IIWA14_JOIN(IIWA14_SINGLE_, IIWA14_REAL)
 #if !defined(IIWA14_SINCOS) && !defined(IIWA14_SIN) && !defined(IIWA14_COS)
 #define IIWA14_OWN_SINCOS 1
 #else

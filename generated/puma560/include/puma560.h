@@ -85,7 +85,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0x35FE5CAFUL
+#define PUMA560_GENERATION 0xE4917E55UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define PUMA560_MODEL "e8eb13fe224405b26bd20c4ed5e9d26e90682bc514ecddfa30f598ec8b9ba255"
@@ -102,6 +102,47 @@
 #define PUMA560_REAL_IS_double 1
 #if !PUMA560_JOIN(PUMA560_REAL_IS_, PUMA560_REAL)
 #error "PUMA560_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define PUMA560_SINGLE_float 1
+#define PUMA560_SINGLE_double 0
+#define PUMA560_SINGLE PUMA560_JOIN(PUMA560_SINGLE_, PUMA560_REAL)
+#if PUMA560_SINGLE
+#define puma560_inverse_dynamics puma560_inverse_dynamics_float
+#define puma560_gravity puma560_gravity_float
+#define puma560_bias puma560_bias_float
+#define puma560_mass_matrix puma560_mass_matrix_float
+#define puma560_forward_dynamics puma560_forward_dynamics_float
+#define puma560_energy puma560_energy_float
+#define puma560_regressor puma560_regressor_float
+#define puma560_regressor_standard puma560_regressor_standard_float
+#define puma560_regressor_packed puma560_regressor_packed_float
+#define puma560_slotine_li_regressor puma560_slotine_li_regressor_float
+#define puma560_inverse_dynamics_standard puma560_inverse_dynamics_standard_float
+#define puma560_gravity_standard puma560_gravity_standard_float
+#define puma560_bias_standard puma560_bias_standard_float
+#define puma560_mass_matrix_standard puma560_mass_matrix_standard_float
+#define puma560_forward_dynamics_standard puma560_forward_dynamics_standard_float
+#define puma560_energy_standard puma560_energy_standard_float
+#define puma560_forward_kinematics puma560_forward_kinematics_float
+#define puma560_jacobian puma560_jacobian_float
+#define puma560_motor_from_joint puma560_motor_from_joint_float
+#define puma560_joint_from_motor puma560_joint_from_motor_float
+#define puma560_drive_gain puma560_drive_gain_float
+#define puma560_inverse_dynamics_derivatives puma560_inverse_dynamics_derivatives_float
+#define puma560_forward_dynamics_derivatives puma560_forward_dynamics_derivatives_float
+#define puma560_inverse_dynamics_derivatives_standard puma560_inverse_dynamics_derivatives_standard_float
+#define puma560_forward_dynamics_derivatives_standard puma560_forward_dynamics_derivatives_standard_float
+#define puma560_check_parameters puma560_check_parameters_float
+#define puma560_check_parameters_standard puma560_check_parameters_standard_float
+#define puma560_model puma560_model_float
+#define puma560_sincos puma560_sincos_float
+#define puma560_regressor_rows puma560_regressor_rows_float
+#define puma560_regressor_columns puma560_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

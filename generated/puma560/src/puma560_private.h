@@ -13,7 +13,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0x35FE5CAFUL
+#if PUMA560_GENERATION != 0xE4917E55UL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DPUMA560_SINCOS=my_sincos, or with both of
  * -DPUMA560_SIN=my_sin -DPUMA560_COS=my_cos; -include my_header.h declares it.
  */
-#define PUMA560_SINGLE_float 1
-#define PUMA560_SINGLE_double 0
-#define PUMA560_SINGLE PUMA560_JOIN(PUMA560_SINGLE_, PUMA560_REAL)
 #if !defined(PUMA560_SINCOS) && !defined(PUMA560_SIN) && !defined(PUMA560_COS)
 #define PUMA560_OWN_SINCOS 1
 #else

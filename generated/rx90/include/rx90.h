@@ -82,7 +82,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x064D79A3UL
+#define RX90_GENERATION 0xCA5FC14FUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"
@@ -99,6 +99,47 @@
 #define RX90_REAL_IS_double 1
 #if !RX90_JOIN(RX90_REAL_IS_, RX90_REAL)
 #error "RX90_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define RX90_SINGLE_float 1
+#define RX90_SINGLE_double 0
+#define RX90_SINGLE RX90_JOIN(RX90_SINGLE_, RX90_REAL)
+#if RX90_SINGLE
+#define rx90_inverse_dynamics rx90_inverse_dynamics_float
+#define rx90_gravity rx90_gravity_float
+#define rx90_bias rx90_bias_float
+#define rx90_mass_matrix rx90_mass_matrix_float
+#define rx90_forward_dynamics rx90_forward_dynamics_float
+#define rx90_energy rx90_energy_float
+#define rx90_regressor rx90_regressor_float
+#define rx90_regressor_standard rx90_regressor_standard_float
+#define rx90_regressor_packed rx90_regressor_packed_float
+#define rx90_slotine_li_regressor rx90_slotine_li_regressor_float
+#define rx90_inverse_dynamics_standard rx90_inverse_dynamics_standard_float
+#define rx90_gravity_standard rx90_gravity_standard_float
+#define rx90_bias_standard rx90_bias_standard_float
+#define rx90_mass_matrix_standard rx90_mass_matrix_standard_float
+#define rx90_forward_dynamics_standard rx90_forward_dynamics_standard_float
+#define rx90_energy_standard rx90_energy_standard_float
+#define rx90_forward_kinematics rx90_forward_kinematics_float
+#define rx90_jacobian rx90_jacobian_float
+#define rx90_motor_from_joint rx90_motor_from_joint_float
+#define rx90_joint_from_motor rx90_joint_from_motor_float
+#define rx90_drive_gain rx90_drive_gain_float
+#define rx90_inverse_dynamics_derivatives rx90_inverse_dynamics_derivatives_float
+#define rx90_forward_dynamics_derivatives rx90_forward_dynamics_derivatives_float
+#define rx90_inverse_dynamics_derivatives_standard rx90_inverse_dynamics_derivatives_standard_float
+#define rx90_forward_dynamics_derivatives_standard rx90_forward_dynamics_derivatives_standard_float
+#define rx90_check_parameters rx90_check_parameters_float
+#define rx90_check_parameters_standard rx90_check_parameters_standard_float
+#define rx90_model rx90_model_float
+#define rx90_sincos rx90_sincos_float
+#define rx90_regressor_rows rx90_regressor_rows_float
+#define rx90_regressor_columns rx90_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0x064D79A3UL
+#if RX90_GENERATION != 0xCA5FC14FUL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DRX90_SINCOS=my_sincos, or with both of
  * -DRX90_SIN=my_sin -DRX90_COS=my_cos; -include my_header.h declares it.
  */
-#define RX90_SINGLE_float 1
-#define RX90_SINGLE_double 0
-#define RX90_SINGLE RX90_JOIN(RX90_SINGLE_, RX90_REAL)
 #if !defined(RX90_SINCOS) && !defined(RX90_SIN) && !defined(RX90_COS)
 #define RX90_OWN_SINCOS 1
 #else

@@ -53,7 +53,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0x8701BA89UL
+#define SCARA_GENERATION 0xB0ECD6C0UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCARA_MODEL "c1d518ff4a0020fbd2ee0fb14fc12a05e9368b5ecb740059a83582da6419b7fa"
@@ -70,6 +70,47 @@
 #define SCARA_REAL_IS_double 1
 #if !SCARA_JOIN(SCARA_REAL_IS_, SCARA_REAL)
 #error "SCARA_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define SCARA_SINGLE_float 1
+#define SCARA_SINGLE_double 0
+#define SCARA_SINGLE SCARA_JOIN(SCARA_SINGLE_, SCARA_REAL)
+#if SCARA_SINGLE
+#define scara_inverse_dynamics scara_inverse_dynamics_float
+#define scara_gravity scara_gravity_float
+#define scara_bias scara_bias_float
+#define scara_mass_matrix scara_mass_matrix_float
+#define scara_forward_dynamics scara_forward_dynamics_float
+#define scara_energy scara_energy_float
+#define scara_regressor scara_regressor_float
+#define scara_regressor_standard scara_regressor_standard_float
+#define scara_regressor_packed scara_regressor_packed_float
+#define scara_slotine_li_regressor scara_slotine_li_regressor_float
+#define scara_inverse_dynamics_standard scara_inverse_dynamics_standard_float
+#define scara_gravity_standard scara_gravity_standard_float
+#define scara_bias_standard scara_bias_standard_float
+#define scara_mass_matrix_standard scara_mass_matrix_standard_float
+#define scara_forward_dynamics_standard scara_forward_dynamics_standard_float
+#define scara_energy_standard scara_energy_standard_float
+#define scara_forward_kinematics scara_forward_kinematics_float
+#define scara_jacobian scara_jacobian_float
+#define scara_motor_from_joint scara_motor_from_joint_float
+#define scara_joint_from_motor scara_joint_from_motor_float
+#define scara_drive_gain scara_drive_gain_float
+#define scara_inverse_dynamics_derivatives scara_inverse_dynamics_derivatives_float
+#define scara_forward_dynamics_derivatives scara_forward_dynamics_derivatives_float
+#define scara_inverse_dynamics_derivatives_standard scara_inverse_dynamics_derivatives_standard_float
+#define scara_forward_dynamics_derivatives_standard scara_forward_dynamics_derivatives_standard_float
+#define scara_check_parameters scara_check_parameters_float
+#define scara_check_parameters_standard scara_check_parameters_standard_float
+#define scara_model scara_model_float
+#define scara_sincos scara_sincos_float
+#define scara_regressor_rows scara_regressor_rows_float
+#define scara_regressor_columns scara_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -20,7 +20,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x8701BA89UL
+#if SCARA_GENERATION != 0xB0ECD6C0UL
 #error "scara.h and scara_jacobian.c are of different generations: generate the arm again"
 #endif
 

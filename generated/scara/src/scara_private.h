@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x8701BA89UL
+#if SCARA_GENERATION != 0xB0ECD6C0UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DSCARA_SINCOS=my_sincos, or with both of
  * -DSCARA_SIN=my_sin -DSCARA_COS=my_cos; -include my_header.h declares it.
  */
-#define SCARA_SINGLE_float 1
-#define SCARA_SINGLE_double 0
-#define SCARA_SINGLE SCARA_JOIN(SCARA_SINGLE_, SCARA_REAL)
 #if !defined(SCARA_SINCOS) && !defined(SCARA_SIN) && !defined(SCARA_COS)
 #define SCARA_OWN_SINCOS 1
 #else

@@ -29,7 +29,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0x1E5FC142UL
+#define SCREW_AXIS_GENERATION 0xA2FC5CAAUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCREW_AXIS_MODEL "9d21e4307785b4a34c4e1b8ce4a51c6dc39e1230071915159dd74f3b2739f09b"
@@ -46,6 +46,47 @@
 #define SCREW_AXIS_REAL_IS_double 1
 #if !SCREW_AXIS_JOIN(SCREW_AXIS_REAL_IS_, SCREW_AXIS_REAL)
 #error "SCREW_AXIS_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define SCREW_AXIS_SINGLE_float 1
+#define SCREW_AXIS_SINGLE_double 0
+#define SCREW_AXIS_SINGLE SCREW_AXIS_JOIN(SCREW_AXIS_SINGLE_, SCREW_AXIS_REAL)
+#if SCREW_AXIS_SINGLE
+#define screw_axis_inverse_dynamics screw_axis_inverse_dynamics_float
+#define screw_axis_gravity screw_axis_gravity_float
+#define screw_axis_bias screw_axis_bias_float
+#define screw_axis_mass_matrix screw_axis_mass_matrix_float
+#define screw_axis_forward_dynamics screw_axis_forward_dynamics_float
+#define screw_axis_energy screw_axis_energy_float
+#define screw_axis_regressor screw_axis_regressor_float
+#define screw_axis_regressor_standard screw_axis_regressor_standard_float
+#define screw_axis_regressor_packed screw_axis_regressor_packed_float
+#define screw_axis_slotine_li_regressor screw_axis_slotine_li_regressor_float
+#define screw_axis_inverse_dynamics_standard screw_axis_inverse_dynamics_standard_float
+#define screw_axis_gravity_standard screw_axis_gravity_standard_float
+#define screw_axis_bias_standard screw_axis_bias_standard_float
+#define screw_axis_mass_matrix_standard screw_axis_mass_matrix_standard_float
+#define screw_axis_forward_dynamics_standard screw_axis_forward_dynamics_standard_float
+#define screw_axis_energy_standard screw_axis_energy_standard_float
+#define screw_axis_forward_kinematics screw_axis_forward_kinematics_float
+#define screw_axis_jacobian screw_axis_jacobian_float
+#define screw_axis_motor_from_joint screw_axis_motor_from_joint_float
+#define screw_axis_joint_from_motor screw_axis_joint_from_motor_float
+#define screw_axis_drive_gain screw_axis_drive_gain_float
+#define screw_axis_inverse_dynamics_derivatives screw_axis_inverse_dynamics_derivatives_float
+#define screw_axis_forward_dynamics_derivatives screw_axis_forward_dynamics_derivatives_float
+#define screw_axis_inverse_dynamics_derivatives_standard screw_axis_inverse_dynamics_derivatives_standard_float
+#define screw_axis_forward_dynamics_derivatives_standard screw_axis_forward_dynamics_derivatives_standard_float
+#define screw_axis_check_parameters screw_axis_check_parameters_float
+#define screw_axis_check_parameters_standard screw_axis_check_parameters_standard_float
+#define screw_axis_model screw_axis_model_float
+#define screw_axis_sincos screw_axis_sincos_float
+#define screw_axis_regressor_rows screw_axis_regressor_rows_float
+#define screw_axis_regressor_columns screw_axis_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "screw_axis.h"
 
-#if SCREW_AXIS_GENERATION != 0x1E5FC142UL
+#if SCREW_AXIS_GENERATION != 0xA2FC5CAAUL
 #error "screw_axis.h and screw_axis_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DSCREW_AXIS_SINCOS=my_sincos, or with both of
  * -DSCREW_AXIS_SIN=my_sin -DSCREW_AXIS_COS=my_cos; -include my_header.h declares it.
  */
-#define SCREW_AXIS_SINGLE_float 1
-#define SCREW_AXIS_SINGLE_double 0
-#define SCREW_AXIS_SINGLE SCREW_AXIS_JOIN(SCREW_AXIS_SINGLE_, SCREW_AXIS_REAL)
 #if !defined(SCREW_AXIS_SINCOS) && !defined(SCREW_AXIS_SIN) && !defined(SCREW_AXIS_COS)
 #define SCREW_AXIS_OWN_SINCOS 1
 #else

@@ -71,7 +71,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0x58B7EA77UL
+#define TWO_FINGERS_GENERATION 0x6BB56C37UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define TWO_FINGERS_MODEL "a6b389943be5f64e02da02beae8c9b13d86a3cb7770757fcfde02c5d63e64a26"
@@ -88,6 +88,47 @@
 #define TWO_FINGERS_REAL_IS_double 1
 #if !TWO_FINGERS_JOIN(TWO_FINGERS_REAL_IS_, TWO_FINGERS_REAL)
 #error "TWO_FINGERS_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define TWO_FINGERS_SINGLE_float 1
+#define TWO_FINGERS_SINGLE_double 0
+#define TWO_FINGERS_SINGLE TWO_FINGERS_JOIN(TWO_FINGERS_SINGLE_, TWO_FINGERS_REAL)
+#if TWO_FINGERS_SINGLE
+#define two_fingers_inverse_dynamics two_fingers_inverse_dynamics_float
+#define two_fingers_gravity two_fingers_gravity_float
+#define two_fingers_bias two_fingers_bias_float
+#define two_fingers_mass_matrix two_fingers_mass_matrix_float
+#define two_fingers_forward_dynamics two_fingers_forward_dynamics_float
+#define two_fingers_energy two_fingers_energy_float
+#define two_fingers_regressor two_fingers_regressor_float
+#define two_fingers_regressor_standard two_fingers_regressor_standard_float
+#define two_fingers_regressor_packed two_fingers_regressor_packed_float
+#define two_fingers_slotine_li_regressor two_fingers_slotine_li_regressor_float
+#define two_fingers_inverse_dynamics_standard two_fingers_inverse_dynamics_standard_float
+#define two_fingers_gravity_standard two_fingers_gravity_standard_float
+#define two_fingers_bias_standard two_fingers_bias_standard_float
+#define two_fingers_mass_matrix_standard two_fingers_mass_matrix_standard_float
+#define two_fingers_forward_dynamics_standard two_fingers_forward_dynamics_standard_float
+#define two_fingers_energy_standard two_fingers_energy_standard_float
+#define two_fingers_forward_kinematics two_fingers_forward_kinematics_float
+#define two_fingers_jacobian two_fingers_jacobian_float
+#define two_fingers_motor_from_joint two_fingers_motor_from_joint_float
+#define two_fingers_joint_from_motor two_fingers_joint_from_motor_float
+#define two_fingers_drive_gain two_fingers_drive_gain_float
+#define two_fingers_inverse_dynamics_derivatives two_fingers_inverse_dynamics_derivatives_float
+#define two_fingers_forward_dynamics_derivatives two_fingers_forward_dynamics_derivatives_float
+#define two_fingers_inverse_dynamics_derivatives_standard two_fingers_inverse_dynamics_derivatives_standard_float
+#define two_fingers_forward_dynamics_derivatives_standard two_fingers_forward_dynamics_derivatives_standard_float
+#define two_fingers_check_parameters two_fingers_check_parameters_float
+#define two_fingers_check_parameters_standard two_fingers_check_parameters_standard_float
+#define two_fingers_model two_fingers_model_float
+#define two_fingers_sincos two_fingers_sincos_float
+#define two_fingers_regressor_rows two_fingers_regressor_rows_float
+#define two_fingers_regressor_columns two_fingers_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "two_fingers.h"
 
-#if TWO_FINGERS_GENERATION != 0x58B7EA77UL
+#if TWO_FINGERS_GENERATION != 0x6BB56C37UL
 #error "two_fingers.h and two_fingers_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DTWO_FINGERS_SINCOS=my_sincos, or with both of
  * -DTWO_FINGERS_SIN=my_sin -DTWO_FINGERS_COS=my_cos; -include my_header.h declares it.
  */
-#define TWO_FINGERS_SINGLE_float 1
-#define TWO_FINGERS_SINGLE_double 0
-#define TWO_FINGERS_SINGLE TWO_FINGERS_JOIN(TWO_FINGERS_SINGLE_, TWO_FINGERS_REAL)
 #if !defined(TWO_FINGERS_SINCOS) && !defined(TWO_FINGERS_SIN) && !defined(TWO_FINGERS_COS)
 #define TWO_FINGERS_OWN_SINCOS 1
 #else

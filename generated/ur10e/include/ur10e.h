@@ -83,7 +83,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0xF8137B29UL
+#define UR10E_GENERATION 0x922F0786UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define UR10E_MODEL "7af72714a52b4b6a026bb82666db6346a9dd95fbc89b18b5f169b9ced95f8107"
@@ -100,6 +100,47 @@
 #define UR10E_REAL_IS_double 1
 #if !UR10E_JOIN(UR10E_REAL_IS_, UR10E_REAL)
 #error "UR10E_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define UR10E_SINGLE_float 1
+#define UR10E_SINGLE_double 0
+#define UR10E_SINGLE UR10E_JOIN(UR10E_SINGLE_, UR10E_REAL)
+#if UR10E_SINGLE
+#define ur10e_inverse_dynamics ur10e_inverse_dynamics_float
+#define ur10e_gravity ur10e_gravity_float
+#define ur10e_bias ur10e_bias_float
+#define ur10e_mass_matrix ur10e_mass_matrix_float
+#define ur10e_forward_dynamics ur10e_forward_dynamics_float
+#define ur10e_energy ur10e_energy_float
+#define ur10e_regressor ur10e_regressor_float
+#define ur10e_regressor_standard ur10e_regressor_standard_float
+#define ur10e_regressor_packed ur10e_regressor_packed_float
+#define ur10e_slotine_li_regressor ur10e_slotine_li_regressor_float
+#define ur10e_inverse_dynamics_standard ur10e_inverse_dynamics_standard_float
+#define ur10e_gravity_standard ur10e_gravity_standard_float
+#define ur10e_bias_standard ur10e_bias_standard_float
+#define ur10e_mass_matrix_standard ur10e_mass_matrix_standard_float
+#define ur10e_forward_dynamics_standard ur10e_forward_dynamics_standard_float
+#define ur10e_energy_standard ur10e_energy_standard_float
+#define ur10e_forward_kinematics ur10e_forward_kinematics_float
+#define ur10e_jacobian ur10e_jacobian_float
+#define ur10e_motor_from_joint ur10e_motor_from_joint_float
+#define ur10e_joint_from_motor ur10e_joint_from_motor_float
+#define ur10e_drive_gain ur10e_drive_gain_float
+#define ur10e_inverse_dynamics_derivatives ur10e_inverse_dynamics_derivatives_float
+#define ur10e_forward_dynamics_derivatives ur10e_forward_dynamics_derivatives_float
+#define ur10e_inverse_dynamics_derivatives_standard ur10e_inverse_dynamics_derivatives_standard_float
+#define ur10e_forward_dynamics_derivatives_standard ur10e_forward_dynamics_derivatives_standard_float
+#define ur10e_check_parameters ur10e_check_parameters_float
+#define ur10e_check_parameters_standard ur10e_check_parameters_standard_float
+#define ur10e_model ur10e_model_float
+#define ur10e_sincos ur10e_sincos_float
+#define ur10e_regressor_rows ur10e_regressor_rows_float
+#define ur10e_regressor_columns ur10e_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

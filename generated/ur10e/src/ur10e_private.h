@@ -13,7 +13,7 @@
 
 #include "ur10e.h"
 
-#if UR10E_GENERATION != 0xF8137B29UL
+#if UR10E_GENERATION != 0x922F0786UL
 #error "ur10e.h and ur10e_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DUR10E_SINCOS=my_sincos, or with both of
  * -DUR10E_SIN=my_sin -DUR10E_COS=my_cos; -include my_header.h declares it.
  */
-#define UR10E_SINGLE_float 1
-#define UR10E_SINGLE_double 0
-#define UR10E_SINGLE UR10E_JOIN(UR10E_SINGLE_, UR10E_REAL)
 #if !defined(UR10E_SINCOS) && !defined(UR10E_SIN) && !defined(UR10E_COS)
 #define UR10E_OWN_SINCOS 1
 #else

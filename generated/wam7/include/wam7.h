@@ -96,7 +96,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x4874A670UL
+#define WAM7_GENERATION 0xCD30D7BEUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define WAM7_MODEL "552353c9ea1f05cf3522da2330779db9d5ae95abc9b7ddc1779c790670b7dd0e"
@@ -113,6 +113,47 @@
 #define WAM7_REAL_IS_double 1
 #if !WAM7_JOIN(WAM7_REAL_IS_, WAM7_REAL)
 #error "WAM7_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define WAM7_SINGLE_float 1
+#define WAM7_SINGLE_double 0
+#define WAM7_SINGLE WAM7_JOIN(WAM7_SINGLE_, WAM7_REAL)
+#if WAM7_SINGLE
+#define wam7_inverse_dynamics wam7_inverse_dynamics_float
+#define wam7_gravity wam7_gravity_float
+#define wam7_bias wam7_bias_float
+#define wam7_mass_matrix wam7_mass_matrix_float
+#define wam7_forward_dynamics wam7_forward_dynamics_float
+#define wam7_energy wam7_energy_float
+#define wam7_regressor wam7_regressor_float
+#define wam7_regressor_standard wam7_regressor_standard_float
+#define wam7_regressor_packed wam7_regressor_packed_float
+#define wam7_slotine_li_regressor wam7_slotine_li_regressor_float
+#define wam7_inverse_dynamics_standard wam7_inverse_dynamics_standard_float
+#define wam7_gravity_standard wam7_gravity_standard_float
+#define wam7_bias_standard wam7_bias_standard_float
+#define wam7_mass_matrix_standard wam7_mass_matrix_standard_float
+#define wam7_forward_dynamics_standard wam7_forward_dynamics_standard_float
+#define wam7_energy_standard wam7_energy_standard_float
+#define wam7_forward_kinematics wam7_forward_kinematics_float
+#define wam7_jacobian wam7_jacobian_float
+#define wam7_motor_from_joint wam7_motor_from_joint_float
+#define wam7_joint_from_motor wam7_joint_from_motor_float
+#define wam7_drive_gain wam7_drive_gain_float
+#define wam7_inverse_dynamics_derivatives wam7_inverse_dynamics_derivatives_float
+#define wam7_forward_dynamics_derivatives wam7_forward_dynamics_derivatives_float
+#define wam7_inverse_dynamics_derivatives_standard wam7_inverse_dynamics_derivatives_standard_float
+#define wam7_forward_dynamics_derivatives_standard wam7_forward_dynamics_derivatives_standard_float
+#define wam7_check_parameters wam7_check_parameters_float
+#define wam7_check_parameters_standard wam7_check_parameters_standard_float
+#define wam7_model wam7_model_float
+#define wam7_sincos wam7_sincos_float
+#define wam7_regressor_rows wam7_regressor_rows_float
+#define wam7_regressor_columns wam7_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0x4874A670UL
+#if WAM7_GENERATION != 0xCD30D7BEUL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DWAM7_SINCOS=my_sincos, or with both of
  * -DWAM7_SIN=my_sin -DWAM7_COS=my_cos; -include my_header.h declares it.
  */
-#define WAM7_SINGLE_float 1
-#define WAM7_SINGLE_double 0
-#define WAM7_SINGLE WAM7_JOIN(WAM7_SINGLE_, WAM7_REAL)
 #if !defined(WAM7_SINCOS) && !defined(WAM7_SIN) && !defined(WAM7_COS)
 #define WAM7_OWN_SINCOS 1
 #else

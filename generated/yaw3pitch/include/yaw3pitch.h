@@ -50,7 +50,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0x9DCBDEABUL
+#define YAW3PITCH_GENERATION 0x87E0A27FUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define YAW3PITCH_MODEL "839ceb1d876030e9f1e9ebe843a695b9ac89cde5dc1ab9d51167fc98b5e5466f"
@@ -67,6 +67,47 @@
 #define YAW3PITCH_REAL_IS_double 1
 #if !YAW3PITCH_JOIN(YAW3PITCH_REAL_IS_, YAW3PITCH_REAL)
 #error "YAW3PITCH_REAL must be float or double"
+#endif
+
+/*
+ * In single precision every name that is linked ends in _float: a caller of the other precision does not link,
+ * and a program may hold both.
+ */
+#define YAW3PITCH_SINGLE_float 1
+#define YAW3PITCH_SINGLE_double 0
+#define YAW3PITCH_SINGLE YAW3PITCH_JOIN(YAW3PITCH_SINGLE_, YAW3PITCH_REAL)
+#if YAW3PITCH_SINGLE
+#define yaw3pitch_inverse_dynamics yaw3pitch_inverse_dynamics_float
+#define yaw3pitch_gravity yaw3pitch_gravity_float
+#define yaw3pitch_bias yaw3pitch_bias_float
+#define yaw3pitch_mass_matrix yaw3pitch_mass_matrix_float
+#define yaw3pitch_forward_dynamics yaw3pitch_forward_dynamics_float
+#define yaw3pitch_energy yaw3pitch_energy_float
+#define yaw3pitch_regressor yaw3pitch_regressor_float
+#define yaw3pitch_regressor_standard yaw3pitch_regressor_standard_float
+#define yaw3pitch_regressor_packed yaw3pitch_regressor_packed_float
+#define yaw3pitch_slotine_li_regressor yaw3pitch_slotine_li_regressor_float
+#define yaw3pitch_inverse_dynamics_standard yaw3pitch_inverse_dynamics_standard_float
+#define yaw3pitch_gravity_standard yaw3pitch_gravity_standard_float
+#define yaw3pitch_bias_standard yaw3pitch_bias_standard_float
+#define yaw3pitch_mass_matrix_standard yaw3pitch_mass_matrix_standard_float
+#define yaw3pitch_forward_dynamics_standard yaw3pitch_forward_dynamics_standard_float
+#define yaw3pitch_energy_standard yaw3pitch_energy_standard_float
+#define yaw3pitch_forward_kinematics yaw3pitch_forward_kinematics_float
+#define yaw3pitch_jacobian yaw3pitch_jacobian_float
+#define yaw3pitch_motor_from_joint yaw3pitch_motor_from_joint_float
+#define yaw3pitch_joint_from_motor yaw3pitch_joint_from_motor_float
+#define yaw3pitch_drive_gain yaw3pitch_drive_gain_float
+#define yaw3pitch_inverse_dynamics_derivatives yaw3pitch_inverse_dynamics_derivatives_float
+#define yaw3pitch_forward_dynamics_derivatives yaw3pitch_forward_dynamics_derivatives_float
+#define yaw3pitch_inverse_dynamics_derivatives_standard yaw3pitch_inverse_dynamics_derivatives_standard_float
+#define yaw3pitch_forward_dynamics_derivatives_standard yaw3pitch_forward_dynamics_derivatives_standard_float
+#define yaw3pitch_check_parameters yaw3pitch_check_parameters_float
+#define yaw3pitch_check_parameters_standard yaw3pitch_check_parameters_standard_float
+#define yaw3pitch_model yaw3pitch_model_float
+#define yaw3pitch_sincos yaw3pitch_sincos_float
+#define yaw3pitch_regressor_rows yaw3pitch_regressor_rows_float
+#define yaw3pitch_regressor_columns yaw3pitch_regressor_columns_float
 #endif
 
 #ifdef __cplusplus

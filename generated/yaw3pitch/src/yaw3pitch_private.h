@@ -13,7 +13,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0x9DCBDEABUL
+#if YAW3PITCH_GENERATION != 0x87E0A27FUL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -32,9 +32,6 @@
  * The target's own takes its place with -DYAW3PITCH_SINCOS=my_sincos, or with both of
  * -DYAW3PITCH_SIN=my_sin -DYAW3PITCH_COS=my_cos; -include my_header.h declares it.
  */
-#define YAW3PITCH_SINGLE_float 1
-#define YAW3PITCH_SINGLE_double 0
-#define YAW3PITCH_SINGLE YAW3PITCH_JOIN(YAW3PITCH_SINGLE_, YAW3PITCH_REAL)
 #if !defined(YAW3PITCH_SINCOS) && !defined(YAW3PITCH_SIN) && !defined(YAW3PITCH_COS)
 #define YAW3PITCH_OWN_SINCOS 1
 #else

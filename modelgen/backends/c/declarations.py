@@ -65,8 +65,9 @@ def function_text(model: Model, function: Function) -> FunctionText:
 
 @dataclass(frozen=True)
 class ParameterCheck:
-    """A vector of parameters checked alone: prototype, what it is, its length, its bound squared."""
+    """A vector of parameters checked alone: suffix, prototype, meaning, length, bound squared."""
 
+    suffix: str
     signature: str
     text: str
     size: int
@@ -84,7 +85,7 @@ def parameter_checks(model: Model) -> list[ParameterCheck]:
                 length = argument_length(model, function, a)
                 signature = f"int {arm}_check_parameters{suffix}(const {arm}_real_t parameters[{length}])"
                 limit = literal(arm, a.bound * a.bound)
-                found[suffix] = ParameterCheck(signature, a.text, a.size, limit)
+                found[suffix] = ParameterCheck(suffix, signature, a.text, a.size, limit)
     return list(found.values())
 
 
@@ -122,8 +123,21 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
         ),
         "packed": packed,
         "nominal": bool(model.nominal),
+        "linked": _linked(model),
         "functions": functions,
     }
+
+
+def _linked(model: Model) -> list[str]:
+    """Names with external linkage."""
+    suffixes = [check.suffix for check in parameter_checks(model)]
+    names = [function.name for function in model.functions]
+    names += [*(f"check_parameters{suffix}" for suffix in suffixes), "model", "sincos"]
+    if "regressor_packed" in names:
+        names += ["regressor_rows", "regressor_columns"]
+    if model.nominal:
+        names.append("nominal_parameters")
+    return [f"{model.arm.name}_{name}" for name in names]
 
 
 def _indices(macro: str, kind: str, rows: Iterable[tuple[str, str]]) -> list[str]:

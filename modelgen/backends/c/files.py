@@ -39,7 +39,11 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     common["checks"] = parameter_checks(model)
     files = {
         f"include/{arm}.h": render(
-            "c/header.h.j2", **common, **header_values(model, texts), model=_identity(model, provenance)
+            "c/header.h.j2",
+            **common,
+            **header_values(model, texts),
+            model=_identity(model, provenance),
+            real=provenance.real,
         ),
         f"src/{arm}_private.h": render("c/private.h.j2", **common, squares=_squares(model)),
         f"src/{arm}_check_parameters.c": render("c/check_parameters.c.j2", **common),
