@@ -18,6 +18,7 @@ SELECTED = [
     ("ariane4", "gravity"),
     ("ariane4", "forward_dynamics"),
     ("ariane4", "joint_from_motor"),
+    ("ariane4", "inverse_dynamics_derivatives"),
     ("ur10e", "inverse_dynamics"),
     ("ur10e", "forward_dynamics"),
     ("ur10e", "jacobian"),
