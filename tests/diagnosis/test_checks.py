@@ -200,4 +200,4 @@ def test_a_delay_of_one_joint_within_a_sample_may_be_the_log_s(
     check = admissible(replace(cause, trial=trial), equations)
     assert check.decides
     assert check.passed == passed
-    assert passed or "is less than a sample of 10 ms" in check.text
+    assert passed or "is less than a sample of 0.01 s" in check.text

@@ -142,7 +142,7 @@ def _out_of_step(cause: Cause, equations: Equations) -> str:
     if abs(delay) >= interval:
         return ""
     return (
-        f"{1e3 * delay:.2g} ms at one joint is less than a sample of {1e3 * interval:.2g} ms, in which a log "
+        f"{delay:.2g} s at one joint is less than a sample of {interval:.2g} s, in which a log "
         "may read one channel after the other; log faster to tell"
     )
 

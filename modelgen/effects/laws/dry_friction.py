@@ -14,6 +14,7 @@ from modelgen.effects.laws.velocity_friction import (
     Friction,
     ViscousFriction,
     direction,
+    powered,
 )
 from modelgen.effects.traits import Numbers, Presence, Seen, Shows
 from modelgen.effects.variables import Variables
@@ -56,8 +57,7 @@ class StribeckFriction(Friction):
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FS exp(-|v / v_s|^exponent) sign(v)."""
-        ratio = x.velocity / p["velocity"]
-        power = ratio**2 if p["exponent"] == 2 else sp.Abs(ratio) ** p["exponent"]
+        power = powered(x.velocity / p["velocity"], p["exponent"])
         return p["magnitude"] * sp.exp(-power) * direction(x.velocity, p["smoothing"])
 
 

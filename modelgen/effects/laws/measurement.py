@@ -13,6 +13,8 @@ from modelgen.effects.traits import Family, Numbers, Reading, Seen, Shows, joint
 from modelgen.effects.variables import InputVariables
 from modelgen.symbolic import number as figure
 
+# Of the greatest torque, two roundings of single precision below it: there the current's slope has no bound.
+NEAR_TOP = 1.0 - 2.0**-22
 MEASURED = 0.03  # of a length, as drawings and tapes leave it
 
 
@@ -175,7 +177,7 @@ class TorqueConstantSaturation(InputEffect):
     def required(self, x: InputVariables, p: Values) -> sp.Expr:
         """The root of y = i (1 - c i^2) that is 0 at y = 0, by the trigonometric solution of the cubic."""
         scale = sp.sqrt(3 * p["coefficient"])
-        sine = sp.Max(-1, sp.Min(1, sp.Rational(3, 2) * scale * x.input))
+        sine = sp.Max(-NEAR_TOP, sp.Min(NEAR_TOP, sp.Rational(3, 2) * scale * x.input))
         return 2 / scale * sp.sin(sp.asin(sine) / 3)
 
 

@@ -21,12 +21,25 @@ SMOOTHING = Parameter(
     structural=True,
 )
 AT_REST = 1.0  # s, over which a current is read
+STILL = 1e-12  # of the speed that a power refers to: far below what any drive does or any encoder reads
 NEAR_REST = 1.05  # times the least exponent that is searched: a power below it is dry friction
 
 
 def direction(velocity: sp.Expr, smoothing: sp.Expr) -> sp.Expr:
     """sign(velocity), smoothed by tanh where `smoothing` is positive; sign(0) = 0."""
     return sp.sign(velocity) if smoothing == 0 else sp.tanh(velocity / smoothing)
+
+
+def powered(ratio: sp.Expr, exponent: sp.Expr | float) -> sp.Expr:
+    """|ratio|^exponent, for an exponent below one rounded within STILL of zero, where its slope has no bound.
+
+    Derivatives of a law are finite at rest then, in every backend.
+    """
+    if exponent == 2:
+        return ratio**2
+    if sp.sympify(exponent).is_number and exponent < 1:
+        return (ratio**2 + STILL**2) ** (exponent / 2)
+    return sp.Abs(ratio) ** exponent
 
 
 class Friction(Effect):
@@ -174,4 +187,4 @@ class NonlinearViscousFriction(Friction):
         ratio = x.velocity / p["scale"]
         if p["exponent"] == 2:
             return p["coefficient"] * sp.Abs(ratio) * ratio
-        return p["coefficient"] * sp.Abs(ratio) ** p["exponent"] * sp.sign(x.velocity)
+        return p["coefficient"] * powered(ratio, p["exponent"]) * sp.sign(x.velocity)
