@@ -160,13 +160,18 @@ def generate(
         Path(out),
         chosen,
         check=check,
-        artefacts=[name for name, asked in (("casadi", more.casadi), ("plant", more.casadi_plant)) if asked],
+        artefacts=_artefacts(more),
         budget=budget,
         processes=more.processes,
         identified=own,
         progress=told,
     )
     return Generated(report, budget)
+
+
+def _artefacts(o: GenerationOptions) -> list[str]:
+    asked = {"casadi": o.casadi, "plant": o.casadi_plant, "ros2": o.ros2}
+    return [name for name, wanted in asked.items() if wanted]
 
 
 def _budget(o: GenerationOptions) -> Budget | None:

@@ -16,7 +16,7 @@ from modelgen.functions.objects import Model
 from modelgen.generation.canonical import description_hash
 from modelgen.generation.folders import ARTEFACTS, MARK
 from modelgen.generation.sizes import size_rows
-from modelgen.packaging import packaging_files
+from modelgen.packaging import ROS2, packaging_files, ros2_files
 from modelgen.version import __version__
 
 
@@ -25,8 +25,8 @@ class GeneratedArm:
     """The files of one arm by path below its folder, and the figures of its model.
 
     `operations` maps the functions' names to their operations by kind; `symbols` are the names, in
-    lower case, that the C code takes. `artefacts` are further files that are bound to a release of
-    CasADi: the manifest does not list them.
+    lower case, that the C code takes. `artefacts` are files of the folders of ARTEFACTS, which
+    the manifest does not list.
     """
 
     name: str
@@ -41,9 +41,20 @@ class GeneratedArm:
 
 def generate_arm(arm: Arm, options: Options, artefacts: Collection[str] = ()) -> GeneratedArm:
     """Build the arm's model and print it in every language, with these of ARTEFACTS. Raises InputError."""
-    made = print_model(build_model(arm, options), arm, shown_options(options))
-    if not artefacts:
-        return made
+    model, shown = build_model(arm, options), shown_options(options)
+    made = print_model(model, arm, shown)
+    built: dict[str, str] = {}
+    for name in ARTEFACTS:
+        if name in artefacts:
+            if name == ROS2:
+                built |= ros2_files(model, _provenance(arm, shown), made.files, options.identified)
+            else:
+                built |= _of_casadi(name, made)
+    return replace(made, artefacts=built)
+
+
+def _of_casadi(artefact: str, made: GeneratedArm) -> dict[str, str]:
+    """Files of an artefact that CasADi makes of the arm's module."""
     # Loads CasADi, which nothing else needs.
     from modelgen.backends.casadi.artefacts import (  # noqa: PLC0415
         PLANT,
@@ -53,17 +64,12 @@ def generate_arm(arm: Arm, options: Options, artefacts: Collection[str] = ()) ->
     )
 
     makers = {SERIALISED: serialised_files, PLANT: plant_files}
-    module = made.files[f"{made.name}_casadi.py"]
-    built: dict[str, str] = {}
-    for name in ARTEFACTS:
-        if name in artefacts:
-            built |= makers[name](made.name, module)
-    return replace(made, artefacts=built)
+    return makers[artefact](made.name, made.files[f"{made.name}_casadi.py"])
 
 
 def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> GeneratedArm:
     """Print a model in every language; `arm` is the description as the user gave it. Raises InputError."""
-    provenance = Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
+    provenance = _provenance(arm, options)
     try:
         files = {path: text for print_ in PRINTERS for path, text in print_(model, provenance).items()}
         files |= packaging_files(model, provenance, files, size_rows(model))
@@ -80,6 +86,10 @@ def print_model(model: Model, arm: Arm, options: Mapping[str, str]) -> Generated
         operations={function.name: dict(function.operations) for function in model.functions},
         symbols=symbols,
     )
+
+
+def _provenance(arm: Arm, options: Mapping[str, str]) -> Provenance:
+    return Provenance(f"modelgen {__version__}", description_hash(arm), dict(options))
 
 
 def shown_options(options: Options) -> dict[str, str]:

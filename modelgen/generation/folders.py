@@ -10,7 +10,9 @@ from pathlib import Path
 from modelgen.errors import InputError
 
 MARK = "manifest.json"  # a folder that holds it was generated, and may be replaced
-ARTEFACTS = ("casadi", "plant")  # folders of files that are bound to a release of CasADi
+# Folders that are made where they are asked for and never committed: two belong to a release of CasADi,
+# the third holds copies of the C files.
+ARTEFACTS = ("casadi", "plant", "ros2")
 _IGNORED = "__pycache__"  # left by Python beside a module that was imported
 
 

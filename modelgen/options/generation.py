@@ -14,6 +14,7 @@ class GenerationOptions:
 
     casadi: bool = option(False, "Also write the CasADi functions serialised: <arm>/casadi/.")
     casadi_plant: bool = option(False, "Also write the C plant for casadi.external: <arm>/plant/.")
+    ros2: bool = option(False, "Also write a ROS 2 package of library, class and node: <arm>/ros2/.")
     max_flash: int | None = option(
         None, "Most flash that a function may take.", "BYTES", least=1, unit="bytes"
     )
