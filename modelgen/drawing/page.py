@@ -68,7 +68,7 @@ def _rendered(arm: Arm, data: dict[str, Any]) -> str:
             source=arm.source,
             style=Markup((folder / "drawing" / "page.css").read_text(encoding="utf-8").rstrip()),
             data=_embedded(json.dumps(data, separators=(",", ":"), allow_nan=False)),
-            scripts={name: Markup(text) for name, text in texts.items()},
+            scripts=[(name, Markup(text)) for name, text in texts.items()],
         )
         + "\n"
     )
