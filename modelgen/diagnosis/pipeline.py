@@ -74,7 +74,7 @@ def proposed(
     """An experiment that separates the named causes from their rivals, None where nothing rivals them."""
     equations, selection = extension.equations, extension.selection
     plan = None if equations.free else setup(result.arm, equations, extension.base)
-    shortest = min((p for p in study.lengths if p is not None), default=None)
+    shortest = min((round(p) for p in study.lengths if p is not None), default=None)
     return next_experiment(
         result.causes, selection.causes, plan, selection.system, shortest, progress, options.where
     )

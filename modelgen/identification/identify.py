@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.periods import period_of, rows_in
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -229,9 +229,7 @@ def _by_instruments(
 
 def _rows_in_period(p: Prepared) -> int | None:
     """Rows in a period of the motion; None where it does not repeat, or not on whole rows."""
-    samples = period_of(p.record, None)
-    whole = samples is not None and samples % p.settings.factor == 0
-    return samples // p.settings.factor if whole and samples is not None else None
+    return rows_in(period_of(p.record, None), p.settings)
 
 
 def concluded(

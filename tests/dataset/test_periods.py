@@ -1,37 +1,50 @@
-"""Periods that are given must be those of the motion."""
+"""Periods of any length: found to a part of a sample, and put on rows of the same phases."""
 
 import numpy as np
 import pytest
 
 from modelgen.dataset import Record
-from modelgen.dataset.processing.periods import period_of
-from modelgen.errors import InputError
+from modelgen.dataset.processing.periods import period_of, rows_in, with_whole_rows
+from modelgen.dataset.processing.prepare import kept_rows
+from modelgen.dataset.processing.settings import Settings, choose
 
-STEP, PERIOD = 0.01, 4.0
-
-
-def record(noise: float) -> Record:
-    """A joint that repeats every 4 s, and one under its brake that trembles by a count."""
-    random = np.random.default_rng(2)
-    t = np.arange(1500) * STEP
-    swing = np.sin(2 * np.pi * t / PERIOD) + 0.4 * np.cos(4 * np.pi * t / PERIOD)
-    braked = 1e-4 * random.integers(0, 2, len(t))
-    q = np.column_stack([swing + random.normal(scale=max(noise, 1e-9), size=len(t)), braked])
-    return Record("log.csv", t, q, q)
+SECONDS = 40.0
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.1])
-def test_the_period_of_the_motion_is_taken_as_it_is_given(noise: float) -> None:
-    """Noise that hides it from the search does not matter, nor does a joint that only trembles."""
-    assert period_of(record(noise), None) is None
-    assert period_of(record(noise), PERIOD) == round(PERIOD / STEP)
+def moving(period: float, rate: float, noise: float, seed: int) -> Record:
+    """Two joints on a Fourier series of five harmonics."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, SECONDS, 1 / rate)
+    phase = 2 * np.pi * np.multiply.outer(t, 1 + np.arange(5)) / period
+    q = np.cos(phase) @ rng.uniform(-0.4, 0.4, (5, 2)) + np.sin(phase) @ rng.uniform(-0.4, 0.4, (5, 2))
+    read = q + noise * rng.normal(size=q.shape)
+    return Record("run", t, read, read)
 
 
-@pytest.mark.parametrize("given", [3.0, 1.0, 5.5])
-def test_another_period_is_refused(given: float) -> None:
-    with pytest.raises(InputError, match="does not repeat after"):
-        period_of(record(0.0), given)
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize(("period", "rate"), [(40 / 3, 100.0), (6.283185, 250.0), (9.983, 100.0)])
+def test_a_period_between_samples_is_found_to_a_hundredth_of_one(
+    period: float, rate: float, seed: int
+) -> None:
+    found = period_of(moving(period, rate, 1e-4, seed), None)
+    assert found == pytest.approx(period * rate, abs=0.02)
 
 
-def test_a_record_too_short_for_two_has_none() -> None:
-    assert period_of(record(0.0), 2 * PERIOD) is None
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("noise", [0.0, 1e-4, 1e-2])
+def test_a_whole_number_of_samples_stays_one(noise: float, seed: int) -> None:
+    assert period_of(moving(10.0, 100.0, noise, seed), None) == pytest.approx(
+        1000, abs=2 if noise > 1e-3 else 0
+    )
+
+
+@pytest.mark.parametrize("period", [1333 + 1 / 3, 1333.0, 997.0, 1000.0])
+def test_rows_of_two_periods_have_the_same_phase(period: float) -> None:
+    record = moving(period / 100.0, 100.0, 0.0, 1)
+    chosen = with_whole_rows(choose(record, Settings(cutoff=2.0)), [period_of(record, None)])
+    rows = rows_in(period_of(record, None), chosen)
+    assert rows is not None
+    kept = kept_rows(record, chosen)
+    assert np.abs(kept[rows:] - kept[:-rows] - period).max() <= 1.0
+    assert abs(np.mean(kept[rows:] - kept[:-rows]) - period) < 0.1
+    assert chosen.factor / 2 < chosen.stride <= chosen.factor

@@ -115,3 +115,21 @@ def test_what_one_joint_promises_alone_is_not_in_all_of_them() -> None:
 
     assert judged({None: 3.2, 1: 0.2, 3: 7.1}) == [1, 3]
     assert judged({None: 7.0, 1: 5.0, 3: 7.1}) == [None, 1, 3]
+
+
+@pytest.mark.parametrize(("rate", "effect"), [(100.04, None), (99.87, "friction_offset"), (133.3, None)])
+def test_periods_that_are_no_whole_rows_measure_the_noise(rate: float, effect: str | None) -> None:
+    """Of 1000.4, 998.7 and 1333 samples, the last of which is no multiple of the samples from row to row."""
+    records = []
+    for r in three(effect, 1, 0.04, 1):
+        assert r.input is not None
+        t = np.arange(0.0, r.t[-1], 1 / rate)
+        q, motor, given = (
+            np.stack([np.interp(t, r.t, c) for c in x.T], axis=1) for x in (r.q, r.motor, r.input)
+        )
+        records.append(replace(r, t=t, q=q, motor=motor, input=given, gain=np.ones_like(q)))
+    found = diagnose(ARM, records, experiment=False)
+    assert found.lack_of_fit is not None
+    assert found.lack_of_fit.statistic < found.lack_of_fit.threshold
+    assert [(c.effect, c.joint) for c in found.causes] == ([] if effect is None else [(effect, 1)])
+    assert found.verdict == ("nothing_missing" if effect is None else "named")

@@ -20,7 +20,7 @@ from numpy.random import default_rng
 from hidden.blind import SMALL
 from hidden.cases import RECORDS, TEST, Case, make
 from modelgen.dataset import choose, prepare
-from modelgen.dataset.processing.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.periods import period_of, rows_in, with_whole_rows
 from modelgen.description import load
 from modelgen.diagnosis.adequacy.lack_of_fit import ratios
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, log_evidence, smooth_functions
@@ -62,7 +62,7 @@ def of_null(arm: str, seed: int, train: int) -> dict[str, float]:
     rows = rows_twice(
         evaluator, model, [prepare(r, chosen) for r in found], estimated(model, USUAL.equations)
     )
-    periods = [None if p is None else p // chosen.factor for p in lengths]
+    periods = [rows_in(p, chosen) for p in lengths]
     bare = Equations(model, evaluator, rows, periods, USUAL)
     system = System(with_errors(bare, weighted_fit(rows, bare.columns)))
     evidence = [log_evidence(s, system).evidence for s in smooth_functions(system)]

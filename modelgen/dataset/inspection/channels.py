@@ -130,7 +130,7 @@ def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
     return _columns(spec, in_small_letters(opened(spec)))
 
 
-def inspect_record(record: Record, lag: int | None, samples: int | None = None) -> Inspected:
+def inspect_record(record: Record, lag: float | None, samples: int | None = None) -> Inspected:
     """The inspection of a record by the columns that it was read from.
 
     lag: samples in a period of its motion. samples: of the whole, of which the record may be the beginning.

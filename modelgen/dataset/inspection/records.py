@@ -122,7 +122,7 @@ def inspect_records(
     train: Sequence[Prepared],
     test: Sequence[Record],
     chosen: Chosen,
-    periods: Sequence[int | None],
+    periods: Sequence[float | None],
     samples: Sequence[int] | None = None,
 ) -> RecordsInspected:
     """Facts of the records. chosen: how they were processed. periods: samples in a period of each training
@@ -135,7 +135,7 @@ def inspect_records(
     )
     used = np.zeros(first.n)
     for p, count in zip(train, counts, strict=True):
-        used += p.moving.sum(axis=0) * p.settings.factor * (count / len(p.time))
+        used += p.moving.sum(axis=0) * p.settings.stride * (count / len(p.time))
     left = np.maximum(sum(counts) - used, 0.0)
     return RecordsInspected(
         train=fitted,

@@ -95,11 +95,12 @@ def _weighted(weights: Complex, columns: Array) -> Complex:
 
 
 def decimation(count: int, rows: np.ndarray, cutoff: float, rate: float, order: int) -> Decimation | None:
-    """The filter of `filters.low_pass` at evenly spaced `rows` of `count` samples; None where it is no gain.
+    """The filter of `filters.low_pass` at `rows` of `count` samples; None where it is no gain.
 
-    That is without a filter, with little decimation, and in records shorter than the filter's memory.
+    That is without a filter, with little decimation, for rows that are not evenly spaced, and in records
+    shorter than the filter's memory.
     """
-    if not cutoff or len(rows) < 2 or rows[1] - rows[0] < FEWEST:
+    if not cutoff or len(rows) < 2 or rows[1] - rows[0] < FEWEST or np.ptp(np.diff(rows)):
         return None
     if reach(cutoff, rate, order, 1e-6) > count - 1:
         return None
@@ -107,7 +108,7 @@ def decimation(count: int, rows: np.ndarray, cutoff: float, rate: float, order: 
 
 
 def kept(columns: Array, rows: np.ndarray, cutoff: float, rate: float, order: int) -> Array:
-    """Columns (N, k) low-passed, at the evenly spaced `rows` (M,) alone: (M, k)."""
+    """Columns (N, k) low-passed, at the `rows` (M,) alone: (M, k)."""
     made = decimation(len(columns), rows, cutoff, rate, order)
     if made is not None and columns.shape[1]:
         return made(columns)

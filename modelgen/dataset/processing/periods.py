@@ -15,12 +15,19 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+# A whole number of samples is the period where positions differ after it by so many times the least.
+WHOLE = 2.0
+FARTHEST = 20  # periods over which a part of a sample is told
+OFF = 0.25  # of a sample, by which a whole number may be off over a record
+BESIDE = 0.1  # of a sample a period, by which rows may drift from the same phase
+FEWEST = 4  # samples a row, so that half a sample of a row's place is little
 
-def period_of(record: Record, given: float | None, limits: DatasetThresholds = USUAL) -> int | None:
+
+def period_of(record: Record, given: float | None, limits: DatasetThresholds = USUAL) -> float | None:
     """Samples in a period of the motion, as given [s] or the first lag at which all positions repeat.
 
-    None where the record does not hold two whole periods, or nothing repeats. Raises InputError for a given
-    period that is none.
+    A whole number where one does over the whole record. None where the record does not hold two whole
+    periods, or nothing repeats. Raises InputError for a given period that is none.
     """
     if given is not None:
         return _checked(record, given, limits)
@@ -42,11 +49,35 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     valley = good[(good >= good[0]) & (good <= last)]
     about = int(lags[valley[np.argmin(errors[valley])]]) * coarse
     near = range(max(1, about - 2 * coarse), min(about + 2 * coarse, count // 2) + 1)
-    exact = [float(((record.q[lag:] - record.q[:-lag]) ** 2).mean()) for lag in near]
-    return near[int(np.argmin(exact))]
+    exact = [_differs(record.q, lag) for lag in near]
+    return _between(record.q, near[int(np.argmin(exact))])
 
 
-def _checked(record: Record, given: float, limits: DatasetThresholds) -> int | None:
+def _differs(q: Array, lag: int) -> float:
+    """Mean square by which positions (N, n) differ after a lag."""
+    return float(((q[lag:] - q[:-lag]) ** 2).mean())
+
+
+def _between(q: Array, lag: int) -> float:
+    """Samples in a period, about `lag`: as many periods as fit, within a part of a sample, by that number.
+
+    The whole number itself where after all those periods the positions differ by hardly more than at best.
+    """
+    periods = min(FARTHEST, max(1, (len(q) * 3 // 4) // lag))
+    far = range(periods * lag - periods, min(periods * lag + periods, len(q) - 2) + 1)
+    if len(far) < 3:
+        return lag
+    errors = [_differs(q, k) for k in far]
+    best = int(np.argmin(errors))
+    if best in (0, len(far) - 1) or errors[periods] <= WHOLE * errors[best]:
+        return lag
+    before, least, after = errors[best - 1 : best + 2]
+    bend = before - 2 * least + after
+    place = far[best] + (0.5 * (before - after) / bend if bend > 0 else 0.0)
+    return place / periods
+
+
+def _checked(record: Record, given: float, limits: DatasetThresholds) -> float | None:
     """Samples in a given period [s]; None where the record does not hold two of them."""
     shortest, loose = limits.min_period_samples, limits.max_given_period_difference
     if not (math.isfinite(given) and given >= shortest * record.step):
@@ -65,7 +96,8 @@ def _checked(record: Record, given: float, limits: DatasetThresholds) -> int | N
             f"--period: {record.name} does not repeat after {given:g} s: its positions differ by "
             f"{100 * differs:.2g} % of their power, expected {100 * loose:g} % at most; {hint}"
         )
-    return lag
+    exact = given / record.step
+    return lag if abs(exact - lag) * len(record.t) / lag < OFF else exact
 
 
 def _differing(q: Array, lag: int) -> Array:
@@ -74,15 +106,30 @@ def _differing(q: Array, lag: int) -> Array:
     return np.asarray(((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / power)
 
 
-def with_whole_rows(chosen: Chosen, periods: Sequence[int | None]) -> Chosen:
-    """The settings with a decimation that puts the same phases of every period on rows."""
+def with_whole_rows(chosen: Chosen, periods: Sequence[float | None]) -> Chosen:
+    """The settings with a decimation that puts the same phases of every period on rows.
+
+    Every factor-th sample where that does, else the samples nearest to a whole number of places in a period,
+    the first one that is known: a low-pass that leaves many samples a row makes no more of half a sample.
+    """
     known = [p for p in periods if p is not None]
     if not known:
         return chosen
     for factor in range(chosen.factor, max(0, chosen.factor // 2), -1):
         if factor > 0 and all(p % factor == 0 for p in known):
             return replace(chosen, factor=factor)
-    return chosen
+    if chosen.factor < FEWEST:
+        return chosen
+    return replace(chosen, spacing=known[0] / math.ceil(known[0] / chosen.factor))
+
+
+def rows_in(period: float | None, chosen: Chosen) -> int | None:
+    """Rows in a period [samples]; None where it does not repeat, or not on whole rows."""
+    if period is None:
+        return None
+    rows = period / chosen.stride
+    drift = abs(rows - round(rows)) * chosen.stride
+    return round(rows) if drift < BESIDE else None
 
 
 def folded(values: NDArray[np.float64], rows: int) -> Array:

@@ -66,7 +66,7 @@ class Prepared:
     @property
     def rate(self) -> float:
         """Rows per second [Hz]."""
-        return 1.0 / (self.record.step * self.settings.factor)
+        return 1.0 / (self.record.step * self.settings.stride)
 
     @property
     def decimation(self) -> Decimation | None:
@@ -180,6 +180,9 @@ def kept_rows(record: Record, settings: Chosen) -> np.ndarray:
     """
     trim = settings.trimmed(record.step)
     begin, end = (trim, len(record.t) - trim) if record.core is None else record.core
+    if settings.spacing is not None:
+        count = max(0, int((end - 1 - begin) / settings.spacing) + 1) if end > begin else 0
+        return np.asarray(begin + np.floor(np.arange(count) * settings.spacing + 0.5).astype(int))
     begin += (trim - record.first - begin) % settings.factor
     return np.arange(begin, max(begin, end), settings.factor)
 

@@ -43,7 +43,11 @@ class Settings:
 
 @dataclass(frozen=True)
 class Chosen:
-    """Settings with every choice made, meanings and units as there."""
+    """Settings with every choice made, meanings and units as there.
+
+    spacing: samples between rows where the periods of the motion ask for no whole number of them: a row is
+    the sample nearest to its place.
+    """
 
     cutoff: float
     order: int
@@ -55,6 +59,12 @@ class Chosen:
     gates: tuple[float, ...]
     rest_time: float
     thresholds: DatasetThresholds = USUAL
+    spacing: float | None = None
+
+    @property
+    def stride(self) -> float:
+        """Samples from row to row, on average."""
+        return self.factor if self.spacing is None else self.spacing
 
     def trimmed(self, step: float) -> int:
         """Samples cut off at both ends, for a sampling period [s]."""

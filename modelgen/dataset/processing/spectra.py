@@ -37,7 +37,8 @@ def described(prepared: Prepared) -> list[str]:
     else:
         lines.append("effort and regressor: not filtered")
     rows = len(prepared.rows)
-    lines.append(f"rows: every {_ordinal(s.factor)} sample, {s.trim:.3g} s cut off at both ends: {rows} rows")
+    every = f"every {_ordinal(s.factor)} sample" if s.spacing is None else f"a sample every {s.spacing:.5g}"
+    lines.append(f"rows: {every}, {s.trim:.3g} s cut off at both ends: {rows} rows")
     moving = ", ".join(f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0))
     lines.append(f"rows in which the joints move: {moving}")
     return [*lines, *prepared.record.remarks]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset import Chosen, Prepared, Settings, choose, prepare
-from modelgen.dataset.processing.periods import with_whole_rows
+from modelgen.dataset.processing.periods import rows_in, with_whole_rows
 from modelgen.dataset.processing.settings import motion_bandwidth
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion, check_test
 from modelgen.diagnosis.equations.equations import Equations
@@ -77,7 +77,7 @@ def _band(study: Study, settings: Settings) -> Band:
     model, records, lengths = study.model, study.records, study.lengths
     chosen = with_whole_rows(choose(list(records[:-1]), settings), lengths)
     choose(list(records), chosen)  # the test record has no say in what is chosen, and its rate all the same
-    periods = [None if p is None or p % chosen.factor else p // chosen.factor for p in lengths]
+    periods = [rows_in(p, chosen) for p in lengths]
     prepared = [prepare(record, chosen) for record in records]
     free = records[0].input is None
     if free:

@@ -26,7 +26,7 @@ class Study:
     model: Model
     evaluator: Evaluator
     records: Sequence[Record]
-    lengths: Sequence[int | None]
+    lengths: Sequence[float | None]
     settings: Settings
     thresholds: Thresholds
     narrower: bool = False

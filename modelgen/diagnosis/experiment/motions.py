@@ -84,7 +84,7 @@ class Setup:
     def rows(self, q: Array, parameters: Array | None = None) -> Rows | None:
         """Equations of a motion q (N, n) [rad, m]; None where it cannot be logged."""
         first = self.prepared[0]
-        settings = first.settings
+        settings = replace(first.settings, spacing=None)
         if self.every > 1:
             settings = replace(settings, factor=settings.factor // self.every, position_cutoff=0.0)
         motor = np.column_stack([d.motor(q[:, k]) for k, d in enumerate(drives_of(self.evaluator.arm))])
