@@ -32,6 +32,13 @@ def pseudo_inertia(parameters: Sequence[float] | Array) -> Array:
     )
 
 
+def ten(pseudo: Array) -> Array:
+    """The parameters TEN (10,) of a pseudo-inertia."""
+    second = pseudo[:3, :3]
+    tensor = np.trace(second) * np.eye(3) - second
+    return np.concatenate([tensor[np.triu_indices(3)], pseudo[:3, 3], pseudo[3:, 3]])
+
+
 def prior_inertia(model: Model, link: int) -> Array:
     """Pseudo-inertia of the described link, else of a ball."""
     nominal = model.arm.links[link]
@@ -49,11 +56,7 @@ def plain(model: Model, theta: Array) -> Array:
     grouping = base_matrix(model)
     start = np.zeros(len(model.standard))
     for i in range(len(model.arm.links)):
-        inertia = prior_inertia(model, i)
-        second, first = inertia[:3, :3], inertia[:3, 3]
-        tensor = np.trace(second) * np.eye(3) - second
-        places = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-        start[10 * i : 10 * i + 10] = [*(tensor[p] for p in places), *first, inertia[3, 3]]
+        start[10 * i : 10 * i + 10] = ten(prior_inertia(model, i))
     change, *_ = np.linalg.lstsq(grouping, theta - grouping @ start, rcond=None)
     return np.asarray(start + change)
 
@@ -64,10 +67,10 @@ def violations(model: Model, standard: Array) -> tuple[str, ...]:
     """
     found = []
     for i, joint in enumerate(model.arm.joints):
-        ten = standard[10 * i : 10 * i + 10]
-        if ten[9] <= 0:
-            found.append(f"{joint.name}: mass {ten[9]:.3g} kg")
-        elif np.linalg.eigvalsh(pseudo_inertia(ten))[0] <= 0:
+        own = standard[10 * i : 10 * i + 10]
+        if own[9] <= 0:
+            found.append(f"{joint.name}: mass {own[9]:.3g} kg")
+        elif np.linalg.eigvalsh(pseudo_inertia(own))[0] <= 0:
             found.append(f"{joint.name}: impossible inertia")
     return (*found, *_beyond(model, standard))
 

@@ -12,10 +12,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from modelgen.effects import applied_effects
 from modelgen.functions import Model
-from modelgen.identification.bodies import TEN, prior_inertia, pseudo_inertia
+from modelgen.identification.bodies import prior_inertia, pseudo_inertia, ten
 from modelgen.numeric import Array
 
 STEPS = 200  # of Newton's method for one weight
@@ -63,9 +64,10 @@ class Nearest:
     def minimum(self, x: Array, weight: float) -> Array:
         """Newton's method with steps that are halved until they are inside and lead down."""
         for _ in range(STEPS):
-            cost, slope, bend = self._cost(x, weight)
-            scale = 1 / np.sqrt(np.diag(bend))
-            step = -scale * np.linalg.solve(scale[:, None] * bend * scale, scale * slope)
+            cost, slope, root = self._cost(x, weight)
+            scale = 1 / np.linalg.norm(root, axis=0)
+            upper = np.linalg.qr(root * scale, mode="r")
+            step = -scale * solve_triangular(upper, solve_triangular(upper, scale * slope, trans="T"))
             fall = float(-slope @ step)
             if fall < DONE:
                 break
@@ -97,26 +99,24 @@ class Nearest:
         return np.asarray((x[10 * self.links :] - low) / self.typical)
 
     def _cost(self, x: Array, weight: float) -> tuple[float, Array, Array]:
-        """The cost, its slope (s,) and its second derivatives (s, s)."""
-        slope = weight * self.matrix.T @ (self.matrix @ x - self.target)
-        bend = weight * self.matrix.T @ self.matrix
+        """The cost, its slope (s,), and R (m, s) with R' R its second derivatives.
+
+        These themselves would lose in great weights' rounding what the divergences say.
+        """
+        left = self.matrix @ x - self.target
+        slope = weight * self.matrix.T @ left
+        roots = [np.sqrt(weight) * self.matrix]
         for i, inverse in enumerate(self.inverses):
             own = slice(10 * i, 10 * i + 10)
-            turned = np.linalg.inv(pseudo_inertia(x[own])) @ _BASIS
+            lower = np.linalg.inv(np.linalg.cholesky(pseudo_inertia(x[own])))
+            turned = lower @ _BASIS @ lower.T
             slope[own] += np.einsum("ij,kji->k", inverse, _BASIS) - np.einsum("kii->k", turned)
-            bend[own, own] += np.einsum("kij,lji->kl", turned, turned)
+            block = np.zeros((16, len(x)))
+            block[:, own] = turned.reshape(10, 16).T
+            roots.append(block)
         above = self._above(x)
         inside = np.where(self.bounded, above, 1.0)
         rest = slice(10 * self.links, None)
         slope[rest] += np.where(self.bounded, 1 - 1 / inside, above) / self.typical
-        curved = 1 / inside**2 / self.typical**2
-        bend[rest, rest] += np.diag(curved)
-        return self.value(x, weight), slope, bend
-
-
-def ten(pseudo: Array) -> Array:
-    """The ten parameters of a pseudo-inertia, in the order of TEN."""
-    matrix = _BASIS.reshape(10, 16).T
-    found, *_ = np.linalg.lstsq(matrix, pseudo.ravel(), rcond=None)
-    assert len(found) == len(TEN)
-    return np.asarray(found)
+        roots.append(np.eye(len(x))[rest] / np.abs(inside * self.typical)[:, None])
+        return self.value(x, weight), slope, np.vstack(roots)
