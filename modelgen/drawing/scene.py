@@ -15,7 +15,7 @@ import sympy as sp
 from modelgen.description.context import show
 from modelgen.description.objects import Arm, Inertial, Joint, Transform
 from modelgen.drawing.programs import program
-from modelgen.effects import CATALOGUE, described
+from modelgen.effects import described, pivot_direction
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.symbolic import Range, number
@@ -124,7 +124,6 @@ def _drive(arm: Arm, joint: Joint) -> dict[str, Any]:
     transmission = of_joint(arm, joint)
     drive: Drive = joint.drive.numeric(arm.symbols)
     ends = transmission.motor_range() if drive.driven else None
-    directions = [CATALOGUE[use.name].pivot_direction(use.values) for use in joint.effects]
     return {
         "title": drive.title,
         "driven": drive.driven,
@@ -140,7 +139,7 @@ def _drive(arm: Arm, joint: Joint) -> dict[str, Any]:
             }
             for bar in drive.linkage(transmission.q)
         ],
-        "direction": next((angle for angle in directions if angle is not None), None),
+        "direction": pivot_direction(joint),
     }
 
 

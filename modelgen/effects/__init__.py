@@ -1,6 +1,14 @@
 """Effects: each is one definition in SymPy."""
 
-from modelgen.effects.applied import TIME_STEP, AppliedEffect, Part, applied_effects, described, free_symbol
+from modelgen.effects.applied import (
+    TIME_STEP,
+    AppliedEffect,
+    Part,
+    applied_effects,
+    described,
+    free_symbol,
+    pivot_direction,
+)
 from modelgen.effects.base import (
     BodyEffect,
     Definition,
@@ -45,4 +53,5 @@ __all__ = [
     "effect_texts",
     "free_symbol",
     "known_effects",
+    "pivot_direction",
 ]

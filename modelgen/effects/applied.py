@@ -8,7 +8,7 @@ from difflib import get_close_matches
 
 import sympy as sp
 
-from modelgen.description.objects import Arm, EffectUse
+from modelgen.description.objects import Arm, EffectUse, Joint
 from modelgen.effects.base import (
     BodyEffect,
     Definition,
@@ -233,6 +233,15 @@ def effect_class(use: EffectUse) -> type[Definition]:
             use.where,
         )
     return CATALOGUE[use.name]
+
+
+def pivot_direction(joint: Joint) -> float | None:
+    """Direction [rad] that the joint's effects give its actuator's base, as in `Traits`; None for most.
+
+    Raises InputError as `effect_class` does.
+    """
+    found = (effect_class(use).pivot_direction(use.values) for use in joint.effects)
+    return next((angle for angle in found if angle is not None), None)
 
 
 def _hint(name: str, known: Mapping[str, object]) -> str:

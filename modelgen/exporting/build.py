@@ -8,7 +8,7 @@ import numpy as np
 
 from modelgen.dataset import drives_of
 from modelgen.description.objects import Arm, Joint, Transform
-from modelgen.effects import CATALOGUE
+from modelgen.effects import pivot_direction
 from modelgen.exporting.machine import Axis, Lever, Link, Machine, Tool
 from modelgen.exporting.values import Values
 from modelgen.importing.frames import Parameters
@@ -99,8 +99,7 @@ def _lever(arm: Arm, joint: Joint) -> Lever | None:
         number(x, arm.symbols) for x in (joint.gamma, joint.b, joint.alpha, joint.d, joint.r)
     )
     foot = Parameters(gamma, b, alpha, d, 0.0, r).transform()
-    directions = [CATALOGUE[use.name].pivot_direction(use.values) for use in joint.effects]
-    toward = next((angle for angle in directions if angle is not None), 0.0)
+    toward = pivot_direction(joint) or 0.0
     angle = toward - float(actuator.offset) - number(joint.theta, arm.symbols)
     per_length = (end - begin) / (last - first)
     return Lever(

@@ -18,7 +18,7 @@ from modelgen.exporting.states import Efforts, States
 from modelgen.exporting.urdf import URDF
 from modelgen.exporting.values import identified, nominal, standard_of
 from modelgen.files import check_writable
-from modelgen.functions import build_model
+from modelgen.functions import EVALUATED, build_model
 
 Maker = Callable[[Arm, Mapping[str, float] | None, Sequence[str]], Exported]
 
@@ -54,7 +54,7 @@ def _model(form: Format) -> Maker:
 
     def made(arm: Arm, parameters: Mapping[str, float] | None, remarks: Sequence[str]) -> Exported:
         plain = described(arm)
-        values = nominal(plain) if parameters is None else identified(build_model(arm), parameters)
+        values = nominal(plain) if parameters is None else identified(build_model(arm, EVALUATED), parameters)
         machine = machine_of(plain, replace(values, bodies=loaded(plain, values.bodies)))
         states = States(plain)
         efforts = Efforts(plain, states, standard_of(values))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from modelgen.description.objects import Arm, Combined
 from modelgen.errors import InputError, suggest
 from modelgen.functions.objects import Argument, Function, Output
-from modelgen.functions.parametric import WITH
+from modelgen.functions.parametric import SUFFIXES, WITH
 from modelgen.graph import Expr, Graph, count_operations, lower
 from modelgen.graph.restored import restored
 
@@ -55,10 +55,9 @@ def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function
 
 
 def _check(one: Combined, known: Mapping[str, Function]) -> None:
-    plain = [name for name in known if not name.endswith(tuple(filter(None, WITH)))]
-    suffixes = [suffix for suffix in WITH if suffix]
-    if one.name in TAKEN or one.name in known or one.name.endswith((*suffixes, "_float")):
-        listed = ", ".join(suffixes)
+    plain = [name for name in known if not name.endswith(SUFFIXES)]
+    if one.name in TAKEN or one.name in known or one.name.endswith((*SUFFIXES, "_float")):
+        listed = ", ".join(SUFFIXES)
         raise InputError(
             f"'{one.name}' is taken or ends in one of {listed}; choose another name",
             one.at,
@@ -76,7 +75,7 @@ def _check(one: Combined, known: Mapping[str, Function]) -> None:
 
 def _plain(name: str, known: Mapping[str, Function]) -> Function | None:
     """The function of a name without a suffix, for whichever parameters there is one."""
-    if name.endswith(tuple(filter(None, WITH))):
+    if name.endswith(SUFFIXES):
         return None
     return next((known[f"{name}{s}"] for s in WITH if f"{name}{s}" in known), None)
 

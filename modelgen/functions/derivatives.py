@@ -42,7 +42,7 @@ def derivative_functions(
     """Derivatives of inverse and forward dynamics for one way of giving parameters."""
     e = dynamics.equations
     ideal = ideal_derivatives(dynamics)
-    forward, pivots = forward_dynamics_derivatives(dynamics, ideal)
+    forward, positive = forward_dynamics_derivatives(dynamics, ideal)
     accelerations = vector("ddq", a.n, joint_units(e.arm, "/s^2"), "joint accelerations")
     units = {"q": joint_units(e.arm), "dq": joint_units(e.arm, "/s"), "input": input_units(e)}
     return [
@@ -52,7 +52,7 @@ def derivative_functions(
             f"Accelerations and their derivatives; {KINKS}; {WITH[suffix]}.",
             ["q", "dq", "input", *parameters],
             _results(accelerations, units, forward),
-            guards=[(pivot, STATUS_PIVOT) for pivot in pivots],
+            guards=[(value, STATUS_PIVOT) for value in positive],
             order=_by_columns("ddq", units, a.n),
         ),
     ]
@@ -142,13 +142,13 @@ def inverse_dynamics_derivatives(e: Equations, ideal: Derived) -> Derived:
 
 
 def forward_dynamics_derivatives(dynamics: Dynamics, ideal: Derived) -> tuple[Derived, list[Expr]]:
-    """Accelerations, their derivatives by q, dq, input, and the pivots that must be positive.
+    """Accelerations, their derivatives by q, dq, input, and what must be positive: see `solve`.
 
     d ddq = M^-1 K (d input - d inverse dynamics) at the accelerations found (Carpentier and Mansard 2018).
     """
     e = dynamics.equations
     n, dq, given = e.n, e.vector("dq"), e.vector("input")
-    accelerations, pivots = dynamics.forward_dynamics(dq, given)
+    accelerations, positive = dynamics.forward_dynamics(dq, given)
     # The graph knows the factors of the mass matrix from the accelerations.
     inverse = _inverse(e, dynamics.mass_matrix(dq))
     by_ideal = [[x * gain for x, gain in zip(row, dynamics.gains(), strict=True)] for row in inverse]
@@ -158,7 +158,7 @@ def forward_dynamics_derivatives(dynamics: Dynamics, ideal: Derived) -> tuple[De
     by_state = [-x for rows in ideal.by[:2] for row in rows for x in row]
     solved = substituted(by_state, {("ddq", k): x for k, x in enumerate(accelerations)})
     rows = [solved[n * k : n * (k + 1)] for k in range(2 * n)]
-    return Derived(accelerations, [_times(e, by_ideal, x) for x in (rows[:n], rows[n:], by_input)]), pivots
+    return Derived(accelerations, [_times(e, by_ideal, x) for x in (rows[:n], rows[n:], by_input)]), positive
 
 
 def jacobians(e: Equations, values: Sequence[Expr], by: Sequence[str]) -> list[Rows]:

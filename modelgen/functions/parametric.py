@@ -21,6 +21,7 @@ WITH = {
     "_identified": "identified parameters, folded in",
     "_nominal": "nominal parameters of the description, folded in",
 }
+SUFFIXES = tuple(suffix for suffix in WITH if suffix)
 
 
 def standard_values(equations: Equations) -> list[Expr]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from modelgen.graph.graph import ADD, CALL, CONST, DIV, INPUT, MUL, Expr, Graph
+from modelgen.graph.graph import CONST, INPUT, Expr, Graph
 from modelgen.graph.lowering import reachable
 
 PLAIN = (0.0, 0.5, 1.0, 2.0)  # constants that stay in the rest
@@ -40,18 +40,10 @@ def cut(expressions: Sequence[Expr], inputs: Sequence[str], name: str) -> tuple[
     for node in nodes:
         if not depends[node]:
             continue
-        op = graph.op[node]
-        operands = [tail(key) for key in graph.args[node]]
+        op, operands = graph.op[node], [tail(key) for key in graph.args[node]]
         if op == INPUT:
             places[node] = rest.input(graph.name[node], int(graph.number[node]))
-        elif op == ADD:
-            places[node] = operands[0] + operands[1]
-        elif op == MUL:
-            places[node] = operands[0] * operands[1]
-        elif op == DIV:
-            places[node] = operands[0] / operands[1]
         else:
-            assert op == CALL
-            places[node] = rest.call(graph.name[node], *operands)
+            places[node] = rest.again(op, graph.name[node], operands)
     tails = [tail(key) for key in roots]
     return heads, tails

@@ -8,7 +8,7 @@ folded and 0 and 1 disappear while nodes are made, so no pass has to clean up af
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 Number: TypeAlias = int | float
@@ -266,6 +266,16 @@ class Graph:
         elif name in EVEN:
             keys = (keys[0] & ~1,)
         return Expr(self, self._node((CALL, name, keys), CALL, keys, name=name) | sign)
+
+    def again(self, op: int, name: str, operands: Sequence[Expr]) -> Expr:
+        """What an operation of any graph makes of these operands; name: of the function of a call."""
+        if op == ADD:
+            return operands[0] + operands[1]
+        if op == MUL:
+            return operands[0] * operands[1]
+        if op == DIV:
+            return operands[0] / operands[1]
+        return self.call(name, *operands)
 
     def sqrt(self, x: Expr) -> Expr:
         """Square root of x."""

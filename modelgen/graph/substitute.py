@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from modelgen.graph.graph import ADD, DIV, INPUT, MUL, Expr
+from modelgen.graph.graph import INPUT, Expr
 from modelgen.graph.lowering import reachable
 
 
@@ -28,13 +28,5 @@ def substituted(values: Sequence[Expr], given: Mapping[tuple[str, int], Expr]) -
             if found is not None:
                 changed[node] = found
         elif any(key >> 1 in changed for key in keys):
-            x = [now(key) for key in keys]
-            if op == ADD:
-                changed[node] = x[0] + x[1]
-            elif op == MUL:
-                changed[node] = x[0] * x[1]
-            elif op == DIV:
-                changed[node] = x[0] / x[1]
-            else:
-                changed[node] = graph.call(graph.name[node], *x)
+            changed[node] = graph.again(op, graph.name[node], [now(key) for key in keys])
     return [now(e.key) for e in values]

@@ -11,10 +11,10 @@ from modelgen.backends.elements import coordinates
 from modelgen.backends.provenance import Provenance
 from modelgen.backends.text import UNBROKEN, WIDTH, plain, render, table, wrapped
 from modelgen.functions.objects import Function, Model
+from modelgen.functions.parametric import SUFFIXES
 from modelgen.packaging.files import version
 
 ROS2 = "ros2"  # folder below the arm's
-_SUFFIXES = ("_standard", "_identified", "_nominal")  # of functions that take other parameters, or none
 _WIDTH = WIDTH - 4  # of what is indented in a class
 _OF_A_STATE = {"q", "dq", "ddq", "parameters"}  # what the node knows of a desired state
 
@@ -122,7 +122,7 @@ def _missing(model: Model) -> list[str]:
 
 def _wrapped(function: Function) -> bool:
     """Whether the class has it: no twin with other parameters, none that the user has named."""
-    return not function.parts and not function.name.endswith(_SUFFIXES)
+    return not function.parts and not function.name.endswith(SUFFIXES)
 
 
 def _method(arm: str, function: Function) -> list[str]:
