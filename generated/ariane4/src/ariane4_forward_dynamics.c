@@ -51,7 +51,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xC28FDE5FUL
+#if ARIANE4_GENERATION != 0xA136F4CEUL
 #error "ariane4.h and ariane4_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -228,18 +228,10 @@ int ariane4_forward_dynamics(
     const ariane4_real_t t105 = ARIANE4_C(1.0) / t45;
     const ariane4_real_t t106 = (t96 + t104 * t44) * t105;
     out[0] = t106;
-    if (!(t106 >= ARIANE4_C(-1.0e15) && t106 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t107 = t104 * t42 + t44 * t106;
     out[1] = t107;
-    if (!(t107 >= ARIANE4_C(-1.0e15) && t107 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
     out[2] = t95 * t18 + t41 * t106 - t20 * t107;
-    if (!(out[2] >= ARIANE4_C(-1.0e15) && out[2] <= ARIANE4_C(1.0e15))) {
+    if (!ariane4_within_joints(out, ARIANE4_C(1.0e30))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

@@ -55,7 +55,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xC28FDE5FUL
+#if ARIANE4_GENERATION != 0xA136F4CEUL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -271,31 +271,10 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t131 = ARIANE4_C(1.0) / t48;
     const ariane4_real_t t132 = (t115 - t130 * t47) * t131;
     ddq[0] = t132;
-    if (!(t132 >= ARIANE4_C(-1.0e15) && t132 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t133 = t130 * t45 - t47 * t132;
     ddq[1] = t133;
-    if (!(t133 >= ARIANE4_C(-1.0e15) && t133 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t134 = t114 * t20 + t44 * t132 - t22 * t133;
     ddq[2] = t134;
-    if (!(t134 >= ARIANE4_C(-1.0e15) && t134 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t135 = t9 * t1 + t10 * t0;
     const ariane4_real_t t136 = t132 * t135;
     const ariane4_real_t t137 = t10 * t1 - t9 * t0;
@@ -359,33 +338,12 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t189 = ARIANE4_C(250.0) * t188 + t183;
     const ariane4_real_t t190 = t95 * t131;
     ddq_by_q[0] = -(t190 * t189);
-    if (!(ddq_by_q[0] >= ARIANE4_C(-1.0e15) && ddq_by_q[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t191 = t47 * t131;
     const ariane4_real_t t192 = t95 * t191;
     ddq_by_q[3] = t192 * t189;
-    if (!(ddq_by_q[3] >= ARIANE4_C(-1.0e15) && ddq_by_q[3] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t193 = t131 * (t44 + t22 * t47);
     const ariane4_real_t t194 = t95 * t193;
     ddq_by_q[6] = -(t194 * t189);
-    if (!(ddq_by_q[6] >= ARIANE4_C(-1.0e15) && ddq_by_q[6] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t195 = t135 * t138 + t137 * t142;
     const ariane4_real_t t196 = t53 * t137;
     const ariane4_real_t t197 = t53 * t135;
@@ -439,58 +397,16 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t236 = ARIANE4_C(-0.046787723832235825) * t4 / t2;
     const ariane4_real_t t237 = t236 * t229;
     ddq_by_dq[0] = t237 * t235 - (t222 * t190 + t233 * t234);
-    if (!(ddq_by_dq[0] >= ARIANE4_C(-1.0e15) && ddq_by_dq[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t238 = t129 * (t45 + t47 * t191);
     const ariane4_real_t t239 = t22 * t45 + t47 * t193;
     const ariane4_real_t t240 = t113 * t239;
     ddq_by_dq[3] = t222 * t192 + t233 * t238 - t237 * t240;
-    if (!(ddq_by_dq[3] >= ARIANE4_C(-1.0e15) && ddq_by_dq[3] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t241 = t129 * t239;
     const ariane4_real_t t242 = t113 * (t20 - t44 * t193 - t22 * t239);
     ddq_by_dq[6] = -(t222 * t194 + t233 * t241 + t237 * t242);
-    if (!(ddq_by_dq[6] >= ARIANE4_C(-1.0e15) && ddq_by_dq[6] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[0] = -t190;
-    if (!(ddq_by_input[0] >= ARIANE4_C(-1.0e15) && ddq_by_input[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t192;
-    if (!(t192 >= ARIANE4_C(-1.0e15) && t192 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[6] = -t194;
-    if (!(ddq_by_input[6] >= ARIANE4_C(-1.0e15) && ddq_by_input[6] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t243 = t151 - t162;
     const ariane4_real_t t244 = parameters[XZ3R] * t243 - (t161 + (parameters[ZZ3R] * t143
         + parameters[XX3R] * t144));
@@ -550,29 +466,8 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t287 = ARIANE4_C(83.33333333333333) * t286 + t281;
     const ariane4_real_t t288 = t236 * t277;
     ddq_by_q[1] = t190 * t260 - t234 * t287 + t235 * t288;
-    if (!(ddq_by_q[1] >= ARIANE4_C(-1.0e15) && ddq_by_q[1] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[4] = t238 * t287 - t192 * t260 - t240 * t288;
-    if (!(ddq_by_q[4] >= ARIANE4_C(-1.0e15) && ddq_by_q[4] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[7] = t194 * t260 - t241 * t287 - t242 * t288;
-    if (!(ddq_by_q[7] >= ARIANE4_C(-1.0e15) && ddq_by_q[7] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t289 = ARIANE4_C(-2.0) * t142;
     const ariane4_real_t t290 = ARIANE4_C(-2.0) * t53;
     const ariane4_real_t t291 = parameters[YZ3R] * t290 + (parameters[ZZ3R] * t138 + parameters[XX3R] * t138
@@ -603,53 +498,11 @@ int ariane4_forward_dynamics_derivatives(
         - parameters[IA2] * (t126 * t298)) + t232 * (t308 + t309);
     const ariane4_real_t t311 = t236 * t308;
     ddq_by_dq[1] = t306 * t190 - t310 * t234 + t311 * t235;
-    if (!(ddq_by_dq[1] >= ARIANE4_C(-1.0e15) && ddq_by_dq[1] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[4] = t310 * t238 - t306 * t192 - t311 * t240;
-    if (!(ddq_by_dq[4] >= ARIANE4_C(-1.0e15) && ddq_by_dq[4] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[7] = t306 * t194 - t310 * t241 - t311 * t242;
-    if (!(ddq_by_dq[7] >= ARIANE4_C(-1.0e15) && ddq_by_dq[7] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t234;
-    if (!(t234 >= ARIANE4_C(-1.0e15) && t234 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[4] = -t238;
-    if (!(ddq_by_input[4] >= ARIANE4_C(-1.0e15) && ddq_by_input[4] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t241;
-    if (!(t241 >= ARIANE4_C(-1.0e15) && t241 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t312 = t9 * (t1 * t246 - t172 + (t173 - t0 * t249));
     const ariane4_real_t t313 = t255 + (t158 + t0 * t246 + (t165 + t1 * t249));
     const ariane4_real_t t314 = t181 * (t312 + t10 * t313 + ARIANE4_C(0.116) * t254);
@@ -668,76 +521,23 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t325 = parameters[FV3] * (dq[2] * t322) + parameters[IA3] * (t324 + t134 * t322);
     const ariane4_real_t t326 = ARIANE4_C(333.3333333333333) * t325 - t320;
     ddq_by_q[2] = t190 * t314 - t234 * t317 - t235 * t326;
-    if (!(ddq_by_q[2] >= ARIANE4_C(-1.0e15) && ddq_by_q[2] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[5] = t238 * t317 - t192 * t314 + t240 * t326;
-    if (!(ddq_by_q[5] >= ARIANE4_C(-1.0e15) && ddq_by_q[5] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[8] = t194 * t314 - t241 * t317 + t242 * t326;
-    if (!(ddq_by_q[8] >= ARIANE4_C(-1.0e15) && ddq_by_q[8] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t327 = t9 * (t1 * t291 + t0 * t295) + t10 * (t301 + (t0 * t291 - t1 * t295));
     const ariane4_real_t t328 = t181 * (t327 + ARIANE4_C(0.116) * t300);
     const ariane4_real_t t329 = t232 * t309;
     const ariane4_real_t t330 = ARIANE4_C(333.3333333333333) * (t7 * parameters[FV3]
         + parameters[IA3] * (t101 * (ARIANE4_C(2.0) * dq[2])));
     ddq_by_dq[2] = t328 * t190 - t329 * t234 - t330 * t235;
-    if (!(ddq_by_dq[2] >= ARIANE4_C(-1.0e15) && ddq_by_dq[2] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[5] = t329 * t238 - t328 * t192 + t330 * t240;
-    if (!(ddq_by_dq[5] >= ARIANE4_C(-1.0e15) && ddq_by_dq[5] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[8] = t328 * t194 - t329 * t241 + t330 * t242;
-    if (!(ddq_by_dq[8] >= ARIANE4_C(-1.0e15) && ddq_by_dq[8] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[2] = -t235;
-    if (!(ddq_by_input[2] >= ARIANE4_C(-1.0e15) && ddq_by_input[2] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t240;
-    if (!(t240 >= ARIANE4_C(-1.0e15) && t240 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t242;
-    if (!(t242 >= ARIANE4_C(-1.0e15) && t242 <= ARIANE4_C(1.0e15))) {
+    if (!ariane4_within_joints(ddq, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_q, 9, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_dq, 9, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_input, 9, ARIANE4_C(1.0e30))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

@@ -79,7 +79,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xC28FDE5FUL
+#if ARIANE4_GENERATION != 0xA136F4CEUL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -364,31 +364,10 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t187 = ARIANE4_C(1.0) / t72;
     const ariane4_real_t t188 = t186 * t187;
     ddq[0] = t188;
-    if (!(t188 >= ARIANE4_C(-1.0e15) && t188 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t189 = t185 * t66 - t71 * t188;
     ddq[1] = t189;
-    if (!(t189 >= ARIANE4_C(-1.0e15) && t189 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t190 = t170 * t32 - t65 * t188 - t34 * t189;
     ddq[2] = t190;
-    if (!(t190 >= ARIANE4_C(-1.0e15) && t190 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t191 = ARIANE4_C(-0.116) * t188;
     const ariane4_real_t t192 = t15 * t188;
     const ariane4_real_t t193 = t99 - t192;
@@ -476,33 +455,12 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t259 = ARIANE4_C(250.0) * t258 + t253 * (t247 - parameters[ZZ1] * t188);
     const ariane4_real_t t260 = t152 * t187;
     ddq_by_q[0] = -(t260 * t259);
-    if (!(ddq_by_q[0] >= ARIANE4_C(-1.0e15) && ddq_by_q[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t261 = t71 * t187;
     const ariane4_real_t t262 = t152 * t261;
     ddq_by_q[3] = t262 * t259;
-    if (!(ddq_by_q[3] >= ARIANE4_C(-1.0e15) && ddq_by_q[3] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t263 = t187 * (t65 - t34 * t71);
     const ariane4_real_t t264 = t152 * t263;
     ddq_by_q[6] = t264 * t259;
-    if (!(ddq_by_q[6] >= ARIANE4_C(-1.0e15) && ddq_by_q[6] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t265 = ARIANE4_C(-0.436) * t77;
     const ariane4_real_t t266 = t24 * t265;
     const ariane4_real_t t267 = ARIANE4_C(0.1) * t77;
@@ -594,58 +552,16 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t346 = t345 * t344;
     const ariane4_real_t t347 = t169 * t263;
     ddq_by_dq[0] = t346 * t347 - (t323 * t260 + t337 * t338);
-    if (!(ddq_by_dq[0] >= ARIANE4_C(-1.0e15) && ddq_by_dq[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t348 = t184 * (t66 + t71 * t261);
     const ariane4_real_t t349 = t71 * t263 - t34 * t66;
     const ariane4_real_t t350 = t169 * t349;
     ddq_by_dq[3] = t323 * t262 + t337 * t348 - t346 * t350;
-    if (!(ddq_by_dq[3] >= ARIANE4_C(-1.0e15) && ddq_by_dq[3] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t351 = t184 * t349;
     const ariane4_real_t t352 = t169 * (t32 - t65 * t263 + t34 * t349);
     ddq_by_dq[6] = t323 * t264 + t337 * t351 + t346 * t352;
-    if (!(ddq_by_dq[6] >= ARIANE4_C(-1.0e15) && ddq_by_dq[6] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[0] = -t260;
-    if (!(ddq_by_input[0] >= ARIANE4_C(-1.0e15) && ddq_by_input[0] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t262;
-    if (!(t262 >= ARIANE4_C(-1.0e15) && t262 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t264;
-    if (!(t264 >= ARIANE4_C(-1.0e15) && t264 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t353 = ARIANE4_C(2.0) * t75;
     const ariane4_real_t t354 = ARIANE4_C(-2.0) * t74;
     const ariane4_real_t t355 = t353 * t307 + t354 * t313 + (t141 * t68 + (t42 * t192 - t45 * t237));
@@ -694,29 +610,8 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t387 = t75 * t342 - t74 * t343 + (t141 * t33 + (t63 * t237 - t62 * t192));
     const ariane4_real_t t388 = t345 * (t95 * t44 - t90 * t26 + t387);
     ddq_by_q[1] = t347 * t388 - (t260 * t359 - t338 * t386);
-    if (!(ddq_by_q[1] >= ARIANE4_C(-1.0e15) && ddq_by_q[1] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[4] = t262 * t359 - t348 * t386 - t350 * t388;
-    if (!(ddq_by_q[4] >= ARIANE4_C(-1.0e15) && ddq_by_q[4] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[7] = t264 * t359 - t351 * t386 + t352 * t388;
-    if (!(ddq_by_q[7] >= ARIANE4_C(-1.0e15) && ddq_by_q[7] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t389 = t287 - parameters[ZZ3];
     const ariane4_real_t t390 = t284 - parameters[YY4];
     const ariane4_real_t t391 = t77 * parameters[YZ4] - t204 * t390 + parameters[MY4] * t265
@@ -741,53 +636,11 @@ int ariane4_forward_dynamics_derivatives_standard(
         - t75 * t62);
     const ariane4_real_t t406 = t345 * t405;
     ddq_by_dq[1] = t406 * t347 - (t399 * t260 - t403 * t338);
-    if (!(ddq_by_dq[1] >= ARIANE4_C(-1.0e15) && ddq_by_dq[1] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[4] = t399 * t262 - t403 * t348 - t406 * t350;
-    if (!(ddq_by_dq[4] >= ARIANE4_C(-1.0e15) && ddq_by_dq[4] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[7] = t399 * t264 - t403 * t351 + t406 * t352;
-    if (!(ddq_by_dq[7] >= ARIANE4_C(-1.0e15) && ddq_by_dq[7] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[1] = -t338;
-    if (!(ddq_by_input[1] >= ARIANE4_C(-1.0e15) && ddq_by_input[1] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t348;
-    if (!(t348 >= ARIANE4_C(-1.0e15) && t348 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t351;
-    if (!(t351 >= ARIANE4_C(-1.0e15) && t351 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t407 = ARIANE4_C(-2.0) * t204;
     const ariane4_real_t t408 = ARIANE4_C(-2.0) * t199;
     const ariane4_real_t t409 = t222 * t60 + (t37 * t197 - t39 * t203) - (t407 * t280 + t408 * t289);
@@ -820,29 +673,8 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t434 = parameters[FV3] * (dq[2] * t431) + parameters[IA3] * (t433 + t190 * t431);
     const ariane4_real_t t435 = ARIANE4_C(333.3333333333333) * t434 + t429 + t428 * t367;
     ddq_by_q[2] = t347 * t435 - (t260 * t416 + t338 * t423);
-    if (!(ddq_by_q[2] >= ARIANE4_C(-1.0e15) && ddq_by_q[2] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[5] = t262 * t416 + t348 * t423 - t350 * t435;
-    if (!(ddq_by_q[5] >= ARIANE4_C(-1.0e15) && ddq_by_q[5] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_q[8] = t264 * t416 + t351 * t423 + t352 * t435;
-    if (!(ddq_by_q[8] >= ARIANE4_C(-1.0e15) && ddq_by_q[8] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t436 = ARIANE4_C(2.0) * t391 + (t39 * t408 - t37 * t407);
     const ariane4_real_t t437 = ARIANE4_C(2.0) * t392 - (t39 * t407 - t38 * t408);
     const ariane4_real_t t438 = t23 * t407 + t25 * t408;
@@ -858,47 +690,15 @@ int ariane4_forward_dynamics_derivatives_standard(
         + parameters[IA3] * (t166 * (ARIANE4_C(2.0) * dq[2])));
     const ariane4_real_t t447 = t446 + t445;
     ddq_by_dq[2] = t447 * t347 - (t441 * t260 + t444 * t338);
-    if (!(ddq_by_dq[2] >= ARIANE4_C(-1.0e15) && ddq_by_dq[2] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[5] = t441 * t262 + t444 * t348 - t447 * t350;
-    if (!(ddq_by_dq[5] >= ARIANE4_C(-1.0e15) && ddq_by_dq[5] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_dq[8] = t441 * t264 + t444 * t351 + t447 * t352;
-    if (!(ddq_by_dq[8] >= ARIANE4_C(-1.0e15) && ddq_by_dq[8] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t347;
-    if (!(t347 >= ARIANE4_C(-1.0e15) && t347 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[5] = -t350;
-    if (!(ddq_by_input[5] >= ARIANE4_C(-1.0e15) && ddq_by_input[5] <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t352;
-    if (!(t352 >= ARIANE4_C(-1.0e15) && t352 <= ARIANE4_C(1.0e15))) {
+    if (!ariane4_within_joints(ddq, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_q, 9, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_dq, 9, ARIANE4_C(1.0e30))
+        || !ariane4_within(ddq_by_input, 9, ARIANE4_C(1.0e30))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

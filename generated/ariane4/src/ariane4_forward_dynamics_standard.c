@@ -75,7 +75,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xC28FDE5FUL
+#if ARIANE4_GENERATION != 0xA136F4CEUL
 #error "ariane4.h and ariane4_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -307,18 +307,10 @@ int ariane4_forward_dynamics_standard(
     const ariane4_real_t t147 = ARIANE4_C(1.0) / t62;
     const ariane4_real_t t148 = (t126 + t137 * t57 + t146 * t61) * t147;
     out[0] = t148;
-    if (!(t148 >= ARIANE4_C(-1.0e15) && t148 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
     const ariane4_real_t t149 = t146 * t58 + t61 * t148;
     out[1] = t149;
-    if (!(t149 >= ARIANE4_C(-1.0e15) && t149 <= ARIANE4_C(1.0e15))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
     out[2] = t137 * t28 - t57 * t148 - t30 * t149;
-    if (!(out[2] >= ARIANE4_C(-1.0e15) && out[2] <= ARIANE4_C(1.0e15))) {
+    if (!ariane4_within_joints(out, ARIANE4_C(1.0e30))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0xC28FDE5FUL
+#if ARIANE4_GENERATION != 0xA136F4CEUL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 

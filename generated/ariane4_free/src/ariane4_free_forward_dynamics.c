@@ -61,7 +61,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x216087AEUL
+#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -332,25 +332,13 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t170 = ARIANE4_FREE_C(1.0) / t73;
     const ariane4_free_real_t t171 = (t152 - t160 * t68 + t169 * t72) * t170;
     out[0] = t171;
-    if (!(t171 >= ARIANE4_FREE_C(-1.0e15) && t171 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t172 = t169 * t71 + t72 * t171;
     out[1] = t172;
-    if (!(t172 >= ARIANE4_FREE_C(-1.0e15) && t172 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t173 = t160 * t36 + t68 * t171 - t37 * t172;
     out[2] = t173;
-    if (!(t173 >= ARIANE4_FREE_C(-1.0e15) && t173 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t174 = t34 * t172 - (t151 * t17 + t62 * t171) - t18 * t173;
     out[3] = t174;
-    if (!(t174 >= ARIANE4_FREE_C(-1.0e15) && t174 <= ARIANE4_FREE_C(1.0e15))) {
+    if (!ariane4_free_within_joints(out, ARIANE4_FREE_C(1.0e30))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

@@ -65,7 +65,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x216087AEUL
+#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -386,40 +386,12 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t206 = ARIANE4_FREE_C(-1.0) / t84;
     const ariane4_free_real_t t207 = (t176 - t189 * t78 + t205 * t83) * t206;
     ddq[0] = -t207;
-    if (!(ddq[0] >= ARIANE4_FREE_C(-1.0e15) && ddq[0] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t208 = t205 * t82 - t83 * t207;
     ddq[1] = t208;
-    if (!(t208 >= ARIANE4_FREE_C(-1.0e15) && t208 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t209 = t189 * t41 - t78 * t207 - t42 * t208;
     ddq[2] = t209;
-    if (!(t209 >= ARIANE4_FREE_C(-1.0e15) && t209 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t210 = t175 * t18 + t72 * t207 + t38 * t208 + t19 * t209;
     ddq[3] = t210;
-    if (!(t210 >= ARIANE4_FREE_C(-1.0e15) && t210 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t211 = t22 * t1 - t23 * t2;
     const ariane4_free_real_t t212 = t207 * t211;
     const ariane4_free_real_t t213 = t22 * t2 + t23 * t1;
@@ -519,44 +491,16 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t293 = ARIANE4_FREE_C(250.0) * t292 + t287 * (parameters[ZZ1R] * t207 + t281);
     const ariane4_free_real_t t294 = t172 * t206;
     ddq_by_q[0] = t294 * t293;
-    if (!(ddq_by_q[0] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[0] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t295 = t83 * t206;
     const ariane4_free_real_t t296 = t172 * t295;
     ddq_by_q[4] = t296 * t293;
-    if (!(ddq_by_q[4] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[4] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t297 = t206 * (t78 - t42 * t83);
     const ariane4_free_real_t t298 = t172 * t297;
     ddq_by_q[8] = t298 * t293;
-    if (!(ddq_by_q[8] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[8] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t299 = t38 - t19 * t42;
     const ariane4_free_real_t t300 = t206 * (t83 * t299 - (t72 - t19 * t78));
     const ariane4_free_real_t t301 = t172 * t300;
     ddq_by_q[12] = t301 * t293;
-    if (!(ddq_by_q[12] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[12] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t302 = parameters[XZ4R] * t219;
     const ariane4_free_real_t t303 = parameters[XY4] * t250;
     const ariane4_free_real_t t304 = t302 + t303;
@@ -664,13 +608,6 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t401 = ARIANE4_FREE_C(0.2) * t400;
     const ariane4_free_real_t t402 = t365 * t294 + t379 * t366 + t388 * t380 + t401 * t389;
     ddq_by_dq[0] = t402;
-    if (!(t402 >= ARIANE4_FREE_C(-1.0e15) && t402 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t403 = t203 * (t82 - t83 * t295);
     const ariane4_free_real_t t404 = t42 * t82 + t83 * t297;
     const ariane4_free_real_t t405 = t188 * t404;
@@ -678,71 +615,22 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t407 = ARIANE4_FREE_C(5.0) * t406;
     const ariane4_free_real_t t408 = t388 * t405 - (t379 * t403 - t365 * t296) + t401 * t407;
     ddq_by_dq[4] = t408;
-    if (!(t408 >= ARIANE4_FREE_C(-1.0e15) && t408 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t409 = t203 * t404;
     const ariane4_free_real_t t410 = t188 * (t41 + t78 * t297 - t42 * t404);
     const ariane4_free_real_t t411 = t19 * t41 + t78 * t300 + t42 * t406;
     const ariane4_free_real_t t412 = ARIANE4_FREE_C(-5.0) * t411;
     const ariane4_free_real_t t413 = t365 * t298 + t379 * t409 + t388 * t410 + t401 * t412;
     ddq_by_dq[8] = t413;
-    if (!(t413 >= ARIANE4_FREE_C(-1.0e15) && t413 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t414 = t203 * t406;
     const ariane4_free_real_t t415 = t188 * t411;
     const ariane4_free_real_t t416 = t18 + t72 * t300 + t38 * t406 - t19 * t411;
     const ariane4_free_real_t t417 = ARIANE4_FREE_C(5.0) * t416;
     const ariane4_free_real_t t418 = t388 * t415 - (t379 * t414 - t365 * t301) + t401 * t417;
     ddq_by_dq[12] = t418;
-    if (!(t418 >= ARIANE4_FREE_C(-1.0e15) && t418 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t294;
-    if (!(t294 >= ARIANE4_FREE_C(-1.0e15) && t294 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t296;
-    if (!(t296 >= ARIANE4_FREE_C(-1.0e15) && t296 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t298;
-    if (!(t298 >= ARIANE4_FREE_C(-1.0e15) && t298 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t301;
-    if (!(t301 >= ARIANE4_FREE_C(-1.0e15) && t301 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t419 = t161 + t114;
     const ariane4_free_real_t t420 = ARIANE4_FREE_C(2.0) * t87;
     const ariane4_free_real_t t421 = ARIANE4_FREE_C(-2.0) * t86;
@@ -788,40 +676,12 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t451 = ARIANE4_FREE_C(0.2) * (t398 * t118 + t36 * t113 + t450);
     const ariane4_free_real_t t452 = t294 * t426 + t366 * t447 - t380 * t449 + t389 * t451;
     ddq_by_q[1] = t452;
-    if (!(t452 >= ARIANE4_FREE_C(-1.0e15) && t452 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t453 = t407 * t451 - (t403 * t447 - t296 * t426 + t405 * t449);
     ddq_by_q[5] = t453;
-    if (!(t453 >= ARIANE4_FREE_C(-1.0e15) && t453 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t454 = t298 * t426 + t409 * t447 - t410 * t449 + t412 * t451;
     ddq_by_q[9] = t454;
-    if (!(t454 >= ARIANE4_FREE_C(-1.0e15) && t454 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t455 = t417 * t451 - (t414 * t447 - t301 * t426 + t415 * t449);
     ddq_by_q[13] = t455;
-    if (!(t455 >= ARIANE4_FREE_C(-1.0e15) && t455 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t456 = t329 - parameters[ZZ3R];
     const ariane4_free_real_t t457 = t222 * t456 - parameters[YZ3] * t91 + (t310 + t367);
     const ariane4_free_real_t t458 = parameters[XZ3] * t91 + t214 * t456 - (t10 * t331 + t9 * t332
@@ -848,72 +708,16 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t475 = ARIANE4_FREE_C(0.2) * t474;
     const ariane4_free_real_t t476 = t465 * t294 + t469 * t366 + t472 * t380 + t475 * t389;
     ddq_by_dq[1] = t476;
-    if (!(t476 >= ARIANE4_FREE_C(-1.0e15) && t476 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t477 = t472 * t405 - (t469 * t403 - t465 * t296) + t475 * t407;
     ddq_by_dq[5] = t477;
-    if (!(t477 >= ARIANE4_FREE_C(-1.0e15) && t477 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t478 = t465 * t298 + t469 * t409 + t472 * t410 + t475 * t412;
     ddq_by_dq[9] = t478;
-    if (!(t478 >= ARIANE4_FREE_C(-1.0e15) && t478 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t479 = t472 * t415 - (t469 * t414 - t465 * t301) + t475 * t417;
     ddq_by_dq[13] = t479;
-    if (!(t479 >= ARIANE4_FREE_C(-1.0e15) && t479 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[1] = -t366;
-    if (!(ddq_by_input[1] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_input[1] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t403;
-    if (!(t403 >= ARIANE4_FREE_C(-1.0e15) && t403 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[9] = -t409;
-    if (!(ddq_by_input[9] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_input[9] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t414;
-    if (!(t414 >= ARIANE4_FREE_C(-1.0e15) && t414 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t480 = t256 + t243;
     const ariane4_free_real_t t481 = ARIANE4_FREE_C(2.0) * t222;
     const ariane4_free_real_t t482 = ARIANE4_FREE_C(2.0) * t214;
@@ -953,40 +757,12 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t511 = ARIANE4_FREE_C(0.2) * (t510 + t486);
     const ariane4_free_real_t t512 = t294 * t491 - t366 * t497 + t380 * t509 + t389 * t511;
     ddq_by_q[2] = t512;
-    if (!(t512 >= ARIANE4_FREE_C(-1.0e15) && t512 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t513 = t296 * t491 + t403 * t497 + t405 * t509 + t407 * t511;
     ddq_by_q[6] = t513;
-    if (!(t513 >= ARIANE4_FREE_C(-1.0e15) && t513 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t514 = t410 * t509 - (t409 * t497 - t298 * t491) + t412 * t511;
     ddq_by_q[10] = t514;
-    if (!(t514 >= ARIANE4_FREE_C(-1.0e15) && t514 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t515 = t301 * t491 + t414 * t497 + t415 * t509 + t417 * t511;
     ddq_by_q[14] = t515;
-    if (!(t515 >= ARIANE4_FREE_C(-1.0e15) && t515 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t516 = ARIANE4_FREE_C(2.0) * t457 - (t46 * t481 + t48 * t482);
     const ariane4_free_real_t t517 = ARIANE4_FREE_C(2.0) * t458 - (t48 * t481 + t45 * t482);
     const ariane4_free_real_t t518 = parameters[MY3R] * t481 - t30 * t482;
@@ -1005,72 +781,16 @@ int ariane4_free_forward_dynamics_derivatives(
         + t68 * t214));
     const ariane4_free_real_t t529 = t521 * t294 + t524 * t366 + t527 * t380 + t528 * t389;
     ddq_by_dq[2] = t529;
-    if (!(t529 >= ARIANE4_FREE_C(-1.0e15) && t529 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t530 = t527 * t405 - (t524 * t403 - t521 * t296) + t528 * t407;
     ddq_by_dq[6] = t530;
-    if (!(t530 >= ARIANE4_FREE_C(-1.0e15) && t530 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t531 = t521 * t298 + t524 * t409 + t527 * t410 + t528 * t412;
     ddq_by_dq[10] = t531;
-    if (!(t531 >= ARIANE4_FREE_C(-1.0e15) && t531 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t532 = t527 * t415 - (t524 * t414 - t521 * t301) + t528 * t417;
     ddq_by_dq[14] = t532;
-    if (!(t532 >= ARIANE4_FREE_C(-1.0e15) && t532 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t380;
-    if (!(t380 >= ARIANE4_FREE_C(-1.0e15) && t380 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t405;
-    if (!(t405 >= ARIANE4_FREE_C(-1.0e15) && t405 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t410;
-    if (!(t410 >= ARIANE4_FREE_C(-1.0e15) && t410 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t415;
-    if (!(t415 >= ARIANE4_FREE_C(-1.0e15) && t415 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t533 = t232 + t233;
     const ariane4_free_real_t t534 = ARIANE4_FREE_C(2.0) * t219;
     const ariane4_free_real_t t535 = ARIANE4_FREE_C(2.0) * t218;
@@ -1100,40 +820,12 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t555 = ARIANE4_FREE_C(0.2) * (t541 + (t219 * t390 + t218 * t391 + t542));
     const ariane4_free_real_t t556 = t389 * t555 - (t380 * t554 - (t294 * t549 - t366 * t553));
     ddq_by_q[3] = t556;
-    if (!(t556 >= ARIANE4_FREE_C(-1.0e15) && t556 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t557 = t296 * t549 + t403 * t553 - t405 * t554 + t407 * t555;
     ddq_by_q[7] = t557;
-    if (!(t557 >= ARIANE4_FREE_C(-1.0e15) && t557 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t558 = t412 * t555 - (t409 * t553 - t298 * t549 + t410 * t554);
     ddq_by_q[11] = t558;
-    if (!(t558 >= ARIANE4_FREE_C(-1.0e15) && t558 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t559 = t301 * t549 + t414 * t553 - t415 * t554 + t417 * t555;
     ddq_by_q[15] = t559;
-    if (!(t559 >= ARIANE4_FREE_C(-1.0e15) && t559 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t560 = ARIANE4_FREE_C(-2.0) * t327 - (parameters[XY4] * t535
         + parameters[XX4R] * t534);
     const ariane4_free_real_t t561 = parameters[XY4] * t534 + ARIANE4_FREE_C(-2.0) * t328;
@@ -1154,66 +846,20 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t575 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
     const ariane4_free_real_t t576 = t569 * t294 + t573 * t366 + t574 * t380 + t575 * t389;
     ddq_by_dq[3] = t576;
-    if (!(t576 >= ARIANE4_FREE_C(-1.0e15) && t576 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t577 = t574 * t405 - (t573 * t403 - t569 * t296) + t575 * t407;
     ddq_by_dq[7] = t577;
-    if (!(t577 >= ARIANE4_FREE_C(-1.0e15) && t577 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t578 = t569 * t298 + t573 * t409 + t574 * t410 + t575 * t412;
     ddq_by_dq[11] = t578;
-    if (!(t578 >= ARIANE4_FREE_C(-1.0e15) && t578 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t579 = t574 * t415 - (t573 * t414 - t569 * t301) + t575 * t417;
     ddq_by_dq[15] = t579;
-    if (!(t579 >= ARIANE4_FREE_C(-1.0e15) && t579 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t389;
-    if (!(t389 >= ARIANE4_FREE_C(-1.0e15) && t389 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t407;
-    if (!(t407 >= ARIANE4_FREE_C(-1.0e15) && t407 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t412;
-    if (!(t412 >= ARIANE4_FREE_C(-1.0e15) && t412 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t417;
-    if (!(t417 >= ARIANE4_FREE_C(-1.0e15) && t417 <= ARIANE4_FREE_C(1.0e15))) {
+    if (!ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_q, 16, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_dq, 16, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_input, 16, ARIANE4_FREE_C(1.0e30))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

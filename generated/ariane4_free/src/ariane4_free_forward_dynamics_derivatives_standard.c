@@ -83,7 +83,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x216087AEUL
+#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -451,40 +451,12 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t238 = ARIANE4_FREE_C(1.0) / t96;
     const ariane4_free_real_t t239 = (t221 - t237 * t95) * t238;
     ddq[0] = t239;
-    if (!(t239 >= ARIANE4_FREE_C(-1.0e15) && t239 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t240 = t237 * t94 - t95 * t239;
     ddq[1] = t240;
-    if (!(t240 >= ARIANE4_FREE_C(-1.0e15) && t240 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t241 = t220 * t48 - t89 * t239 - t51 * t240;
     ddq[2] = t241;
-    if (!(t241 >= ARIANE4_FREE_C(-1.0e15) && t241 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t242 = t203 * t23 - t83 * t239 + t47 * t240 - t24 * t241;
     ddq[3] = t242;
-    if (!(t242 >= ARIANE4_FREE_C(-1.0e15) && t242 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t243 = t240 + t241;
     const ariane4_free_real_t t244 = t27 * t2 + t28 * t1;
     const ariane4_free_real_t t245 = dq[0] * t244;
@@ -601,44 +573,16 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t339 = ARIANE4_FREE_C(250.0) * t338 + t333 * (t327 - parameters[ZZ1] * t239);
     const ariane4_free_real_t t340 = t200 * t238;
     ddq_by_q[0] = -(t340 * t339);
-    if (!(ddq_by_q[0] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[0] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t341 = t95 * t238;
     const ariane4_free_real_t t342 = t200 * t341;
     ddq_by_q[4] = t342 * t339;
-    if (!(ddq_by_q[4] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[4] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t343 = t238 * (t89 - t51 * t95);
     const ariane4_free_real_t t344 = t200 * t343;
     ddq_by_q[8] = t344 * t339;
-    if (!(ddq_by_q[8] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[8] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t345 = t47 + t24 * t51;
     const ariane4_free_real_t t346 = t238 * (t83 - t24 * t89 + t95 * t345);
     const ariane4_free_real_t t347 = t200 * t346;
     ddq_by_q[12] = t347 * t339;
-    if (!(ddq_by_q[12] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_q[12] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t348 = t255 * parameters[MZ4] + t256 * parameters[MY4];
     const ariane4_free_real_t t349 = t256 * parameters[MX4] - t260 * parameters[MZ4];
     const ariane4_free_real_t t350 = t10 * t348 + t9 * t349;
@@ -763,13 +707,6 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t457 = ARIANE4_FREE_C(0.2) * t456;
     const ariane4_free_real_t t458 = t435 * t421 - t420 * t340 + t444 * t436 + t457 * t445;
     ddq_by_dq[0] = t458;
-    if (!(t458 >= ARIANE4_FREE_C(-1.0e15) && t458 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t459 = t235 * (t94 + t95 * t341);
     const ariane4_free_real_t t460 = t95 * t343 - t51 * t94;
     const ariane4_free_real_t t461 = t219 * t460;
@@ -777,71 +714,22 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t463 = ARIANE4_FREE_C(5.0) * t462;
     const ariane4_free_real_t t464 = t420 * t342 - t435 * t459 - t444 * t461 + t457 * t463;
     ddq_by_dq[4] = t464;
-    if (!(t464 >= ARIANE4_FREE_C(-1.0e15) && t464 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t465 = t235 * t460;
     const ariane4_free_real_t t466 = t219 * (t48 - t89 * t343 + t51 * t460);
     const ariane4_free_real_t t467 = t51 * t462 - (t24 * t48 + t89 * t346);
     const ariane4_free_real_t t468 = ARIANE4_FREE_C(-5.0) * t467;
     const ariane4_free_real_t t469 = t420 * t344 - t435 * t465 + t444 * t466 + t457 * t468;
     ddq_by_dq[8] = t469;
-    if (!(t469 >= ARIANE4_FREE_C(-1.0e15) && t469 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t470 = t235 * t462;
     const ariane4_free_real_t t471 = t219 * t467;
     const ariane4_free_real_t t472 = t23 + t83 * t346 + t47 * t462 + t24 * t467;
     const ariane4_free_real_t t473 = ARIANE4_FREE_C(5.0) * t472;
     const ariane4_free_real_t t474 = t420 * t347 - t435 * t470 + t444 * t471 + t457 * t473;
     ddq_by_dq[12] = t474;
-    if (!(t474 >= ARIANE4_FREE_C(-1.0e15) && t474 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[0] = -t340;
-    if (!(ddq_by_input[0] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_input[0] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t342;
-    if (!(t342 >= ARIANE4_FREE_C(-1.0e15) && t342 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t344;
-    if (!(t344 >= ARIANE4_FREE_C(-1.0e15) && t344 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t347;
-    if (!(t347 >= ARIANE4_FREE_C(-1.0e15) && t347 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t475 = ARIANE4_FREE_C(2.0) * t101;
     const ariane4_free_real_t t476 = ARIANE4_FREE_C(-2.0) * t107;
     const ariane4_free_real_t t477 = t475 * t406 + t476 * t410 + (t189 * t91 + (t60 * t274 - t63 * t316));
@@ -895,40 +783,12 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t511 = ARIANE4_FREE_C(0.2) * (t106 * t454 - t100 * t45 + t510);
     const ariane4_free_real_t t512 = t421 * t507 - t340 * t481 - t436 * t509 + t445 * t511;
     ddq_by_q[1] = t512;
-    if (!(t512 >= ARIANE4_FREE_C(-1.0e15) && t512 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t513 = t342 * t481 - t459 * t507 + t461 * t509 + t463 * t511;
     ddq_by_q[5] = t513;
-    if (!(t513 >= ARIANE4_FREE_C(-1.0e15) && t513 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t514 = t344 * t481 - t465 * t507 - t466 * t509 + t468 * t511;
     ddq_by_q[9] = t514;
-    if (!(t514 >= ARIANE4_FREE_C(-1.0e15) && t514 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t515 = t347 * t481 - t470 * t507 - t471 * t509 + t473 * t511;
     ddq_by_q[13] = t515;
-    if (!(t515 >= ARIANE4_FREE_C(-1.0e15) && t515 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t516 = t383 - parameters[ZZ3];
     const ariane4_free_real_t t517 = t247 * t516 - t115 * parameters[YZ3] + (t370 + t422 + t21 * t354);
     const ariane4_free_real_t t518 = t115 * parameters[XZ3] + t245 * t516 - (t9 * t386 + t10 * t387
@@ -955,72 +815,16 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t535 = ARIANE4_FREE_C(0.2) * t534;
     const ariane4_free_real_t t536 = t529 * t421 - t525 * t340 + t532 * t436 + t535 * t445;
     ddq_by_dq[1] = t536;
-    if (!(t536 >= ARIANE4_FREE_C(-1.0e15) && t536 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t537 = t525 * t342 - t529 * t459 - t532 * t461 + t535 * t463;
     ddq_by_dq[5] = t537;
-    if (!(t537 >= ARIANE4_FREE_C(-1.0e15) && t537 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t538 = t525 * t344 - t529 * t465 + t532 * t466 + t535 * t468;
     ddq_by_dq[9] = t538;
-    if (!(t538 >= ARIANE4_FREE_C(-1.0e15) && t538 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t539 = t525 * t347 - t529 * t470 + t532 * t471 + t535 * t473;
     ddq_by_dq[13] = t539;
-    if (!(t539 >= ARIANE4_FREE_C(-1.0e15) && t539 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[1] = -t421;
-    if (!(ddq_by_input[1] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_input[1] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t459;
-    if (!(t459 >= ARIANE4_FREE_C(-1.0e15) && t459 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t465;
-    if (!(t465 >= ARIANE4_FREE_C(-1.0e15) && t465 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t470;
-    if (!(t470 >= ARIANE4_FREE_C(-1.0e15) && t470 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t540 = ARIANE4_FREE_C(2.0) * t245;
     const ariane4_free_real_t t541 = ARIANE4_FREE_C(2.0) * t247;
     const ariane4_free_real_t t542 = t541 * t390 + t540 * t378 + (t320 * t85 + (t57 * t264 + t55 * t250));
@@ -1058,40 +862,12 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t570 = ARIANE4_FREE_C(0.2) * (t569 + t21 * t291);
     const ariane4_free_real_t t571 = t436 * t568 - (t340 * t549 + t421 * t556) + t445 * t570;
     ddq_by_q[2] = t571;
-    if (!(t571 >= ARIANE4_FREE_C(-1.0e15) && t571 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t572 = t342 * t549 + t459 * t556 - t461 * t568 + t463 * t570;
     ddq_by_q[6] = t572;
-    if (!(t572 >= ARIANE4_FREE_C(-1.0e15) && t572 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t573 = t344 * t549 + t465 * t556 + t466 * t568 + t468 * t570;
     ddq_by_q[10] = t573;
-    if (!(t573 >= ARIANE4_FREE_C(-1.0e15) && t573 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t574 = t347 * t549 + t470 * t556 + t471 * t568 + t473 * t570;
     ddq_by_q[14] = t574;
-    if (!(t574 >= ARIANE4_FREE_C(-1.0e15) && t574 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t575 = ARIANE4_FREE_C(2.0) * t517 - (t54 * t541 + t57 * t540);
     const ariane4_free_real_t t576 = ARIANE4_FREE_C(2.0) * t518 - (t57 * t541 + t55 * t540);
     const ariane4_free_real_t t577 = t38 * t541 - t36 * t540;
@@ -1110,72 +886,16 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         + t245 * t79));
     const ariane4_free_real_t t588 = t583 * t421 - t580 * t340 + t586 * t436 + t587 * t445;
     ddq_by_dq[2] = t588;
-    if (!(t588 >= ARIANE4_FREE_C(-1.0e15) && t588 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t589 = t580 * t342 - t583 * t459 - t586 * t461 + t587 * t463;
     ddq_by_dq[6] = t589;
-    if (!(t589 >= ARIANE4_FREE_C(-1.0e15) && t589 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t590 = t580 * t344 - t583 * t465 + t586 * t466 + t587 * t468;
     ddq_by_dq[10] = t590;
-    if (!(t590 >= ARIANE4_FREE_C(-1.0e15) && t590 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t591 = t580 * t347 - t583 * t470 + t586 * t471 + t587 * t473;
     ddq_by_dq[14] = t591;
-    if (!(t591 >= ARIANE4_FREE_C(-1.0e15) && t591 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t436;
-    if (!(t436 >= ARIANE4_FREE_C(-1.0e15) && t436 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[6] = -t461;
-    if (!(ddq_by_input[6] >= ARIANE4_FREE_C(-1.0e15) && ddq_by_input[6] <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t466;
-    if (!(t466 >= ARIANE4_FREE_C(-1.0e15) && t466 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t471;
-    if (!(t471 >= ARIANE4_FREE_C(-1.0e15) && t471 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t592 = ARIANE4_FREE_C(2.0) * t255;
     const ariane4_free_real_t t593 = ARIANE4_FREE_C(2.0) * t260;
     const ariane4_free_real_t t594 = t592 * t363 + t593 * t370 + (parameters[XY4] * t254
@@ -1206,40 +926,12 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t613 = ARIANE4_FREE_C(0.2) * (t602 + (t255 * t446 + t260 * t447 + t603));
     const ariane4_free_real_t t614 = t445 * t613 - (t340 * t607 + t421 * t611 + t436 * t612);
     ddq_by_q[3] = t614;
-    if (!(t614 >= ARIANE4_FREE_C(-1.0e15) && t614 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t615 = t342 * t607 + t459 * t611 + t461 * t612 + t463 * t613;
     ddq_by_q[7] = t615;
-    if (!(t615 >= ARIANE4_FREE_C(-1.0e15) && t615 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t616 = t344 * t607 + t465 * t611 - t466 * t612 + t468 * t613;
     ddq_by_q[11] = t616;
-    if (!(t616 >= ARIANE4_FREE_C(-1.0e15) && t616 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t617 = t347 * t607 + t470 * t611 - t471 * t612 + t473 * t613;
     ddq_by_q[15] = t617;
-    if (!(t617 >= ARIANE4_FREE_C(-1.0e15) && t617 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t618 = ARIANE4_FREE_C(-2.0) * t380 - (parameters[XY4] * t593
         + parameters[XX4] * t592);
     const ariane4_free_real_t t619 = ARIANE4_FREE_C(-2.0) * t381 + (parameters[XY4] * t592
@@ -1262,66 +954,20 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t633 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
     const ariane4_free_real_t t634 = t631 * t421 - t627 * t340 + t632 * t436 + t633 * t445;
     ddq_by_dq[3] = t634;
-    if (!(t634 >= ARIANE4_FREE_C(-1.0e15) && t634 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t635 = t627 * t342 - t631 * t459 - t632 * t461 + t633 * t463;
     ddq_by_dq[7] = t635;
-    if (!(t635 >= ARIANE4_FREE_C(-1.0e15) && t635 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t636 = t627 * t344 - t631 * t465 + t632 * t466 + t633 * t468;
     ddq_by_dq[11] = t636;
-    if (!(t636 >= ARIANE4_FREE_C(-1.0e15) && t636 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t637 = t627 * t347 - t631 * t470 + t632 * t471 + t633 * t473;
     ddq_by_dq[15] = t637;
-    if (!(t637 >= ARIANE4_FREE_C(-1.0e15) && t637 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t445;
-    if (!(t445 >= ARIANE4_FREE_C(-1.0e15) && t445 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t463;
-    if (!(t463 >= ARIANE4_FREE_C(-1.0e15) && t463 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t468;
-    if (!(t468 >= ARIANE4_FREE_C(-1.0e15) && t468 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t473;
-    if (!(t473 >= ARIANE4_FREE_C(-1.0e15) && t473 <= ARIANE4_FREE_C(1.0e15))) {
+    if (!ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_q, 16, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_dq, 16, ARIANE4_FREE_C(1.0e30))
+        || !ariane4_free_within(ddq_by_input, 16, ARIANE4_FREE_C(1.0e30))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

@@ -79,7 +79,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x216087AEUL
+#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -386,25 +386,13 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t195 = ARIANE4_FREE_C(1.0) / t83;
     const ariane4_free_real_t t196 = t194 * t195;
     out[0] = t196;
-    if (!(t196 >= ARIANE4_FREE_C(-1.0e15) && t196 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t197 = t193 * t81 + t82 * t196;
     out[1] = t197;
-    if (!(t197 >= ARIANE4_FREE_C(-1.0e15) && t197 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t198 = t183 * t43 - t78 * t196 - t45 * t197;
     out[2] = t198;
-    if (!(t198 >= ARIANE4_FREE_C(-1.0e15) && t198 <= ARIANE4_FREE_C(1.0e15))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     const ariane4_free_real_t t199 = t42 * t197 - (t172 * t22 + t72 * t196) + t23 * t198;
     out[3] = t199;
-    if (!(t199 >= ARIANE4_FREE_C(-1.0e15) && t199 <= ARIANE4_FREE_C(1.0e15))) {
+    if (!ariane4_free_within_joints(out, ARIANE4_FREE_C(1.0e30))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

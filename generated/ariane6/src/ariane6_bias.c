@@ -81,7 +81,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x06FAE0A9UL
+#if ARIANE6_GENERATION != 0xDEB12DDEUL
 #error "ariane6.h and ariane6_bias.c are of different generations: generate the arm again"
 #endif
 

@@ -83,7 +83,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x06FAE0A9UL
+#if ARIANE6_GENERATION != 0xDEB12DDEUL
 #error "ariane6.h and ariane6_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -526,38 +526,18 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t321 = ARIANE6_C(1.0) / t154;
     const ariane6_real_t t322 = (t311 + t320 * t153) * t321;
     out[0] = t322;
-    if (!(t322 >= ARIANE6_C(-1.0e15) && t322 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t323 = t320 * t152 + t153 * t322;
     out[1] = t323;
-    if (!(t323 >= ARIANE6_C(-1.0e15) && t323 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t324 = t310 * t98 + t148 * t322 + t101 * t323;
     out[2] = t324;
-    if (!(t324 >= ARIANE6_C(-1.0e15) && t324 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t325 = t96 * t323 - (t299 * t75 + t140 * t322) + t76 * t324;
     out[3] = t325;
-    if (!(t325 >= ARIANE6_C(-1.0e15) && t325 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t326 = t296 * t23 + t134 * t322 + t94 * t323 - t69 * t324;
     const ariane6_real_t t327 = t326 - t24 * t325;
     out[4] = t327;
-    if (!(t327 >= ARIANE6_C(-1.0e15) && t327 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t328 = t290 * t13 + t127 * t322 + t92 * t323 + t65 * t324;
     out[5] = t31 * t325 - t328 - t14 * t327;
-    if (!(out[5] >= ARIANE6_C(-1.0e15) && out[5] <= ARIANE6_C(1.0e15))) {
+    if (!ariane6_within_joints(out, ARIANE6_C(1.0e30))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

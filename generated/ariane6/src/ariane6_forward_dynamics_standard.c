@@ -107,7 +107,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x06FAE0A9UL
+#if ARIANE6_GENERATION != 0xDEB12DDEUL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -603,38 +603,18 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t360 = ARIANE6_C(1.0) / t167;
     const ariane6_real_t t361 = (t337 + t349 * t161 + t359 * t166) * t360;
     out[0] = t361;
-    if (!(t361 >= ARIANE6_C(-1.0e15) && t361 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t362 = t359 * t165 + t166 * t361;
     out[1] = t362;
-    if (!(t362 >= ARIANE6_C(-1.0e15) && t362 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t363 = t349 * t98 + t161 * t361 + t99 * t362;
     out[2] = t363;
-    if (!(t363 >= ARIANE6_C(-1.0e15) && t363 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t364 = t113 * t362 - (t336 * t85 + t153 * t361) + t86 * t363;
     out[3] = t364;
-    if (!(t364 >= ARIANE6_C(-1.0e15) && t364 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t365 = t333 * t36 + t147 * t361 + t112 * t362 - t79 * t363;
     const ariane6_real_t t366 = t365 - t37 * t364;
     out[4] = t366;
-    if (!(t366 >= ARIANE6_C(-1.0e15) && t366 <= ARIANE6_C(1.0e15))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     const ariane6_real_t t367 = t328 * t5 + t122 * t361 + t111 * t362 - t75 * t363;
     out[5] = t31 * t364 - t367 + t6 * t366;
-    if (!(out[5] >= ARIANE6_C(-1.0e15) && out[5] <= ARIANE6_C(1.0e15))) {
+    if (!ariane6_within_joints(out, ARIANE6_C(1.0e30))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

@@ -35,7 +35,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
+#if GRAVITY_ARM_GENERATION != 0x56C37991UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -100,12 +100,8 @@ int gravity_arm_forward_dynamics(
     const gravity_arm_real_t t22 = GRAVITY_ARM_C(1.0) / t7;
     const gravity_arm_real_t t23 = (input[0] + t19 + t21 * t5) * t22;
     out[0] = t23;
-    if (!(t23 >= GRAVITY_ARM_C(-1.0e15) && t23 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(out, 2);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     out[1] = t21 * t4 + t5 * t23;
-    if (!(out[1] >= GRAVITY_ARM_C(-1.0e15) && out[1] <= GRAVITY_ARM_C(1.0e15))) {
+    if (!gravity_arm_within_joints(out, GRAVITY_ARM_C(1.0e30))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }

@@ -39,7 +39,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
+#if GRAVITY_ARM_GENERATION != 0x56C37991UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -122,43 +122,15 @@ int gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t26 = GRAVITY_ARM_C(1.0) / t7;
     const gravity_arm_real_t t27 = t25 * t26;
     ddq[0] = t27;
-    if (!(t27 >= GRAVITY_ARM_C(-1.0e15) && t27 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t28 = t24 * t4 + t5 * t27;
     ddq[1] = t28;
-    if (!(t28 >= GRAVITY_ARM_C(-1.0e15) && t28 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t29 = t1 * parameters[MY2] + t0 * parameters[MX2];
     const gravity_arm_real_t t30 = (parameters[MX1R] - t2) * t10 - (parameters[MY1] + t29) * t14;
     const gravity_arm_real_t t31 = t29 * t14 + t2 * t10;
     const gravity_arm_real_t t32 = t5 * t26;
     ddq_by_q[0] = t26 * t30 - t31 * t32;
-    if (!(ddq_by_q[0] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[0] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t33 = t4 + t5 * t32;
     ddq_by_q[2] = t30 * t32 - t31 * t33;
-    if (!(ddq_by_q[2] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[2] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t34 = parameters[MY2] * t17;
     const gravity_arm_real_t t35 = parameters[MX2] * t17;
     const gravity_arm_real_t t36 = GRAVITY_ARM_C(0.538534) * (t1 * t34 + t0 * t35)
@@ -166,86 +138,26 @@ int gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t37 = GRAVITY_ARM_C(2.0) * t36 - parameters[FV1];
     const gravity_arm_real_t t38 = t29 * (GRAVITY_ARM_C(1.077068) * dq[0]);
     ddq_by_dq[0] = t26 * t37 - t38 * t32;
-    if (!(ddq_by_dq[0] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[0] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_dq[2] = t37 * t32 - t38 * t33;
-    if (!(ddq_by_dq[2] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[2] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t26;
-    if (!(t26 >= GRAVITY_ARM_C(-1.0e15) && t26 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t32;
-    if (!(t32 >= GRAVITY_ARM_C(-1.0e15) && t32 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t39 = t27 + t28;
     const gravity_arm_real_t t40 = t1 * (t19 + parameters[MY2] * t39) - t0 * (t20 - parameters[MX2] * t39);
     const gravity_arm_real_t t41 = GRAVITY_ARM_C(0.538534) * t27 - t14;
     const gravity_arm_real_t t42 = parameters[MX2] * (t15 + t0 * t41) + parameters[MY2] * (t1 * t41 - t12);
     const gravity_arm_real_t t43 = t42 + GRAVITY_ARM_C(0.538534) * t40;
     ddq_by_q[1] = t26 * t43 + t32 * t42;
-    if (!(ddq_by_q[1] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[1] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_q[3] = t32 * t43 + t33 * t42;
-    if (!(ddq_by_q[3] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[3] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t44 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t35)
         + t1 * (GRAVITY_ARM_C(2.0) * t34));
     ddq_by_dq[1] = t26 * t44 - parameters[FV2] * t32;
-    if (!(ddq_by_dq[1] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[1] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_dq[3] = t44 * t32 - parameters[FV2] * t33;
-    if (!(ddq_by_dq[3] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[3] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t32;
-    if (!(t32 >= GRAVITY_ARM_C(-1.0e15) && t32 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t33;
-    if (!(t33 >= GRAVITY_ARM_C(-1.0e15) && t33 <= GRAVITY_ARM_C(1.0e15))) {
+    if (!gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_q, 4, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_dq, 4, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_input, 4, GRAVITY_ARM_C(1.0e30))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

@@ -53,7 +53,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
+#if GRAVITY_ARM_GENERATION != 0x56C37991UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -142,43 +142,15 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t30 = GRAVITY_ARM_C(1.0) / t8;
     const gravity_arm_real_t t31 = t29 * t30;
     ddq[0] = t31;
-    if (!(t31 >= GRAVITY_ARM_C(-1.0e15) && t31 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t32 = t28 * t4 + t5 * t31;
     ddq[1] = t32;
-    if (!(t32 >= GRAVITY_ARM_C(-1.0e15) && t32 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t33 = t1 * parameters[MY2] + t0 * parameters[MX2];
     const gravity_arm_real_t t34 = t11 * (parameters[MX1] - (t2 - t6)) - t15 * (parameters[MY1] + t33);
     const gravity_arm_real_t t35 = t15 * t33 + t11 * t2;
     const gravity_arm_real_t t36 = t5 * t30;
     ddq_by_q[0] = t30 * t34 - t35 * t36;
-    if (!(ddq_by_q[0] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[0] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t37 = t4 + t5 * t36;
     ddq_by_q[2] = t34 * t36 - t35 * t37;
-    if (!(ddq_by_q[2] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[2] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t38 = t17 * parameters[MY2];
     const gravity_arm_real_t t39 = t17 * parameters[MX2];
     const gravity_arm_real_t t40 = GRAVITY_ARM_C(0.538534) * (t1 * t38 + t0 * t39)
@@ -186,86 +158,26 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t41 = GRAVITY_ARM_C(2.0) * t40 - parameters[FV1];
     const gravity_arm_real_t t42 = t33 * (GRAVITY_ARM_C(1.077068) * dq[0]);
     ddq_by_dq[0] = t30 * t41 - t42 * t36;
-    if (!(ddq_by_dq[0] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[0] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_dq[2] = t41 * t36 - t42 * t37;
-    if (!(ddq_by_dq[2] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[2] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t30;
-    if (!(t30 >= GRAVITY_ARM_C(-1.0e15) && t30 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t36;
-    if (!(t36 >= GRAVITY_ARM_C(-1.0e15) && t36 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t43 = t31 + t32;
     const gravity_arm_real_t t44 = t0 * (t22 - parameters[MX2] * t43) - t1 * (t19 + parameters[MY2] * t43);
     const gravity_arm_real_t t45 = GRAVITY_ARM_C(0.538534) * t31 - t15;
     const gravity_arm_real_t t46 = parameters[MX2] * (t13 + t0 * t45) + parameters[MY2] * (t1 * t45 - t20);
     const gravity_arm_real_t t47 = GRAVITY_ARM_C(0.538534) * t44 - t46;
     ddq_by_q[1] = t36 * t46 - t30 * t47;
-    if (!(ddq_by_q[1] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[1] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_q[3] = t37 * t46 - t36 * t47;
-    if (!(ddq_by_q[3] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_q[3] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     const gravity_arm_real_t t48 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t39)
         + t1 * (GRAVITY_ARM_C(2.0) * t38));
     ddq_by_dq[1] = t30 * t48 - parameters[FV2] * t36;
-    if (!(ddq_by_dq[1] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[1] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_dq[3] = t48 * t36 - parameters[FV2] * t37;
-    if (!(ddq_by_dq[3] >= GRAVITY_ARM_C(-1.0e15) && ddq_by_dq[3] <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t36;
-    if (!(t36 >= GRAVITY_ARM_C(-1.0e15) && t36 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(ddq, 2);
-        gravity_arm_zero(ddq_by_q, 4);
-        gravity_arm_zero(ddq_by_dq, 4);
-        gravity_arm_zero(ddq_by_input, 4);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t37;
-    if (!(t37 >= GRAVITY_ARM_C(-1.0e15) && t37 <= GRAVITY_ARM_C(1.0e15))) {
+    if (!gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_q, 4, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_dq, 4, GRAVITY_ARM_C(1.0e30))
+        || !gravity_arm_within(ddq_by_input, 4, GRAVITY_ARM_C(1.0e30))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

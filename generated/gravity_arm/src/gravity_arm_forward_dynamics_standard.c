@@ -49,7 +49,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x3A69DECDUL
+#if GRAVITY_ARM_GENERATION != 0x56C37991UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -119,12 +119,8 @@ int gravity_arm_forward_dynamics_standard(
     const gravity_arm_real_t t25 = GRAVITY_ARM_C(1.0) / t7;
     const gravity_arm_real_t t26 = t24 * t25;
     out[0] = t26;
-    if (!(t26 >= GRAVITY_ARM_C(-1.0e15) && t26 <= GRAVITY_ARM_C(1.0e15))) {
-        gravity_arm_zero(out, 2);
-        return GRAVITY_ARM_STATUS_PIVOT;
-    }
     out[1] = t23 * t4 + t5 * t26;
-    if (!(out[1] >= GRAVITY_ARM_C(-1.0e15) && out[1] <= GRAVITY_ARM_C(1.0e15))) {
+    if (!gravity_arm_within_joints(out, GRAVITY_ARM_C(1.0e30))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }

@@ -40,7 +40,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x6B2F8086UL
+#if GRAVITY_LINK1_GENERATION != 0x65A1D402UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -87,31 +87,13 @@ int gravity_link1_forward_dynamics_derivatives_standard(
         + t0 * parameters[FC1]);
     const gravity_link1_real_t t6 = GRAVITY_LINK1_C(1.0) / parameters[ZZ1];
     ddq[0] = (input[0] + t5) * t6;
-    if (!(ddq[0] >= GRAVITY_LINK1_C(-1.0e15) && ddq[0] <= GRAVITY_LINK1_C(1.0e15))) {
-        gravity_link1_zero(ddq, 1);
-        gravity_link1_zero(ddq_by_q, 1);
-        gravity_link1_zero(ddq_by_dq, 1);
-        gravity_link1_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_STATUS_PIVOT;
-    }
     ddq_by_q[0] = t6 * (t4 * parameters[MX1] + t2 * parameters[MY1]);
-    if (!(ddq_by_q[0] >= GRAVITY_LINK1_C(-1.0e15) && ddq_by_q[0] <= GRAVITY_LINK1_C(1.0e15))) {
-        gravity_link1_zero(ddq, 1);
-        gravity_link1_zero(ddq_by_q, 1);
-        gravity_link1_zero(ddq_by_dq, 1);
-        gravity_link1_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_STATUS_PIVOT;
-    }
     ddq_by_dq[0] = -(parameters[FV1] * t6);
-    if (!(ddq_by_dq[0] >= GRAVITY_LINK1_C(-1.0e15) && ddq_by_dq[0] <= GRAVITY_LINK1_C(1.0e15))) {
-        gravity_link1_zero(ddq, 1);
-        gravity_link1_zero(ddq_by_q, 1);
-        gravity_link1_zero(ddq_by_dq, 1);
-        gravity_link1_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t6;
-    if (!(t6 >= GRAVITY_LINK1_C(-1.0e15) && t6 <= GRAVITY_LINK1_C(1.0e15))) {
+    if (!gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e30))
+        || !gravity_link1_within_joints(ddq_by_q, GRAVITY_LINK1_C(1.0e30))
+        || !gravity_link1_within_joints(ddq_by_dq, GRAVITY_LINK1_C(1.0e30))
+        || !gravity_link1_within_joints(ddq_by_input, GRAVITY_LINK1_C(1.0e30))) {
         gravity_link1_zero(ddq, 1);
         gravity_link1_zero(ddq_by_q, 1);
         gravity_link1_zero(ddq_by_dq, 1);

@@ -33,7 +33,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x07B7E6A6UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x5D9BE62CUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -80,31 +80,13 @@ int gravity_link1_loaded_forward_dynamics_derivatives(
         - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     const gravity_link1_loaded_real_t t6 = GRAVITY_LINK1_LOADED_C(1.0) / parameters[ZZ1R];
     ddq[0] = (input[0] + t5) * t6;
-    if (!(ddq[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     ddq_by_q[0] = t6 * (parameters[MX1R] * t4 + parameters[MY1R] * t2);
-    if (!(ddq_by_q[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq_by_q[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     ddq_by_dq[0] = -(parameters[FV1] * t6);
-    if (!(ddq_by_dq[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq_by_dq[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t6;
-    if (!(t6 >= GRAVITY_LINK1_LOADED_C(-1.0e15) && t6 <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
+    if (!gravity_link1_loaded_within_joints(ddq, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_q, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_dq, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_input, GRAVITY_LINK1_LOADED_C(1.0e30))) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
         gravity_link1_loaded_zero(ddq_by_dq, 1);

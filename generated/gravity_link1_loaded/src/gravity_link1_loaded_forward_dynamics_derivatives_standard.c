@@ -50,7 +50,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x07B7E6A6UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x5D9BE62CUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -105,36 +105,18 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
         - (dq[0] * parameters[FV1] + t8 * parameters[FC1]);
     const gravity_link1_loaded_real_t t10 = GRAVITY_LINK1_LOADED_C(1.0) / t1;
     ddq[0] = (input[0] + t9) * t10;
-    if (!(ddq[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     const gravity_link1_loaded_real_t t11 = t3 * (parameters[MX1] + (parameters[MX2] + t0))
         - t6 * (parameters[MY1] + parameters[MY2]);
     ddq_by_q[0] = t10 * t11;
-    if (!(ddq_by_q[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq_by_q[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     const gravity_link1_loaded_real_t
         t12 = GRAVITY_LINK1_LOADED_C(2.0) * (GRAVITY_LINK1_LOADED_C(0.538534) * (dq[0] * parameters[MY2])
         + parameters[MY2] * (GRAVITY_LINK1_LOADED_C(-0.538534) * dq[0]));
     ddq_by_dq[0] = t10 * (t12 - parameters[FV1]);
-    if (!(ddq_by_dq[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && ddq_by_dq[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
-        gravity_link1_loaded_zero(ddq, 1);
-        gravity_link1_loaded_zero(ddq_by_q, 1);
-        gravity_link1_loaded_zero(ddq_by_dq, 1);
-        gravity_link1_loaded_zero(ddq_by_input, 1);
-        return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t10;
-    if (!(t10 >= GRAVITY_LINK1_LOADED_C(-1.0e15) && t10 <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
+    if (!gravity_link1_loaded_within_joints(ddq, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_q, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_dq, GRAVITY_LINK1_LOADED_C(1.0e30))
+        || !gravity_link1_loaded_within_joints(ddq_by_input, GRAVITY_LINK1_LOADED_C(1.0e30))) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
         gravity_link1_loaded_zero(ddq_by_dq, 1);

@@ -46,7 +46,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x07B7E6A6UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x5D9BE62CUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -92,7 +92,7 @@ int gravity_link1_loaded_forward_dynamics_standard(
         - (dq[0] * parameters[FV1] + t7 * parameters[FC1]);
     const gravity_link1_loaded_real_t t9 = GRAVITY_LINK1_LOADED_C(1.0) / t0;
     out[0] = (input[0] + t8) * t9;
-    if (!(out[0] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && out[0] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
+    if (!gravity_link1_loaded_within_joints(out, GRAVITY_LINK1_LOADED_C(1.0e30))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }

@@ -92,7 +92,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xBA2C631AUL
+#if IIWA14_GENERATION != 0x578E42E6UL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -573,46 +573,22 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t359 = IIWA14_C(1.0) / t166;
     const iiwa14_real_t t360 = (t352 + t358 * t165) * t359;
     out[0] = t360;
-    if (!(t360 >= IIWA14_C(-1.0e15) && t360 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t361 = t358 * t164 + t165 * t360;
     out[1] = t361;
-    if (!(t361 >= IIWA14_C(-1.0e15) && t361 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t362 = t351 * t123 + t160 * t360 + t124 * t361;
     out[2] = t362;
-    if (!(t362 >= IIWA14_C(-1.0e15) && t362 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t363 = t347 * t93 + t157 * t360 + t135 * t361 + t94 * t362;
     out[3] = t363;
-    if (!(t363 >= IIWA14_C(-1.0e15) && t363 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t364 = t343 * t53 + t152 * t360 + t133 * t361 + t87 * t362;
     const iiwa14_real_t t365 = t54 * t363 - t364;
     out[4] = t365;
-    if (!(t365 >= IIWA14_C(-1.0e15) && t365 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t366 = t339 * t20 + t149 * t360 + t132 * t361 + t84 * t362;
     const iiwa14_real_t t367 = t63 * t363 - t366 + t21 * t365;
     out[5] = t367;
-    if (!(t367 >= IIWA14_C(-1.0e15) && t367 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t368 = t336 * t4 + t146 * t360 + t131 * t361 + t79 * t362;
     const iiwa14_real_t t369 = t55 * t363 - t368 + t28 * t365 + t5 * t367;
     out[6] = t369;
-    if (!(t369 >= IIWA14_C(-1.0e15) && t369 <= IIWA14_C(1.0e15))) {
+    if (!iiwa14_within_joints(out, IIWA14_C(1.0e30))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

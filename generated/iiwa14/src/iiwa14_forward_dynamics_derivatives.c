@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xBA2C631AUL
+#if IIWA14_GENERATION != 0x578E42E6UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -669,70 +669,21 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t413 = IIWA14_C(1.0) / t180;
     const iiwa14_real_t t414 = (t406 - t412 * t179) * t413;
     ddq[0] = t414;
-    if (!(t414 >= IIWA14_C(-1.0e15) && t414 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t415 = t412 * t178 - t179 * t414;
     ddq[1] = t415;
-    if (!(t415 >= IIWA14_C(-1.0e15) && t415 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t416 = t405 * t130 - t173 * t414 + t131 * t415;
     ddq[2] = t416;
-    if (!(t416 >= IIWA14_C(-1.0e15) && t416 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t417 = t401 * t93 + t170 * t414 + t142 * t415 - t94 * t416;
     ddq[3] = t417;
-    if (!(t417 >= IIWA14_C(-1.0e15) && t417 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t418 = t397 * t53 + t164 * t414 + t140 * t415 - t87 * t416;
     const iiwa14_real_t t419 = t418 + t54 * t417;
     ddq[4] = t419;
-    if (!(t419 >= IIWA14_C(-1.0e15) && t419 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t420 = t393 * t20 + t160 * t414 + t139 * t415 - t84 * t416;
     const iiwa14_real_t t421 = t420 + t63 * t417 + t21 * t419;
     ddq[5] = t421;
-    if (!(t421 >= IIWA14_C(-1.0e15) && t421 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t422 = t390 * t4 + t156 * t414 + t138 * t415 - t79 * t416;
     const iiwa14_real_t t423 = t422 - t55 * t417 - t28 * t419 - t5 * t421;
     ddq[6] = t423;
-    if (!(t423 >= IIWA14_C(-1.0e15) && t423 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t424 = IIWA14_C(16.0) * t413;
     const iiwa14_real_t t425 = parameters[XZ7R] * t234;
     const iiwa14_real_t t426 = parameters[XY7] * t235;
@@ -962,13 +913,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t650 = IIWA14_C(0.125) * (t150 * t647 + t146 * t649);
     const iiwa14_real_t t651 = t587 + t606 * t592 + t626 * t612 + t650 * t634;
     ddq_by_dq[0] = t651;
-    if (!(t651 >= IIWA14_C(-1.0e15) && t651 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t652 = IIWA14_C(16.0) * (t178 + t179 * t557);
     const iiwa14_real_t t653 = t131 * t178 + t179 * t566;
     const iiwa14_real_t t654 = IIWA14_C(16.0) * t653;
@@ -983,13 +927,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t663 = IIWA14_C(-8.0) * t662;
     const iiwa14_real_t t664 = t657 + t606 * t659 + t626 * t661 + t650 * t663;
     ddq_by_dq[7] = t664;
-    if (!(t664 >= IIWA14_C(-1.0e15) && t664 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t665 = IIWA14_C(16.0) * (t130 + t173 * t566 + t131 * t653);
     const iiwa14_real_t t666 = t94 * t130 + t173 * t577 + t131 * t655;
     const iiwa14_real_t t667 = IIWA14_C(-16.0) * t666;
@@ -1002,13 +939,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t674 = IIWA14_C(-8.0) * t673;
     const iiwa14_real_t t675 = t668 + t606 * t670 + t626 * t672 + t650 * t674;
     ddq_by_dq[14] = t675;
-    if (!(t675 >= IIWA14_C(-1.0e15) && t675 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t676 = t93 + t170 * t577 - t142 * t655 + t94 * t666;
     const iiwa14_real_t t677 = IIWA14_C(16.0) * t676;
     const iiwa14_real_t t678 = t556 * t578 - t565 * t656 - t575 * t667 + t586 * t677;
@@ -1020,13 +950,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t684 = IIWA14_C(8.0) * t683;
     const iiwa14_real_t t685 = t678 + t606 * t680 + t626 * t682 + t650 * t684;
     ddq_by_dq[21] = t685;
-    if (!(t685 >= IIWA14_C(-1.0e15) && t685 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t686 = IIWA14_C(16.0) * t591;
     const iiwa14_real_t t687 = IIWA14_C(-16.0) * t658;
     const iiwa14_real_t t688 = IIWA14_C(-16.0) * t669;
@@ -1042,13 +965,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t698 = IIWA14_C(8.0) * t697;
     const iiwa14_real_t t699 = t690 + t606 * t692 + t626 * t695 + t650 * t698;
     ddq_by_dq[28] = t699;
-    if (!(t699 >= IIWA14_C(-1.0e15) && t699 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t700 = IIWA14_C(16.0) * t611;
     const iiwa14_real_t t701 = IIWA14_C(-16.0) * t660;
     const iiwa14_real_t t702 = IIWA14_C(-16.0) * t671;
@@ -1061,13 +977,6 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t709 = IIWA14_C(-8.0) * t708;
     const iiwa14_real_t t710 = t704 + t606 * t695 + t626 * t706 + t650 * t709;
     ddq_by_dq[35] = t710;
-    if (!(t710 >= IIWA14_C(-1.0e15) && t710 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t711 = IIWA14_C(16.0) * t633;
     const iiwa14_real_t t712 = IIWA14_C(-16.0) * t662;
     const iiwa14_real_t t713 = IIWA14_C(-16.0) * t673;
@@ -1078,69 +987,13 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t718 = IIWA14_C(8.0) * t717;
     const iiwa14_real_t t719 = t715 + t606 * t698 + t626 * t709 + t650 * t718;
     ddq_by_dq[42] = t719;
-    if (!(t719 >= IIWA14_C(-1.0e15) && t719 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t424;
-    if (!(t424 >= IIWA14_C(-1.0e15) && t424 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t558;
-    if (!(t558 >= IIWA14_C(-1.0e15) && t558 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t567;
-    if (!(t567 >= IIWA14_C(-1.0e15) && t567 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t578;
-    if (!(t578 >= IIWA14_C(-1.0e15) && t578 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t686;
-    if (!(t686 >= IIWA14_C(-1.0e15) && t686 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t700;
-    if (!(t700 >= IIWA14_C(-1.0e15) && t700 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[42] = t711;
-    if (!(t711 >= IIWA14_C(-1.0e15) && t711 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t720 = t189 - t415;
     const iiwa14_real_t t721 = t150 * t414;
     const iiwa14_real_t t722 = t190 + t721;
@@ -1298,73 +1151,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t851 = IIWA14_C(0.125) * (t850 - (t111 * t258 + t646 * t252));
     const iiwa14_real_t t852 = t845 + t592 * t847 + t612 * t849 + t634 * t851;
     ddq_by_q[1] = t852;
-    if (!(t852 >= IIWA14_C(-1.0e15) && t852 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t853 = t558 * t837 - t652 * t840 - t654 * t842 + t656 * t844;
     const iiwa14_real_t t854 = t853 + t659 * t847 + t661 * t849 + t663 * t851;
     ddq_by_q[8] = t854;
-    if (!(t854 >= IIWA14_C(-1.0e15) && t854 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t855 = t567 * t837 - t654 * t840 - t665 * t842 + t667 * t844;
     const iiwa14_real_t t856 = t855 + t670 * t847 + t672 * t849 + t674 * t851;
     ddq_by_q[15] = t856;
-    if (!(t856 >= IIWA14_C(-1.0e15) && t856 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t857 = t578 * t837 - t656 * t840 - t667 * t842 + t677 * t844;
     const iiwa14_real_t t858 = t857 + t680 * t847 + t682 * t849 + t684 * t851;
     ddq_by_q[22] = t858;
-    if (!(t858 >= IIWA14_C(-1.0e15) && t858 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t859 = t686 * t837 - t687 * t840 - t688 * t842 + t689 * t844;
     const iiwa14_real_t t860 = t859 + t692 * t847 + t695 * t849 + t698 * t851;
     ddq_by_q[29] = t860;
-    if (!(t860 >= IIWA14_C(-1.0e15) && t860 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t861 = t700 * t837 - t701 * t840 - t702 * t842 + t703 * t844;
     const iiwa14_real_t t862 = t861 + t695 * t847 + t706 * t849 + t709 * t851;
     ddq_by_q[36] = t862;
-    if (!(t862 >= IIWA14_C(-1.0e15) && t862 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t863 = t711 * t837 - t712 * t840 - t713 * t842 + t714 * t844;
     const iiwa14_real_t t864 = t863 + t698 * t847 + t709 * t849 + t718 * t851;
     ddq_by_q[43] = t864;
-    if (!(t864 >= IIWA14_C(-1.0e15) && t864 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t865 = parameters[ZZ2R] - t544;
     const iiwa14_real_t t866 = t517 - t559 + t106 * t526 - (parameters[YZ2] * dq[1] + t188 * t865);
     const iiwa14_real_t t867 = t150 * (IIWA14_C(2.0) * t866 + (t149 * t829 - t145 * t828));
@@ -1391,129 +1195,31 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t884 = IIWA14_C(0.125) * t883;
     const iiwa14_real_t t885 = t878 + t880 * t592 + t882 * t612 + t884 * t634;
     ddq_by_dq[1] = t885;
-    if (!(t885 >= IIWA14_C(-1.0e15) && t885 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t886 = t870 * t558 - t873 * t652 - t875 * t654 + t877 * t656;
     const iiwa14_real_t t887 = t886 + t880 * t659 + t882 * t661 + t884 * t663;
     ddq_by_dq[8] = t887;
-    if (!(t887 >= IIWA14_C(-1.0e15) && t887 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t888 = t870 * t567 - t873 * t654 - t875 * t665 + t877 * t667;
     const iiwa14_real_t t889 = t888 + t880 * t670 + t882 * t672 + t884 * t674;
     ddq_by_dq[15] = t889;
-    if (!(t889 >= IIWA14_C(-1.0e15) && t889 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t890 = t870 * t578 - t873 * t656 - t875 * t667 + t877 * t677;
     const iiwa14_real_t t891 = t890 + t880 * t680 + t882 * t682 + t884 * t684;
     ddq_by_dq[22] = t891;
-    if (!(t891 >= IIWA14_C(-1.0e15) && t891 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t892 = t870 * t686 - t873 * t687 - t875 * t688 + t877 * t689;
     const iiwa14_real_t t893 = t892 + t880 * t692 + t882 * t695 + t884 * t698;
     ddq_by_dq[29] = t893;
-    if (!(t893 >= IIWA14_C(-1.0e15) && t893 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t894 = t870 * t700 - t873 * t701 - t875 * t702 + t877 * t703;
     const iiwa14_real_t t895 = t894 + t880 * t695 + t882 * t706 + t884 * t709;
     ddq_by_dq[36] = t895;
-    if (!(t895 >= IIWA14_C(-1.0e15) && t895 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t896 = t870 * t711 - t873 * t712 - t875 * t713 + t877 * t714;
     const iiwa14_real_t t897 = t896 + t880 * t698 + t882 * t709 + t884 * t718;
     ddq_by_dq[43] = t897;
-    if (!(t897 >= IIWA14_C(-1.0e15) && t897 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t558;
-    if (!(t558 >= IIWA14_C(-1.0e15) && t558 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t652;
-    if (!(t652 >= IIWA14_C(-1.0e15) && t652 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t654;
-    if (!(t654 >= IIWA14_C(-1.0e15) && t654 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t656;
-    if (!(t656 >= IIWA14_C(-1.0e15) && t656 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t687;
-    if (!(t687 >= IIWA14_C(-1.0e15) && t687 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[36] = t701;
-    if (!(t701 >= IIWA14_C(-1.0e15) && t701 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[43] = t712;
-    if (!(t712 >= IIWA14_C(-1.0e15) && t712 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t898 = t361 + t350;
     const iiwa14_real_t t899 = IIWA14_C(2.0) * t184;
     const iiwa14_real_t t900 = IIWA14_C(2.0) * t183;
@@ -1544,73 +1250,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t925 = IIWA14_C(0.125) * (t924 + (t110 * t766 + t76 * t763));
     const iiwa14_real_t t926 = t919 + t592 * t921 + t612 * t923 + t634 * t925;
     ddq_by_q[2] = t926;
-    if (!(t926 >= IIWA14_C(-1.0e15) && t926 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t927 = t558 * t913 - t652 * t915 - t654 * t916 + t656 * t918;
     const iiwa14_real_t t928 = t927 + t659 * t921 + t661 * t923 + t663 * t925;
     ddq_by_q[9] = t928;
-    if (!(t928 >= IIWA14_C(-1.0e15) && t928 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t929 = t567 * t913 - t654 * t915 - t665 * t916 + t667 * t918;
     const iiwa14_real_t t930 = t929 + t670 * t921 + t672 * t923 + t674 * t925;
     ddq_by_q[16] = t930;
-    if (!(t930 >= IIWA14_C(-1.0e15) && t930 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t931 = t578 * t913 - t656 * t915 - t667 * t916 + t677 * t918;
     const iiwa14_real_t t932 = t931 + t680 * t921 + t682 * t923 + t684 * t925;
     ddq_by_q[23] = t932;
-    if (!(t932 >= IIWA14_C(-1.0e15) && t932 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t933 = t686 * t913 - t687 * t915 - t688 * t916 + t689 * t918;
     const iiwa14_real_t t934 = t933 + t692 * t921 + t695 * t923 + t698 * t925;
     ddq_by_q[30] = t934;
-    if (!(t934 >= IIWA14_C(-1.0e15) && t934 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t935 = t700 * t913 - t701 * t915 - t702 * t916 + t703 * t918;
     const iiwa14_real_t t936 = t935 + t695 * t921 + t706 * t923 + t709 * t925;
     ddq_by_q[37] = t936;
-    if (!(t936 >= IIWA14_C(-1.0e15) && t936 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t937 = t711 * t913 - t712 * t915 - t713 * t916 + t714 * t918;
     const iiwa14_real_t t938 = t937 + t698 * t921 + t709 * t923 + t718 * t925;
     ddq_by_q[44] = t938;
-    if (!(t938 >= IIWA14_C(-1.0e15) && t938 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t939 = IIWA14_C(2.0) * t548 + (t133 * t900 - t132 * t899);
     const iiwa14_real_t t940 = IIWA14_C(2.0) * t549 + (t133 * t899 + t61 * t900);
     const iiwa14_real_t t941 = IIWA14_C(2.0) * t552 - t125 * t900;
@@ -1629,129 +1286,31 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t954 = IIWA14_C(0.125) * (t648 + IIWA14_C(2.0) * (t108 * t184 + t46 * t183));
     const iiwa14_real_t t955 = t951 + t952 * t592 + t953 * t612 + t954 * t634;
     ddq_by_dq[2] = t955;
-    if (!(t955 >= IIWA14_C(-1.0e15) && t955 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t956 = t945 * t558 - t947 * t652 - t949 * t654 + t950 * t656;
     const iiwa14_real_t t957 = t956 + t952 * t659 + t953 * t661 + t954 * t663;
     ddq_by_dq[9] = t957;
-    if (!(t957 >= IIWA14_C(-1.0e15) && t957 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t958 = t945 * t567 - t947 * t654 - t949 * t665 + t950 * t667;
     const iiwa14_real_t t959 = t958 + t952 * t670 + t953 * t672 + t954 * t674;
     ddq_by_dq[16] = t959;
-    if (!(t959 >= IIWA14_C(-1.0e15) && t959 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t960 = t945 * t578 - t947 * t656 - t949 * t667 + t950 * t677;
     const iiwa14_real_t t961 = t960 + t952 * t680 + t953 * t682 + t954 * t684;
     ddq_by_dq[23] = t961;
-    if (!(t961 >= IIWA14_C(-1.0e15) && t961 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t962 = t945 * t686 - t947 * t687 - t949 * t688 + t950 * t689;
     const iiwa14_real_t t963 = t962 + t952 * t692 + t953 * t695 + t954 * t698;
     ddq_by_dq[30] = t963;
-    if (!(t963 >= IIWA14_C(-1.0e15) && t963 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t964 = t945 * t700 - t947 * t701 - t949 * t702 + t950 * t703;
     const iiwa14_real_t t965 = t964 + t952 * t695 + t953 * t706 + t954 * t709;
     ddq_by_dq[37] = t965;
-    if (!(t965 >= IIWA14_C(-1.0e15) && t965 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t966 = t945 * t711 - t947 * t712 - t949 * t713 + t950 * t714;
     const iiwa14_real_t t967 = t966 + t952 * t698 + t953 * t709 + t954 * t718;
     ddq_by_dq[44] = t967;
-    if (!(t967 >= IIWA14_C(-1.0e15) && t967 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t567;
-    if (!(t567 >= IIWA14_C(-1.0e15) && t567 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t654;
-    if (!(t654 >= IIWA14_C(-1.0e15) && t654 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t665;
-    if (!(t665 >= IIWA14_C(-1.0e15) && t665 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t667;
-    if (!(t667 >= IIWA14_C(-1.0e15) && t667 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t688;
-    if (!(t688 >= IIWA14_C(-1.0e15) && t688 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[37] = t702;
-    if (!(t702 >= IIWA14_C(-1.0e15) && t702 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[44] = t713;
-    if (!(t713 >= IIWA14_C(-1.0e15) && t713 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t968 = t26 * t735;
     const iiwa14_real_t t969 = t266 + t336;
     const iiwa14_real_t t970 = IIWA14_C(2.0) * t209;
@@ -1785,73 +1344,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t998 = IIWA14_C(0.125) * (t997 + (t45 * t769 - t109 * t764));
     const iiwa14_real_t t999 = t992 + t592 * t994 + t612 * t996 + t634 * t998;
     ddq_by_q[3] = t999;
-    if (!(t999 >= IIWA14_C(-1.0e15) && t999 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1000 = t558 * t987 - t652 * t989 - t654 * t990 + t656 * t991;
     const iiwa14_real_t t1001 = t1000 + t659 * t994 + t661 * t996 + t663 * t998;
     ddq_by_q[10] = t1001;
-    if (!(t1001 >= IIWA14_C(-1.0e15) && t1001 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1002 = t567 * t987 - t654 * t989 - t665 * t990 + t667 * t991;
     const iiwa14_real_t t1003 = t1002 + t670 * t994 + t672 * t996 + t674 * t998;
     ddq_by_q[17] = t1003;
-    if (!(t1003 >= IIWA14_C(-1.0e15) && t1003 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1004 = t578 * t987 - t656 * t989 - t667 * t990 + t677 * t991;
     const iiwa14_real_t t1005 = t1004 + t680 * t994 + t682 * t996 + t684 * t998;
     ddq_by_q[24] = t1005;
-    if (!(t1005 >= IIWA14_C(-1.0e15) && t1005 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1006 = t686 * t987 - t687 * t989 - t688 * t990 + t689 * t991;
     const iiwa14_real_t t1007 = t1006 + t692 * t994 + t695 * t996 + t698 * t998;
     ddq_by_q[31] = t1007;
-    if (!(t1007 >= IIWA14_C(-1.0e15) && t1007 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1008 = t700 * t987 - t701 * t989 - t702 * t990 + t703 * t991;
     const iiwa14_real_t t1009 = t1008 + t695 * t994 + t706 * t996 + t709 * t998;
     ddq_by_q[38] = t1009;
-    if (!(t1009 >= IIWA14_C(-1.0e15) && t1009 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1010 = t711 * t987 - t712 * t989 - t713 * t990 + t714 * t991;
     const iiwa14_real_t t1011 = t1010 + t698 * t994 + t709 * t996 + t718 * t998;
     ddq_by_q[45] = t1011;
-    if (!(t1011 >= IIWA14_C(-1.0e15) && t1011 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1012 = IIWA14_C(2.0) * t514 + (t66 * t970 - t70 * t971);
     const iiwa14_real_t t1013 = IIWA14_C(-2.0) * t515 + (t70 * t970 - t26 * t971);
     const iiwa14_real_t t1014 = t67 * t1012 + t71 * t1013;
@@ -1873,129 +1383,31 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1029 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t77 * t209 + t18 * t198) - t645);
     const iiwa14_real_t t1030 = t1026 + t1027 * t592 + t1028 * t612 + t1029 * t634;
     ddq_by_dq[3] = t1030;
-    if (!(t1030 >= IIWA14_C(-1.0e15) && t1030 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1031 = t1020 * t558 - t1022 * t652 - t1023 * t654 + t1025 * t656;
     const iiwa14_real_t t1032 = t1031 + t1027 * t659 + t1028 * t661 + t1029 * t663;
     ddq_by_dq[10] = t1032;
-    if (!(t1032 >= IIWA14_C(-1.0e15) && t1032 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1033 = t1020 * t567 - t1022 * t654 - t1023 * t665 + t1025 * t667;
     const iiwa14_real_t t1034 = t1033 + t1027 * t670 + t1028 * t672 + t1029 * t674;
     ddq_by_dq[17] = t1034;
-    if (!(t1034 >= IIWA14_C(-1.0e15) && t1034 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1035 = t1020 * t578 - t1022 * t656 - t1023 * t667 + t1025 * t677;
     const iiwa14_real_t t1036 = t1035 + t1027 * t680 + t1028 * t682 + t1029 * t684;
     ddq_by_dq[24] = t1036;
-    if (!(t1036 >= IIWA14_C(-1.0e15) && t1036 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1037 = t1020 * t686 - t1022 * t687 - t1023 * t688 + t1025 * t689;
     const iiwa14_real_t t1038 = t1037 + t1027 * t692 + t1028 * t695 + t1029 * t698;
     ddq_by_dq[31] = t1038;
-    if (!(t1038 >= IIWA14_C(-1.0e15) && t1038 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1039 = t1020 * t700 - t1022 * t701 - t1023 * t702 + t1025 * t703;
     const iiwa14_real_t t1040 = t1039 + t1027 * t695 + t1028 * t706 + t1029 * t709;
     ddq_by_dq[38] = t1040;
-    if (!(t1040 >= IIWA14_C(-1.0e15) && t1040 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1041 = t1020 * t711 - t1022 * t712 - t1023 * t713 + t1025 * t714;
     const iiwa14_real_t t1042 = t1041 + t1027 * t698 + t1028 * t709 + t1029 * t718;
     ddq_by_dq[45] = t1042;
-    if (!(t1042 >= IIWA14_C(-1.0e15) && t1042 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t578;
-    if (!(t578 >= IIWA14_C(-1.0e15) && t578 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t656;
-    if (!(t656 >= IIWA14_C(-1.0e15) && t656 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t667;
-    if (!(t667 >= IIWA14_C(-1.0e15) && t667 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t677;
-    if (!(t677 >= IIWA14_C(-1.0e15) && t677 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t689;
-    if (!(t689 >= IIWA14_C(-1.0e15) && t689 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[38] = t703;
-    if (!(t703 >= IIWA14_C(-1.0e15) && t703 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[45] = t714;
-    if (!(t714 >= IIWA14_C(-1.0e15) && t714 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1043 = t314 + t305;
     const iiwa14_real_t t1044 = IIWA14_C(2.0) * t203;
     const iiwa14_real_t t1045 = IIWA14_C(-2.0) * t202;
@@ -2032,73 +1444,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1076 = IIWA14_C(0.125) * (t1075 + (t44 * t779 + t37 * t768));
     const iiwa14_real_t t1077 = t1071 + t592 * t1072 + t612 * t1074 + t634 * t1076;
     ddq_by_q[4] = t1077;
-    if (!(t1077 >= IIWA14_C(-1.0e15) && t1077 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1078 = t558 * t1066 - t652 * t1068 - t654 * t1069 + t656 * t1070;
     const iiwa14_real_t t1079 = t1078 + t659 * t1072 + t661 * t1074 + t663 * t1076;
     ddq_by_q[11] = t1079;
-    if (!(t1079 >= IIWA14_C(-1.0e15) && t1079 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1080 = t567 * t1066 - t654 * t1068 - t665 * t1069 + t667 * t1070;
     const iiwa14_real_t t1081 = t1080 + t670 * t1072 + t672 * t1074 + t674 * t1076;
     ddq_by_q[18] = t1081;
-    if (!(t1081 >= IIWA14_C(-1.0e15) && t1081 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1082 = t578 * t1066 - t656 * t1068 - t667 * t1069 + t677 * t1070;
     const iiwa14_real_t t1083 = t1082 + t680 * t1072 + t682 * t1074 + t684 * t1076;
     ddq_by_q[25] = t1083;
-    if (!(t1083 >= IIWA14_C(-1.0e15) && t1083 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1084 = t686 * t1066 - t687 * t1068 - t688 * t1069 + t689 * t1070;
     const iiwa14_real_t t1085 = t1084 + t692 * t1072 + t695 * t1074 + t698 * t1076;
     ddq_by_q[32] = t1085;
-    if (!(t1085 >= IIWA14_C(-1.0e15) && t1085 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1086 = t700 * t1066 - t701 * t1068 - t702 * t1069 + t703 * t1070;
     const iiwa14_real_t t1087 = t1086 + t695 * t1072 + t706 * t1074 + t709 * t1076;
     ddq_by_q[39] = t1087;
-    if (!(t1087 >= IIWA14_C(-1.0e15) && t1087 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1088 = t711 * t1066 - t712 * t1068 - t713 * t1069 + t714 * t1070;
     const iiwa14_real_t t1089 = t1088 + t698 * t1072 + t709 * t1074 + t718 * t1076;
     ddq_by_q[46] = t1089;
-    if (!(t1089 >= IIWA14_C(-1.0e15) && t1089 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1090 = IIWA14_C(2.0) * t496 + (t56 * t1044 + t57 * t1045);
     const iiwa14_real_t t1091 = IIWA14_C(-2.0) * t497 + (t57 * t1044 + t8 * t1045);
     const iiwa14_real_t t1092 = IIWA14_C(2.0) * t500 + t48 * t1045;
@@ -2124,129 +1487,31 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1112 = IIWA14_C(0.125) * (t642 + IIWA14_C(2.0) * (t43 * t203 + t3 * t202));
     const iiwa14_real_t t1113 = t1108 + t1110 * t592 + t1111 * t612 + t1112 * t634;
     ddq_by_dq[4] = t1113;
-    if (!(t1113 >= IIWA14_C(-1.0e15) && t1113 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1114 = t1103 * t558 - t1105 * t652 - t1106 * t654 + t1107 * t656;
     const iiwa14_real_t t1115 = t1114 + t1110 * t659 + t1111 * t661 + t1112 * t663;
     ddq_by_dq[11] = t1115;
-    if (!(t1115 >= IIWA14_C(-1.0e15) && t1115 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1116 = t1103 * t567 - t1105 * t654 - t1106 * t665 + t1107 * t667;
     const iiwa14_real_t t1117 = t1116 + t1110 * t670 + t1111 * t672 + t1112 * t674;
     ddq_by_dq[18] = t1117;
-    if (!(t1117 >= IIWA14_C(-1.0e15) && t1117 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1118 = t1103 * t578 - t1105 * t656 - t1106 * t667 + t1107 * t677;
     const iiwa14_real_t t1119 = t1118 + t1110 * t680 + t1111 * t682 + t1112 * t684;
     ddq_by_dq[25] = t1119;
-    if (!(t1119 >= IIWA14_C(-1.0e15) && t1119 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1120 = t1103 * t686 - t1105 * t687 - t1106 * t688 + t1107 * t689;
     const iiwa14_real_t t1121 = t1120 + t1110 * t692 + t1111 * t695 + t1112 * t698;
     ddq_by_dq[32] = t1121;
-    if (!(t1121 >= IIWA14_C(-1.0e15) && t1121 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1122 = t1103 * t700 - t1105 * t701 - t1106 * t702 + t1107 * t703;
     const iiwa14_real_t t1123 = t1122 + t1110 * t695 + t1111 * t706 + t1112 * t709;
     ddq_by_dq[39] = t1123;
-    if (!(t1123 >= IIWA14_C(-1.0e15) && t1123 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1124 = t1103 * t711 - t1105 * t712 - t1106 * t713 + t1107 * t714;
     const iiwa14_real_t t1125 = t1124 + t1110 * t698 + t1111 * t709 + t1112 * t718;
     ddq_by_dq[46] = t1125;
-    if (!(t1125 >= IIWA14_C(-1.0e15) && t1125 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t592;
-    if (!(t592 >= IIWA14_C(-1.0e15) && t592 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t659;
-    if (!(t659 >= IIWA14_C(-1.0e15) && t659 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t670;
-    if (!(t670 >= IIWA14_C(-1.0e15) && t670 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t680;
-    if (!(t680 >= IIWA14_C(-1.0e15) && t680 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t692;
-    if (!(t692 >= IIWA14_C(-1.0e15) && t692 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[39] = t695;
-    if (!(t695 >= IIWA14_C(-1.0e15) && t695 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[46] = t698;
-    if (!(t698 >= IIWA14_C(-1.0e15) && t698 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1126 = parameters[ZZ7] * t749;
     const iiwa14_real_t t1127 = t297 + t285;
     const iiwa14_real_t t1128 = IIWA14_C(-2.0) * t222;
@@ -2285,73 +1550,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1161 = IIWA14_C(0.125) * (t1160 + t1131);
     const iiwa14_real_t t1162 = t1157 + t592 * t1158 + t612 * t1159 + t634 * t1161;
     ddq_by_q[5] = t1162;
-    if (!(t1162 >= IIWA14_C(-1.0e15) && t1162 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1163 = t558 * t1152 - t652 * t1154 - t654 * t1155 + t656 * t1156;
     const iiwa14_real_t t1164 = t1163 + t659 * t1158 + t661 * t1159 + t663 * t1161;
     ddq_by_q[12] = t1164;
-    if (!(t1164 >= IIWA14_C(-1.0e15) && t1164 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1165 = t567 * t1152 - t654 * t1154 - t665 * t1155 + t667 * t1156;
     const iiwa14_real_t t1166 = t1165 + t670 * t1158 + t672 * t1159 + t674 * t1161;
     ddq_by_q[19] = t1166;
-    if (!(t1166 >= IIWA14_C(-1.0e15) && t1166 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1167 = t578 * t1152 - t656 * t1154 - t667 * t1155 + t677 * t1156;
     const iiwa14_real_t t1168 = t1167 + t680 * t1158 + t682 * t1159 + t684 * t1161;
     ddq_by_q[26] = t1168;
-    if (!(t1168 >= IIWA14_C(-1.0e15) && t1168 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1169 = t686 * t1152 - t687 * t1154 - t688 * t1155 + t689 * t1156;
     const iiwa14_real_t t1170 = t1169 + t692 * t1158 + t695 * t1159 + t698 * t1161;
     ddq_by_q[33] = t1170;
-    if (!(t1170 >= IIWA14_C(-1.0e15) && t1170 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1171 = t700 * t1152 - t701 * t1154 - t702 * t1155 + t703 * t1156;
     const iiwa14_real_t t1172 = t1171 + t695 * t1158 + t706 * t1159 + t709 * t1161;
     ddq_by_q[40] = t1172;
-    if (!(t1172 >= IIWA14_C(-1.0e15) && t1172 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1173 = t711 * t1152 - t712 * t1154 - t713 * t1155 + t714 * t1156;
     const iiwa14_real_t t1174 = t1173 + t698 * t1158 + t709 * t1159 + t718 * t1161;
     ddq_by_q[47] = t1174;
-    if (!(t1174 >= IIWA14_C(-1.0e15) && t1174 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1175 = IIWA14_C(2.0) * t461 + (t22 * t1128 + t23 * t1129);
     const iiwa14_real_t t1176 = IIWA14_C(2.0) * t462 + (t23 * t1128 + parameters[ZZ7] * t1129);
     const iiwa14_real_t t1177 = t15 * t1175 - t13 * t1176;
@@ -2382,129 +1598,31 @@ int iiwa14_forward_dynamics_derivatives(
         + parameters[ZZ7] * t230));
     const iiwa14_real_t t1202 = t1197 + t1198 * t592 + t1200 * t612 + t1201 * t634;
     ddq_by_dq[5] = t1202;
-    if (!(t1202 >= IIWA14_C(-1.0e15) && t1202 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1203 = t1192 * t558 - t1194 * t652 - t1195 * t654 + t1196 * t656;
     const iiwa14_real_t t1204 = t1203 + t1198 * t659 + t1200 * t661 + t1201 * t663;
     ddq_by_dq[12] = t1204;
-    if (!(t1204 >= IIWA14_C(-1.0e15) && t1204 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1205 = t1192 * t567 - t1194 * t654 - t1195 * t665 + t1196 * t667;
     const iiwa14_real_t t1206 = t1205 + t1198 * t670 + t1200 * t672 + t1201 * t674;
     ddq_by_dq[19] = t1206;
-    if (!(t1206 >= IIWA14_C(-1.0e15) && t1206 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1207 = t1192 * t578 - t1194 * t656 - t1195 * t667 + t1196 * t677;
     const iiwa14_real_t t1208 = t1207 + t1198 * t680 + t1200 * t682 + t1201 * t684;
     ddq_by_dq[26] = t1208;
-    if (!(t1208 >= IIWA14_C(-1.0e15) && t1208 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1209 = t1192 * t686 - t1194 * t687 - t1195 * t688 + t1196 * t689;
     const iiwa14_real_t t1210 = t1209 + t1198 * t692 + t1200 * t695 + t1201 * t698;
     ddq_by_dq[33] = t1210;
-    if (!(t1210 >= IIWA14_C(-1.0e15) && t1210 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1211 = t1192 * t700 - t1194 * t701 - t1195 * t702 + t1196 * t703;
     const iiwa14_real_t t1212 = t1211 + t1198 * t695 + t1200 * t706 + t1201 * t709;
     ddq_by_dq[40] = t1212;
-    if (!(t1212 >= IIWA14_C(-1.0e15) && t1212 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1213 = t1192 * t711 - t1194 * t712 - t1195 * t713 + t1196 * t714;
     const iiwa14_real_t t1214 = t1213 + t1198 * t698 + t1200 * t709 + t1201 * t718;
     ddq_by_dq[47] = t1214;
-    if (!(t1214 >= IIWA14_C(-1.0e15) && t1214 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t612;
-    if (!(t612 >= IIWA14_C(-1.0e15) && t612 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t661;
-    if (!(t661 >= IIWA14_C(-1.0e15) && t661 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t672;
-    if (!(t672 >= IIWA14_C(-1.0e15) && t672 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t682;
-    if (!(t682 >= IIWA14_C(-1.0e15) && t682 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t695;
-    if (!(t695 >= IIWA14_C(-1.0e15) && t695 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[40] = t706;
-    if (!(t706 >= IIWA14_C(-1.0e15) && t706 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[47] = t709;
-    if (!(t709 >= IIWA14_C(-1.0e15) && t709 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1215 = t278 + t249;
     const iiwa14_real_t t1216 = IIWA14_C(-2.0) * t234;
     const iiwa14_real_t t1217 = IIWA14_C(-2.0) * t240;
@@ -2547,73 +1665,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1251 = IIWA14_C(0.125) * (t1224 + (t234 * t635 - t240 * t636 + t1223));
     const iiwa14_real_t t1252 = t1248 + t592 * t1249 + t612 * t1250 + t634 * t1251;
     ddq_by_q[6] = t1252;
-    if (!(t1252 >= IIWA14_C(-1.0e15) && t1252 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1253 = t558 * t1243 - t652 * t1245 - t654 * t1246 + t656 * t1247;
     const iiwa14_real_t t1254 = t1253 + t659 * t1249 + t661 * t1250 + t663 * t1251;
     ddq_by_q[13] = t1254;
-    if (!(t1254 >= IIWA14_C(-1.0e15) && t1254 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1255 = t567 * t1243 - t654 * t1245 - t665 * t1246 + t667 * t1247;
     const iiwa14_real_t t1256 = t1255 + t670 * t1249 + t672 * t1250 + t674 * t1251;
     ddq_by_q[20] = t1256;
-    if (!(t1256 >= IIWA14_C(-1.0e15) && t1256 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1257 = t578 * t1243 - t656 * t1245 - t667 * t1246 + t677 * t1247;
     const iiwa14_real_t t1258 = t1257 + t680 * t1249 + t682 * t1250 + t684 * t1251;
     ddq_by_q[27] = t1258;
-    if (!(t1258 >= IIWA14_C(-1.0e15) && t1258 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1259 = t686 * t1243 - t687 * t1245 - t688 * t1246 + t689 * t1247;
     const iiwa14_real_t t1260 = t1259 + t692 * t1249 + t695 * t1250 + t698 * t1251;
     ddq_by_q[34] = t1260;
-    if (!(t1260 >= IIWA14_C(-1.0e15) && t1260 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1261 = t700 * t1243 - t701 * t1245 - t702 * t1246 + t703 * t1247;
     const iiwa14_real_t t1262 = t1261 + t695 * t1249 + t706 * t1250 + t709 * t1251;
     ddq_by_q[41] = t1262;
-    if (!(t1262 >= IIWA14_C(-1.0e15) && t1262 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1263 = t711 * t1243 - t712 * t1245 - t713 * t1246 + t714 * t1247;
     const iiwa14_real_t t1264 = t1263 + t698 * t1249 + t709 * t1250 + t718 * t1251;
     ddq_by_q[48] = t1264;
-    if (!(t1264 >= IIWA14_C(-1.0e15) && t1264 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1265 = IIWA14_C(2.0) * t448 - (parameters[XY7] * t1217 - parameters[XX7R] * t1216);
     const iiwa14_real_t t1266 = IIWA14_C(-2.0) * t449 + parameters[XY7] * t1216;
     const iiwa14_real_t t1267 = t1 * t1266 - t2 * t1265;
@@ -2646,129 +1715,31 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t1294 = IIWA14_C(-3.2e3) * parameters[FV7];
     const iiwa14_real_t t1295 = t1291 + t1292 * t592 + t1293 * t612 + t1294 * t634;
     ddq_by_dq[6] = t1295;
-    if (!(t1295 >= IIWA14_C(-1.0e15) && t1295 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1296 = t1286 * t558 - t1288 * t652 - t1289 * t654 + t1290 * t656;
     const iiwa14_real_t t1297 = t1296 + t1292 * t659 + t1293 * t661 + t1294 * t663;
     ddq_by_dq[13] = t1297;
-    if (!(t1297 >= IIWA14_C(-1.0e15) && t1297 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1298 = t1286 * t567 - t1288 * t654 - t1289 * t665 + t1290 * t667;
     const iiwa14_real_t t1299 = t1298 + t1292 * t670 + t1293 * t672 + t1294 * t674;
     ddq_by_dq[20] = t1299;
-    if (!(t1299 >= IIWA14_C(-1.0e15) && t1299 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1300 = t1286 * t578 - t1288 * t656 - t1289 * t667 + t1290 * t677;
     const iiwa14_real_t t1301 = t1300 + t1292 * t680 + t1293 * t682 + t1294 * t684;
     ddq_by_dq[27] = t1301;
-    if (!(t1301 >= IIWA14_C(-1.0e15) && t1301 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1302 = t1286 * t686 - t1288 * t687 - t1289 * t688 + t1290 * t689;
     const iiwa14_real_t t1303 = t1302 + t1292 * t692 + t1293 * t695 + t1294 * t698;
     ddq_by_dq[34] = t1303;
-    if (!(t1303 >= IIWA14_C(-1.0e15) && t1303 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1304 = t1286 * t700 - t1288 * t701 - t1289 * t702 + t1290 * t703;
     const iiwa14_real_t t1305 = t1304 + t1292 * t695 + t1293 * t706 + t1294 * t709;
     ddq_by_dq[41] = t1305;
-    if (!(t1305 >= IIWA14_C(-1.0e15) && t1305 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1306 = t1286 * t711 - t1288 * t712 - t1289 * t713 + t1290 * t714;
     const iiwa14_real_t t1307 = t1306 + t1292 * t698 + t1293 * t709 + t1294 * t718;
     ddq_by_dq[48] = t1307;
-    if (!(t1307 >= IIWA14_C(-1.0e15) && t1307 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t634;
-    if (!(t634 >= IIWA14_C(-1.0e15) && t634 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t663;
-    if (!(t663 >= IIWA14_C(-1.0e15) && t663 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t674;
-    if (!(t674 >= IIWA14_C(-1.0e15) && t674 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t684;
-    if (!(t684 >= IIWA14_C(-1.0e15) && t684 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t698;
-    if (!(t698 >= IIWA14_C(-1.0e15) && t698 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[41] = t709;
-    if (!(t709 >= IIWA14_C(-1.0e15) && t709 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[48] = t718;
-    if (!(t718 >= IIWA14_C(-1.0e15) && t718 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = IIWA14_C(0.0);
     ddq_by_q[7] = IIWA14_C(0.0);
@@ -2777,5 +1748,15 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
+    if (!iiwa14_within_joints(ddq, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_q, 49, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_dq, 49, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_input, 49, IIWA14_C(1.0e30))) {
+        iiwa14_zero(ddq, 7);
+        iiwa14_zero(ddq_by_q, 49);
+        iiwa14_zero(ddq_by_dq, 49);
+        iiwa14_zero(ddq_by_input, 49);
+        return IIWA14_STATUS_PIVOT;
+    }
     return IIWA14_STATUS_OK;
 }

@@ -125,7 +125,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xBA2C631AUL
+#if IIWA14_GENERATION != 0x578E42E6UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -763,70 +763,21 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t466 = IIWA14_C(1.0) / t202;
     const iiwa14_real_t t467 = (t459 - t465 * t190) * t466;
     ddq[0] = t467;
-    if (!(t467 >= IIWA14_C(-1.0e15) && t467 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t468 = t465 * t189 - t190 * t467;
     ddq[1] = t468;
-    if (!(t468 >= IIWA14_C(-1.0e15) && t468 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t469 = t458 * t162 - t201 * t467 + t163 * t468;
     ddq[2] = t469;
-    if (!(t469 >= IIWA14_C(-1.0e15) && t469 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t470 = t454 * t95 + t200 * t467 + t151 * t468 - t96 * t469;
     ddq[3] = t470;
-    if (!(t470 >= IIWA14_C(-1.0e15) && t470 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t471 = t450 * t74 + t198 * t467 + t146 * t468 - t106 * t469;
     const iiwa14_real_t t472 = t471 + t75 * t470;
     ddq[4] = t472;
-    if (!(t472 >= IIWA14_C(-1.0e15) && t472 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t473 = t446 * t33 + t197 * t467 + t140 * t468 - t105 * t469;
     const iiwa14_real_t t474 = t473 - t64 * t470 + t34 * t472;
     ddq[5] = t474;
-    if (!(t474 >= IIWA14_C(-1.0e15) && t474 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t475 = t443 * t5 + t196 * t467 + t134 * t468 - t104 * t469;
     const iiwa14_real_t t476 = t475 - t60 * t470 - t28 * t472 + t6 * t474;
     ddq[6] = t476;
-    if (!(t476 >= IIWA14_C(-1.0e15) && t476 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t477 = t256 * parameters[XZ7];
     const iiwa14_real_t t478 = t257 * parameters[XY7];
     const iiwa14_real_t t479 = t477 + t478;
@@ -1076,13 +1027,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t721 = IIWA14_C(0.125) * (t167 * t718 + t169 * t720);
     const iiwa14_real_t t722 = t657 + t676 * t662 + t696 * t682 + t721 * t704;
     ddq_by_dq[0] = t722;
-    if (!(t722 >= IIWA14_C(-1.0e15) && t722 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t723 = IIWA14_C(16.0) * (t189 + t190 * t627);
     const iiwa14_real_t t724 = t163 * t189 + t190 * t636;
     const iiwa14_real_t t725 = IIWA14_C(16.0) * t724;
@@ -1097,13 +1041,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t734 = IIWA14_C(-8.0) * t733;
     const iiwa14_real_t t735 = t728 + t676 * t730 + t696 * t732 + t721 * t734;
     ddq_by_dq[7] = t735;
-    if (!(t735 >= IIWA14_C(-1.0e15) && t735 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t736 = IIWA14_C(16.0) * (t162 + t201 * t636 + t163 * t724);
     const iiwa14_real_t t737 = t96 * t162 + t201 * t647 + t163 * t726;
     const iiwa14_real_t t738 = IIWA14_C(-16.0) * t737;
@@ -1116,13 +1053,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t745 = IIWA14_C(-8.0) * t744;
     const iiwa14_real_t t746 = t739 + t676 * t741 + t696 * t743 + t721 * t745;
     ddq_by_dq[14] = t746;
-    if (!(t746 >= IIWA14_C(-1.0e15) && t746 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t747 = t95 + t200 * t647 - t151 * t726 + t96 * t737;
     const iiwa14_real_t t748 = IIWA14_C(16.0) * t747;
     const iiwa14_real_t t749 = t625 * t648 - t635 * t727 - t645 * t738 + t656 * t748;
@@ -1134,13 +1064,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t755 = IIWA14_C(8.0) * t754;
     const iiwa14_real_t t756 = t749 + t676 * t751 + t696 * t753 + t721 * t755;
     ddq_by_dq[21] = t756;
-    if (!(t756 >= IIWA14_C(-1.0e15) && t756 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t757 = IIWA14_C(16.0) * t661;
     const iiwa14_real_t t758 = IIWA14_C(-16.0) * t729;
     const iiwa14_real_t t759 = IIWA14_C(-16.0) * t740;
@@ -1156,13 +1079,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t769 = IIWA14_C(8.0) * t768;
     const iiwa14_real_t t770 = t761 + t676 * t763 + t696 * t766 + t721 * t769;
     ddq_by_dq[28] = t770;
-    if (!(t770 >= IIWA14_C(-1.0e15) && t770 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t771 = IIWA14_C(16.0) * t681;
     const iiwa14_real_t t772 = IIWA14_C(-16.0) * t731;
     const iiwa14_real_t t773 = IIWA14_C(-16.0) * t742;
@@ -1175,13 +1091,6 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t780 = IIWA14_C(-8.0) * t779;
     const iiwa14_real_t t781 = t775 + t676 * t766 + t696 * t777 + t721 * t780;
     ddq_by_dq[35] = t781;
-    if (!(t781 >= IIWA14_C(-1.0e15) && t781 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t782 = IIWA14_C(16.0) * t703;
     const iiwa14_real_t t783 = IIWA14_C(-16.0) * t733;
     const iiwa14_real_t t784 = IIWA14_C(-16.0) * t744;
@@ -1192,69 +1101,13 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t789 = IIWA14_C(8.0) * t788;
     const iiwa14_real_t t790 = t786 + t676 * t769 + t696 * t780 + t721 * t789;
     ddq_by_dq[42] = t790;
-    if (!(t790 >= IIWA14_C(-1.0e15) && t790 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t626;
-    if (!(t626 >= IIWA14_C(-1.0e15) && t626 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t628;
-    if (!(t628 >= IIWA14_C(-1.0e15) && t628 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t637;
-    if (!(t637 >= IIWA14_C(-1.0e15) && t637 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t648;
-    if (!(t648 >= IIWA14_C(-1.0e15) && t648 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t757;
-    if (!(t757 >= IIWA14_C(-1.0e15) && t757 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t771;
-    if (!(t771 >= IIWA14_C(-1.0e15) && t771 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[42] = t782;
-    if (!(t782 >= IIWA14_C(-1.0e15) && t782 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t791 = t218 - t468;
     const iiwa14_real_t t792 = t167 * t467;
     const iiwa14_real_t t793 = t219 + t792;
@@ -1442,73 +1295,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t945 = IIWA14_C(0.125) * (t944 - (t277 * t132 + t280 * t717));
     const iiwa14_real_t t946 = t939 + t662 * t941 + t682 * t943 + t704 * t945;
     ddq_by_q[1] = t946;
-    if (!(t946 >= IIWA14_C(-1.0e15) && t946 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t947 = t628 * t931 - t723 * t934 - t725 * t936 + t727 * t938;
     const iiwa14_real_t t948 = t947 + t730 * t941 + t732 * t943 + t734 * t945;
     ddq_by_q[8] = t948;
-    if (!(t948 >= IIWA14_C(-1.0e15) && t948 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t949 = t637 * t931 - t725 * t934 - t736 * t936 + t738 * t938;
     const iiwa14_real_t t950 = t949 + t741 * t941 + t743 * t943 + t745 * t945;
     ddq_by_q[15] = t950;
-    if (!(t950 >= IIWA14_C(-1.0e15) && t950 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t951 = t648 * t931 - t727 * t934 - t738 * t936 + t748 * t938;
     const iiwa14_real_t t952 = t951 + t751 * t941 + t753 * t943 + t755 * t945;
     ddq_by_q[22] = t952;
-    if (!(t952 >= IIWA14_C(-1.0e15) && t952 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t953 = t757 * t931 - t758 * t934 - t759 * t936 + t760 * t938;
     const iiwa14_real_t t954 = t953 + t763 * t941 + t766 * t943 + t769 * t945;
     ddq_by_q[29] = t954;
-    if (!(t954 >= IIWA14_C(-1.0e15) && t954 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t955 = t771 * t931 - t772 * t934 - t773 * t936 + t774 * t938;
     const iiwa14_real_t t956 = t955 + t766 * t941 + t777 * t943 + t780 * t945;
     ddq_by_q[36] = t956;
-    if (!(t956 >= IIWA14_C(-1.0e15) && t956 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t957 = t782 * t931 - t783 * t934 - t784 * t936 + t785 * t938;
     const iiwa14_real_t t958 = t957 + t769 * t941 + t780 * t943 + t789 * t945;
     ddq_by_q[43] = t958;
-    if (!(t958 >= IIWA14_C(-1.0e15) && t958 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t959 = IIWA14_C(2.0) * (t602 - t606 + (t574 + t592 - t600 - t601));
     const iiwa14_real_t t960 = IIWA14_C(0.0625) * (t959 + IIWA14_C(2.0) * (t206 * t166 + t204 * t168));
     const iiwa14_real_t t961 = IIWA14_C(1.6e3) * parameters[FV2] + t960;
@@ -1535,129 +1339,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t978 = IIWA14_C(0.125) * t977;
     const iiwa14_real_t t979 = t972 + t974 * t662 + t976 * t682 + t978 * t704;
     ddq_by_dq[1] = t979;
-    if (!(t979 >= IIWA14_C(-1.0e15) && t979 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t980 = t967 * t628 - t961 * t723 - t969 * t725 + t971 * t727;
     const iiwa14_real_t t981 = t980 + t974 * t730 + t976 * t732 + t978 * t734;
     ddq_by_dq[8] = t981;
-    if (!(t981 >= IIWA14_C(-1.0e15) && t981 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t982 = t967 * t637 - t961 * t725 - t969 * t736 + t971 * t738;
     const iiwa14_real_t t983 = t982 + t974 * t741 + t976 * t743 + t978 * t745;
     ddq_by_dq[15] = t983;
-    if (!(t983 >= IIWA14_C(-1.0e15) && t983 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t984 = t967 * t648 - t961 * t727 - t969 * t738 + t971 * t748;
     const iiwa14_real_t t985 = t984 + t974 * t751 + t976 * t753 + t978 * t755;
     ddq_by_dq[22] = t985;
-    if (!(t985 >= IIWA14_C(-1.0e15) && t985 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t986 = t967 * t757 - t961 * t758 - t969 * t759 + t971 * t760;
     const iiwa14_real_t t987 = t986 + t974 * t763 + t976 * t766 + t978 * t769;
     ddq_by_dq[29] = t987;
-    if (!(t987 >= IIWA14_C(-1.0e15) && t987 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t988 = t967 * t771 - t961 * t772 - t969 * t773 + t971 * t774;
     const iiwa14_real_t t989 = t988 + t974 * t766 + t976 * t777 + t978 * t780;
     ddq_by_dq[36] = t989;
-    if (!(t989 >= IIWA14_C(-1.0e15) && t989 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t990 = t967 * t782 - t961 * t783 - t969 * t784 + t971 * t785;
     const iiwa14_real_t t991 = t990 + t974 * t769 + t976 * t780 + t978 * t789;
     ddq_by_dq[43] = t991;
-    if (!(t991 >= IIWA14_C(-1.0e15) && t991 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t628;
-    if (!(t628 >= IIWA14_C(-1.0e15) && t628 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t723;
-    if (!(t723 >= IIWA14_C(-1.0e15) && t723 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t725;
-    if (!(t725 >= IIWA14_C(-1.0e15) && t725 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t727;
-    if (!(t727 >= IIWA14_C(-1.0e15) && t727 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t758;
-    if (!(t758 >= IIWA14_C(-1.0e15) && t758 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[36] = t772;
-    if (!(t772 >= IIWA14_C(-1.0e15) && t772 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[43] = t783;
-    if (!(t783 >= IIWA14_C(-1.0e15) && t783 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t992 = t403 + t391;
     const iiwa14_real_t t993 = IIWA14_C(2.0) * t209;
     const iiwa14_real_t t994 = IIWA14_C(2.0) * t205;
@@ -1688,73 +1394,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1019 = IIWA14_C(0.125) * (t1018 + (t131 * t838 + t83 * t835));
     const iiwa14_real_t t1020 = t1013 + t662 * t1015 + t682 * t1017 + t704 * t1019;
     ddq_by_q[2] = t1020;
-    if (!(t1020 >= IIWA14_C(-1.0e15) && t1020 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1021 = t628 * t1007 - t723 * t1009 - t725 * t1010 + t727 * t1012;
     const iiwa14_real_t t1022 = t1021 + t730 * t1015 + t732 * t1017 + t734 * t1019;
     ddq_by_q[9] = t1022;
-    if (!(t1022 >= IIWA14_C(-1.0e15) && t1022 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1023 = t637 * t1007 - t725 * t1009 - t736 * t1010 + t738 * t1012;
     const iiwa14_real_t t1024 = t1023 + t741 * t1015 + t743 * t1017 + t745 * t1019;
     ddq_by_q[16] = t1024;
-    if (!(t1024 >= IIWA14_C(-1.0e15) && t1024 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1025 = t648 * t1007 - t727 * t1009 - t738 * t1010 + t748 * t1012;
     const iiwa14_real_t t1026 = t1025 + t751 * t1015 + t753 * t1017 + t755 * t1019;
     ddq_by_q[23] = t1026;
-    if (!(t1026 >= IIWA14_C(-1.0e15) && t1026 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1027 = t757 * t1007 - t758 * t1009 - t759 * t1010 + t760 * t1012;
     const iiwa14_real_t t1028 = t1027 + t763 * t1015 + t766 * t1017 + t769 * t1019;
     ddq_by_q[30] = t1028;
-    if (!(t1028 >= IIWA14_C(-1.0e15) && t1028 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1029 = t771 * t1007 - t772 * t1009 - t773 * t1010 + t774 * t1012;
     const iiwa14_real_t t1030 = t1029 + t766 * t1015 + t777 * t1017 + t780 * t1019;
     ddq_by_q[37] = t1030;
-    if (!(t1030 >= IIWA14_C(-1.0e15) && t1030 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1031 = t782 * t1007 - t783 * t1009 - t784 * t1010 + t785 * t1012;
     const iiwa14_real_t t1032 = t1031 + t769 * t1015 + t780 * t1017 + t789 * t1019;
     ddq_by_q[44] = t1032;
-    if (!(t1032 >= IIWA14_C(-1.0e15) && t1032 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1033 = IIWA14_C(2.0) * t610 + (t110 * t993 + t114 * t994);
     const iiwa14_real_t t1034 = IIWA14_C(2.0) * t611 + (t114 * t993 + t111 * t994);
     const iiwa14_real_t t1035 = IIWA14_C(2.0) * t612 + t122 * t993;
@@ -1773,129 +1430,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1048 = IIWA14_C(0.125) * (t719 + IIWA14_C(2.0) * (t209 * t129 + t205 * t59));
     const iiwa14_real_t t1049 = t1045 + t1046 * t662 + t1047 * t682 + t1048 * t704;
     ddq_by_dq[2] = t1049;
-    if (!(t1049 >= IIWA14_C(-1.0e15) && t1049 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1050 = t1041 * t628 - t1038 * t723 - t1043 * t725 + t1044 * t727;
     const iiwa14_real_t t1051 = t1050 + t1046 * t730 + t1047 * t732 + t1048 * t734;
     ddq_by_dq[9] = t1051;
-    if (!(t1051 >= IIWA14_C(-1.0e15) && t1051 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1052 = t1041 * t637 - t1038 * t725 - t1043 * t736 + t1044 * t738;
     const iiwa14_real_t t1053 = t1052 + t1046 * t741 + t1047 * t743 + t1048 * t745;
     ddq_by_dq[16] = t1053;
-    if (!(t1053 >= IIWA14_C(-1.0e15) && t1053 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1054 = t1041 * t648 - t1038 * t727 - t1043 * t738 + t1044 * t748;
     const iiwa14_real_t t1055 = t1054 + t1046 * t751 + t1047 * t753 + t1048 * t755;
     ddq_by_dq[23] = t1055;
-    if (!(t1055 >= IIWA14_C(-1.0e15) && t1055 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1056 = t1041 * t757 - t1038 * t758 - t1043 * t759 + t1044 * t760;
     const iiwa14_real_t t1057 = t1056 + t1046 * t763 + t1047 * t766 + t1048 * t769;
     ddq_by_dq[30] = t1057;
-    if (!(t1057 >= IIWA14_C(-1.0e15) && t1057 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1058 = t1041 * t771 - t1038 * t772 - t1043 * t773 + t1044 * t774;
     const iiwa14_real_t t1059 = t1058 + t1046 * t766 + t1047 * t777 + t1048 * t780;
     ddq_by_dq[37] = t1059;
-    if (!(t1059 >= IIWA14_C(-1.0e15) && t1059 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1060 = t1041 * t782 - t1038 * t783 - t1043 * t784 + t1044 * t785;
     const iiwa14_real_t t1061 = t1060 + t1046 * t769 + t1047 * t780 + t1048 * t789;
     ddq_by_dq[44] = t1061;
-    if (!(t1061 >= IIWA14_C(-1.0e15) && t1061 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t637;
-    if (!(t637 >= IIWA14_C(-1.0e15) && t637 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t725;
-    if (!(t725 >= IIWA14_C(-1.0e15) && t725 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t736;
-    if (!(t736 >= IIWA14_C(-1.0e15) && t736 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t738;
-    if (!(t738 >= IIWA14_C(-1.0e15) && t738 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t759;
-    if (!(t759 >= IIWA14_C(-1.0e15) && t759 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[37] = t773;
-    if (!(t773 >= IIWA14_C(-1.0e15) && t773 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[44] = t784;
-    if (!(t784 >= IIWA14_C(-1.0e15) && t784 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1062 = IIWA14_C(2.0) * t228;
     const iiwa14_real_t t1063 = IIWA14_C(-2.0) * t208;
     const iiwa14_real_t t1064 = t569 * t1062 - t553 * t1063 + (t418 * t80 - (t99 * t813 + t98 * t806));
@@ -1926,73 +1485,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1089 = IIWA14_C(0.125) * (t1088 + (t58 * t841 - t130 * t836));
     const iiwa14_real_t t1090 = t1083 + t662 * t1085 + t682 * t1087 + t704 * t1089;
     ddq_by_q[3] = t1090;
-    if (!(t1090 >= IIWA14_C(-1.0e15) && t1090 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1091 = t628 * t1078 - t723 * t1080 - t725 * t1081 + t727 * t1082;
     const iiwa14_real_t t1092 = t1091 + t730 * t1085 + t732 * t1087 + t734 * t1089;
     ddq_by_q[10] = t1092;
-    if (!(t1092 >= IIWA14_C(-1.0e15) && t1092 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1093 = t637 * t1078 - t725 * t1080 - t736 * t1081 + t738 * t1082;
     const iiwa14_real_t t1094 = t1093 + t741 * t1085 + t743 * t1087 + t745 * t1089;
     ddq_by_q[17] = t1094;
-    if (!(t1094 >= IIWA14_C(-1.0e15) && t1094 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1095 = t648 * t1078 - t727 * t1080 - t738 * t1081 + t748 * t1082;
     const iiwa14_real_t t1096 = t1095 + t751 * t1085 + t753 * t1087 + t755 * t1089;
     ddq_by_q[24] = t1096;
-    if (!(t1096 >= IIWA14_C(-1.0e15) && t1096 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1097 = t757 * t1078 - t758 * t1080 - t759 * t1081 + t760 * t1082;
     const iiwa14_real_t t1098 = t1097 + t763 * t1085 + t766 * t1087 + t769 * t1089;
     ddq_by_q[31] = t1098;
-    if (!(t1098 >= IIWA14_C(-1.0e15) && t1098 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1099 = t771 * t1078 - t772 * t1080 - t773 * t1081 + t774 * t1082;
     const iiwa14_real_t t1100 = t1099 + t766 * t1085 + t777 * t1087 + t780 * t1089;
     ddq_by_q[38] = t1100;
-    if (!(t1100 >= IIWA14_C(-1.0e15) && t1100 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1101 = t782 * t1078 - t783 * t1080 - t784 * t1081 + t785 * t1082;
     const iiwa14_real_t t1102 = t1101 + t769 * t1085 + t780 * t1087 + t789 * t1089;
     ddq_by_q[45] = t1102;
-    if (!(t1102 >= IIWA14_C(-1.0e15) && t1102 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1103 = IIWA14_C(2.0) * t580 + (t97 * t1062 + t99 * t1063);
     const iiwa14_real_t t1104 = IIWA14_C(-2.0) * t581 + (t99 * t1062 + t98 * t1063);
     const iiwa14_real_t t1105 = t81 * t1103 + t79 * t1104;
@@ -2014,129 +1524,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1120 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t228 * t84 - t208 * t27) - t716);
     const iiwa14_real_t t1121 = t1117 + t1118 * t662 + t1119 * t682 + t1120 * t704;
     ddq_by_dq[3] = t1121;
-    if (!(t1121 >= IIWA14_C(-1.0e15) && t1121 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1122 = t1113 * t628 - t1110 * t723 - t1114 * t725 + t1116 * t727;
     const iiwa14_real_t t1123 = t1122 + t1118 * t730 + t1119 * t732 + t1120 * t734;
     ddq_by_dq[10] = t1123;
-    if (!(t1123 >= IIWA14_C(-1.0e15) && t1123 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1124 = t1113 * t637 - t1110 * t725 - t1114 * t736 + t1116 * t738;
     const iiwa14_real_t t1125 = t1124 + t1118 * t741 + t1119 * t743 + t1120 * t745;
     ddq_by_dq[17] = t1125;
-    if (!(t1125 >= IIWA14_C(-1.0e15) && t1125 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1126 = t1113 * t648 - t1110 * t727 - t1114 * t738 + t1116 * t748;
     const iiwa14_real_t t1127 = t1126 + t1118 * t751 + t1119 * t753 + t1120 * t755;
     ddq_by_dq[24] = t1127;
-    if (!(t1127 >= IIWA14_C(-1.0e15) && t1127 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1128 = t1113 * t757 - t1110 * t758 - t1114 * t759 + t1116 * t760;
     const iiwa14_real_t t1129 = t1128 + t1118 * t763 + t1119 * t766 + t1120 * t769;
     ddq_by_dq[31] = t1129;
-    if (!(t1129 >= IIWA14_C(-1.0e15) && t1129 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1130 = t1113 * t771 - t1110 * t772 - t1114 * t773 + t1116 * t774;
     const iiwa14_real_t t1131 = t1130 + t1118 * t766 + t1119 * t777 + t1120 * t780;
     ddq_by_dq[38] = t1131;
-    if (!(t1131 >= IIWA14_C(-1.0e15) && t1131 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1132 = t1113 * t782 - t1110 * t783 - t1114 * t784 + t1116 * t785;
     const iiwa14_real_t t1133 = t1132 + t1118 * t769 + t1119 * t780 + t1120 * t789;
     ddq_by_dq[45] = t1133;
-    if (!(t1133 >= IIWA14_C(-1.0e15) && t1133 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t648;
-    if (!(t648 >= IIWA14_C(-1.0e15) && t648 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t727;
-    if (!(t727 >= IIWA14_C(-1.0e15) && t727 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t738;
-    if (!(t738 >= IIWA14_C(-1.0e15) && t738 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t748;
-    if (!(t748 >= IIWA14_C(-1.0e15) && t748 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t760;
-    if (!(t760 >= IIWA14_C(-1.0e15) && t760 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[38] = t774;
-    if (!(t774 >= IIWA14_C(-1.0e15) && t774 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[45] = t785;
-    if (!(t785 >= IIWA14_C(-1.0e15) && t785 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1134 = IIWA14_C(2.0) * t212;
     const iiwa14_real_t t1135 = IIWA14_C(2.0) * t211;
     const iiwa14_real_t t1136 = t520 * t1134 + t530 * t1135 + (t409 * t65 + (t41 * t817 - t37 * t809));
@@ -2172,73 +1584,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1166 = IIWA14_C(0.125) * (t1165 + (t57 * t845 + t19 * t840));
     const iiwa14_real_t t1167 = t1161 + t662 * t1162 + t682 * t1164 + t704 * t1166;
     ddq_by_q[4] = t1167;
-    if (!(t1167 >= IIWA14_C(-1.0e15) && t1167 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1168 = t628 * t1156 - t723 * t1158 - t725 * t1159 + t727 * t1160;
     const iiwa14_real_t t1169 = t1168 + t730 * t1162 + t732 * t1164 + t734 * t1166;
     ddq_by_q[11] = t1169;
-    if (!(t1169 >= IIWA14_C(-1.0e15) && t1169 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1170 = t637 * t1156 - t725 * t1158 - t736 * t1159 + t738 * t1160;
     const iiwa14_real_t t1171 = t1170 + t741 * t1162 + t743 * t1164 + t745 * t1166;
     ddq_by_q[18] = t1171;
-    if (!(t1171 >= IIWA14_C(-1.0e15) && t1171 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1172 = t648 * t1156 - t727 * t1158 - t738 * t1159 + t748 * t1160;
     const iiwa14_real_t t1173 = t1172 + t751 * t1162 + t753 * t1164 + t755 * t1166;
     ddq_by_q[25] = t1173;
-    if (!(t1173 >= IIWA14_C(-1.0e15) && t1173 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1174 = t757 * t1156 - t758 * t1158 - t759 * t1159 + t760 * t1160;
     const iiwa14_real_t t1175 = t1174 + t763 * t1162 + t766 * t1164 + t769 * t1166;
     ddq_by_q[32] = t1175;
-    if (!(t1175 >= IIWA14_C(-1.0e15) && t1175 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1176 = t771 * t1156 - t772 * t1158 - t773 * t1159 + t774 * t1160;
     const iiwa14_real_t t1177 = t1176 + t766 * t1162 + t777 * t1164 + t780 * t1166;
     ddq_by_q[39] = t1177;
-    if (!(t1177 >= IIWA14_C(-1.0e15) && t1177 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1178 = t782 * t1156 - t783 * t1158 - t784 * t1159 + t785 * t1160;
     const iiwa14_real_t t1179 = t1178 + t769 * t1162 + t780 * t1164 + t789 * t1166;
     ddq_by_q[46] = t1179;
-    if (!(t1179 >= IIWA14_C(-1.0e15) && t1179 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1180 = IIWA14_C(2.0) * t556 + (t37 * t1134 + t41 * t1135);
     const iiwa14_real_t t1181 = IIWA14_C(-2.0) * t557 + (t41 * t1134 + t38 * t1135);
     const iiwa14_real_t t1182 = IIWA14_C(2.0) * t558 + t49 * t1134;
@@ -2264,129 +1627,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1202 = IIWA14_C(0.125) * (t713 + IIWA14_C(2.0) * (t212 * t56 + t211 * t4));
     const iiwa14_real_t t1203 = t1198 + t1200 * t662 + t1201 * t682 + t1202 * t704;
     ddq_by_dq[4] = t1203;
-    if (!(t1203 >= IIWA14_C(-1.0e15) && t1203 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1204 = t1195 * t628 - t1192 * t723 - t1196 * t725 + t1197 * t727;
     const iiwa14_real_t t1205 = t1204 + t1200 * t730 + t1201 * t732 + t1202 * t734;
     ddq_by_dq[11] = t1205;
-    if (!(t1205 >= IIWA14_C(-1.0e15) && t1205 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1206 = t1195 * t637 - t1192 * t725 - t1196 * t736 + t1197 * t738;
     const iiwa14_real_t t1207 = t1206 + t1200 * t741 + t1201 * t743 + t1202 * t745;
     ddq_by_dq[18] = t1207;
-    if (!(t1207 >= IIWA14_C(-1.0e15) && t1207 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1208 = t1195 * t648 - t1192 * t727 - t1196 * t738 + t1197 * t748;
     const iiwa14_real_t t1209 = t1208 + t1200 * t751 + t1201 * t753 + t1202 * t755;
     ddq_by_dq[25] = t1209;
-    if (!(t1209 >= IIWA14_C(-1.0e15) && t1209 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1210 = t1195 * t757 - t1192 * t758 - t1196 * t759 + t1197 * t760;
     const iiwa14_real_t t1211 = t1210 + t1200 * t763 + t1201 * t766 + t1202 * t769;
     ddq_by_dq[32] = t1211;
-    if (!(t1211 >= IIWA14_C(-1.0e15) && t1211 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1212 = t1195 * t771 - t1192 * t772 - t1196 * t773 + t1197 * t774;
     const iiwa14_real_t t1213 = t1212 + t1200 * t766 + t1201 * t777 + t1202 * t780;
     ddq_by_dq[39] = t1213;
-    if (!(t1213 >= IIWA14_C(-1.0e15) && t1213 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1214 = t1195 * t782 - t1192 * t783 - t1196 * t784 + t1197 * t785;
     const iiwa14_real_t t1215 = t1214 + t1200 * t769 + t1201 * t780 + t1202 * t789;
     ddq_by_dq[46] = t1215;
-    if (!(t1215 >= IIWA14_C(-1.0e15) && t1215 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t662;
-    if (!(t662 >= IIWA14_C(-1.0e15) && t662 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t730;
-    if (!(t730 >= IIWA14_C(-1.0e15) && t730 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t741;
-    if (!(t741 >= IIWA14_C(-1.0e15) && t741 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t751;
-    if (!(t751 >= IIWA14_C(-1.0e15) && t751 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t763;
-    if (!(t763 >= IIWA14_C(-1.0e15) && t763 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[39] = t766;
-    if (!(t766 >= IIWA14_C(-1.0e15) && t766 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[46] = t769;
-    if (!(t769 >= IIWA14_C(-1.0e15) && t769 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1216 = IIWA14_C(2.0) * t244;
     const iiwa14_real_t t1217 = IIWA14_C(2.0) * t252;
     const iiwa14_real_t t1218 = t515 * t1216 + t501 * t1217 - (t366 * t29 + (t21 * t828 - t17 * t820));
@@ -2424,73 +1689,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1250 = IIWA14_C(0.125) * (t1249 + t3 * t849);
     const iiwa14_real_t t1251 = t1246 + t662 * t1247 + t682 * t1248 + t704 * t1250;
     ddq_by_q[5] = t1251;
-    if (!(t1251 >= IIWA14_C(-1.0e15) && t1251 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1252 = t628 * t1241 - t723 * t1243 - t725 * t1244 + t727 * t1245;
     const iiwa14_real_t t1253 = t1252 + t730 * t1247 + t732 * t1248 + t734 * t1250;
     ddq_by_q[12] = t1253;
-    if (!(t1253 >= IIWA14_C(-1.0e15) && t1253 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1254 = t637 * t1241 - t725 * t1243 - t736 * t1244 + t738 * t1245;
     const iiwa14_real_t t1255 = t1254 + t741 * t1247 + t743 * t1248 + t745 * t1250;
     ddq_by_q[19] = t1255;
-    if (!(t1255 >= IIWA14_C(-1.0e15) && t1255 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1256 = t648 * t1241 - t727 * t1243 - t738 * t1244 + t748 * t1245;
     const iiwa14_real_t t1257 = t1256 + t751 * t1247 + t753 * t1248 + t755 * t1250;
     ddq_by_q[26] = t1257;
-    if (!(t1257 >= IIWA14_C(-1.0e15) && t1257 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1258 = t757 * t1241 - t758 * t1243 - t759 * t1244 + t760 * t1245;
     const iiwa14_real_t t1259 = t1258 + t763 * t1247 + t766 * t1248 + t769 * t1250;
     ddq_by_q[33] = t1259;
-    if (!(t1259 >= IIWA14_C(-1.0e15) && t1259 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1260 = t771 * t1241 - t772 * t1243 - t773 * t1244 + t774 * t1245;
     const iiwa14_real_t t1261 = t1260 + t766 * t1247 + t777 * t1248 + t780 * t1250;
     ddq_by_q[40] = t1261;
-    if (!(t1261 >= IIWA14_C(-1.0e15) && t1261 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1262 = t782 * t1241 - t783 * t1243 - t784 * t1244 + t785 * t1245;
     const iiwa14_real_t t1263 = t1262 + t769 * t1247 + t780 * t1248 + t789 * t1250;
     ddq_by_q[47] = t1263;
-    if (!(t1263 >= IIWA14_C(-1.0e15) && t1263 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1264 = IIWA14_C(2.0) * t526 + (t16 * t1216 + t21 * t1217);
     const iiwa14_real_t t1265 = IIWA14_C(2.0) * t527 + (t21 * t1216 + t17 * t1217);
     const iiwa14_real_t t1266 = t18 * t1264 - t22 * t1265;
@@ -2521,129 +1737,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
         + t252 * parameters[ZZ7]));
     const iiwa14_real_t t1291 = t1286 + t1287 * t662 + t1289 * t682 + t1290 * t704;
     ddq_by_dq[5] = t1291;
-    if (!(t1291 >= IIWA14_C(-1.0e15) && t1291 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1292 = t1283 * t628 - t1280 * t723 - t1284 * t725 + t1285 * t727;
     const iiwa14_real_t t1293 = t1292 + t1287 * t730 + t1289 * t732 + t1290 * t734;
     ddq_by_dq[12] = t1293;
-    if (!(t1293 >= IIWA14_C(-1.0e15) && t1293 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1294 = t1283 * t637 - t1280 * t725 - t1284 * t736 + t1285 * t738;
     const iiwa14_real_t t1295 = t1294 + t1287 * t741 + t1289 * t743 + t1290 * t745;
     ddq_by_dq[19] = t1295;
-    if (!(t1295 >= IIWA14_C(-1.0e15) && t1295 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1296 = t1283 * t648 - t1280 * t727 - t1284 * t738 + t1285 * t748;
     const iiwa14_real_t t1297 = t1296 + t1287 * t751 + t1289 * t753 + t1290 * t755;
     ddq_by_dq[26] = t1297;
-    if (!(t1297 >= IIWA14_C(-1.0e15) && t1297 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1298 = t1283 * t757 - t1280 * t758 - t1284 * t759 + t1285 * t760;
     const iiwa14_real_t t1299 = t1298 + t1287 * t763 + t1289 * t766 + t1290 * t769;
     ddq_by_dq[33] = t1299;
-    if (!(t1299 >= IIWA14_C(-1.0e15) && t1299 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1300 = t1283 * t771 - t1280 * t772 - t1284 * t773 + t1285 * t774;
     const iiwa14_real_t t1301 = t1300 + t1287 * t766 + t1289 * t777 + t1290 * t780;
     ddq_by_dq[40] = t1301;
-    if (!(t1301 >= IIWA14_C(-1.0e15) && t1301 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1302 = t1283 * t782 - t1280 * t783 - t1284 * t784 + t1285 * t785;
     const iiwa14_real_t t1303 = t1302 + t1287 * t769 + t1289 * t780 + t1290 * t789;
     ddq_by_dq[47] = t1303;
-    if (!(t1303 >= IIWA14_C(-1.0e15) && t1303 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t682;
-    if (!(t682 >= IIWA14_C(-1.0e15) && t682 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t732;
-    if (!(t732 >= IIWA14_C(-1.0e15) && t732 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t743;
-    if (!(t743 >= IIWA14_C(-1.0e15) && t743 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t753;
-    if (!(t753 >= IIWA14_C(-1.0e15) && t753 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t766;
-    if (!(t766 >= IIWA14_C(-1.0e15) && t766 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[40] = t777;
-    if (!(t777 >= IIWA14_C(-1.0e15) && t777 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[47] = t780;
-    if (!(t780 >= IIWA14_C(-1.0e15) && t780 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1304 = IIWA14_C(-2.0) * t256;
     const iiwa14_real_t t1305 = IIWA14_C(2.0) * t262;
     const iiwa14_real_t t1306 = t479 * t1304 + t486 * t1305 + (t359 * parameters[XZ7]
@@ -2685,73 +1803,24 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1339 = IIWA14_C(0.125) * (t1315 + (t256 * t705 - t262 * t706 + t1314));
     const iiwa14_real_t t1340 = t1336 + t662 * t1337 + t682 * t1338 + t704 * t1339;
     ddq_by_q[6] = t1340;
-    if (!(t1340 >= IIWA14_C(-1.0e15) && t1340 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1341 = t628 * t1331 - t723 * t1333 - t725 * t1334 + t727 * t1335;
     const iiwa14_real_t t1342 = t1341 + t730 * t1337 + t732 * t1338 + t734 * t1339;
     ddq_by_q[13] = t1342;
-    if (!(t1342 >= IIWA14_C(-1.0e15) && t1342 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1343 = t637 * t1331 - t725 * t1333 - t736 * t1334 + t738 * t1335;
     const iiwa14_real_t t1344 = t1343 + t741 * t1337 + t743 * t1338 + t745 * t1339;
     ddq_by_q[20] = t1344;
-    if (!(t1344 >= IIWA14_C(-1.0e15) && t1344 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1345 = t648 * t1331 - t727 * t1333 - t738 * t1334 + t748 * t1335;
     const iiwa14_real_t t1346 = t1345 + t751 * t1337 + t753 * t1338 + t755 * t1339;
     ddq_by_q[27] = t1346;
-    if (!(t1346 >= IIWA14_C(-1.0e15) && t1346 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1347 = t757 * t1331 - t758 * t1333 - t759 * t1334 + t760 * t1335;
     const iiwa14_real_t t1348 = t1347 + t763 * t1337 + t766 * t1338 + t769 * t1339;
     ddq_by_q[34] = t1348;
-    if (!(t1348 >= IIWA14_C(-1.0e15) && t1348 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1349 = t771 * t1331 - t772 * t1333 - t773 * t1334 + t774 * t1335;
     const iiwa14_real_t t1350 = t1349 + t766 * t1337 + t777 * t1338 + t780 * t1339;
     ddq_by_q[41] = t1350;
-    if (!(t1350 >= IIWA14_C(-1.0e15) && t1350 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1351 = t782 * t1331 - t783 * t1333 - t784 * t1334 + t785 * t1335;
     const iiwa14_real_t t1352 = t1351 + t769 * t1337 + t780 * t1338 + t789 * t1339;
     ddq_by_q[48] = t1352;
-    if (!(t1352 >= IIWA14_C(-1.0e15) && t1352 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1353 = IIWA14_C(2.0) * t503 + (parameters[XX7] * t1304 + parameters[XY7] * t1305);
     const iiwa14_real_t t1354 = IIWA14_C(2.0) * t504 + (parameters[XY7] * t1304 + parameters[YY7] * t1305);
     const iiwa14_real_t t1355 = IIWA14_C(-2.0) * t506 + parameters[MZ7] * t1305;
@@ -2784,129 +1853,31 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t1382 = IIWA14_C(-3.2e3) * parameters[FV7];
     const iiwa14_real_t t1383 = t1379 + t1380 * t662 + t1381 * t682 + t1382 * t704;
     ddq_by_dq[6] = t1383;
-    if (!(t1383 >= IIWA14_C(-1.0e15) && t1383 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1384 = t1376 * t628 - t1373 * t723 - t1377 * t725 + t1378 * t727;
     const iiwa14_real_t t1385 = t1384 + t1380 * t730 + t1381 * t732 + t1382 * t734;
     ddq_by_dq[13] = t1385;
-    if (!(t1385 >= IIWA14_C(-1.0e15) && t1385 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1386 = t1376 * t637 - t1373 * t725 - t1377 * t736 + t1378 * t738;
     const iiwa14_real_t t1387 = t1386 + t1380 * t741 + t1381 * t743 + t1382 * t745;
     ddq_by_dq[20] = t1387;
-    if (!(t1387 >= IIWA14_C(-1.0e15) && t1387 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1388 = t1376 * t648 - t1373 * t727 - t1377 * t738 + t1378 * t748;
     const iiwa14_real_t t1389 = t1388 + t1380 * t751 + t1381 * t753 + t1382 * t755;
     ddq_by_dq[27] = t1389;
-    if (!(t1389 >= IIWA14_C(-1.0e15) && t1389 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1390 = t1376 * t757 - t1373 * t758 - t1377 * t759 + t1378 * t760;
     const iiwa14_real_t t1391 = t1390 + t1380 * t763 + t1381 * t766 + t1382 * t769;
     ddq_by_dq[34] = t1391;
-    if (!(t1391 >= IIWA14_C(-1.0e15) && t1391 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1392 = t1376 * t771 - t1373 * t772 - t1377 * t773 + t1378 * t774;
     const iiwa14_real_t t1393 = t1392 + t1380 * t766 + t1381 * t777 + t1382 * t780;
     ddq_by_dq[41] = t1393;
-    if (!(t1393 >= IIWA14_C(-1.0e15) && t1393 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t1394 = t1376 * t782 - t1373 * t783 - t1377 * t784 + t1378 * t785;
     const iiwa14_real_t t1395 = t1394 + t1380 * t769 + t1381 * t780 + t1382 * t789;
     ddq_by_dq[48] = t1395;
-    if (!(t1395 >= IIWA14_C(-1.0e15) && t1395 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t704;
-    if (!(t704 >= IIWA14_C(-1.0e15) && t704 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t734;
-    if (!(t734 >= IIWA14_C(-1.0e15) && t734 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t745;
-    if (!(t745 >= IIWA14_C(-1.0e15) && t745 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t755;
-    if (!(t755 >= IIWA14_C(-1.0e15) && t755 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t769;
-    if (!(t769 >= IIWA14_C(-1.0e15) && t769 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[41] = t780;
-    if (!(t780 >= IIWA14_C(-1.0e15) && t780 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     ddq_by_input[48] = t789;
-    if (!(t789 >= IIWA14_C(-1.0e15) && t789 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = IIWA14_C(0.0);
     ddq_by_q[7] = IIWA14_C(0.0);
@@ -2915,5 +1886,15 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
+    if (!iiwa14_within_joints(ddq, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_q, 49, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_dq, 49, IIWA14_C(1.0e30))
+        || !iiwa14_within(ddq_by_input, 49, IIWA14_C(1.0e30))) {
+        iiwa14_zero(ddq, 7);
+        iiwa14_zero(ddq_by_q, 49);
+        iiwa14_zero(ddq_by_dq, 49);
+        iiwa14_zero(ddq_by_input, 49);
+        return IIWA14_STATUS_PIVOT;
+    }
     return IIWA14_STATUS_OK;
 }

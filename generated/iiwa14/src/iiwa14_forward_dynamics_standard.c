@@ -121,7 +121,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xBA2C631AUL
+#if IIWA14_GENERATION != 0x578E42E6UL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -662,46 +662,22 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t398 = IIWA14_C(1.0) / t178;
     const iiwa14_real_t t399 = (t391 + t397 * t168) * t398;
     out[0] = t399;
-    if (!(t399 >= IIWA14_C(-1.0e15) && t399 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t400 = t397 * t167 + t168 * t399;
     out[1] = t400;
-    if (!(t400 >= IIWA14_C(-1.0e15) && t400 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t401 = t390 * t146 + t177 * t399 + t147 * t400;
     out[2] = t401;
-    if (!(t401 >= IIWA14_C(-1.0e15) && t401 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t402 = t386 * t92 + t176 * t399 + t138 * t400 + t93 * t401;
     out[3] = t402;
-    if (!(t402 >= IIWA14_C(-1.0e15) && t402 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t403 = t382 * t71 + t174 * t399 + t134 * t400 + t103 * t401;
     const iiwa14_real_t t404 = t72 * t402 - t403;
     out[4] = t404;
-    if (!(t404 >= IIWA14_C(-1.0e15) && t404 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t405 = t378 * t33 + t173 * t399 + t129 * t400 + t102 * t401;
     const iiwa14_real_t t406 = t62 * t402 - t405 + t34 * t404;
     out[5] = t406;
-    if (!(t406 >= IIWA14_C(-1.0e15) && t406 <= IIWA14_C(1.0e15))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
     const iiwa14_real_t t407 = t375 * t5 + t172 * t399 + t124 * t400 + t101 * t401;
     const iiwa14_real_t t408 = t58 * t402 - t407 + t28 * t404 + t6 * t406;
     out[6] = t408;
-    if (!(t408 >= IIWA14_C(-1.0e15) && t408 <= IIWA14_C(1.0e15))) {
+    if (!iiwa14_within_joints(out, IIWA14_C(1.0e30))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

@@ -82,7 +82,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xE4917E55UL
+#if PUMA560_GENERATION != 0xFE2532ABUL
 #error "puma560.h and puma560_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -493,38 +493,18 @@ int puma560_forward_dynamics(
     const puma560_real_t t299 = PUMA560_C(-1.0) / t144;
     const puma560_real_t t300 = t298 * t299;
     out[0] = t300;
-    if (!(t300 >= PUMA560_C(-1.0e15) && t300 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t301 = t297 * t142 - t143 * t300;
     out[1] = t301;
-    if (!(t301 >= PUMA560_C(-1.0e15) && t301 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t302 = t138 * t300 - t292 * t83 - t84 * t301;
     out[2] = t302;
-    if (!(t302 >= PUMA560_C(-1.0e15) && t302 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t303 = t56 * t302 - (t285 * t55 - t129 * t300 + t85 * t301);
     out[3] = t303;
-    if (!(t303 >= PUMA560_C(-1.0e15) && t303 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t304 = t281 * t20 - t123 * t300 + t86 * t301 - t57 * t302;
     const puma560_real_t t305 = t21 * t303 - t304;
     out[4] = t305;
-    if (!(t305 >= PUMA560_C(-1.0e15) && t305 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t306 = t278 * t4 - t115 * t300 + t87 * t301 - t58 * t302;
     out[5] = t306 + t28 * t303 + t5 * t305;
-    if (!(out[5] >= PUMA560_C(-1.0e15) && out[5] <= PUMA560_C(1.0e15))) {
+    if (!puma560_within_joints(out, PUMA560_C(1.0e30))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

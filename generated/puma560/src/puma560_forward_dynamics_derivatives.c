@@ -86,7 +86,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xE4917E55UL
+#if PUMA560_GENERATION != 0xFE2532ABUL
 #error "puma560.h and puma560_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -551,60 +551,18 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t320 = PUMA560_C(1.0) / t152;
     const puma560_real_t t321 = t319 * t320;
     ddq[0] = t321;
-    if (!(t321 >= PUMA560_C(-1.0e15) && t321 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t322 = t318 * t150 + t151 * t321;
     ddq[1] = t322;
-    if (!(t322 >= PUMA560_C(-1.0e15) && t322 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t323 = t145 * t321 - t313 * t85 - t86 * t322;
     ddq[2] = t323;
-    if (!(t323 >= PUMA560_C(-1.0e15) && t323 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t324 = t306 * t55 - t135 * t321 + t87 * t322 + t56 * t323;
     ddq[3] = t324;
-    if (!(t324 >= PUMA560_C(-1.0e15) && t324 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t325 = t302 * t20 + t128 * t321 - t88 * t322 - t57 * t323;
     const puma560_real_t t326 = t325 - t21 * t324;
     ddq[4] = t326;
-    if (!(t326 >= PUMA560_C(-1.0e15) && t326 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t327 = t299 * t4 + t119 * t321 - t89 * t322 - t58 * t323;
     const puma560_real_t t328 = t327 - t28 * t324 + t5 * t326;
     ddq[5] = t328;
-    if (!(t328 >= PUMA560_C(-1.0e15) && t328 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t329 = t108 * t73 + t105 * t70;
     const puma560_real_t t330 = dq[0] * t329;
     const puma560_real_t t331 = t163 + t34 * t330;
@@ -805,13 +763,6 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t522 = t70 * t518 + t73 * t520 + (t111 * t487 - t115 * t470);
     const puma560_real_t t523 = PUMA560_C(0.1862884266452062) * (t108 * t521 - t105 * t522);
     ddq_by_dq[0] = t490 + t505 * t495 + t523 * t511;
-    if (!(ddq_by_dq[0] >= PUMA560_C(-1.0e15) && ddq_by_dq[0] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t524 = PUMA560_C(-14.400553) * t455;
     const puma560_real_t t525 = PUMA560_C(24.79745) * (t150 + t151 * t455);
     const puma560_real_t t526 = t86 * t150 + t151 * t466;
@@ -824,13 +775,6 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t533 = t150 * t508 + t151 * t510;
     const puma560_real_t t534 = PUMA560_C(5.368020000000001) * t533;
     ddq_by_dq[6] = t530 + t505 * t532 + t523 * t534;
-    if (!(ddq_by_dq[6] >= PUMA560_C(-1.0e15) && ddq_by_dq[6] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t535 = PUMA560_C(14.400553) * t466;
     const puma560_real_t t536 = PUMA560_C(-24.79745) * t526;
     const puma560_real_t t537 = PUMA560_C(12.352449) * (t85 + t145 * t466 - t86 * t526);
@@ -842,13 +786,6 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t543 = t85 * t507 + t145 * t510 - t86 * t533;
     const puma560_real_t t544 = PUMA560_C(5.368020000000001) * t543;
     ddq_by_dq[12] = t540 + t505 * t542 + t523 * t544;
-    if (!(ddq_by_dq[12] >= PUMA560_C(-1.0e15) && ddq_by_dq[12] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t545 = PUMA560_C(-14.400553) * t475;
     const puma560_real_t t546 = PUMA560_C(24.79745) * t528;
     const puma560_real_t t547 = PUMA560_C(-12.352449) * t538;
@@ -860,13 +797,6 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t553 = t55 * t506 + t135 * t510 - t87 * t533 - t56 * t543;
     const puma560_real_t t554 = PUMA560_C(-5.368020000000001) * t553;
     ddq_by_dq[18] = t550 + t505 * t552 + t523 * t554;
-    if (!(ddq_by_dq[18] >= PUMA560_C(-1.0e15) && ddq_by_dq[18] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t555 = PUMA560_C(-14.400553) * t494;
     const puma560_real_t t556 = PUMA560_C(24.79745) * t531;
     const puma560_real_t t557 = PUMA560_C(-12.352449) * t541;
@@ -878,13 +808,6 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t563 = t562 + t21 * t553;
     const puma560_real_t t564 = PUMA560_C(5.368020000000001) * t563;
     ddq_by_dq[24] = t559 + t505 * t561 + t523 * t564;
-    if (!(ddq_by_dq[24] >= PUMA560_C(-1.0e15) && ddq_by_dq[24] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t565 = PUMA560_C(-14.400553) * t510;
     const puma560_real_t t566 = PUMA560_C(24.79745) * t533;
     const puma560_real_t t567 = PUMA560_C(-12.352449) * t543;
@@ -894,61 +817,12 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t571 = t4 + t119 * t510 - t89 * t533 - t58 * t543;
     const puma560_real_t t572 = PUMA560_C(5.368020000000001) * (t571 + t28 * t553 + t5 * t563);
     ddq_by_dq[30] = t569 + t505 * t570 + t523 * t572;
-    if (!(ddq_by_dq[30] >= PUMA560_C(-1.0e15) && ddq_by_dq[30] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t454;
-    if (!(t454 >= PUMA560_C(-1.0e15) && t454 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t524;
-    if (!(t524 >= PUMA560_C(-1.0e15) && t524 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t535;
-    if (!(t535 >= PUMA560_C(-1.0e15) && t535 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t545;
-    if (!(t545 >= PUMA560_C(-1.0e15) && t545 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t555;
-    if (!(t555 >= PUMA560_C(-1.0e15) && t555 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t565;
-    if (!(t565 >= PUMA560_C(-1.0e15) && t565 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t573 = t322 + t323;
     const puma560_real_t t574 = t330 * t333;
     const puma560_real_t t575 = t574 + t573;
@@ -1108,58 +982,16 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t707 = t155 * t521 + t154 * t522 + (t75 * t217 + (t117 * t618 - t116 * t616));
     const puma560_real_t t708 = PUMA560_C(0.1862884266452062) * (t74 * t209 - t115 * t212 + t707);
     ddq_by_q[1] = t704 + t495 * t706 + t511 * t708;
-    if (!(ddq_by_q[1] >= PUMA560_C(-1.0e15) && ddq_by_q[1] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t709 = t525 * t699 - t524 * t696 - t527 * t701 + t529 * t703;
     ddq_by_q[7] = t709 + t532 * t706 + t534 * t708;
-    if (!(ddq_by_q[7] >= PUMA560_C(-1.0e15) && ddq_by_q[7] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t710 = t536 * t699 - t535 * t696 - t537 * t701 + t539 * t703;
     ddq_by_q[13] = t710 + t542 * t706 + t544 * t708;
-    if (!(ddq_by_q[13] >= PUMA560_C(-1.0e15) && ddq_by_q[13] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t711 = t546 * t699 - t545 * t696 - t547 * t701 + t549 * t703;
     ddq_by_q[19] = t711 + t552 * t706 + t554 * t708;
-    if (!(ddq_by_q[19] >= PUMA560_C(-1.0e15) && ddq_by_q[19] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t712 = t556 * t699 - t555 * t696 - t557 * t701 + t558 * t703;
     ddq_by_q[25] = t712 + t561 * t706 + t564 * t708;
-    if (!(ddq_by_q[25] >= PUMA560_C(-1.0e15) && ddq_by_q[25] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t713 = t566 * t699 - t565 * t696 - t567 * t701 + t568 * t703;
     ddq_by_q[31] = t713 + t570 * t706 + t572 * t708;
-    if (!(ddq_by_q[31] >= PUMA560_C(-1.0e15) && ddq_by_q[31] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t714 = parameters[ZZ3R] + t418;
     const puma560_real_t t715 = t333 * t714 - parameters[YZ3] * t159 + (t457 - t381 - t41 * t398);
     const puma560_real_t t716 = parameters[XZ3] * t159 + t330 * t714 - (t32 * t420 + t34 * t421 + t41 * t404);
@@ -1194,106 +1026,22 @@ int puma560_forward_dynamics_derivatives(
         - t116 * t154);
     const puma560_real_t t739 = PUMA560_C(0.1862884266452062) * t738;
     ddq_by_dq[1] = t733 + t736 * t495 + t739 * t511;
-    if (!(ddq_by_dq[1] >= PUMA560_C(-1.0e15) && ddq_by_dq[1] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t740 = t726 * t525 - t722 * t524 - t729 * t527 + t732 * t529;
     ddq_by_dq[7] = t740 + t736 * t532 + t739 * t534;
-    if (!(ddq_by_dq[7] >= PUMA560_C(-1.0e15) && ddq_by_dq[7] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t741 = t726 * t536 - t722 * t535 - t729 * t537 + t732 * t539;
     ddq_by_dq[13] = t741 + t736 * t542 + t739 * t544;
-    if (!(ddq_by_dq[13] >= PUMA560_C(-1.0e15) && ddq_by_dq[13] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t742 = t726 * t546 - t722 * t545 - t729 * t547 + t732 * t549;
     ddq_by_dq[19] = t742 + t736 * t552 + t739 * t554;
-    if (!(ddq_by_dq[19] >= PUMA560_C(-1.0e15) && ddq_by_dq[19] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t743 = t726 * t556 - t722 * t555 - t729 * t557 + t732 * t558;
     ddq_by_dq[25] = t743 + t736 * t561 + t739 * t564;
-    if (!(ddq_by_dq[25] >= PUMA560_C(-1.0e15) && ddq_by_dq[25] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t744 = t726 * t566 - t722 * t565 - t729 * t567 + t732 * t568;
     ddq_by_dq[31] = t744 + t736 * t570 + t739 * t572;
-    if (!(ddq_by_dq[31] >= PUMA560_C(-1.0e15) && ddq_by_dq[31] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t456;
-    if (!(t456 >= PUMA560_C(-1.0e15) && t456 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t525;
-    if (!(t525 >= PUMA560_C(-1.0e15) && t525 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t536;
-    if (!(t536 >= PUMA560_C(-1.0e15) && t536 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t546;
-    if (!(t546 >= PUMA560_C(-1.0e15) && t546 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t556;
-    if (!(t556 >= PUMA560_C(-1.0e15) && t556 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t566;
-    if (!(t566 >= PUMA560_C(-1.0e15) && t566 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t745 = t631 + t621;
     const puma560_real_t t746 = PUMA560_C(-2.0) * t333;
     const puma560_real_t t747 = PUMA560_C(2.0) * t330;
@@ -1323,58 +1071,16 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t771 = t333 * t518 + t330 * t520 + (t48 * t745 - (t113 * t586 + t114 * t576));
     const puma560_real_t t772 = PUMA560_C(0.1862884266452062) * (t771 + (t47 * t620 - t46 * t629));
     ddq_by_q[2] = t768 + t495 * t770 + t511 * t772;
-    if (!(ddq_by_q[2] >= PUMA560_C(-1.0e15) && ddq_by_q[2] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t773 = t525 * t764 - t524 * t760 - t527 * t765 + t529 * t767;
     ddq_by_q[8] = t773 + t532 * t770 + t534 * t772;
-    if (!(ddq_by_q[8] >= PUMA560_C(-1.0e15) && ddq_by_q[8] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t774 = t536 * t764 - t535 * t760 - t537 * t765 + t539 * t767;
     ddq_by_q[14] = t774 + t542 * t770 + t544 * t772;
-    if (!(ddq_by_q[14] >= PUMA560_C(-1.0e15) && ddq_by_q[14] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t775 = t546 * t764 - t545 * t760 - t547 * t765 + t549 * t767;
     ddq_by_q[20] = t775 + t552 * t770 + t554 * t772;
-    if (!(ddq_by_q[20] >= PUMA560_C(-1.0e15) && ddq_by_q[20] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t776 = t556 * t764 - t555 * t760 - t557 * t765 + t558 * t767;
     ddq_by_q[26] = t776 + t561 * t770 + t564 * t772;
-    if (!(ddq_by_q[26] >= PUMA560_C(-1.0e15) && ddq_by_q[26] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t777 = t566 * t764 - t565 * t760 - t567 * t765 + t568 * t767;
     ddq_by_q[32] = t777 + t570 * t770 + t572 * t772;
-    if (!(ddq_by_q[32] >= PUMA560_C(-1.0e15) && ddq_by_q[32] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t778 = PUMA560_C(2.0) * t715 + (t99 * t747 - t96 * t746);
     const puma560_real_t t779 = PUMA560_C(2.0) * t716 + (t95 * t747 - t99 * t746);
     const puma560_real_t t780 = PUMA560_C(2.0) * t427 + t41 * t746;
@@ -1398,106 +1104,22 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t794 = PUMA560_C(0.1862884266452062) * (t737 + PUMA560_C(-2.0) * (t113 * t333
         + t114 * t330));
     ddq_by_dq[2] = t792 + t793 * t495 + t794 * t511;
-    if (!(ddq_by_dq[2] >= PUMA560_C(-1.0e15) && ddq_by_dq[2] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t795 = t788 * t525 - t786 * t524 - t790 * t527 + t791 * t529;
     ddq_by_dq[8] = t795 + t793 * t532 + t794 * t534;
-    if (!(ddq_by_dq[8] >= PUMA560_C(-1.0e15) && ddq_by_dq[8] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t796 = t788 * t536 - t786 * t535 - t790 * t537 + t791 * t539;
     ddq_by_dq[14] = t796 + t793 * t542 + t794 * t544;
-    if (!(ddq_by_dq[14] >= PUMA560_C(-1.0e15) && ddq_by_dq[14] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t797 = t788 * t546 - t786 * t545 - t790 * t547 + t791 * t549;
     ddq_by_dq[20] = t797 + t793 * t552 + t794 * t554;
-    if (!(ddq_by_dq[20] >= PUMA560_C(-1.0e15) && ddq_by_dq[20] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t798 = t788 * t556 - t786 * t555 - t790 * t557 + t791 * t558;
     ddq_by_dq[26] = t798 + t793 * t561 + t794 * t564;
-    if (!(ddq_by_dq[26] >= PUMA560_C(-1.0e15) && ddq_by_dq[26] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t799 = t788 * t566 - t786 * t565 - t790 * t567 + t791 * t568;
     ddq_by_dq[32] = t799 + t793 * t570 + t794 * t572;
-    if (!(ddq_by_dq[32] >= PUMA560_C(-1.0e15) && ddq_by_dq[32] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t467;
-    if (!(t467 >= PUMA560_C(-1.0e15) && t467 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t527;
-    if (!(t527 >= PUMA560_C(-1.0e15) && t527 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t537;
-    if (!(t537 >= PUMA560_C(-1.0e15) && t537 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t547;
-    if (!(t547 >= PUMA560_C(-1.0e15) && t547 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t557;
-    if (!(t557 >= PUMA560_C(-1.0e15) && t557 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t567;
-    if (!(t567 >= PUMA560_C(-1.0e15) && t567 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t800 = t50 * t646;
     const puma560_real_t t801 = t8 * t592;
     const puma560_real_t t802 = t664 + t659;
@@ -1534,58 +1156,16 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t830 = t18 * t802 + (t44 * t580 - t3 * t592) - (t336 * t516 + t331 * t517);
     const puma560_real_t t831 = PUMA560_C(0.1862884266452062) * (t830 + (t45 * t646 - t37 * t628));
     ddq_by_q[3] = t827 + t495 * t829 + t511 * t831;
-    if (!(ddq_by_q[3] >= PUMA560_C(-1.0e15) && ddq_by_q[3] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t832 = t525 * t824 - t524 * t822 - t527 * t825 + t529 * t826;
     ddq_by_q[9] = t832 + t532 * t829 + t534 * t831;
-    if (!(ddq_by_q[9] >= PUMA560_C(-1.0e15) && ddq_by_q[9] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t833 = t536 * t824 - t535 * t822 - t537 * t825 + t539 * t826;
     ddq_by_q[15] = t833 + t542 * t829 + t544 * t831;
-    if (!(ddq_by_q[15] >= PUMA560_C(-1.0e15) && ddq_by_q[15] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t834 = t546 * t824 - t545 * t822 - t547 * t825 + t549 * t826;
     ddq_by_q[21] = t834 + t552 * t829 + t554 * t831;
-    if (!(ddq_by_q[21] >= PUMA560_C(-1.0e15) && ddq_by_q[21] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t835 = t556 * t824 - t555 * t822 - t557 * t825 + t558 * t826;
     ddq_by_q[27] = t835 + t561 * t829 + t564 * t831;
-    if (!(ddq_by_q[27] >= PUMA560_C(-1.0e15) && ddq_by_q[27] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t836 = t566 * t824 - t565 * t822 - t567 * t825 + t568 * t826;
     ddq_by_q[33] = t836 + t570 * t829 + t572 * t831;
-    if (!(ddq_by_q[33] >= PUMA560_C(-1.0e15) && ddq_by_q[33] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t837 = PUMA560_C(2.0) * t415 + (t60 * t804 - t59 * t803);
     const puma560_real_t t838 = PUMA560_C(2.0) * t416 - (t60 * t803 - t8 * t804);
     const puma560_real_t t839 = PUMA560_C(-2.0) * t395 + t50 * t804;
@@ -1614,106 +1194,22 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t858 = PUMA560_C(0.1862884266452062) * (t519 + PUMA560_C(-2.0) * (t44 * t336
         + t3 * t331));
     ddq_by_dq[3] = t856 + t857 * t495 + t858 * t511;
-    if (!(ddq_by_dq[3] >= PUMA560_C(-1.0e15) && ddq_by_dq[3] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t859 = t852 * t525 - t850 * t524 - t853 * t527 + t855 * t529;
     ddq_by_dq[9] = t859 + t857 * t532 + t858 * t534;
-    if (!(ddq_by_dq[9] >= PUMA560_C(-1.0e15) && ddq_by_dq[9] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t860 = t852 * t536 - t850 * t535 - t853 * t537 + t855 * t539;
     ddq_by_dq[15] = t860 + t857 * t542 + t858 * t544;
-    if (!(ddq_by_dq[15] >= PUMA560_C(-1.0e15) && ddq_by_dq[15] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t861 = t852 * t546 - t850 * t545 - t853 * t547 + t855 * t549;
     ddq_by_dq[21] = t861 + t857 * t552 + t858 * t554;
-    if (!(ddq_by_dq[21] >= PUMA560_C(-1.0e15) && ddq_by_dq[21] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t862 = t852 * t556 - t850 * t555 - t853 * t557 + t855 * t558;
     ddq_by_dq[27] = t862 + t857 * t561 + t858 * t564;
-    if (!(ddq_by_dq[27] >= PUMA560_C(-1.0e15) && ddq_by_dq[27] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t863 = t852 * t566 - t850 * t565 - t853 * t567 + t855 * t568;
     ddq_by_dq[33] = t863 + t857 * t570 + t858 * t572;
-    if (!(ddq_by_dq[33] >= PUMA560_C(-1.0e15) && ddq_by_dq[33] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t476;
-    if (!(t476 >= PUMA560_C(-1.0e15) && t476 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t529;
-    if (!(t529 >= PUMA560_C(-1.0e15) && t529 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t539;
-    if (!(t539 >= PUMA560_C(-1.0e15) && t539 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t549;
-    if (!(t549 >= PUMA560_C(-1.0e15) && t549 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t558;
-    if (!(t558 >= PUMA560_C(-1.0e15) && t558 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t568;
-    if (!(t568 >= PUMA560_C(-1.0e15) && t568 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t864 = t653 + t644;
     const puma560_real_t t865 = PUMA560_C(-2.0) * t340;
     const puma560_real_t t866 = PUMA560_C(2.0) * t335;
@@ -1753,58 +1249,16 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t898 = t340 * t514 - t335 * t515 + (t17 * t606 + t870 - t3 * t864);
     const puma560_real_t t899 = PUMA560_C(0.1862884266452062) * (t898 + t869);
     ddq_by_q[4] = t896 + t495 * t897 + t511 * t899;
-    if (!(ddq_by_q[4] >= PUMA560_C(-1.0e15) && ddq_by_q[4] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t900 = t525 * t893 - t524 * t891 - t527 * t894 + t529 * t895;
     ddq_by_q[10] = t900 + t532 * t897 + t534 * t899;
-    if (!(ddq_by_q[10] >= PUMA560_C(-1.0e15) && ddq_by_q[10] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t901 = t536 * t893 - t535 * t891 - t537 * t894 + t539 * t895;
     ddq_by_q[16] = t901 + t542 * t897 + t544 * t899;
-    if (!(ddq_by_q[16] >= PUMA560_C(-1.0e15) && ddq_by_q[16] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t902 = t546 * t893 - t545 * t891 - t547 * t894 + t549 * t895;
     ddq_by_q[22] = t902 + t552 * t897 + t554 * t899;
-    if (!(ddq_by_q[22] >= PUMA560_C(-1.0e15) && ddq_by_q[22] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t903 = t556 * t893 - t555 * t891 - t557 * t894 + t558 * t895;
     ddq_by_q[28] = t903 + t561 * t897 + t564 * t899;
-    if (!(ddq_by_q[28] >= PUMA560_C(-1.0e15) && ddq_by_q[28] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t904 = t566 * t893 - t565 * t891 - t567 * t894 + t568 * t895;
     ddq_by_q[34] = t904 + t570 * t897 + t572 * t899;
-    if (!(ddq_by_q[34] >= PUMA560_C(-1.0e15) && ddq_by_q[34] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t905 = PUMA560_C(-2.0) * t378 - (t22 * t865 + t23 * t866);
     const puma560_real_t t906 = PUMA560_C(-2.0) * t379 + (t23 * t865 + parameters[ZZ6] * t866);
     const puma560_real_t t907 = t15 * t905 + t13 * t906;
@@ -1837,106 +1291,22 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t931 = PUMA560_C(0.1862884266452062) * (t517
         + PUMA560_C(2.0) * (parameters[ZZ6] * t335 - t17 * t340));
     ddq_by_dq[4] = t928 + t930 * t495 + t931 * t511;
-    if (!(ddq_by_dq[4] >= PUMA560_C(-1.0e15) && ddq_by_dq[4] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t932 = t925 * t525 - t923 * t524 - t926 * t527 + t927 * t529;
     ddq_by_dq[10] = t932 + t930 * t532 + t931 * t534;
-    if (!(ddq_by_dq[10] >= PUMA560_C(-1.0e15) && ddq_by_dq[10] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t933 = t925 * t536 - t923 * t535 - t926 * t537 + t927 * t539;
     ddq_by_dq[16] = t933 + t930 * t542 + t931 * t544;
-    if (!(ddq_by_dq[16] >= PUMA560_C(-1.0e15) && ddq_by_dq[16] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t934 = t925 * t546 - t923 * t545 - t926 * t547 + t927 * t549;
     ddq_by_dq[22] = t934 + t930 * t552 + t931 * t554;
-    if (!(ddq_by_dq[22] >= PUMA560_C(-1.0e15) && ddq_by_dq[22] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t935 = t925 * t556 - t923 * t555 - t926 * t557 + t927 * t558;
     ddq_by_dq[28] = t935 + t930 * t561 + t931 * t564;
-    if (!(ddq_by_dq[28] >= PUMA560_C(-1.0e15) && ddq_by_dq[28] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t936 = t925 * t566 - t923 * t565 - t926 * t567 + t927 * t568;
     ddq_by_dq[34] = t936 + t930 * t570 + t931 * t572;
-    if (!(ddq_by_dq[34] >= PUMA560_C(-1.0e15) && ddq_by_dq[34] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t495;
-    if (!(t495 >= PUMA560_C(-1.0e15) && t495 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t532;
-    if (!(t532 >= PUMA560_C(-1.0e15) && t532 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t542;
-    if (!(t542 >= PUMA560_C(-1.0e15) && t542 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t552;
-    if (!(t552 >= PUMA560_C(-1.0e15) && t552 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t561;
-    if (!(t561 >= PUMA560_C(-1.0e15) && t561 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t570;
-    if (!(t570 >= PUMA560_C(-1.0e15) && t570 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t937 = t638 + t613;
     const puma560_real_t t938 = PUMA560_C(2.0) * t338;
     const puma560_real_t t939 = PUMA560_C(-2.0) * t344;
@@ -1978,58 +1348,16 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t972 = PUMA560_C(0.19862511694053758) * t949;
     const puma560_real_t t973 = PUMA560_C(0.1862884266452062) * (t946 + (t338 * t512 + t344 * t513 + t945));
     ddq_by_q[5] = t971 + t495 * t972 + t511 * t973;
-    if (!(ddq_by_q[5] >= PUMA560_C(-1.0e15) && ddq_by_q[5] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t974 = t525 * t968 - t524 * t966 - t527 * t969 + t529 * t970;
     ddq_by_q[11] = t974 + t532 * t972 + t534 * t973;
-    if (!(ddq_by_q[11] >= PUMA560_C(-1.0e15) && ddq_by_q[11] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t975 = t536 * t968 - t535 * t966 - t537 * t969 + t539 * t970;
     ddq_by_q[17] = t975 + t542 * t972 + t544 * t973;
-    if (!(ddq_by_q[17] >= PUMA560_C(-1.0e15) && ddq_by_q[17] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t976 = t546 * t968 - t545 * t966 - t547 * t969 + t549 * t970;
     ddq_by_q[23] = t976 + t552 * t972 + t554 * t973;
-    if (!(ddq_by_q[23] >= PUMA560_C(-1.0e15) && ddq_by_q[23] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t977 = t556 * t968 - t555 * t966 - t557 * t969 + t558 * t970;
     ddq_by_q[29] = t977 + t561 * t972 + t564 * t973;
-    if (!(ddq_by_q[29] >= PUMA560_C(-1.0e15) && ddq_by_q[29] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t978 = t566 * t968 - t565 * t966 - t567 * t969 + t568 * t970;
     ddq_by_q[35] = t978 + t570 * t972 + t572 * t973;
-    if (!(ddq_by_q[35] >= PUMA560_C(-1.0e15) && ddq_by_q[35] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t979 = PUMA560_C(2.0) * t360 + (parameters[XX6R] * t938 + parameters[XY6] * t939);
     const puma560_real_t t980 = PUMA560_C(2.0) * t361 + parameters[XY6] * t938;
     const puma560_real_t t981 = t2 * t979 - t1 * t980;
@@ -2063,106 +1391,22 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t1007 = PUMA560_C(0.19862511694053758) * t984;
     const puma560_real_t t1008 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
     ddq_by_dq[5] = t1006 + t1007 * t495 + t1008 * t511;
-    if (!(ddq_by_dq[5] >= PUMA560_C(-1.0e15) && ddq_by_dq[5] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1009 = t1003 * t525 - t1001 * t524 - t1004 * t527 + t1005 * t529;
     ddq_by_dq[11] = t1009 + t1007 * t532 + t1008 * t534;
-    if (!(ddq_by_dq[11] >= PUMA560_C(-1.0e15) && ddq_by_dq[11] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1010 = t1003 * t536 - t1001 * t535 - t1004 * t537 + t1005 * t539;
     ddq_by_dq[17] = t1010 + t1007 * t542 + t1008 * t544;
-    if (!(ddq_by_dq[17] >= PUMA560_C(-1.0e15) && ddq_by_dq[17] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1011 = t1003 * t546 - t1001 * t545 - t1004 * t547 + t1005 * t549;
     ddq_by_dq[23] = t1011 + t1007 * t552 + t1008 * t554;
-    if (!(ddq_by_dq[23] >= PUMA560_C(-1.0e15) && ddq_by_dq[23] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1012 = t1003 * t556 - t1001 * t555 - t1004 * t557 + t1005 * t558;
     ddq_by_dq[29] = t1012 + t1007 * t561 + t1008 * t564;
-    if (!(ddq_by_dq[29] >= PUMA560_C(-1.0e15) && ddq_by_dq[29] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1013 = t1003 * t566 - t1001 * t565 - t1004 * t567 + t1005 * t568;
     ddq_by_dq[35] = t1013 + t1007 * t570 + t1008 * t572;
-    if (!(ddq_by_dq[35] >= PUMA560_C(-1.0e15) && ddq_by_dq[35] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t511;
-    if (!(t511 >= PUMA560_C(-1.0e15) && t511 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t534;
-    if (!(t534 >= PUMA560_C(-1.0e15) && t534 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t544;
-    if (!(t544 >= PUMA560_C(-1.0e15) && t544 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t554;
-    if (!(t554 >= PUMA560_C(-1.0e15) && t554 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t564;
-    if (!(t564 >= PUMA560_C(-1.0e15) && t564 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t572;
-    if (!(t572 >= PUMA560_C(-1.0e15) && t572 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = PUMA560_C(0.0);
     ddq_by_q[6] = PUMA560_C(0.0);
@@ -2170,5 +1414,15 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
+    if (!puma560_within_joints(ddq, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_q, 36, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_dq, 36, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_input, 36, PUMA560_C(1.0e30))) {
+        puma560_zero(ddq, 6);
+        puma560_zero(ddq_by_q, 36);
+        puma560_zero(ddq_by_dq, 36);
+        puma560_zero(ddq_by_input, 36);
+        return PUMA560_STATUS_PIVOT;
+    }
     return PUMA560_STATUS_OK;
 }

@@ -111,7 +111,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xE4917E55UL
+#if PUMA560_GENERATION != 0xFE2532ABUL
 #error "puma560.h and puma560_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -635,60 +635,18 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t362 = PUMA560_C(1.0) / t168;
     const puma560_real_t t363 = t361 * t362;
     ddq[0] = t363;
-    if (!(t363 >= PUMA560_C(-1.0e15) && t363 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t364 = t360 * t166 + t167 * t363;
     ddq[1] = t364;
-    if (!(t364 >= PUMA560_C(-1.0e15) && t364 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t365 = t160 * t363 - t355 * t96 - t97 * t364;
     ddq[2] = t365;
-    if (!(t365 >= PUMA560_C(-1.0e15) && t365 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t366 = t348 * t58 - t151 * t363 + t98 * t364 - t59 * t365;
     ddq[3] = t366;
-    if (!(t366 >= PUMA560_C(-1.0e15) && t366 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t367 = t344 * t21 + t143 * t363 - t99 * t364 - t60 * t365;
     const puma560_real_t t368 = t367 + t22 * t366;
     ddq[4] = t368;
-    if (!(t368 >= PUMA560_C(-1.0e15) && t368 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t369 = t341 * t4 + t134 * t363 - t100 * t364 - t61 * t365;
     const puma560_real_t t370 = t369 + t30 * t366 + t5 * t368;
     ddq[5] = t370;
-    if (!(t370 >= PUMA560_C(-1.0e15) && t370 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t371 = t123 * t82 + t120 * t79;
     const puma560_real_t t372 = dq[0] * t371;
     const puma560_real_t t373 = t36 * t372 + t179;
@@ -895,13 +853,6 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t570 = t79 * t566 + t82 * t568 + (t126 * t535 - t130 * t518);
     const puma560_real_t t571 = PUMA560_C(0.1862884266452062) * (t123 * t569 - t120 * t570);
     ddq_by_dq[0] = t538 + t553 * t543 + t571 * t559;
-    if (!(ddq_by_dq[0] >= PUMA560_C(-1.0e15) && ddq_by_dq[0] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t572 = PUMA560_C(-14.400553) * t503;
     const puma560_real_t t573 = PUMA560_C(24.79745) * (t166 + t167 * t503);
     const puma560_real_t t574 = t97 * t166 + t167 * t514;
@@ -914,13 +865,6 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t581 = t166 * t556 + t167 * t558;
     const puma560_real_t t582 = PUMA560_C(5.368020000000001) * t581;
     ddq_by_dq[6] = t578 + t553 * t580 + t571 * t582;
-    if (!(ddq_by_dq[6] >= PUMA560_C(-1.0e15) && ddq_by_dq[6] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t583 = PUMA560_C(14.400553) * t514;
     const puma560_real_t t584 = PUMA560_C(-24.79745) * t574;
     const puma560_real_t t585 = PUMA560_C(12.352449) * (t96 + t160 * t514 - t97 * t574);
@@ -932,13 +876,6 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t591 = t96 * t555 + t160 * t558 - t97 * t581;
     const puma560_real_t t592 = PUMA560_C(5.368020000000001) * t591;
     ddq_by_dq[12] = t588 + t553 * t590 + t571 * t592;
-    if (!(ddq_by_dq[12] >= PUMA560_C(-1.0e15) && ddq_by_dq[12] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t593 = PUMA560_C(-14.400553) * t523;
     const puma560_real_t t594 = PUMA560_C(24.79745) * t576;
     const puma560_real_t t595 = PUMA560_C(-12.352449) * t586;
@@ -950,13 +887,6 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t601 = t151 * t558 - t58 * t554 - t98 * t581 + t59 * t591;
     const puma560_real_t t602 = PUMA560_C(-5.368020000000001) * t601;
     ddq_by_dq[18] = t598 + t553 * t600 + t571 * t602;
-    if (!(ddq_by_dq[18] >= PUMA560_C(-1.0e15) && ddq_by_dq[18] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t603 = PUMA560_C(-14.400553) * t542;
     const puma560_real_t t604 = PUMA560_C(24.79745) * t579;
     const puma560_real_t t605 = PUMA560_C(-12.352449) * t589;
@@ -968,13 +898,6 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t611 = t610 - t22 * t601;
     const puma560_real_t t612 = PUMA560_C(5.368020000000001) * t611;
     ddq_by_dq[24] = t607 + t553 * t609 + t571 * t612;
-    if (!(ddq_by_dq[24] >= PUMA560_C(-1.0e15) && ddq_by_dq[24] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t613 = PUMA560_C(-14.400553) * t558;
     const puma560_real_t t614 = PUMA560_C(24.79745) * t581;
     const puma560_real_t t615 = PUMA560_C(-12.352449) * t591;
@@ -984,61 +907,12 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t619 = t4 + t134 * t558 - t100 * t581 - t61 * t591;
     const puma560_real_t t620 = PUMA560_C(5.368020000000001) * (t619 - t30 * t601 + t5 * t611);
     ddq_by_dq[30] = t617 + t553 * t618 + t571 * t620;
-    if (!(ddq_by_dq[30] >= PUMA560_C(-1.0e15) && ddq_by_dq[30] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t502;
-    if (!(t502 >= PUMA560_C(-1.0e15) && t502 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t572;
-    if (!(t572 >= PUMA560_C(-1.0e15) && t572 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t583;
-    if (!(t583 >= PUMA560_C(-1.0e15) && t583 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t593;
-    if (!(t593 >= PUMA560_C(-1.0e15) && t593 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t603;
-    if (!(t603 >= PUMA560_C(-1.0e15) && t603 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t613;
-    if (!(t613 >= PUMA560_C(-1.0e15) && t613 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t621 = t364 + t365;
     const puma560_real_t t622 = t372 * t375;
     const puma560_real_t t623 = t622 + t621;
@@ -1237,58 +1111,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t783 = t171 * t569 + t170 * t570 + (t235 * t84 + (t132 * t667 - t131 * t665));
     const puma560_real_t t784 = PUMA560_C(0.1862884266452062) * (t227 * t83 - t230 * t130 + t783);
     ddq_by_q[1] = t780 + t543 * t782 + t559 * t784;
-    if (!(ddq_by_q[1] >= PUMA560_C(-1.0e15) && ddq_by_q[1] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t785 = t573 * t775 - t572 * t772 - t575 * t777 + t577 * t779;
     ddq_by_q[7] = t785 + t580 * t782 + t582 * t784;
-    if (!(ddq_by_q[7] >= PUMA560_C(-1.0e15) && ddq_by_q[7] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t786 = t584 * t775 - t583 * t772 - t585 * t777 + t587 * t779;
     ddq_by_q[13] = t786 + t590 * t782 + t592 * t784;
-    if (!(ddq_by_q[13] >= PUMA560_C(-1.0e15) && ddq_by_q[13] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t787 = t594 * t775 - t593 * t772 - t595 * t777 + t597 * t779;
     ddq_by_q[19] = t787 + t600 * t782 + t602 * t784;
-    if (!(ddq_by_q[19] >= PUMA560_C(-1.0e15) && ddq_by_q[19] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t788 = t604 * t775 - t603 * t772 - t605 * t777 + t606 * t779;
     ddq_by_q[25] = t788 + t609 * t782 + t612 * t784;
-    if (!(ddq_by_q[25] >= PUMA560_C(-1.0e15) && ddq_by_q[25] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t789 = t614 * t775 - t613 * t772 - t615 * t777 + t616 * t779;
     ddq_by_q[31] = t789 + t618 * t782 + t620 * t784;
-    if (!(ddq_by_q[31] >= PUMA560_C(-1.0e15) && ddq_by_q[31] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t790 = parameters[ZZ3] + t463;
     const puma560_real_t t791 = t375 * t790 - t175 * parameters[YZ3] + (t505 - t426 - t45 * t443);
     const puma560_real_t t792 = t175 * parameters[XZ3] + t372 * t790 + (t34 * t466 + t36 * t467 - t45 * t449);
@@ -1323,106 +1155,22 @@ int puma560_forward_dynamics_derivatives_standard(
         - t170 * t131);
     const puma560_real_t t815 = PUMA560_C(0.1862884266452062) * t814;
     ddq_by_dq[1] = t809 + t812 * t543 + t815 * t559;
-    if (!(ddq_by_dq[1] >= PUMA560_C(-1.0e15) && ddq_by_dq[1] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t816 = t802 * t573 - t798 * t572 - t805 * t575 + t808 * t577;
     ddq_by_dq[7] = t816 + t812 * t580 + t815 * t582;
-    if (!(ddq_by_dq[7] >= PUMA560_C(-1.0e15) && ddq_by_dq[7] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t817 = t802 * t584 - t798 * t583 - t805 * t585 + t808 * t587;
     ddq_by_dq[13] = t817 + t812 * t590 + t815 * t592;
-    if (!(ddq_by_dq[13] >= PUMA560_C(-1.0e15) && ddq_by_dq[13] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t818 = t802 * t594 - t798 * t593 - t805 * t595 + t808 * t597;
     ddq_by_dq[19] = t818 + t812 * t600 + t815 * t602;
-    if (!(ddq_by_dq[19] >= PUMA560_C(-1.0e15) && ddq_by_dq[19] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t819 = t802 * t604 - t798 * t603 - t805 * t605 + t808 * t606;
     ddq_by_dq[25] = t819 + t812 * t609 + t815 * t612;
-    if (!(ddq_by_dq[25] >= PUMA560_C(-1.0e15) && ddq_by_dq[25] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t820 = t802 * t614 - t798 * t613 - t805 * t615 + t808 * t616;
     ddq_by_dq[31] = t820 + t812 * t618 + t815 * t620;
-    if (!(ddq_by_dq[31] >= PUMA560_C(-1.0e15) && ddq_by_dq[31] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t504;
-    if (!(t504 >= PUMA560_C(-1.0e15) && t504 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t573;
-    if (!(t573 >= PUMA560_C(-1.0e15) && t573 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t584;
-    if (!(t584 >= PUMA560_C(-1.0e15) && t584 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t594;
-    if (!(t594 >= PUMA560_C(-1.0e15) && t594 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t604;
-    if (!(t604 >= PUMA560_C(-1.0e15) && t604 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t614;
-    if (!(t614 >= PUMA560_C(-1.0e15) && t614 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t821 = PUMA560_C(2.0) * t375;
     const puma560_real_t t822 = PUMA560_C(2.0) * t372;
     const puma560_real_t t823 = t465 * t822 - t454 * t821 + (t757 * t153 + (t109 * t634 + t112 * t624));
@@ -1452,58 +1200,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t847 = t375 * t566 + t372 * t568 + (t757 * t51 + (t129 * t624 - t128 * t634));
     const puma560_real_t t848 = PUMA560_C(0.1862884266452062) * (t847 + (t50 * t669 - t49 * t679));
     ddq_by_q[2] = t844 + t543 * t846 + t559 * t848;
-    if (!(ddq_by_q[2] >= PUMA560_C(-1.0e15) && ddq_by_q[2] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t849 = t573 * t840 - t572 * t836 - t575 * t841 + t577 * t843;
     ddq_by_q[8] = t849 + t580 * t846 + t582 * t848;
-    if (!(ddq_by_q[8] >= PUMA560_C(-1.0e15) && ddq_by_q[8] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t850 = t584 * t840 - t583 * t836 - t585 * t841 + t587 * t843;
     ddq_by_q[14] = t850 + t590 * t846 + t592 * t848;
-    if (!(ddq_by_q[14] >= PUMA560_C(-1.0e15) && ddq_by_q[14] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t851 = t594 * t840 - t593 * t836 - t595 * t841 + t597 * t843;
     ddq_by_q[20] = t851 + t600 * t846 + t602 * t848;
-    if (!(ddq_by_q[20] >= PUMA560_C(-1.0e15) && ddq_by_q[20] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t852 = t604 * t840 - t603 * t836 - t605 * t841 + t606 * t843;
     ddq_by_q[26] = t852 + t609 * t846 + t612 * t848;
-    if (!(ddq_by_q[26] >= PUMA560_C(-1.0e15) && ddq_by_q[26] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t853 = t614 * t840 - t613 * t836 - t615 * t841 + t616 * t843;
     ddq_by_q[32] = t853 + t618 * t846 + t620 * t848;
-    if (!(ddq_by_q[32] >= PUMA560_C(-1.0e15) && ddq_by_q[32] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t854 = PUMA560_C(2.0) * t791 + (t109 * t821 + t112 * t822);
     const puma560_real_t t855 = PUMA560_C(2.0) * t792 + (t112 * t821 + t110 * t822);
     const puma560_real_t t856 = PUMA560_C(2.0) * t473 - t115 * t821;
@@ -1527,106 +1233,22 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t870 = PUMA560_C(0.1862884266452062) * (t813 + PUMA560_C(2.0) * (t372 * t129
         - t375 * t128));
     ddq_by_dq[2] = t868 + t869 * t543 + t870 * t559;
-    if (!(ddq_by_dq[2] >= PUMA560_C(-1.0e15) && ddq_by_dq[2] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t871 = t864 * t573 - t862 * t572 - t866 * t575 + t867 * t577;
     ddq_by_dq[8] = t871 + t869 * t580 + t870 * t582;
-    if (!(ddq_by_dq[8] >= PUMA560_C(-1.0e15) && ddq_by_dq[8] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t872 = t864 * t584 - t862 * t583 - t866 * t585 + t867 * t587;
     ddq_by_dq[14] = t872 + t869 * t590 + t870 * t592;
-    if (!(ddq_by_dq[14] >= PUMA560_C(-1.0e15) && ddq_by_dq[14] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t873 = t864 * t594 - t862 * t593 - t866 * t595 + t867 * t597;
     ddq_by_dq[20] = t873 + t869 * t600 + t870 * t602;
-    if (!(ddq_by_dq[20] >= PUMA560_C(-1.0e15) && ddq_by_dq[20] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t874 = t864 * t604 - t862 * t603 - t866 * t605 + t867 * t606;
     ddq_by_dq[26] = t874 + t869 * t609 + t870 * t612;
-    if (!(ddq_by_dq[26] >= PUMA560_C(-1.0e15) && ddq_by_dq[26] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t875 = t864 * t614 - t862 * t613 - t866 * t615 + t867 * t616;
     ddq_by_dq[32] = t875 + t869 * t618 + t870 * t620;
-    if (!(ddq_by_dq[32] >= PUMA560_C(-1.0e15) && ddq_by_dq[32] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t515;
-    if (!(t515 >= PUMA560_C(-1.0e15) && t515 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t575;
-    if (!(t575 >= PUMA560_C(-1.0e15) && t575 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t585;
-    if (!(t585 >= PUMA560_C(-1.0e15) && t585 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t595;
-    if (!(t595 >= PUMA560_C(-1.0e15) && t595 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t605;
-    if (!(t605 >= PUMA560_C(-1.0e15) && t605 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t615;
-    if (!(t615 >= PUMA560_C(-1.0e15) && t615 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t876 = PUMA560_C(2.0) * t378;
     const puma560_real_t t877 = PUMA560_C(2.0) * t373;
     const puma560_real_t t878 = t426 * t877 - t416 * t876 + (t64 * t640 - t62 * t628 - t753 * t33);
@@ -1661,58 +1283,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t905 = t378 * t564 - t373 * t565 - (t753 * t19 + (t47 * t628 + t3 * t640));
     const puma560_real_t t906 = PUMA560_C(0.1862884266452062) * (t905 + (t48 * t686 + t40 * t678));
     ddq_by_q[3] = t902 + t543 * t904 + t559 * t906;
-    if (!(ddq_by_q[3] >= PUMA560_C(-1.0e15) && ddq_by_q[3] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t907 = t573 * t899 - t572 * t897 - t575 * t900 + t577 * t901;
     ddq_by_q[9] = t907 + t580 * t904 + t582 * t906;
-    if (!(ddq_by_q[9] >= PUMA560_C(-1.0e15) && ddq_by_q[9] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t908 = t584 * t899 - t583 * t897 - t585 * t900 + t587 * t901;
     ddq_by_q[15] = t908 + t590 * t904 + t592 * t906;
-    if (!(ddq_by_q[15] >= PUMA560_C(-1.0e15) && ddq_by_q[15] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t909 = t594 * t899 - t593 * t897 - t595 * t900 + t597 * t901;
     ddq_by_q[21] = t909 + t600 * t904 + t602 * t906;
-    if (!(ddq_by_q[21] >= PUMA560_C(-1.0e15) && ddq_by_q[21] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t910 = t604 * t899 - t603 * t897 - t605 * t900 + t606 * t901;
     ddq_by_q[27] = t910 + t609 * t904 + t612 * t906;
-    if (!(ddq_by_q[27] >= PUMA560_C(-1.0e15) && ddq_by_q[27] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t911 = t614 * t899 - t613 * t897 - t615 * t900 + t616 * t901;
     ddq_by_q[33] = t911 + t618 * t904 + t620 * t906;
-    if (!(ddq_by_q[33] >= PUMA560_C(-1.0e15) && ddq_by_q[33] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t912 = PUMA560_C(2.0) * t460 + (t62 * t876 + t64 * t877);
     const puma560_real_t t913 = PUMA560_C(2.0) * t461 + (t64 * t876 + t63 * t877);
     const puma560_real_t t914 = PUMA560_C(2.0) * t440 + t72 * t877;
@@ -1741,106 +1321,22 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t933 = PUMA560_C(0.1862884266452062) * (t567 + PUMA560_C(2.0) * (t378 * t47
         - t373 * t3));
     ddq_by_dq[3] = t931 + t932 * t543 + t933 * t559;
-    if (!(ddq_by_dq[3] >= PUMA560_C(-1.0e15) && ddq_by_dq[3] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t934 = t927 * t573 - t925 * t572 - t928 * t575 + t930 * t577;
     ddq_by_dq[9] = t934 + t932 * t580 + t933 * t582;
-    if (!(ddq_by_dq[9] >= PUMA560_C(-1.0e15) && ddq_by_dq[9] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t935 = t927 * t584 - t925 * t583 - t928 * t585 + t930 * t587;
     ddq_by_dq[15] = t935 + t932 * t590 + t933 * t592;
-    if (!(ddq_by_dq[15] >= PUMA560_C(-1.0e15) && ddq_by_dq[15] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t936 = t927 * t594 - t925 * t593 - t928 * t595 + t930 * t597;
     ddq_by_dq[21] = t936 + t932 * t600 + t933 * t602;
-    if (!(ddq_by_dq[21] >= PUMA560_C(-1.0e15) && ddq_by_dq[21] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t937 = t927 * t604 - t925 * t603 - t928 * t605 + t930 * t606;
     ddq_by_dq[27] = t937 + t932 * t609 + t933 * t612;
-    if (!(ddq_by_dq[27] >= PUMA560_C(-1.0e15) && ddq_by_dq[27] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t938 = t927 * t614 - t925 * t613 - t928 * t615 + t930 * t616;
     ddq_by_dq[33] = t938 + t932 * t618 + t933 * t620;
-    if (!(ddq_by_dq[33] >= PUMA560_C(-1.0e15) && ddq_by_dq[33] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t524;
-    if (!(t524 >= PUMA560_C(-1.0e15) && t524 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t577;
-    if (!(t577 >= PUMA560_C(-1.0e15) && t577 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t587;
-    if (!(t587 >= PUMA560_C(-1.0e15) && t587 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t597;
-    if (!(t597 >= PUMA560_C(-1.0e15) && t597 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t606;
-    if (!(t606 >= PUMA560_C(-1.0e15) && t606 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t616;
-    if (!(t616 >= PUMA560_C(-1.0e15) && t616 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t939 = PUMA560_C(2.0) * t382;
     const puma560_real_t t940 = PUMA560_C(-2.0) * t377;
     const puma560_real_t t941 = t411 * t939 - t401 * t940 + (t737 * t15 + (t24 * t644 - t25 * t655));
@@ -1879,58 +1375,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t972 = t382 * t562 + t377 * t563 + (parameters[ZZ6] * t644 - t18 * t655 - t737 * t3);
     const puma560_real_t t973 = PUMA560_C(0.1862884266452062) * (t972 + t37 * t684);
     ddq_by_q[4] = t970 + t543 * t971 + t559 * t973;
-    if (!(ddq_by_q[4] >= PUMA560_C(-1.0e15) && ddq_by_q[4] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t974 = t573 * t967 - t572 * t965 - t575 * t968 + t577 * t969;
     ddq_by_q[10] = t974 + t580 * t971 + t582 * t973;
-    if (!(ddq_by_q[10] >= PUMA560_C(-1.0e15) && ddq_by_q[10] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t975 = t584 * t967 - t583 * t965 - t585 * t968 + t587 * t969;
     ddq_by_q[16] = t975 + t590 * t971 + t592 * t973;
-    if (!(ddq_by_q[16] >= PUMA560_C(-1.0e15) && ddq_by_q[16] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t976 = t594 * t967 - t593 * t965 - t595 * t968 + t597 * t969;
     ddq_by_q[22] = t976 + t600 * t971 + t602 * t973;
-    if (!(ddq_by_q[22] >= PUMA560_C(-1.0e15) && ddq_by_q[22] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t977 = t604 * t967 - t603 * t965 - t605 * t968 + t606 * t969;
     ddq_by_q[28] = t977 + t609 * t971 + t612 * t973;
-    if (!(ddq_by_q[28] >= PUMA560_C(-1.0e15) && ddq_by_q[28] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t978 = t614 * t967 - t613 * t965 - t615 * t968 + t616 * t969;
     ddq_by_q[34] = t978 + t618 * t971 + t620 * t973;
-    if (!(ddq_by_q[34] >= PUMA560_C(-1.0e15) && ddq_by_q[34] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t979 = PUMA560_C(-2.0) * t422 + (t23 * t939 + t25 * t940);
     const puma560_real_t t980 = PUMA560_C(-2.0) * t423 + (t25 * t939 + t24 * t940);
     const puma560_real_t t981 = t16 * t979 + t14 * t980;
@@ -1963,106 +1417,22 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t1005 = PUMA560_C(0.1862884266452062) * (t565 + PUMA560_C(2.0) * (t382 * t18
         - t377 * parameters[ZZ6]));
     ddq_by_dq[4] = t1002 + t1004 * t543 + t1005 * t559;
-    if (!(ddq_by_dq[4] >= PUMA560_C(-1.0e15) && ddq_by_dq[4] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1006 = t999 * t573 - t997 * t572 - t1000 * t575 + t1001 * t577;
     ddq_by_dq[10] = t1006 + t1004 * t580 + t1005 * t582;
-    if (!(ddq_by_dq[10] >= PUMA560_C(-1.0e15) && ddq_by_dq[10] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1007 = t999 * t584 - t997 * t583 - t1000 * t585 + t1001 * t587;
     ddq_by_dq[16] = t1007 + t1004 * t590 + t1005 * t592;
-    if (!(ddq_by_dq[16] >= PUMA560_C(-1.0e15) && ddq_by_dq[16] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1008 = t999 * t594 - t997 * t593 - t1000 * t595 + t1001 * t597;
     ddq_by_dq[22] = t1008 + t1004 * t600 + t1005 * t602;
-    if (!(ddq_by_dq[22] >= PUMA560_C(-1.0e15) && ddq_by_dq[22] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1009 = t999 * t604 - t997 * t603 - t1000 * t605 + t1001 * t606;
     ddq_by_dq[28] = t1009 + t1004 * t609 + t1005 * t612;
-    if (!(ddq_by_dq[28] >= PUMA560_C(-1.0e15) && ddq_by_dq[28] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1010 = t999 * t614 - t997 * t613 - t1000 * t615 + t1001 * t616;
     ddq_by_dq[34] = t1010 + t1004 * t618 + t1005 * t620;
-    if (!(ddq_by_dq[34] >= PUMA560_C(-1.0e15) && ddq_by_dq[34] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t543;
-    if (!(t543 >= PUMA560_C(-1.0e15) && t543 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t580;
-    if (!(t580 >= PUMA560_C(-1.0e15) && t580 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t590;
-    if (!(t590 >= PUMA560_C(-1.0e15) && t590 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t600;
-    if (!(t600 >= PUMA560_C(-1.0e15) && t600 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t609;
-    if (!(t609 >= PUMA560_C(-1.0e15) && t609 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t618;
-    if (!(t618 >= PUMA560_C(-1.0e15) && t618 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1011 = PUMA560_C(2.0) * t380;
     const puma560_real_t t1012 = PUMA560_C(-2.0) * t386;
     const puma560_real_t t1013 = t385 * t1011 + t393 * t1012 + (parameters[XY6] * t648
@@ -2106,58 +1476,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t1046 = PUMA560_C(0.1862884266452062) * (t1019 + (t380 * t560 + t386 * t561
         + t1018));
     ddq_by_q[5] = t1044 + t543 * t1045 + t559 * t1046;
-    if (!(ddq_by_q[5] >= PUMA560_C(-1.0e15) && ddq_by_q[5] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1047 = t573 * t1041 - t572 * t1039 - t575 * t1042 + t577 * t1043;
     ddq_by_q[11] = t1047 + t580 * t1045 + t582 * t1046;
-    if (!(ddq_by_q[11] >= PUMA560_C(-1.0e15) && ddq_by_q[11] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1048 = t584 * t1041 - t583 * t1039 - t585 * t1042 + t587 * t1043;
     ddq_by_q[17] = t1048 + t590 * t1045 + t592 * t1046;
-    if (!(ddq_by_q[17] >= PUMA560_C(-1.0e15) && ddq_by_q[17] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1049 = t594 * t1041 - t593 * t1039 - t595 * t1042 + t597 * t1043;
     ddq_by_q[23] = t1049 + t600 * t1045 + t602 * t1046;
-    if (!(ddq_by_q[23] >= PUMA560_C(-1.0e15) && ddq_by_q[23] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1050 = t604 * t1041 - t603 * t1039 - t605 * t1042 + t606 * t1043;
     ddq_by_q[29] = t1050 + t609 * t1045 + t612 * t1046;
-    if (!(ddq_by_q[29] >= PUMA560_C(-1.0e15) && ddq_by_q[29] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1051 = t614 * t1041 - t613 * t1039 - t615 * t1042 + t616 * t1043;
     ddq_by_q[35] = t1051 + t618 * t1045 + t620 * t1046;
-    if (!(ddq_by_q[35] >= PUMA560_C(-1.0e15) && ddq_by_q[35] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1052 = PUMA560_C(2.0) * t403 + (parameters[XX6] * t1011 + parameters[XY6] * t1012);
     const puma560_real_t t1053 = PUMA560_C(2.0) * t404 + (parameters[XY6] * t1011 + parameters[YY6] * t1012);
     const puma560_real_t t1054 = t2 * t1052 - t1 * t1053;
@@ -2191,106 +1519,22 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t1080 = PUMA560_C(0.19862511694053758) * t1057;
     const puma560_real_t t1081 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
     ddq_by_dq[5] = t1079 + t1080 * t543 + t1081 * t559;
-    if (!(ddq_by_dq[5] >= PUMA560_C(-1.0e15) && ddq_by_dq[5] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1082 = t1076 * t573 - t1074 * t572 - t1077 * t575 + t1078 * t577;
     ddq_by_dq[11] = t1082 + t1080 * t580 + t1081 * t582;
-    if (!(ddq_by_dq[11] >= PUMA560_C(-1.0e15) && ddq_by_dq[11] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1083 = t1076 * t584 - t1074 * t583 - t1077 * t585 + t1078 * t587;
     ddq_by_dq[17] = t1083 + t1080 * t590 + t1081 * t592;
-    if (!(ddq_by_dq[17] >= PUMA560_C(-1.0e15) && ddq_by_dq[17] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1084 = t1076 * t594 - t1074 * t593 - t1077 * t595 + t1078 * t597;
     ddq_by_dq[23] = t1084 + t1080 * t600 + t1081 * t602;
-    if (!(ddq_by_dq[23] >= PUMA560_C(-1.0e15) && ddq_by_dq[23] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1085 = t1076 * t604 - t1074 * t603 - t1077 * t605 + t1078 * t606;
     ddq_by_dq[29] = t1085 + t1080 * t609 + t1081 * t612;
-    if (!(ddq_by_dq[29] >= PUMA560_C(-1.0e15) && ddq_by_dq[29] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t1086 = t1076 * t614 - t1074 * t613 - t1077 * t615 + t1078 * t616;
     ddq_by_dq[35] = t1086 + t1080 * t618 + t1081 * t620;
-    if (!(ddq_by_dq[35] >= PUMA560_C(-1.0e15) && ddq_by_dq[35] <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t559;
-    if (!(t559 >= PUMA560_C(-1.0e15) && t559 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t582;
-    if (!(t582 >= PUMA560_C(-1.0e15) && t582 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t592;
-    if (!(t592 >= PUMA560_C(-1.0e15) && t592 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t602;
-    if (!(t602 >= PUMA560_C(-1.0e15) && t602 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t612;
-    if (!(t612 >= PUMA560_C(-1.0e15) && t612 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t620;
-    if (!(t620 >= PUMA560_C(-1.0e15) && t620 <= PUMA560_C(1.0e15))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = PUMA560_C(0.0);
     ddq_by_q[6] = PUMA560_C(0.0);
@@ -2298,5 +1542,15 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
+    if (!puma560_within_joints(ddq, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_q, 36, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_dq, 36, PUMA560_C(1.0e30))
+        || !puma560_within(ddq_by_input, 36, PUMA560_C(1.0e30))) {
+        puma560_zero(ddq, 6);
+        puma560_zero(ddq_by_q, 36);
+        puma560_zero(ddq_by_dq, 36);
+        puma560_zero(ddq_by_input, 36);
+        return PUMA560_STATUS_PIVOT;
+    }
     return PUMA560_STATUS_OK;
 }

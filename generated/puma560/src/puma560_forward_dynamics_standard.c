@@ -107,7 +107,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xE4917E55UL
+#if PUMA560_GENERATION != 0xFE2532ABUL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -565,38 +565,18 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t329 = PUMA560_C(-1.0) / t154;
     const puma560_real_t t330 = t328 * t329;
     out[0] = t330;
-    if (!(t330 >= PUMA560_C(-1.0e15) && t330 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t331 = t327 * t152 - t153 * t330;
     out[1] = t331;
-    if (!(t331 >= PUMA560_C(-1.0e15) && t331 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t332 = t148 * t330 - t322 * t91 - t92 * t331;
     out[2] = t332;
-    if (!(t332 >= PUMA560_C(-1.0e15) && t332 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t333 = t58 * t332 - (t315 * t57 - t140 * t330 + t93 * t331);
     out[3] = t333;
-    if (!(t333 >= PUMA560_C(-1.0e15) && t333 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t334 = t311 * t21 - t133 * t330 + t94 * t331 - t59 * t332;
     const puma560_real_t t335 = t22 * t333 - t334;
     out[4] = t335;
-    if (!(t335 >= PUMA560_C(-1.0e15) && t335 <= PUMA560_C(1.0e15))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
     const puma560_real_t t336 = t308 * t4 - t125 * t330 + t95 * t331 - t60 * t332;
     out[5] = t336 + t30 * t333 + t5 * t335;
-    if (!(out[5] >= PUMA560_C(-1.0e15) && out[5] <= PUMA560_C(1.0e15))) {
+    if (!puma560_within_joints(out, PUMA560_C(1.0e30))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

@@ -81,7 +81,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCA5FC14FUL
+#if RX90_GENERATION != 0x8E90BDAFUL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -464,38 +464,18 @@ int rx90_forward_dynamics(
     const rx90_real_t t277 = RX90_C(1.0) / t125;
     const rx90_real_t t278 = t276 * t277;
     out[0] = t278;
-    if (!(t278 >= RX90_C(-1.0e15) && t278 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t279 = t275 * t123 + t124 * t278;
     out[1] = t279;
-    if (!(t279 >= RX90_C(-1.0e15) && t279 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t280 = t267 * t78 + t119 * t278 + t79 * t279;
     out[2] = t280;
-    if (!(t280 >= RX90_C(-1.0e15) && t280 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t281 = t80 * t279 - (t260 * t54 + t111 * t278) + t55 * t280;
     out[3] = t281;
-    if (!(t281 >= RX90_C(-1.0e15) && t281 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t282 = t256 * t20 + t108 * t278 + t81 * t279 - t64 * t280;
     const rx90_real_t t283 = t282 - t21 * t281;
     out[4] = t283;
-    if (!(t283 >= RX90_C(-1.0e15) && t283 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t284 = t253 * t4 + t103 * t278 + t82 * t279 + t56 * t280;
     out[5] = t28 * t281 - t284 - t5 * t283;
-    if (!(out[5] >= RX90_C(-1.0e15) && out[5] <= RX90_C(1.0e15))) {
+    if (!rx90_within_joints(out, RX90_C(1.0e30))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

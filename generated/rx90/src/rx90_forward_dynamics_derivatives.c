@@ -85,7 +85,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCA5FC14FUL
+#if RX90_GENERATION != 0x8E90BDAFUL
 #error "rx90.h and rx90_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -531,60 +531,18 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t303 = RX90_C(1.0) / t140;
     const rx90_real_t t304 = t302 * t303;
     ddq[0] = t304;
-    if (!(t304 >= RX90_C(-1.0e15) && t304 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t305 = t301 * t138 - t139 * t304;
     ddq[1] = t305;
-    if (!(t305 >= RX90_C(-1.0e15) && t305 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t306 = t293 * t84 - t133 * t304 + t85 * t305;
     ddq[2] = t306;
-    if (!(t306 >= RX90_C(-1.0e15) && t306 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t307 = t286 * t54 + t125 * t304 + t86 * t305 + t55 * t306;
     ddq[3] = t307;
-    if (!(t307 >= RX90_C(-1.0e15) && t307 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t308 = t282 * t20 - t121 * t304 - t87 * t305 - t64 * t306;
     const rx90_real_t t309 = t308 - t21 * t307;
     ddq[4] = t309;
-    if (!(t309 >= RX90_C(-1.0e15) && t309 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t310 = t279 * t4 - t114 * t304 - t88 * t305 - t56 * t306;
     const rx90_real_t t311 = t310 - t28 * t307 + t5 * t309;
     ddq[5] = t311;
-    if (!(t311 >= RX90_C(-1.0e15) && t311 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t312 = t105 * t71 + t102 * t67;
     const rx90_real_t t313 = dq[0] * t312;
     const rx90_real_t t314 = t151 - t34 * t313;
@@ -775,13 +733,6 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t498 = t67 * t493 - t71 * t495 - t497 * t445;
     const rx90_real_t t499 = RX90_C(0.16666666666666666) * (t105 * t496 + t102 * t498);
     ddq_by_dq[0] = t464 + t480 * t469 + t499 * t486;
-    if (!(ddq_by_dq[0] >= RX90_C(-1.0e15) && ddq_by_dq[0] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t500 = RX90_C(30.0) * (t138 + t139 * t428);
     const rx90_real_t t501 = t85 * t138 + t139 * t441;
     const rx90_real_t t502 = RX90_C(30.0) * t501;
@@ -793,13 +744,6 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t508 = t139 * t485 - t138 * t483;
     const rx90_real_t t509 = RX90_C(6.0) * t508;
     ddq_by_dq[6] = t505 + t480 * t507 + t499 * t509;
-    if (!(ddq_by_dq[6] >= RX90_C(-1.0e15) && ddq_by_dq[6] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t510 = RX90_C(30.0) * (t84 + t133 * t441 + t85 * t501);
     const rx90_real_t t511 = t55 * t84 + t133 * t450 + t85 * t503;
     const rx90_real_t t512 = RX90_C(10.0) * t511;
@@ -809,13 +753,6 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t516 = t133 * t485 - t84 * t482 + t85 * t508;
     const rx90_real_t t517 = RX90_C(6.0) * t516;
     ddq_by_dq[12] = t513 + t480 * t515 + t499 * t517;
-    if (!(ddq_by_dq[12] >= RX90_C(-1.0e15) && ddq_by_dq[12] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t518 = RX90_C(-30.0) * t450;
     const rx90_real_t t519 = RX90_C(30.0) * t503;
     const rx90_real_t t520 = RX90_C(30.0) * t511;
@@ -827,13 +764,6 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t526 = t54 * t481 + t125 * t485 - t86 * t508 - t55 * t516;
     const rx90_real_t t527 = RX90_C(-6.0) * t526;
     ddq_by_dq[18] = t523 + t480 * t525 + t499 * t527;
-    if (!(ddq_by_dq[18] >= RX90_C(-1.0e15) && ddq_by_dq[18] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t528 = RX90_C(-30.0) * t468;
     const rx90_real_t t529 = RX90_C(30.0) * t506;
     const rx90_real_t t530 = RX90_C(30.0) * t514;
@@ -844,13 +774,6 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t535 = t534 + t21 * t526;
     const rx90_real_t t536 = RX90_C(6.0) * t535;
     ddq_by_dq[24] = t531 + t480 * t533 + t499 * t536;
-    if (!(ddq_by_dq[24] >= RX90_C(-1.0e15) && ddq_by_dq[24] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t537 = RX90_C(-30.0) * t485;
     const rx90_real_t t538 = RX90_C(30.0) * t508;
     const rx90_real_t t539 = RX90_C(30.0) * t516;
@@ -860,61 +783,12 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t543 = t4 + t114 * t485 - t88 * t508 - t56 * t516;
     const rx90_real_t t544 = RX90_C(6.0) * (t543 + t28 * t526 + t5 * t535);
     ddq_by_dq[30] = t541 + t480 * t542 + t499 * t544;
-    if (!(ddq_by_dq[30] >= RX90_C(-1.0e15) && ddq_by_dq[30] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t427;
-    if (!(t427 >= RX90_C(-1.0e15) && t427 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t429;
-    if (!(t429 >= RX90_C(-1.0e15) && t429 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t442;
-    if (!(t442 >= RX90_C(-1.0e15) && t442 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t518;
-    if (!(t518 >= RX90_C(-1.0e15) && t518 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t528;
-    if (!(t528 >= RX90_C(-1.0e15) && t528 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t537;
-    if (!(t537 >= RX90_C(-1.0e15) && t537 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t545 = t305 + t306;
     const rx90_real_t t546 = t313 * t316;
     const rx90_real_t t547 = t546 + t545;
@@ -1068,58 +942,16 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t673 = t143 * t496 - t142 * t498 + (t73 * t654 + (t111 * t591 + t112 * t651));
     const rx90_real_t t674 = RX90_C(0.16666666666666666) * (t497 * t197 + t72 * t193 + t673);
     ddq_by_q[1] = t670 + t469 * t672 + t486 * t674;
-    if (!(ddq_by_q[1] >= RX90_C(-1.0e15) && ddq_by_q[1] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t675 = t500 * t665 - t429 * t662 + t502 * t667 + t504 * t669;
     ddq_by_q[7] = t675 + t507 * t672 + t509 * t674;
-    if (!(ddq_by_q[7] >= RX90_C(-1.0e15) && ddq_by_q[7] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t676 = t502 * t665 - t442 * t662 + t510 * t667 + t512 * t669;
     ddq_by_q[13] = t676 + t515 * t672 + t517 * t674;
-    if (!(ddq_by_q[13] >= RX90_C(-1.0e15) && ddq_by_q[13] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t677 = t519 * t665 - t518 * t662 + t520 * t667 + t522 * t669;
     ddq_by_q[19] = t677 + t525 * t672 + t527 * t674;
-    if (!(ddq_by_q[19] >= RX90_C(-1.0e15) && ddq_by_q[19] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t678 = t529 * t665 - t528 * t662 + t530 * t667 + t525 * t669;
     ddq_by_q[25] = t678 + t533 * t672 + t536 * t674;
-    if (!(ddq_by_q[25] >= RX90_C(-1.0e15) && ddq_by_q[25] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t679 = t538 * t665 - t537 * t662 + t539 * t667 + t540 * t669;
     ddq_by_q[31] = t679 + t542 * t672 + t544 * t674;
-    if (!(ddq_by_q[31] >= RX90_C(-1.0e15) && ddq_by_q[31] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t680 = t398 - parameters[ZZ3R];
     const rx90_real_t t681 = t316 * t680 - parameters[YZ3] * t147 + (t364 + t430 + t41 * t371);
     const rx90_real_t t682 = parameters[XZ3] * t147 + t313 * t680 + (t32 * t400 - t34 * t401);
@@ -1148,106 +980,22 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t703 = t702 + t497 * t459 + RX90_C(2.0) * (t111 * t143 + t112 * t142);
     const rx90_real_t t704 = RX90_C(0.16666666666666666) * t703;
     ddq_by_dq[1] = t698 + t701 * t469 + t704 * t486;
-    if (!(ddq_by_dq[1] >= RX90_C(-1.0e15) && ddq_by_dq[1] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t705 = t691 * t500 - t688 * t429 + t694 * t502 - t697 * t504;
     ddq_by_dq[7] = t705 + t701 * t507 + t704 * t509;
-    if (!(ddq_by_dq[7] >= RX90_C(-1.0e15) && ddq_by_dq[7] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t706 = t691 * t502 - t688 * t442 + t694 * t510 - t697 * t512;
     ddq_by_dq[13] = t706 + t701 * t515 + t704 * t517;
-    if (!(ddq_by_dq[13] >= RX90_C(-1.0e15) && ddq_by_dq[13] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t707 = t691 * t519 - t688 * t518 + t694 * t520 - t697 * t522;
     ddq_by_dq[19] = t707 + t701 * t525 + t704 * t527;
-    if (!(ddq_by_dq[19] >= RX90_C(-1.0e15) && ddq_by_dq[19] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t708 = t691 * t529 - t688 * t528 + t694 * t530 - t697 * t525;
     ddq_by_dq[25] = t708 + t701 * t533 + t704 * t536;
-    if (!(ddq_by_dq[25] >= RX90_C(-1.0e15) && ddq_by_dq[25] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t709 = t691 * t538 - t688 * t537 + t694 * t539 - t697 * t540;
     ddq_by_dq[31] = t709 + t701 * t542 + t704 * t544;
-    if (!(ddq_by_dq[31] >= RX90_C(-1.0e15) && ddq_by_dq[31] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t429;
-    if (!(t429 >= RX90_C(-1.0e15) && t429 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t500;
-    if (!(t500 >= RX90_C(-1.0e15) && t500 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t502;
-    if (!(t502 >= RX90_C(-1.0e15) && t502 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t519;
-    if (!(t519 >= RX90_C(-1.0e15) && t519 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t529;
-    if (!(t529 >= RX90_C(-1.0e15) && t529 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t538;
-    if (!(t538 >= RX90_C(-1.0e15) && t538 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t710 = t26 * t548;
     const rx90_real_t t711 = t597 + t644;
     const rx90_real_t t712 = RX90_C(2.0) * t316;
@@ -1280,58 +1028,16 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t736 = t313 * t495 - t316 * t493 + (t47 * t711 + (t110 * t558 + t18 * t548));
     const rx90_real_t t737 = RX90_C(0.16666666666666666) * (t736 + (t46 * t596 + t70 * t589));
     ddq_by_q[2] = t733 + t469 * t735 + t486 * t737;
-    if (!(ddq_by_q[2] >= RX90_C(-1.0e15) && ddq_by_q[2] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t738 = t500 * t729 - t429 * t721 + t502 * t730 - t504 * t732;
     ddq_by_q[8] = t738 + t507 * t735 + t509 * t737;
-    if (!(ddq_by_q[8] >= RX90_C(-1.0e15) && ddq_by_q[8] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t739 = t502 * t729 - t442 * t721 + t510 * t730 - t512 * t732;
     ddq_by_q[14] = t739 + t515 * t735 + t517 * t737;
-    if (!(ddq_by_q[14] >= RX90_C(-1.0e15) && ddq_by_q[14] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t740 = t519 * t729 - t518 * t721 + t520 * t730 - t522 * t732;
     ddq_by_q[20] = t740 + t525 * t735 + t527 * t737;
-    if (!(ddq_by_q[20] >= RX90_C(-1.0e15) && ddq_by_q[20] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t741 = t529 * t729 - t528 * t721 + t530 * t730 - t525 * t732;
     ddq_by_q[26] = t741 + t533 * t735 + t536 * t737;
-    if (!(ddq_by_q[26] >= RX90_C(-1.0e15) && ddq_by_q[26] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t742 = t538 * t729 - t537 * t721 + t539 * t730 - t540 * t732;
     ddq_by_q[32] = t742 + t542 * t735 + t544 * t737;
-    if (!(ddq_by_q[32] >= RX90_C(-1.0e15) && ddq_by_q[32] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t743 = RX90_C(2.0) * t681 + (t97 * t713 - t94 * t712);
     const rx90_real_t t744 = RX90_C(2.0) * t682 - (t26 * t713 - t97 * t712);
     const rx90_real_t t745 = t67 * t743 + t71 * t744 + RX90_C(0.45) * (t80 * t712 - t79 * t713);
@@ -1348,106 +1054,22 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t755 = RX90_C(0.1) * (t699 + RX90_C(2.0) * (t117 * t316 + t16 * t313));
     const rx90_real_t t756 = RX90_C(0.16666666666666666) * (t702 + RX90_C(2.0) * (t110 * t316 + t18 * t313));
     ddq_by_dq[2] = t754 + t755 * t469 + t756 * t486;
-    if (!(ddq_by_dq[2] >= RX90_C(-1.0e15) && ddq_by_dq[2] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t757 = t750 * t500 - t747 * t429 + t752 * t502 - t753 * t504;
     ddq_by_dq[8] = t757 + t755 * t507 + t756 * t509;
-    if (!(ddq_by_dq[8] >= RX90_C(-1.0e15) && ddq_by_dq[8] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t758 = t750 * t502 - t747 * t442 + t752 * t510 - t753 * t512;
     ddq_by_dq[14] = t758 + t755 * t515 + t756 * t517;
-    if (!(ddq_by_dq[14] >= RX90_C(-1.0e15) && ddq_by_dq[14] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t759 = t750 * t519 - t747 * t518 + t752 * t520 - t753 * t522;
     ddq_by_dq[20] = t759 + t755 * t525 + t756 * t527;
-    if (!(ddq_by_dq[20] >= RX90_C(-1.0e15) && ddq_by_dq[20] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t760 = t750 * t529 - t747 * t528 + t752 * t530 - t753 * t525;
     ddq_by_dq[26] = t760 + t755 * t533 + t756 * t536;
-    if (!(ddq_by_dq[26] >= RX90_C(-1.0e15) && ddq_by_dq[26] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t761 = t750 * t538 - t747 * t537 + t752 * t539 - t753 * t540;
     ddq_by_dq[32] = t761 + t755 * t542 + t756 * t544;
-    if (!(ddq_by_dq[32] >= RX90_C(-1.0e15) && ddq_by_dq[32] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t442;
-    if (!(t442 >= RX90_C(-1.0e15) && t442 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t502;
-    if (!(t502 >= RX90_C(-1.0e15) && t502 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t510;
-    if (!(t510 >= RX90_C(-1.0e15) && t510 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t520;
-    if (!(t520 >= RX90_C(-1.0e15) && t520 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t530;
-    if (!(t530 >= RX90_C(-1.0e15) && t530 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t539;
-    if (!(t539 >= RX90_C(-1.0e15) && t539 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t762 = t49 * t612;
     const rx90_real_t t763 = t8 * t564;
     const rx90_real_t t764 = t630 + t625;
@@ -1478,58 +1100,16 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t789 = t319 * t491 - t314 * t492 + (t18 * t764 + (t44 * t552 - t3 * t564));
     const rx90_real_t t790 = RX90_C(0.16666666666666666) * (t789 + (t45 * t612 + t37 * t595));
     ddq_by_q[3] = t786 + t469 * t788 + t486 * t790;
-    if (!(ddq_by_q[3] >= RX90_C(-1.0e15) && ddq_by_q[3] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t791 = t500 * t783 - t429 * t779 + t502 * t784 + t504 * t785;
     ddq_by_q[9] = t791 + t507 * t788 + t509 * t790;
-    if (!(ddq_by_q[9] >= RX90_C(-1.0e15) && ddq_by_q[9] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t792 = t502 * t783 - t442 * t779 + t510 * t784 + t512 * t785;
     ddq_by_q[15] = t792 + t515 * t788 + t517 * t790;
-    if (!(ddq_by_q[15] >= RX90_C(-1.0e15) && ddq_by_q[15] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t793 = t519 * t783 - t518 * t779 + t520 * t784 + t522 * t785;
     ddq_by_q[21] = t793 + t525 * t788 + t527 * t790;
-    if (!(ddq_by_q[21] >= RX90_C(-1.0e15) && ddq_by_q[21] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t794 = t529 * t783 - t528 * t779 + t530 * t784 + t525 * t785;
     ddq_by_q[27] = t794 + t533 * t788 + t536 * t790;
-    if (!(ddq_by_q[27] >= RX90_C(-1.0e15) && ddq_by_q[27] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t795 = t538 * t783 - t537 * t779 + t539 * t784 + t540 * t785;
     ddq_by_q[33] = t795 + t542 * t788 + t544 * t790;
-    if (!(ddq_by_q[33] >= RX90_C(-1.0e15) && ddq_by_q[33] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t796 = RX90_C(-2.0) * t391 + (t57 * t765 + t58 * t766);
     const rx90_real_t t797 = RX90_C(2.0) * t392 - (t58 * t765 - t8 * t766);
     const rx90_real_t t798 = RX90_C(2.0) * t395 - t49 * t766;
@@ -1550,106 +1130,22 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t813 = RX90_C(0.1) * (t475 + RX90_C(2.0) * (t48 * t319 + t8 * t314));
     const rx90_real_t t814 = RX90_C(0.16666666666666666) * (t494 + RX90_C(2.0) * (t44 * t319 - t3 * t314));
     ddq_by_dq[3] = t812 + t813 * t469 + t814 * t486;
-    if (!(ddq_by_dq[3] >= RX90_C(-1.0e15) && ddq_by_dq[3] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t815 = t808 * t500 - t804 * t429 + t809 * t502 - t811 * t504;
     ddq_by_dq[9] = t815 + t813 * t507 + t814 * t509;
-    if (!(ddq_by_dq[9] >= RX90_C(-1.0e15) && ddq_by_dq[9] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t816 = t808 * t502 - t804 * t442 + t809 * t510 - t811 * t512;
     ddq_by_dq[15] = t816 + t813 * t515 + t814 * t517;
-    if (!(ddq_by_dq[15] >= RX90_C(-1.0e15) && ddq_by_dq[15] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t817 = t808 * t519 - t804 * t518 + t809 * t520 - t811 * t522;
     ddq_by_dq[21] = t817 + t813 * t525 + t814 * t527;
-    if (!(ddq_by_dq[21] >= RX90_C(-1.0e15) && ddq_by_dq[21] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t818 = t808 * t529 - t804 * t528 + t809 * t530 - t811 * t525;
     ddq_by_dq[27] = t818 + t813 * t533 + t814 * t536;
-    if (!(ddq_by_dq[27] >= RX90_C(-1.0e15) && ddq_by_dq[27] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t819 = t808 * t538 - t804 * t537 + t809 * t539 - t811 * t540;
     ddq_by_dq[33] = t819 + t813 * t542 + t814 * t544;
-    if (!(ddq_by_dq[33] >= RX90_C(-1.0e15) && ddq_by_dq[33] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t451;
-    if (!(t451 >= RX90_C(-1.0e15) && t451 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t504;
-    if (!(t504 >= RX90_C(-1.0e15) && t504 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t512;
-    if (!(t512 >= RX90_C(-1.0e15) && t512 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t522;
-    if (!(t522 >= RX90_C(-1.0e15) && t522 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t525;
-    if (!(t525 >= RX90_C(-1.0e15) && t525 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t540;
-    if (!(t540 >= RX90_C(-1.0e15) && t540 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t820 = t619 + t610;
     const rx90_real_t t821 = RX90_C(-2.0) * t323;
     const rx90_real_t t822 = RX90_C(2.0) * t318;
@@ -1683,58 +1179,16 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t850 = t323 * t489 + t318 * t490 + (t17 * t578 - t825 - t3 * t820);
     const rx90_real_t t851 = RX90_C(0.16666666666666666) * (t850 + t827);
     ddq_by_q[4] = t848 + t469 * t849 + t486 * t851;
-    if (!(ddq_by_q[4] >= RX90_C(-1.0e15) && ddq_by_q[4] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t852 = t500 * t845 - t429 * t841 + t502 * t846 - t504 * t847;
     ddq_by_q[10] = t852 + t507 * t849 + t509 * t851;
-    if (!(ddq_by_q[10] >= RX90_C(-1.0e15) && ddq_by_q[10] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t853 = t502 * t845 - t442 * t841 + t510 * t846 - t512 * t847;
     ddq_by_q[16] = t853 + t515 * t849 + t517 * t851;
-    if (!(ddq_by_q[16] >= RX90_C(-1.0e15) && ddq_by_q[16] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t854 = t519 * t845 - t518 * t841 + t520 * t846 - t522 * t847;
     ddq_by_q[22] = t854 + t525 * t849 + t527 * t851;
-    if (!(ddq_by_q[22] >= RX90_C(-1.0e15) && ddq_by_q[22] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t855 = t529 * t845 - t528 * t841 + t530 * t846 - t525 * t847;
     ddq_by_q[28] = t855 + t533 * t849 + t536 * t851;
-    if (!(ddq_by_q[28] >= RX90_C(-1.0e15) && ddq_by_q[28] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t856 = t538 * t845 - t537 * t841 + t539 * t846 - t540 * t847;
     ddq_by_q[34] = t856 + t542 * t849 + t544 * t851;
-    if (!(ddq_by_q[34] >= RX90_C(-1.0e15) && ddq_by_q[34] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t857 = RX90_C(2.0) * t361 + (t23 * t822 - t22 * t821);
     const rx90_real_t t858 = RX90_C(-2.0) * t362 + (t23 * t821 - parameters[ZZ6] * t822);
     const rx90_real_t t859 = t15 * t857 + t13 * t858;
@@ -1760,106 +1214,22 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t879 = RX90_C(0.16666666666666666) * (t492 + RX90_C(-2.0) * (t17 * t323
         + parameters[ZZ6] * t318));
     ddq_by_dq[4] = t876 + t878 * t469 + t879 * t486;
-    if (!(ddq_by_dq[4] >= RX90_C(-1.0e15) && ddq_by_dq[4] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t880 = t873 * t500 - t869 * t429 + t874 * t502 - t875 * t504;
     ddq_by_dq[10] = t880 + t878 * t507 + t879 * t509;
-    if (!(ddq_by_dq[10] >= RX90_C(-1.0e15) && ddq_by_dq[10] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t881 = t873 * t502 - t869 * t442 + t874 * t510 - t875 * t512;
     ddq_by_dq[16] = t881 + t878 * t515 + t879 * t517;
-    if (!(ddq_by_dq[16] >= RX90_C(-1.0e15) && ddq_by_dq[16] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t882 = t873 * t519 - t869 * t518 + t874 * t520 - t875 * t522;
     ddq_by_dq[22] = t882 + t878 * t525 + t879 * t527;
-    if (!(ddq_by_dq[22] >= RX90_C(-1.0e15) && ddq_by_dq[22] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t883 = t873 * t529 - t869 * t528 + t874 * t530 - t875 * t525;
     ddq_by_dq[28] = t883 + t878 * t533 + t879 * t536;
-    if (!(ddq_by_dq[28] >= RX90_C(-1.0e15) && ddq_by_dq[28] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t884 = t873 * t538 - t869 * t537 + t874 * t539 - t875 * t540;
     ddq_by_dq[34] = t884 + t878 * t542 + t879 * t544;
-    if (!(ddq_by_dq[34] >= RX90_C(-1.0e15) && ddq_by_dq[34] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t469;
-    if (!(t469 >= RX90_C(-1.0e15) && t469 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t507;
-    if (!(t507 >= RX90_C(-1.0e15) && t507 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t515;
-    if (!(t515 >= RX90_C(-1.0e15) && t515 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t525;
-    if (!(t525 >= RX90_C(-1.0e15) && t525 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t533;
-    if (!(t533 >= RX90_C(-1.0e15) && t533 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t542;
-    if (!(t542 >= RX90_C(-1.0e15) && t542 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t885 = t604 + t585;
     const rx90_real_t t886 = RX90_C(2.0) * t321;
     const rx90_real_t t887 = RX90_C(2.0) * t327;
@@ -1895,58 +1265,16 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t916 = RX90_C(0.1) * t897;
     const rx90_real_t t917 = RX90_C(0.16666666666666666) * (t894 + (t321 * t487 - t327 * t488 + t893));
     ddq_by_q[5] = t915 + t469 * t916 + t486 * t917;
-    if (!(ddq_by_q[5] >= RX90_C(-1.0e15) && ddq_by_q[5] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t918 = t500 * t912 - t429 * t908 + t502 * t913 - t504 * t914;
     ddq_by_q[11] = t918 + t507 * t916 + t509 * t917;
-    if (!(ddq_by_q[11] >= RX90_C(-1.0e15) && ddq_by_q[11] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t919 = t502 * t912 - t442 * t908 + t510 * t913 - t512 * t914;
     ddq_by_q[17] = t919 + t515 * t916 + t517 * t917;
-    if (!(ddq_by_q[17] >= RX90_C(-1.0e15) && ddq_by_q[17] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t920 = t519 * t912 - t518 * t908 + t520 * t913 - t522 * t914;
     ddq_by_q[23] = t920 + t525 * t916 + t527 * t917;
-    if (!(ddq_by_q[23] >= RX90_C(-1.0e15) && ddq_by_q[23] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t921 = t529 * t912 - t528 * t908 + t530 * t913 - t525 * t914;
     ddq_by_q[29] = t921 + t533 * t916 + t536 * t917;
-    if (!(ddq_by_q[29] >= RX90_C(-1.0e15) && ddq_by_q[29] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t922 = t538 * t912 - t537 * t908 + t539 * t913 - t540 * t914;
     ddq_by_q[35] = t922 + t542 * t916 + t544 * t917;
-    if (!(ddq_by_q[35] >= RX90_C(-1.0e15) && ddq_by_q[35] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t923 = RX90_C(2.0) * t343 + (parameters[XX6R] * t886 + parameters[XY6] * t887);
     const rx90_real_t t924 = RX90_C(2.0) * t344 + parameters[XY6] * t886;
     const rx90_real_t t925 = t2 * t923 - t1 * t924;
@@ -1974,106 +1302,22 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t947 = RX90_C(0.1) * t928;
     const rx90_real_t t948 = RX90_C(-150.0) * parameters[FV6];
     ddq_by_dq[5] = t946 + t947 * t469 + t948 * t486;
-    if (!(ddq_by_dq[5] >= RX90_C(-1.0e15) && ddq_by_dq[5] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t949 = t943 * t500 - t939 * t429 + t944 * t502 - t945 * t504;
     ddq_by_dq[11] = t949 + t947 * t507 + t948 * t509;
-    if (!(ddq_by_dq[11] >= RX90_C(-1.0e15) && ddq_by_dq[11] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t950 = t943 * t502 - t939 * t442 + t944 * t510 - t945 * t512;
     ddq_by_dq[17] = t950 + t947 * t515 + t948 * t517;
-    if (!(ddq_by_dq[17] >= RX90_C(-1.0e15) && ddq_by_dq[17] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t951 = t943 * t519 - t939 * t518 + t944 * t520 - t945 * t522;
     ddq_by_dq[23] = t951 + t947 * t525 + t948 * t527;
-    if (!(ddq_by_dq[23] >= RX90_C(-1.0e15) && ddq_by_dq[23] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t952 = t943 * t529 - t939 * t528 + t944 * t530 - t945 * t525;
     ddq_by_dq[29] = t952 + t947 * t533 + t948 * t536;
-    if (!(ddq_by_dq[29] >= RX90_C(-1.0e15) && ddq_by_dq[29] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t953 = t943 * t538 - t939 * t537 + t944 * t539 - t945 * t540;
     ddq_by_dq[35] = t953 + t947 * t542 + t948 * t544;
-    if (!(ddq_by_dq[35] >= RX90_C(-1.0e15) && ddq_by_dq[35] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t486;
-    if (!(t486 >= RX90_C(-1.0e15) && t486 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t509;
-    if (!(t509 >= RX90_C(-1.0e15) && t509 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t517;
-    if (!(t517 >= RX90_C(-1.0e15) && t517 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t527;
-    if (!(t527 >= RX90_C(-1.0e15) && t527 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t536;
-    if (!(t536 >= RX90_C(-1.0e15) && t536 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t544;
-    if (!(t544 >= RX90_C(-1.0e15) && t544 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = RX90_C(0.0);
     ddq_by_q[6] = RX90_C(0.0);
@@ -2081,5 +1325,15 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
+    if (!rx90_within_joints(ddq, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_q, 36, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_dq, 36, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_input, 36, RX90_C(1.0e30))) {
+        rx90_zero(ddq, 6);
+        rx90_zero(ddq_by_q, 36);
+        rx90_zero(ddq_by_dq, 36);
+        rx90_zero(ddq_by_input, 36);
+        return RX90_STATUS_PIVOT;
+    }
     return RX90_STATUS_OK;
 }

@@ -111,7 +111,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCA5FC14FUL
+#if RX90_GENERATION != 0x8E90BDAFUL
 #error "rx90.h and rx90_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -613,60 +613,18 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t345 = RX90_C(1.0) / t154;
     const rx90_real_t t346 = t344 * t345;
     ddq[0] = t346;
-    if (!(t346 >= RX90_C(-1.0e15) && t346 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t347 = t343 * t152 - t153 * t346;
     ddq[1] = t347;
-    if (!(t347 >= RX90_C(-1.0e15) && t347 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t348 = t333 * t93 - t146 * t346 + t94 * t347;
     ddq[2] = t348;
-    if (!(t348 >= RX90_C(-1.0e15) && t348 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t349 = t326 * t57 + t138 * t346 + t95 * t347 + t58 * t348;
     ddq[3] = t349;
-    if (!(t349 >= RX90_C(-1.0e15) && t349 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t350 = t322 * t21 - t134 * t346 - t96 * t347 - t72 * t348;
     const rx90_real_t t351 = t350 - t22 * t349;
     ddq[4] = t351;
-    if (!(t351 >= RX90_C(-1.0e15) && t351 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t352 = t319 * t4 - t127 * t346 - t97 * t347 - t59 * t348;
     const rx90_real_t t353 = t352 - t30 * t349 + t5 * t351;
     ddq[5] = t353;
-    if (!(t353 >= RX90_C(-1.0e15) && t353 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t354 = t118 * t79 + t115 * t75;
     const rx90_real_t t355 = dq[0] * t354;
     const rx90_real_t t356 = t36 * t355 - t165;
@@ -863,13 +821,6 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t546 = t75 * t541 + t79 * t543 + t545 * t493;
     const rx90_real_t t547 = RX90_C(0.16666666666666666) * (t118 * t544 - t115 * t546);
     ddq_by_dq[0] = t512 + t528 * t517 + t547 * t534;
-    if (!(ddq_by_dq[0] >= RX90_C(-1.0e15) && ddq_by_dq[0] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t548 = RX90_C(30.0) * (t152 + t153 * t476);
     const rx90_real_t t549 = t94 * t152 + t153 * t489;
     const rx90_real_t t550 = RX90_C(30.0) * t549;
@@ -881,13 +832,6 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t556 = t153 * t533 - t152 * t531;
     const rx90_real_t t557 = RX90_C(6.0) * t556;
     ddq_by_dq[6] = t553 + t528 * t555 + t547 * t557;
-    if (!(ddq_by_dq[6] >= RX90_C(-1.0e15) && ddq_by_dq[6] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t558 = RX90_C(30.0) * (t93 + t146 * t489 + t94 * t549);
     const rx90_real_t t559 = t58 * t93 + t146 * t498 + t94 * t551;
     const rx90_real_t t560 = RX90_C(10.0) * t559;
@@ -897,13 +841,6 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t564 = t146 * t533 - t93 * t530 + t94 * t556;
     const rx90_real_t t565 = RX90_C(6.0) * t564;
     ddq_by_dq[12] = t561 + t528 * t563 + t547 * t565;
-    if (!(ddq_by_dq[12] >= RX90_C(-1.0e15) && ddq_by_dq[12] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t566 = RX90_C(-30.0) * t498;
     const rx90_real_t t567 = RX90_C(30.0) * t551;
     const rx90_real_t t568 = RX90_C(30.0) * t559;
@@ -915,13 +852,6 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t574 = t57 * t529 + t138 * t533 - t95 * t556 - t58 * t564;
     const rx90_real_t t575 = RX90_C(-6.0) * t574;
     ddq_by_dq[18] = t571 + t528 * t573 + t547 * t575;
-    if (!(ddq_by_dq[18] >= RX90_C(-1.0e15) && ddq_by_dq[18] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t576 = RX90_C(-30.0) * t516;
     const rx90_real_t t577 = RX90_C(30.0) * t554;
     const rx90_real_t t578 = RX90_C(30.0) * t562;
@@ -932,13 +862,6 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t583 = t582 + t22 * t574;
     const rx90_real_t t584 = RX90_C(6.0) * t583;
     ddq_by_dq[24] = t579 + t528 * t581 + t547 * t584;
-    if (!(ddq_by_dq[24] >= RX90_C(-1.0e15) && ddq_by_dq[24] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t585 = RX90_C(-30.0) * t533;
     const rx90_real_t t586 = RX90_C(30.0) * t556;
     const rx90_real_t t587 = RX90_C(30.0) * t564;
@@ -948,61 +871,12 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t591 = t4 + t127 * t533 - t97 * t556 - t59 * t564;
     const rx90_real_t t592 = RX90_C(6.0) * (t591 + t30 * t574 + t5 * t583);
     ddq_by_dq[30] = t589 + t528 * t590 + t547 * t592;
-    if (!(ddq_by_dq[30] >= RX90_C(-1.0e15) && ddq_by_dq[30] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t475;
-    if (!(t475 >= RX90_C(-1.0e15) && t475 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t477;
-    if (!(t477 >= RX90_C(-1.0e15) && t477 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t490;
-    if (!(t490 >= RX90_C(-1.0e15) && t490 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t566;
-    if (!(t566 >= RX90_C(-1.0e15) && t566 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t576;
-    if (!(t576 >= RX90_C(-1.0e15) && t576 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t585;
-    if (!(t585 >= RX90_C(-1.0e15) && t585 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t593 = t347 + t348;
     const rx90_real_t t594 = t355 * t358;
     const rx90_real_t t595 = t594 + t593;
@@ -1187,58 +1061,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t746 = t157 * t544 + t156 * t546 + (t725 * t81 + (t124 * t640 + t125 * t722));
     const rx90_real_t t747 = RX90_C(0.16666666666666666) * (t213 * t545 + t209 * t80 + t746);
     ddq_by_q[1] = t743 + t517 * t745 + t534 * t747;
-    if (!(ddq_by_q[1] >= RX90_C(-1.0e15) && ddq_by_q[1] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t748 = t548 * t738 - t477 * t735 + t550 * t740 + t552 * t742;
     ddq_by_q[7] = t748 + t555 * t745 + t557 * t747;
-    if (!(ddq_by_q[7] >= RX90_C(-1.0e15) && ddq_by_q[7] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t749 = t550 * t738 - t490 * t735 + t558 * t740 + t560 * t742;
     ddq_by_q[13] = t749 + t563 * t745 + t565 * t747;
-    if (!(ddq_by_q[13] >= RX90_C(-1.0e15) && ddq_by_q[13] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t750 = t567 * t738 - t566 * t735 + t568 * t740 + t570 * t742;
     ddq_by_q[19] = t750 + t573 * t745 + t575 * t747;
-    if (!(ddq_by_q[19] >= RX90_C(-1.0e15) && ddq_by_q[19] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t751 = t577 * t738 - t576 * t735 + t578 * t740 + t573 * t742;
     ddq_by_q[25] = t751 + t581 * t745 + t584 * t747;
-    if (!(ddq_by_q[25] >= RX90_C(-1.0e15) && ddq_by_q[25] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t752 = t586 * t738 - t585 * t735 + t587 * t740 + t588 * t742;
     ddq_by_q[31] = t752 + t590 * t745 + t592 * t747;
-    if (!(ddq_by_q[31] >= RX90_C(-1.0e15) && ddq_by_q[31] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t753 = t443 - parameters[ZZ3];
     const rx90_real_t t754 = t358 * t753 - t161 * parameters[YZ3] + (t409 + t478 + t45 * t416);
     const rx90_real_t t755 = t161 * parameters[XZ3] + t355 * t753 - (t34 * t446 + t36 * t447);
@@ -1267,106 +1099,22 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t776 = t775 + t545 * t507 + RX90_C(2.0) * (t157 * t124 + t156 * t125);
     const rx90_real_t t777 = RX90_C(0.16666666666666666) * t776;
     ddq_by_dq[1] = t771 + t774 * t517 + t777 * t534;
-    if (!(ddq_by_dq[1] >= RX90_C(-1.0e15) && ddq_by_dq[1] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t778 = t764 * t548 - t761 * t477 + t767 * t550 + t770 * t552;
     ddq_by_dq[7] = t778 + t774 * t555 + t777 * t557;
-    if (!(ddq_by_dq[7] >= RX90_C(-1.0e15) && ddq_by_dq[7] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t779 = t764 * t550 - t761 * t490 + t767 * t558 + t770 * t560;
     ddq_by_dq[13] = t779 + t774 * t563 + t777 * t565;
-    if (!(ddq_by_dq[13] >= RX90_C(-1.0e15) && ddq_by_dq[13] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t780 = t764 * t567 - t761 * t566 + t767 * t568 + t770 * t570;
     ddq_by_dq[19] = t780 + t774 * t573 + t777 * t575;
-    if (!(ddq_by_dq[19] >= RX90_C(-1.0e15) && ddq_by_dq[19] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t781 = t764 * t577 - t761 * t576 + t767 * t578 + t770 * t573;
     ddq_by_dq[25] = t781 + t774 * t581 + t777 * t584;
-    if (!(ddq_by_dq[25] >= RX90_C(-1.0e15) && ddq_by_dq[25] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t782 = t764 * t586 - t761 * t585 + t767 * t587 + t770 * t588;
     ddq_by_dq[31] = t782 + t774 * t590 + t777 * t592;
-    if (!(ddq_by_dq[31] >= RX90_C(-1.0e15) && ddq_by_dq[31] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t477;
-    if (!(t477 >= RX90_C(-1.0e15) && t477 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t548;
-    if (!(t548 >= RX90_C(-1.0e15) && t548 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t550;
-    if (!(t550 >= RX90_C(-1.0e15) && t550 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t567;
-    if (!(t567 >= RX90_C(-1.0e15) && t567 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t577;
-    if (!(t577 >= RX90_C(-1.0e15) && t577 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t586;
-    if (!(t586 >= RX90_C(-1.0e15) && t586 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t783 = RX90_C(2.0) * t358;
     const rx90_real_t t784 = RX90_C(2.0) * t355;
     const rx90_real_t t785 = t449 * t783 + t433 * t784 + (t719 * t141 + (t107 * t596 - t110 * t606));
@@ -1401,58 +1149,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t810 = t358 * t541 + t355 * t543 + (t719 * t50 + (t123 * t606 + t19 * t596));
     const rx90_real_t t811 = RX90_C(0.16666666666666666) * (t810 + (t49 * t646 + t78 * t638));
     ddq_by_q[2] = t807 + t517 * t809 + t534 * t811;
-    if (!(ddq_by_q[2] >= RX90_C(-1.0e15) && ddq_by_q[2] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t812 = t548 * t803 - t477 * t791 + t550 * t804 + t552 * t806;
     ddq_by_q[8] = t812 + t555 * t809 + t557 * t811;
-    if (!(ddq_by_q[8] >= RX90_C(-1.0e15) && ddq_by_q[8] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t813 = t550 * t803 - t490 * t791 + t558 * t804 + t560 * t806;
     ddq_by_q[14] = t813 + t563 * t809 + t565 * t811;
-    if (!(ddq_by_q[14] >= RX90_C(-1.0e15) && ddq_by_q[14] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t814 = t567 * t803 - t566 * t791 + t568 * t804 + t570 * t806;
     ddq_by_q[20] = t814 + t573 * t809 + t575 * t811;
-    if (!(ddq_by_q[20] >= RX90_C(-1.0e15) && ddq_by_q[20] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t815 = t577 * t803 - t576 * t791 + t578 * t804 + t573 * t806;
     ddq_by_q[26] = t815 + t581 * t809 + t584 * t811;
-    if (!(ddq_by_q[26] >= RX90_C(-1.0e15) && ddq_by_q[26] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t816 = t586 * t803 - t585 * t791 + t587 * t804 + t588 * t806;
     ddq_by_q[32] = t816 + t590 * t809 + t592 * t811;
-    if (!(ddq_by_q[32] >= RX90_C(-1.0e15) && ddq_by_q[32] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t817 = RX90_C(2.0) * t754 + (t110 * t784 - t106 * t783);
     const rx90_real_t t818 = RX90_C(2.0) * t755 - (t107 * t784 - t110 * t783);
     const rx90_real_t t819 = t75 * t817 + t79 * t818 + RX90_C(0.45) * (t89 * t783 - t87 * t784);
@@ -1469,106 +1175,22 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t829 = RX90_C(0.1) * (t772 + RX90_C(2.0) * (t358 * t130 + t355 * t17));
     const rx90_real_t t830 = RX90_C(0.16666666666666666) * (t775 + RX90_C(2.0) * (t358 * t123 + t355 * t19));
     ddq_by_dq[2] = t828 + t829 * t517 + t830 * t534;
-    if (!(ddq_by_dq[2] >= RX90_C(-1.0e15) && ddq_by_dq[2] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t831 = t824 * t548 - t821 * t477 + t826 * t550 + t827 * t552;
     ddq_by_dq[8] = t831 + t829 * t555 + t830 * t557;
-    if (!(ddq_by_dq[8] >= RX90_C(-1.0e15) && ddq_by_dq[8] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t832 = t824 * t550 - t821 * t490 + t826 * t558 + t827 * t560;
     ddq_by_dq[14] = t832 + t829 * t563 + t830 * t565;
-    if (!(ddq_by_dq[14] >= RX90_C(-1.0e15) && ddq_by_dq[14] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t833 = t824 * t567 - t821 * t566 + t826 * t568 + t827 * t570;
     ddq_by_dq[20] = t833 + t829 * t573 + t830 * t575;
-    if (!(ddq_by_dq[20] >= RX90_C(-1.0e15) && ddq_by_dq[20] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t834 = t824 * t577 - t821 * t576 + t826 * t578 + t827 * t573;
     ddq_by_dq[26] = t834 + t829 * t581 + t830 * t584;
-    if (!(ddq_by_dq[26] >= RX90_C(-1.0e15) && ddq_by_dq[26] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t835 = t824 * t586 - t821 * t585 + t826 * t587 + t827 * t588;
     ddq_by_dq[32] = t835 + t829 * t590 + t830 * t592;
-    if (!(ddq_by_dq[32] >= RX90_C(-1.0e15) && ddq_by_dq[32] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t490;
-    if (!(t490 >= RX90_C(-1.0e15) && t490 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t550;
-    if (!(t550 >= RX90_C(-1.0e15) && t550 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t558;
-    if (!(t558 >= RX90_C(-1.0e15) && t558 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t568;
-    if (!(t568 >= RX90_C(-1.0e15) && t568 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t578;
-    if (!(t578 >= RX90_C(-1.0e15) && t578 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t587;
-    if (!(t587 >= RX90_C(-1.0e15) && t587 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t836 = RX90_C(2.0) * t361;
     const rx90_real_t t837 = RX90_C(2.0) * t356;
     const rx90_real_t t838 = t399 * t836 + t409 * t837 + (t795 * t33 + (t60 * t600 - t62 * t612));
@@ -1598,58 +1220,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t862 = t361 * t539 + t356 * t540 + (t795 * t19 + (t47 * t600 - t3 * t612));
     const rx90_real_t t863 = RX90_C(0.16666666666666666) * (t862 + (t48 * t651 - t40 * t645));
     ddq_by_q[3] = t859 + t517 * t861 + t534 * t863;
-    if (!(ddq_by_q[3] >= RX90_C(-1.0e15) && ddq_by_q[3] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t864 = t548 * t856 - t477 * t852 + t550 * t857 + t552 * t858;
     ddq_by_q[9] = t864 + t555 * t861 + t557 * t863;
-    if (!(ddq_by_q[9] >= RX90_C(-1.0e15) && ddq_by_q[9] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t865 = t550 * t856 - t490 * t852 + t558 * t857 + t560 * t858;
     ddq_by_q[15] = t865 + t563 * t861 + t565 * t863;
-    if (!(ddq_by_q[15] >= RX90_C(-1.0e15) && ddq_by_q[15] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t866 = t567 * t856 - t566 * t852 + t568 * t857 + t570 * t858;
     ddq_by_q[21] = t866 + t573 * t861 + t575 * t863;
-    if (!(ddq_by_q[21] >= RX90_C(-1.0e15) && ddq_by_q[21] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t867 = t577 * t856 - t576 * t852 + t578 * t857 + t573 * t858;
     ddq_by_q[27] = t867 + t581 * t861 + t584 * t863;
-    if (!(ddq_by_q[27] >= RX90_C(-1.0e15) && ddq_by_q[27] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t868 = t586 * t856 - t585 * t852 + t587 * t857 + t588 * t858;
     ddq_by_q[33] = t868 + t590 * t861 + t592 * t863;
-    if (!(ddq_by_q[33] >= RX90_C(-1.0e15) && ddq_by_q[33] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t869 = RX90_C(-2.0) * t436 + (t60 * t836 + t62 * t837);
     const rx90_real_t t870 = RX90_C(2.0) * t437 - (t61 * t837 - t62 * t836);
     const rx90_real_t t871 = RX90_C(2.0) * t440 + t65 * t837;
@@ -1670,106 +1250,22 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t886 = RX90_C(0.1) * (RX90_C(2.0) * (t361 * t51 - t356 * t9) - t523);
     const rx90_real_t t887 = RX90_C(0.16666666666666666) * (RX90_C(2.0) * (t361 * t47 + t356 * t3) - t542);
     ddq_by_dq[3] = t885 + t886 * t517 + t887 * t534;
-    if (!(ddq_by_dq[3] >= RX90_C(-1.0e15) && ddq_by_dq[3] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t888 = t881 * t548 - t877 * t477 + t882 * t550 - t884 * t552;
     ddq_by_dq[9] = t888 + t886 * t555 + t887 * t557;
-    if (!(ddq_by_dq[9] >= RX90_C(-1.0e15) && ddq_by_dq[9] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t889 = t881 * t550 - t877 * t490 + t882 * t558 - t884 * t560;
     ddq_by_dq[15] = t889 + t886 * t563 + t887 * t565;
-    if (!(ddq_by_dq[15] >= RX90_C(-1.0e15) && ddq_by_dq[15] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t890 = t881 * t567 - t877 * t566 + t882 * t568 - t884 * t570;
     ddq_by_dq[21] = t890 + t886 * t573 + t887 * t575;
-    if (!(ddq_by_dq[21] >= RX90_C(-1.0e15) && ddq_by_dq[21] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t891 = t881 * t577 - t877 * t576 + t882 * t578 - t884 * t573;
     ddq_by_dq[27] = t891 + t886 * t581 + t887 * t584;
-    if (!(ddq_by_dq[27] >= RX90_C(-1.0e15) && ddq_by_dq[27] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t892 = t881 * t586 - t877 * t585 + t882 * t587 - t884 * t588;
     ddq_by_dq[33] = t892 + t886 * t590 + t887 * t592;
-    if (!(ddq_by_dq[33] >= RX90_C(-1.0e15) && ddq_by_dq[33] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t499;
-    if (!(t499 >= RX90_C(-1.0e15) && t499 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t552;
-    if (!(t552 >= RX90_C(-1.0e15) && t552 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t560;
-    if (!(t560 >= RX90_C(-1.0e15) && t560 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t570;
-    if (!(t570 >= RX90_C(-1.0e15) && t570 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t573;
-    if (!(t573 >= RX90_C(-1.0e15) && t573 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t588;
-    if (!(t588 >= RX90_C(-1.0e15) && t588 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t893 = RX90_C(2.0) * t365;
     const rx90_real_t t894 = RX90_C(2.0) * t360;
     const rx90_real_t t895 = t394 * t893 + t384 * t894 + (t703 * t15 + (t24 * t616 - t25 * t627));
@@ -1802,58 +1298,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t922 = t365 * t537 - t360 * t538 + (parameters[ZZ6] * t616 - t18 * t627 - t703 * t3);
     const rx90_real_t t923 = RX90_C(0.16666666666666666) * (t922 + t37 * t654);
     ddq_by_q[4] = t920 + t517 * t921 + t534 * t923;
-    if (!(ddq_by_q[4] >= RX90_C(-1.0e15) && ddq_by_q[4] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t924 = t548 * t917 - t477 * t913 + t550 * t918 - t552 * t919;
     ddq_by_q[10] = t924 + t555 * t921 + t557 * t923;
-    if (!(ddq_by_q[10] >= RX90_C(-1.0e15) && ddq_by_q[10] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t925 = t550 * t917 - t490 * t913 + t558 * t918 - t560 * t919;
     ddq_by_q[16] = t925 + t563 * t921 + t565 * t923;
-    if (!(ddq_by_q[16] >= RX90_C(-1.0e15) && ddq_by_q[16] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t926 = t567 * t917 - t566 * t913 + t568 * t918 - t570 * t919;
     ddq_by_q[22] = t926 + t573 * t921 + t575 * t923;
-    if (!(ddq_by_q[22] >= RX90_C(-1.0e15) && ddq_by_q[22] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t927 = t577 * t917 - t576 * t913 + t578 * t918 - t573 * t919;
     ddq_by_q[28] = t927 + t581 * t921 + t584 * t923;
-    if (!(ddq_by_q[28] >= RX90_C(-1.0e15) && ddq_by_q[28] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t928 = t586 * t917 - t585 * t913 + t587 * t918 - t588 * t919;
     ddq_by_q[34] = t928 + t590 * t921 + t592 * t923;
-    if (!(ddq_by_q[34] >= RX90_C(-1.0e15) && ddq_by_q[34] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t929 = RX90_C(2.0) * t405 - (t23 * t893 + t25 * t894);
     const rx90_real_t t930 = RX90_C(2.0) * t406 + (t25 * t893 + t24 * t894);
     const rx90_real_t t931 = t16 * t929 + t14 * t930;
@@ -1879,106 +1333,22 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t951 = RX90_C(0.16666666666666666) * (t540 + RX90_C(2.0) * (t365 * t18
         + t360 * parameters[ZZ6]));
     ddq_by_dq[4] = t948 + t950 * t517 + t951 * t534;
-    if (!(ddq_by_dq[4] >= RX90_C(-1.0e15) && ddq_by_dq[4] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t952 = t945 * t548 - t941 * t477 + t946 * t550 + t947 * t552;
     ddq_by_dq[10] = t952 + t950 * t555 + t951 * t557;
-    if (!(ddq_by_dq[10] >= RX90_C(-1.0e15) && ddq_by_dq[10] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t953 = t945 * t550 - t941 * t490 + t946 * t558 + t947 * t560;
     ddq_by_dq[16] = t953 + t950 * t563 + t951 * t565;
-    if (!(ddq_by_dq[16] >= RX90_C(-1.0e15) && ddq_by_dq[16] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t954 = t945 * t567 - t941 * t566 + t946 * t568 + t947 * t570;
     ddq_by_dq[22] = t954 + t950 * t573 + t951 * t575;
-    if (!(ddq_by_dq[22] >= RX90_C(-1.0e15) && ddq_by_dq[22] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t955 = t945 * t577 - t941 * t576 + t946 * t578 + t947 * t573;
     ddq_by_dq[28] = t955 + t950 * t581 + t951 * t584;
-    if (!(ddq_by_dq[28] >= RX90_C(-1.0e15) && ddq_by_dq[28] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t956 = t945 * t586 - t941 * t585 + t946 * t587 + t947 * t588;
     ddq_by_dq[34] = t956 + t950 * t590 + t951 * t592;
-    if (!(ddq_by_dq[34] >= RX90_C(-1.0e15) && ddq_by_dq[34] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t517;
-    if (!(t517 >= RX90_C(-1.0e15) && t517 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t555;
-    if (!(t555 >= RX90_C(-1.0e15) && t555 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t563;
-    if (!(t563 >= RX90_C(-1.0e15) && t563 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t573;
-    if (!(t573 >= RX90_C(-1.0e15) && t573 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t581;
-    if (!(t581 >= RX90_C(-1.0e15) && t581 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t590;
-    if (!(t590 >= RX90_C(-1.0e15) && t590 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t957 = RX90_C(2.0) * t363;
     const rx90_real_t t958 = RX90_C(2.0) * t369;
     const rx90_real_t t959 = t368 * t957 + t376 * t958 + (parameters[XY6] * t620 - parameters[XX6] * t623
@@ -2014,58 +1384,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t987 = RX90_C(0.1) * t968;
     const rx90_real_t t988 = RX90_C(0.16666666666666666) * (t965 + (t363 * t535 + t369 * t536 + t964));
     ddq_by_q[5] = t986 + t517 * t987 + t534 * t988;
-    if (!(ddq_by_q[5] >= RX90_C(-1.0e15) && ddq_by_q[5] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t989 = t548 * t983 - t477 * t979 + t550 * t984 - t552 * t985;
     ddq_by_q[11] = t989 + t555 * t987 + t557 * t988;
-    if (!(ddq_by_q[11] >= RX90_C(-1.0e15) && ddq_by_q[11] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t990 = t550 * t983 - t490 * t979 + t558 * t984 - t560 * t985;
     ddq_by_q[17] = t990 + t563 * t987 + t565 * t988;
-    if (!(ddq_by_q[17] >= RX90_C(-1.0e15) && ddq_by_q[17] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t991 = t567 * t983 - t566 * t979 + t568 * t984 - t570 * t985;
     ddq_by_q[23] = t991 + t573 * t987 + t575 * t988;
-    if (!(ddq_by_q[23] >= RX90_C(-1.0e15) && ddq_by_q[23] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t992 = t577 * t983 - t576 * t979 + t578 * t984 - t573 * t985;
     ddq_by_q[29] = t992 + t581 * t987 + t584 * t988;
-    if (!(ddq_by_q[29] >= RX90_C(-1.0e15) && ddq_by_q[29] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t993 = t586 * t983 - t585 * t979 + t587 * t984 - t588 * t985;
     ddq_by_q[35] = t993 + t590 * t987 + t592 * t988;
-    if (!(ddq_by_q[35] >= RX90_C(-1.0e15) && ddq_by_q[35] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t994 = RX90_C(-2.0) * t386 - (parameters[XX6] * t957 + parameters[XY6] * t958);
     const rx90_real_t t995 = RX90_C(2.0) * t387 - (parameters[XY6] * t957 + parameters[YY6] * t958);
     const rx90_real_t t996 = t2 * t994 - t1 * t995;
@@ -2093,106 +1421,22 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t1018 = RX90_C(0.1) * t999;
     const rx90_real_t t1019 = RX90_C(-150.0) * parameters[FV6];
     ddq_by_dq[5] = t1017 + t1018 * t517 + t1019 * t534;
-    if (!(ddq_by_dq[5] >= RX90_C(-1.0e15) && ddq_by_dq[5] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t1020 = t1014 * t548 - t1010 * t477 + t1015 * t550 + t1016 * t552;
     ddq_by_dq[11] = t1020 + t1018 * t555 + t1019 * t557;
-    if (!(ddq_by_dq[11] >= RX90_C(-1.0e15) && ddq_by_dq[11] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t1021 = t1014 * t550 - t1010 * t490 + t1015 * t558 + t1016 * t560;
     ddq_by_dq[17] = t1021 + t1018 * t563 + t1019 * t565;
-    if (!(ddq_by_dq[17] >= RX90_C(-1.0e15) && ddq_by_dq[17] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t1022 = t1014 * t567 - t1010 * t566 + t1015 * t568 + t1016 * t570;
     ddq_by_dq[23] = t1022 + t1018 * t573 + t1019 * t575;
-    if (!(ddq_by_dq[23] >= RX90_C(-1.0e15) && ddq_by_dq[23] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t1023 = t1014 * t577 - t1010 * t576 + t1015 * t578 + t1016 * t573;
     ddq_by_dq[29] = t1023 + t1018 * t581 + t1019 * t584;
-    if (!(ddq_by_dq[29] >= RX90_C(-1.0e15) && ddq_by_dq[29] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t1024 = t1014 * t586 - t1010 * t585 + t1015 * t587 + t1016 * t588;
     ddq_by_dq[35] = t1024 + t1018 * t590 + t1019 * t592;
-    if (!(ddq_by_dq[35] >= RX90_C(-1.0e15) && ddq_by_dq[35] <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t534;
-    if (!(t534 >= RX90_C(-1.0e15) && t534 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t557;
-    if (!(t557 >= RX90_C(-1.0e15) && t557 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t565;
-    if (!(t565 >= RX90_C(-1.0e15) && t565 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t575;
-    if (!(t575 >= RX90_C(-1.0e15) && t575 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t584;
-    if (!(t584 >= RX90_C(-1.0e15) && t584 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t592;
-    if (!(t592 >= RX90_C(-1.0e15) && t592 <= RX90_C(1.0e15))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = RX90_C(0.0);
     ddq_by_q[6] = RX90_C(0.0);
@@ -2200,5 +1444,15 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
+    if (!rx90_within_joints(ddq, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_q, 36, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_dq, 36, RX90_C(1.0e30))
+        || !rx90_within(ddq_by_input, 36, RX90_C(1.0e30))) {
+        rx90_zero(ddq, 6);
+        rx90_zero(ddq_by_q, 36);
+        rx90_zero(ddq_by_dq, 36);
+        rx90_zero(ddq_by_input, 36);
+        return RX90_STATUS_PIVOT;
+    }
     return RX90_STATUS_OK;
 }

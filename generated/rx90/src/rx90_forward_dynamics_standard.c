@@ -107,7 +107,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xCA5FC14FUL
+#if RX90_GENERATION != 0x8E90BDAFUL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -533,38 +533,18 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t304 = RX90_C(1.0) / t132;
     const rx90_real_t t305 = t303 * t304;
     out[0] = t305;
-    if (!(t305 >= RX90_C(-1.0e15) && t305 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t306 = t302 * t130 + t131 * t305;
     out[1] = t306;
-    if (!(t306 >= RX90_C(-1.0e15) && t306 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t307 = t292 * t84 + t126 * t305 + t85 * t306;
     out[2] = t307;
-    if (!(t307 >= RX90_C(-1.0e15) && t307 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t308 = t86 * t306 - (t285 * t56 + t118 * t305) + t57 * t307;
     out[3] = t308;
-    if (!(t308 >= RX90_C(-1.0e15) && t308 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t309 = t281 * t21 + t115 * t305 + t87 * t306 - t70 * t307;
     const rx90_real_t t310 = t309 - t22 * t308;
     out[4] = t310;
-    if (!(t310 >= RX90_C(-1.0e15) && t310 <= RX90_C(1.0e15))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
     const rx90_real_t t311 = t278 * t4 + t110 * t305 + t88 * t306 + t58 * t307;
     out[5] = t30 * t308 - t311 - t5 * t310;
-    if (!(out[5] >= RX90_C(-1.0e15) && out[5] <= RX90_C(1.0e15))) {
+    if (!rx90_within_joints(out, RX90_C(1.0e30))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

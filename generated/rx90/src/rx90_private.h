@@ -13,7 +13,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0xCA5FC14FUL
+#if RX90_GENERATION != 0x8E90BDAFUL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 

@@ -8,7 +8,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xB0ECD6C0UL
+#if SCARA_GENERATION != 0xAD5E1746UL
 #error "scara.h and scara_check_parameters.c are of different generations: generate the arm again"
 #endif
 

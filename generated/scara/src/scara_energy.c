@@ -45,7 +45,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xB0ECD6C0UL
+#if SCARA_GENERATION != 0xAD5E1746UL
 #error "scara.h and scara_energy.c are of different generations: generate the arm again"
 #endif
 

@@ -120,7 +120,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xB0ECD6C0UL
+#if SCARA_GENERATION != 0xAD5E1746UL
 #error "scara.h and scara_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -270,44 +270,16 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t66 = SCARA_C(1.0) / t30;
     const scara_real_t t67 = t65 * t66;
     ddq[0] = t67;
-    if (!(t67 >= SCARA_C(-1.0e15) && t67 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t68 = t64 * t24 + t25 * t67;
     ddq[1] = t68;
-    if (!(t68 >= SCARA_C(-1.0e15) && t68 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t69 = scara_sign(dq[2]);
     const scara_real_t
         t70 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
         - t69 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
     const scara_real_t t71 = SCARA_C(1.0) / t1;
     ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t70) * t71;
-    if (!(ddq[2] >= SCARA_C(-1.0e15) && ddq[2] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t72 = t61 * t7 + t26 * t67 + t8 * t68;
     ddq[3] = t72;
-    if (!(t72 >= SCARA_C(-1.0e15) && t72 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t73 = SCARA_C(16.0) * t66;
     const scara_real_t t74 = t40 * parameters[MY4];
     const scara_real_t t75 = t40 * parameters[MX4];
@@ -331,60 +303,18 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t93 = t15 * (SCARA_C(-0.55) * t32);
     const scara_real_t t94 = SCARA_C(0.5) * (t93 - (t18 * t5 - t20 * t15) * t89);
     ddq_by_dq[0] = t85 * t73 + t90 * t87 + t94 * t92;
-    if (!(ddq_by_dq[0] >= SCARA_C(-1.0e15) && ddq_by_dq[0] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t95 = SCARA_C(16.0) * t86;
     const scara_real_t t96 = SCARA_C(10.0) * (t24 + t25 * t86);
     const scara_real_t t97 = t8 * t24 + t25 * t91;
     const scara_real_t t98 = SCARA_C(2.0) * t97;
     ddq_by_dq[4] = t85 * t95 + t90 * t96 + t94 * t98;
-    if (!(ddq_by_dq[4] >= SCARA_C(-1.0e15) && ddq_by_dq[4] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t99 = SCARA_C(16.0) * t91;
     const scara_real_t t100 = SCARA_C(10.0) * t97;
     const scara_real_t t101 = SCARA_C(2.0) * (t7 + t26 * t91 + t8 * t97);
     ddq_by_dq[12] = t85 * t99 + t90 * t100 + t94 * t101;
-    if (!(ddq_by_dq[12] >= SCARA_C(-1.0e15) && ddq_by_dq[12] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t73;
-    if (!(t73 >= SCARA_C(-1.0e15) && t73 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t95;
-    if (!(t95 >= SCARA_C(-1.0e15) && t95 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t99;
-    if (!(t99 >= SCARA_C(-1.0e15) && t99 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t102 = t67 + t68;
     const scara_real_t t103 = t72 - t102;
     const scara_real_t t104 = t42 + parameters[MY4] * t103;
@@ -409,98 +339,21 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t121 = SCARA_C(0.1) * t119;
     const scara_real_t t122 = SCARA_C(0.5) * (t15 * t106 + t5 * t108);
     ddq_by_q[1] = t73 * t120 + t87 * t121 + t92 * t122;
-    if (!(ddq_by_q[1] >= SCARA_C(-1.0e15) && ddq_by_q[1] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_q[5] = t95 * t120 + t96 * t121 + t98 * t122;
-    if (!(ddq_by_q[5] >= SCARA_C(-1.0e15) && ddq_by_q[5] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_q[13] = t99 * t120 + t100 * t121 + t101 * t122;
-    if (!(ddq_by_q[13] >= SCARA_C(-1.0e15) && ddq_by_q[13] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t123 = SCARA_C(0.325) * (t18 * (SCARA_C(2.0) * t78) + t20 * (SCARA_C(2.0) * t80));
     const scara_real_t t124 = SCARA_C(0.0625) * (t88 + t123);
     const scara_real_t t125 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t84;
     const scara_real_t t126 = SCARA_C(0.5) * t93;
     ddq_by_dq[1] = t124 * t73 + t125 * t87 + t126 * t92;
-    if (!(ddq_by_dq[1] >= SCARA_C(-1.0e15) && ddq_by_dq[1] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_dq[5] = t124 * t95 + t125 * t96 + t126 * t98;
-    if (!(ddq_by_dq[5] >= SCARA_C(-1.0e15) && ddq_by_dq[5] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_dq[13] = t124 * t99 + t125 * t100 + t126 * t101;
-    if (!(ddq_by_dq[13] >= SCARA_C(-1.0e15) && ddq_by_dq[13] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t87;
-    if (!(t87 >= SCARA_C(-1.0e15) && t87 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t96;
-    if (!(t96 >= SCARA_C(-1.0e15) && t96 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t100;
-    if (!(t100 >= SCARA_C(-1.0e15) && t100 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t127 = SCARA_C(31.415926535897935) * t71;
     ddq_by_dq[10] = SCARA_C(-3141.5926535897934) * parameters[FV3] * t127;
-    if (!(ddq_by_dq[10] >= SCARA_C(-1.0e15) && ddq_by_dq[10] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t127;
-    if (!(t127 >= SCARA_C(-1.0e15) && t127 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t128 = t3 * t112 - t4 * t104;
     const scara_real_t t129 = t20 * t128 - t18 * (t4 * t112 + t3 * t104);
     const scara_real_t t130 = parameters[MX4] * t110 + parameters[MY4] * t113;
@@ -509,29 +362,8 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t133 = SCARA_C(0.1) * t131;
     const scara_real_t t134 = SCARA_C(-0.5) * t130;
     ddq_by_q[3] = t73 * t132 + t87 * t133 + t92 * t134;
-    if (!(ddq_by_q[3] >= SCARA_C(-1.0e15) && ddq_by_q[3] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_q[7] = t95 * t132 + t96 * t133 + t98 * t134;
-    if (!(ddq_by_q[7] >= SCARA_C(-1.0e15) && ddq_by_q[7] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_q[15] = t99 * t132 + t100 * t133 + t101 * t134;
-    if (!(ddq_by_q[15] >= SCARA_C(-1.0e15) && ddq_by_q[15] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     const scara_real_t t135 = SCARA_C(-2.0) * t75;
     const scara_real_t t136 = SCARA_C(2.0) * t74;
     const scara_real_t t137 = t4 * t136 - t3 * t135;
@@ -540,53 +372,11 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t140 = SCARA_C(0.027500000000000004) * t137;
     const scara_real_t t141 = SCARA_C(-2.0e2) * parameters[FV4];
     ddq_by_dq[3] = t139 * t73 + t140 * t87 + t141 * t92;
-    if (!(ddq_by_dq[3] >= SCARA_C(-1.0e15) && ddq_by_dq[3] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_dq[7] = t139 * t95 + t140 * t96 + t141 * t98;
-    if (!(ddq_by_dq[7] >= SCARA_C(-1.0e15) && ddq_by_dq[7] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_dq[15] = t139 * t99 + t140 * t100 + t141 * t101;
-    if (!(ddq_by_dq[15] >= SCARA_C(-1.0e15) && ddq_by_dq[15] <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t92;
-    if (!(t92 >= SCARA_C(-1.0e15) && t92 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t98;
-    if (!(t98 >= SCARA_C(-1.0e15) && t98 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t101;
-    if (!(t101 >= SCARA_C(-1.0e15) && t101 <= SCARA_C(1.0e15))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = ddq_by_q[2] = SCARA_C(0.0);
     ddq_by_q[4] = ddq_by_q[6] = SCARA_C(0.0);
@@ -600,5 +390,15 @@ int scara_forward_dynamics_derivatives_standard(
     ddq_by_input[6] = SCARA_C(0.0);
     ddq_by_input[8] = ddq_by_input[9] = ddq_by_input[11] = SCARA_C(0.0);
     ddq_by_input[14] = SCARA_C(0.0);
+    if (!scara_within_joints(ddq, SCARA_C(1.0e30))
+        || !scara_within(ddq_by_q, 16, SCARA_C(1.0e30))
+        || !scara_within(ddq_by_dq, 16, SCARA_C(1.0e30))
+        || !scara_within(ddq_by_input, 16, SCARA_C(1.0e30))) {
+        scara_zero(ddq, 4);
+        scara_zero(ddq_by_q, 16);
+        scara_zero(ddq_by_dq, 16);
+        scara_zero(ddq_by_input, 16);
+        return SCARA_STATUS_PIVOT;
+    }
     return SCARA_STATUS_OK;
 }

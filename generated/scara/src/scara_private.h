@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0xB0ECD6C0UL
+#if SCARA_GENERATION != 0xAD5E1746UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 

@@ -70,7 +70,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x6BB56C37UL
+#if TWO_FINGERS_GENERATION != 0xE4C46997UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -330,29 +330,13 @@ int two_fingers_forward_dynamics(
     const two_fingers_real_t t167 = TWO_FINGERS_C(1.0) / t59;
     const two_fingers_real_t t168 = (t151 + t161 * t54 + t166 * t58) * t167;
     out[0] = t168;
-    if (!(t168 >= TWO_FINGERS_C(-1.0e15) && t168 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     const two_fingers_real_t t169 = t166 * t57 + t58 * t168;
     out[1] = t169;
-    if (!(t169 >= TWO_FINGERS_C(-1.0e15) && t169 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     out[2] = t161 * t16 + t54 * t168 + t17 * t169;
-    if (!(out[2] >= TWO_FINGERS_C(-1.0e15) && out[2] <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     const two_fingers_real_t t170 = t150 * t49 + t50 * t168;
     out[3] = t170;
-    if (!(t170 >= TWO_FINGERS_C(-1.0e15) && t170 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     out[4] = t146 * t6 + t46 * t168 + t7 * t170;
-    if (!(out[4] >= TWO_FINGERS_C(-1.0e15) && out[4] <= TWO_FINGERS_C(1.0e15))) {
+    if (!two_fingers_within_joints(out, TWO_FINGERS_C(1.0e30))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

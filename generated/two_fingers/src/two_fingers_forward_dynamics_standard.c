@@ -93,7 +93,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x6BB56C37UL
+#if TWO_FINGERS_GENERATION != 0xE4C46997UL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -399,29 +399,13 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t189 = TWO_FINGERS_C(1.0) / t70;
     const two_fingers_real_t t190 = (t177 + t181 * t64 + t188 * t69) * t189;
     out[0] = t190;
-    if (!(t190 >= TWO_FINGERS_C(-1.0e15) && t190 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     const two_fingers_real_t t191 = t188 * t68 + t69 * t190;
     out[1] = t191;
-    if (!(t191 >= TWO_FINGERS_C(-1.0e15) && t191 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     out[2] = t181 * t17 + t64 * t190 + t18 * t191;
-    if (!(out[2] >= TWO_FINGERS_C(-1.0e15) && out[2] <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     const two_fingers_real_t t192 = t176 * t59 + t60 * t190;
     out[3] = t192;
-    if (!(t192 >= TWO_FINGERS_C(-1.0e15) && t192 <= TWO_FINGERS_C(1.0e15))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     out[4] = t172 * t6 + t56 * t190 + t7 * t192;
-    if (!(out[4] >= TWO_FINGERS_C(-1.0e15) && out[4] <= TWO_FINGERS_C(1.0e15))) {
+    if (!two_fingers_within_joints(out, TWO_FINGERS_C(1.0e30))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

@@ -82,7 +82,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x922F0786UL
+#if UR10E_GENERATION != 0xCAE53365UL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -474,38 +474,18 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t286 = UR10E_C(1.0) / t134;
     const ur10e_real_t t287 = t285 * t286;
     out[0] = t287;
-    if (!(t287 >= UR10E_C(-1.0e15) && t287 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t288 = t284 * t132 + t133 * t287;
     out[1] = t288;
-    if (!(t288 >= UR10E_C(-1.0e15) && t288 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t289 = t277 * t79 + t128 * t287 + t80 * t288;
     out[2] = t289;
-    if (!(t289 >= UR10E_C(-1.0e15) && t289 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t290 = t120 * t287 - t271 * t50 - t75 * t288 - t51 * t289;
     out[3] = t290;
-    if (!(t290 >= UR10E_C(-1.0e15) && t290 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t291 = t111 * t287 - t265 * t25 + t72 * t288 + t56 * t289;
     const ur10e_real_t t292 = t291 - t26 * t290;
     out[4] = t292;
-    if (!(t292 >= UR10E_C(-1.0e15) && t292 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t293 = t91 * t287 - t262 * t4 + t63 * t288 + t52 * t289;
     out[5] = t293 - t27 * t290 - t5 * t292;
-    if (!(out[5] >= UR10E_C(-1.0e15) && out[5] <= UR10E_C(1.0e15))) {
+    if (!ur10e_within_joints(out, UR10E_C(1.0e30))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

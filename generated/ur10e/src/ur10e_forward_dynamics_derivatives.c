@@ -86,7 +86,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x922F0786UL
+#if UR10E_GENERATION != 0xCAE53365UL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -534,60 +534,18 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t307 = UR10E_C(1.0) / t144;
     const ur10e_real_t t308 = t306 * t307;
     ddq[0] = t308;
-    if (!(t308 >= UR10E_C(-1.0e15) && t308 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t309 = t305 * t142 + t143 * t308;
     ddq[1] = t309;
-    if (!(t309 >= UR10E_C(-1.0e15) && t309 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t310 = t298 * t83 - t137 * t308 - t84 * t309;
     ddq[2] = t310;
-    if (!(t310 >= UR10E_C(-1.0e15) && t310 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t311 = t292 * t50 + t129 * t308 + t79 * t309 + t51 * t310;
     ddq[3] = t311;
-    if (!(t311 >= UR10E_C(-1.0e15) && t311 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t312 = t286 * t25 + t119 * t308 - t75 * t309 + t56 * t310;
     const ur10e_real_t t313 = t312 + t26 * t311;
     ddq[4] = t313;
-    if (!(t313 >= UR10E_C(-1.0e15) && t313 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t314 = t283 * t4 + t96 * t308 - t64 * t309 + t52 * t310;
     const ur10e_real_t t315 = t314 + t27 * t311 + t5 * t313;
     ddq[5] = t315;
-    if (!(t315 >= UR10E_C(-1.0e15) && t315 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t316 = t92 * t61 + t94 * t60;
     const ur10e_real_t t317 = t94 * t61 - t92 * t60;
     const ur10e_real_t t318 = t41 * t316 + t38 * t317;
@@ -790,13 +748,6 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t513 = t60 * t509 - t61 * t510 + t512 * t458;
     const ur10e_real_t t514 = UR10E_C(0.11001100110011001) * (t92 * t511 + t94 * t513);
     ddq_by_dq[0] = t514 * t501 - (t474 + t495 * t479);
-    if (!(ddq_by_dq[0] >= UR10E_C(-1.0e15) && ddq_by_dq[0] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t515 = UR10E_C(12.12) * (t142 + t143 * t439);
     const ur10e_real_t t516 = t84 * t142 + t143 * t454;
     const ur10e_real_t t517 = UR10E_C(-10.100000000000001) * t516;
@@ -808,13 +759,6 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t523 = t142 * t498 + t143 * t500;
     const ur10e_real_t t524 = UR10E_C(9.09) * t523;
     ddq_by_dq[6] = t514 * t524 - (t520 + t495 * t522);
-    if (!(ddq_by_dq[6] >= UR10E_C(-1.0e15) && ddq_by_dq[6] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t525 = UR10E_C(-12.12) * t454;
     const ur10e_real_t t526 = UR10E_C(-12.12) * t516;
     const ur10e_real_t t527 = UR10E_C(10.100000000000001) * (t83 + t137 * t454 + t84 * t516);
@@ -826,13 +770,6 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t533 = t83 * t497 + t137 * t500 + t84 * t523;
     const ur10e_real_t t534 = UR10E_C(-9.09) * t533;
     ddq_by_dq[12] = t514 * t534 - (t530 + t495 * t532);
-    if (!(ddq_by_dq[12] >= UR10E_C(-1.0e15) && ddq_by_dq[12] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t535 = UR10E_C(-12.12) * t463;
     const ur10e_real_t t536 = UR10E_C(-12.12) * t518;
     const ur10e_real_t t537 = UR10E_C(10.100000000000001) * t528;
@@ -844,13 +781,6 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t543 = t129 * t500 - t50 * t496 + t79 * t523 - t51 * t533;
     const ur10e_real_t t544 = UR10E_C(9.09) * t543;
     ddq_by_dq[18] = t514 * t544 - (t540 + t495 * t542);
-    if (!(ddq_by_dq[18] >= UR10E_C(-1.0e15) && ddq_by_dq[18] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t545 = UR10E_C(-12.12) * t478;
     const ur10e_real_t t546 = UR10E_C(-12.12) * t521;
     const ur10e_real_t t547 = UR10E_C(10.100000000000001) * t531;
@@ -861,13 +791,6 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t552 = t551 - t26 * t543;
     const ur10e_real_t t553 = UR10E_C(-9.09) * t552;
     ddq_by_dq[24] = t514 * t553 - (t548 + t495 * t550);
-    if (!(ddq_by_dq[24] >= UR10E_C(-1.0e15) && ddq_by_dq[24] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t554 = UR10E_C(-12.12) * t500;
     const ur10e_real_t t555 = UR10E_C(-12.12) * t523;
     const ur10e_real_t t556 = UR10E_C(10.100000000000001) * t533;
@@ -875,61 +798,12 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t558 = t4 - t96 * t500 + t64 * t523 + t52 * t533;
     const ur10e_real_t t559 = UR10E_C(9.09) * (t558 - t27 * t543 + t5 * t552);
     ddq_by_dq[30] = t495 * t553 - t557 - t514 * t559;
-    if (!(ddq_by_dq[30] >= UR10E_C(-1.0e15) && ddq_by_dq[30] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t438;
-    if (!(t438 >= UR10E_C(-1.0e15) && t438 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t440;
-    if (!(t440 >= UR10E_C(-1.0e15) && t440 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t525;
-    if (!(t525 >= UR10E_C(-1.0e15) && t525 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t535;
-    if (!(t535 >= UR10E_C(-1.0e15) && t535 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t545;
-    if (!(t545 >= UR10E_C(-1.0e15) && t545 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t554;
-    if (!(t554 >= UR10E_C(-1.0e15) && t554 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t560 = t308 * t321;
     const ur10e_real_t t561 = t154 * t319;
     const ur10e_real_t t562 = t560 - t561;
@@ -1086,58 +960,16 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t693 = t147 * t511 - t146 * t513 + (t91 * t607 + t93 * t671 - t63 * t674);
     const ur10e_real_t t694 = UR10E_C(0.11001100110011001) * (t62 * t182 - t512 * t186 + t693);
     ddq_by_q[1] = t501 * t694 - (t690 + t479 * t692);
-    if (!(ddq_by_q[1] >= UR10E_C(-1.0e15) && ddq_by_q[1] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t695 = t440 * t682 + t515 * t685 + t517 * t687 + t519 * t689;
     ddq_by_q[7] = t524 * t694 - (t695 + t522 * t692);
-    if (!(ddq_by_q[7] >= UR10E_C(-1.0e15) && ddq_by_q[7] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t696 = t525 * t682 + t526 * t685 + t527 * t687 + t529 * t689;
     ddq_by_q[13] = t534 * t694 - (t696 + t532 * t692);
-    if (!(ddq_by_q[13] >= UR10E_C(-1.0e15) && ddq_by_q[13] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t697 = t535 * t682 + t536 * t685 + t537 * t687 + t539 * t689;
     ddq_by_q[19] = t544 * t694 - (t697 + t542 * t692);
-    if (!(ddq_by_q[19] >= UR10E_C(-1.0e15) && ddq_by_q[19] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t698 = t545 * t682 + t546 * t685 + t547 * t687 + t542 * t689;
     ddq_by_q[25] = t553 * t694 - (t698 + t550 * t692);
-    if (!(ddq_by_q[25] >= UR10E_C(-1.0e15) && ddq_by_q[25] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t699 = t554 * t682 + t555 * t685 + t556 * t687 - t544 * t689;
     ddq_by_q[31] = t553 * t692 - t699 - t559 * t694;
-    if (!(ddq_by_q[31] >= UR10E_C(-1.0e15) && ddq_by_q[31] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t700 = parameters[ZZ4R] - t380;
     const ur10e_real_t t701 = t322 * t700 - parameters[YZ4] * t154 + (t353 - t441 + t18 * t356);
     const ur10e_real_t t702 = t319 * t700 - parameters[XZ4] * t154 + (t13 * t382 + t15 * t383);
@@ -1175,106 +1007,22 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t732 = t731 - t512 * t491 + UR10E_C(2.0) * (t91 * t147 + t93 * t146);
     const ur10e_real_t t733 = UR10E_C(0.11001100110011001) * t732;
     ddq_by_dq[1] = t733 * t501 - (t725 + t729 * t479);
-    if (!(ddq_by_dq[1] >= UR10E_C(-1.0e15) && ddq_by_dq[1] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t734 = t713 * t440 + t717 * t515 + t720 * t517 + t724 * t519;
     ddq_by_dq[7] = t733 * t524 - (t734 + t729 * t522);
-    if (!(ddq_by_dq[7] >= UR10E_C(-1.0e15) && ddq_by_dq[7] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t735 = t713 * t525 + t717 * t526 + t720 * t527 + t724 * t529;
     ddq_by_dq[13] = t733 * t534 - (t735 + t729 * t532);
-    if (!(ddq_by_dq[13] >= UR10E_C(-1.0e15) && ddq_by_dq[13] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t736 = t713 * t535 + t717 * t536 + t720 * t537 + t724 * t539;
     ddq_by_dq[19] = t733 * t544 - (t736 + t729 * t542);
-    if (!(ddq_by_dq[19] >= UR10E_C(-1.0e15) && ddq_by_dq[19] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t737 = t713 * t545 + t717 * t546 + t720 * t547 + t724 * t542;
     ddq_by_dq[25] = t733 * t553 - (t737 + t729 * t550);
-    if (!(ddq_by_dq[25] >= UR10E_C(-1.0e15) && ddq_by_dq[25] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t738 = t713 * t554 + t717 * t555 + t720 * t556 - t724 * t544;
     ddq_by_dq[31] = t729 * t553 - t738 - t733 * t559;
-    if (!(ddq_by_dq[31] >= UR10E_C(-1.0e15) && ddq_by_dq[31] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t440;
-    if (!(t440 >= UR10E_C(-1.0e15) && t440 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t515;
-    if (!(t515 >= UR10E_C(-1.0e15) && t515 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t526;
-    if (!(t526 >= UR10E_C(-1.0e15) && t526 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t536;
-    if (!(t536 >= UR10E_C(-1.0e15) && t536 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t546;
-    if (!(t546 >= UR10E_C(-1.0e15) && t546 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t555;
-    if (!(t555 >= UR10E_C(-1.0e15) && t555 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t739 = UR10E_C(2.0) * t392;
     const ur10e_real_t t740 = UR10E_C(2.0) * t398;
     const ur10e_real_t t741 = t406 * t739 + t411 * t740 + (t131 * t613 + (t104 * t596 + t105 * t602));
@@ -1302,58 +1050,16 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t760 = t392 * t509 + t398 * t510 + (t45 * t613 + (t90 * t602 - t89 * t596));
     const ur10e_real_t t761 = UR10E_C(0.11001100110011001) * (t760 + (t59 * t603 + t44 * t595));
     ddq_by_q[2] = t501 * t761 - (t757 + t479 * t759);
-    if (!(ddq_by_q[2] >= UR10E_C(-1.0e15) && ddq_by_q[2] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t762 = t440 * t747 + t515 * t753 + t517 * t754 + t519 * t756;
     ddq_by_q[8] = t524 * t761 - (t762 + t522 * t759);
-    if (!(ddq_by_q[8] >= UR10E_C(-1.0e15) && ddq_by_q[8] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t763 = t525 * t747 + t526 * t753 + t527 * t754 + t529 * t756;
     ddq_by_q[14] = t534 * t761 - (t763 + t532 * t759);
-    if (!(ddq_by_q[14] >= UR10E_C(-1.0e15) && ddq_by_q[14] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t764 = t535 * t747 + t536 * t753 + t537 * t754 + t539 * t756;
     ddq_by_q[20] = t544 * t761 - (t764 + t542 * t759);
-    if (!(ddq_by_q[20] >= UR10E_C(-1.0e15) && ddq_by_q[20] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t765 = t545 * t747 + t546 * t753 + t547 * t754 + t542 * t756;
     ddq_by_q[26] = t553 * t761 - (t765 + t550 * t759);
-    if (!(ddq_by_q[26] >= UR10E_C(-1.0e15) && ddq_by_q[26] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t766 = t554 * t747 + t555 * t753 + t556 * t754 - t544 * t756;
     ddq_by_q[32] = t553 * t759 - t766 - t559 * t761;
-    if (!(ddq_by_q[32] >= UR10E_C(-1.0e15) && ddq_by_q[32] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t767 = UR10E_C(2.0) * t705 + (t104 * t739 + t105 * t740);
     const ur10e_real_t t768 = UR10E_C(2.0) * t707 - (t105 * t739 + t103 * t740);
     const ur10e_real_t t769 = t60 * t767 + t61 * t768 + UR10E_C(0.6127) * (t67 * t740 - t66 * t739);
@@ -1374,106 +1080,22 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t780 = UR10E_C(0.11001100110011001) * (t731 + UR10E_C(2.0) * (t90 * t398
         - t89 * t392));
     ddq_by_dq[2] = t780 * t501 - (t778 + t779 * t479);
-    if (!(ddq_by_dq[2] >= UR10E_C(-1.0e15) && ddq_by_dq[2] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t781 = t771 * t440 + t774 * t515 + t776 * t517 + t777 * t519;
     ddq_by_dq[8] = t780 * t524 - (t781 + t779 * t522);
-    if (!(ddq_by_dq[8] >= UR10E_C(-1.0e15) && ddq_by_dq[8] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t782 = t771 * t525 + t774 * t526 + t776 * t527 + t777 * t529;
     ddq_by_dq[14] = t780 * t534 - (t782 + t779 * t532);
-    if (!(ddq_by_dq[14] >= UR10E_C(-1.0e15) && ddq_by_dq[14] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t783 = t771 * t535 + t774 * t536 + t776 * t537 + t777 * t539;
     ddq_by_dq[20] = t780 * t544 - (t783 + t779 * t542);
-    if (!(ddq_by_dq[20] >= UR10E_C(-1.0e15) && ddq_by_dq[20] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t784 = t771 * t545 + t774 * t546 + t776 * t547 + t777 * t542;
     ddq_by_dq[26] = t780 * t553 - (t784 + t779 * t550);
-    if (!(ddq_by_dq[26] >= UR10E_C(-1.0e15) && ddq_by_dq[26] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t785 = t771 * t554 + t774 * t555 + t776 * t556 - t777 * t544;
     ddq_by_dq[32] = t779 * t553 - t785 - t780 * t559;
-    if (!(ddq_by_dq[32] >= UR10E_C(-1.0e15) && ddq_by_dq[32] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t455;
-    if (!(t455 >= UR10E_C(-1.0e15) && t455 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t517;
-    if (!(t517 >= UR10E_C(-1.0e15) && t517 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t527;
-    if (!(t527 >= UR10E_C(-1.0e15) && t527 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t537;
-    if (!(t537 >= UR10E_C(-1.0e15) && t537 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t547;
-    if (!(t547 >= UR10E_C(-1.0e15) && t547 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t556;
-    if (!(t556 >= UR10E_C(-1.0e15) && t556 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t786 = t18 * t628;
     const ur10e_real_t t787 = t8 * t570;
     const ur10e_real_t t788 = t629 + t649;
@@ -1505,58 +1127,16 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t813 = t319 * t508 - t322 * t506 + (t23 * t788 - (t88 * t560 + t3 * t570));
     const ur10e_real_t t814 = UR10E_C(0.11001100110011001) * (t813 + (t22 * t628 + t16 * t605));
     ddq_by_q[3] = t501 * t814 - (t810 + t479 * t812);
-    if (!(ddq_by_q[3] >= UR10E_C(-1.0e15) && ddq_by_q[3] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t815 = t440 * t803 + t515 * t807 + t517 * t808 + t519 * t809;
     ddq_by_q[9] = t524 * t814 - (t815 + t522 * t812);
-    if (!(ddq_by_q[9] >= UR10E_C(-1.0e15) && ddq_by_q[9] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t816 = t525 * t803 + t526 * t807 + t527 * t808 + t529 * t809;
     ddq_by_q[15] = t534 * t814 - (t816 + t532 * t812);
-    if (!(ddq_by_q[15] >= UR10E_C(-1.0e15) && ddq_by_q[15] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t817 = t535 * t803 + t536 * t807 + t537 * t808 + t539 * t809;
     ddq_by_q[21] = t544 * t814 - (t817 + t542 * t812);
-    if (!(ddq_by_q[21] >= UR10E_C(-1.0e15) && ddq_by_q[21] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t818 = t545 * t803 + t546 * t807 + t547 * t808 + t542 * t809;
     ddq_by_q[27] = t553 * t814 - (t818 + t550 * t812);
-    if (!(ddq_by_q[27] >= UR10E_C(-1.0e15) && ddq_by_q[27] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t819 = t554 * t803 + t555 * t807 + t556 * t808 - t544 * t809;
     ddq_by_q[33] = t553 * t812 - t819 - t559 * t814;
-    if (!(ddq_by_q[33] >= UR10E_C(-1.0e15) && ddq_by_q[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t820 = UR10E_C(2.0) * t701 - (t97 * t789 + t99 * t790);
     const ur10e_real_t t821 = UR10E_C(2.0) * t702 + (t8 * t790 - t99 * t789);
     const ur10e_real_t t822 = UR10E_C(2.0) * t389 + t18 * t790;
@@ -1580,106 +1160,22 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t838 = UR10E_C(0.11001100110011001) * (t730 + UR10E_C(-2.0) * (t88 * t322
         + t3 * t319));
     ddq_by_dq[3] = t838 * t501 - (t836 + t837 * t479);
-    if (!(ddq_by_dq[3] >= UR10E_C(-1.0e15) && ddq_by_dq[3] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t839 = t830 * t440 + t832 * t515 + t833 * t517 + t835 * t519;
     ddq_by_dq[9] = t838 * t524 - (t839 + t837 * t522);
-    if (!(ddq_by_dq[9] >= UR10E_C(-1.0e15) && ddq_by_dq[9] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t840 = t830 * t525 + t832 * t526 + t833 * t527 + t835 * t529;
     ddq_by_dq[15] = t838 * t534 - (t840 + t837 * t532);
-    if (!(ddq_by_dq[15] >= UR10E_C(-1.0e15) && ddq_by_dq[15] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t841 = t830 * t535 + t832 * t536 + t833 * t537 + t835 * t539;
     ddq_by_dq[21] = t838 * t544 - (t841 + t837 * t542);
-    if (!(ddq_by_dq[21] >= UR10E_C(-1.0e15) && ddq_by_dq[21] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t842 = t830 * t545 + t832 * t546 + t833 * t547 + t835 * t542;
     ddq_by_dq[27] = t838 * t553 - (t842 + t837 * t550);
-    if (!(ddq_by_dq[27] >= UR10E_C(-1.0e15) && ddq_by_dq[27] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t843 = t830 * t554 + t832 * t555 + t833 * t556 - t835 * t544;
     ddq_by_dq[33] = t837 * t553 - t843 - t838 * t559;
-    if (!(ddq_by_dq[33] >= UR10E_C(-1.0e15) && ddq_by_dq[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t464;
-    if (!(t464 >= UR10E_C(-1.0e15) && t464 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t519;
-    if (!(t519 >= UR10E_C(-1.0e15) && t519 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t529;
-    if (!(t529 >= UR10E_C(-1.0e15) && t529 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t539;
-    if (!(t539 >= UR10E_C(-1.0e15) && t539 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t542;
-    if (!(t542 >= UR10E_C(-1.0e15) && t542 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[33] = -t544;
-    if (!(ddq_by_input[33] >= UR10E_C(-1.0e15) && ddq_by_input[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t844 = t638 + t626;
     const ur10e_real_t t845 = UR10E_C(2.0) * t326;
     const ur10e_real_t t846 = UR10E_C(-2.0) * t320;
@@ -1715,58 +1211,16 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t875 = t326 * t504 - t320 * t505 + (t3 * t844 + (t20 * t584 + t850));
     const ur10e_real_t t876 = UR10E_C(0.11001100110011001) * (t875 + t849);
     ddq_by_q[4] = t501 * t876 - (t873 + t479 * t874);
-    if (!(ddq_by_q[4] >= UR10E_C(-1.0e15) && ddq_by_q[4] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t877 = t440 * t867 + t515 * t870 + t517 * t871 + t519 * t872;
     ddq_by_q[10] = t524 * t876 - (t877 + t522 * t874);
-    if (!(ddq_by_q[10] >= UR10E_C(-1.0e15) && ddq_by_q[10] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t878 = t525 * t867 + t526 * t870 + t527 * t871 + t529 * t872;
     ddq_by_q[16] = t534 * t876 - (t878 + t532 * t874);
-    if (!(ddq_by_q[16] >= UR10E_C(-1.0e15) && ddq_by_q[16] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t879 = t535 * t867 + t536 * t870 + t537 * t871 + t539 * t872;
     ddq_by_q[22] = t544 * t876 - (t879 + t542 * t874);
-    if (!(ddq_by_q[22] >= UR10E_C(-1.0e15) && ddq_by_q[22] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t880 = t545 * t867 + t546 * t870 + t547 * t871 + t542 * t872;
     ddq_by_q[28] = t553 * t876 - (t880 + t550 * t874);
-    if (!(ddq_by_q[28] >= UR10E_C(-1.0e15) && ddq_by_q[28] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t881 = t554 * t867 + t555 * t870 + t556 * t871 - t544 * t872;
     ddq_by_q[34] = t553 * t874 - t881 - t559 * t876;
-    if (!(ddq_by_q[34] >= UR10E_C(-1.0e15) && ddq_by_q[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t882 = UR10E_C(2.0) * t373 - (t28 * t845 + t29 * t846);
     const ur10e_real_t t883 = UR10E_C(2.0) * t374 + (parameters[ZZ6] * t846 - t29 * t845);
     const ur10e_real_t t884 = UR10E_C(2.0) * t376 + t21 * t846;
@@ -1795,106 +1249,22 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t905 = UR10E_C(0.11001100110011001) * (t507 + UR10E_C(-2.0) * (t20 * t326
         + parameters[ZZ6] * t320));
     ddq_by_dq[4] = t905 * t501 - (t902 + t904 * t479);
-    if (!(ddq_by_dq[4] >= UR10E_C(-1.0e15) && ddq_by_dq[4] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t906 = t896 * t440 + t899 * t515 + t900 * t517 + t901 * t519;
     ddq_by_dq[10] = t905 * t524 - (t906 + t904 * t522);
-    if (!(ddq_by_dq[10] >= UR10E_C(-1.0e15) && ddq_by_dq[10] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t907 = t896 * t525 + t899 * t526 + t900 * t527 + t901 * t529;
     ddq_by_dq[16] = t905 * t534 - (t907 + t904 * t532);
-    if (!(ddq_by_dq[16] >= UR10E_C(-1.0e15) && ddq_by_dq[16] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t908 = t896 * t535 + t899 * t536 + t900 * t537 + t901 * t539;
     ddq_by_dq[22] = t905 * t544 - (t908 + t904 * t542);
-    if (!(ddq_by_dq[22] >= UR10E_C(-1.0e15) && ddq_by_dq[22] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t909 = t896 * t545 + t899 * t546 + t900 * t547 + t901 * t542;
     ddq_by_dq[28] = t905 * t553 - (t909 + t904 * t550);
-    if (!(ddq_by_dq[28] >= UR10E_C(-1.0e15) && ddq_by_dq[28] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t910 = t896 * t554 + t899 * t555 + t900 * t556 - t901 * t544;
     ddq_by_dq[34] = t904 * t553 - t910 - t905 * t559;
-    if (!(ddq_by_dq[34] >= UR10E_C(-1.0e15) && ddq_by_dq[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t479;
-    if (!(t479 >= UR10E_C(-1.0e15) && t479 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t522;
-    if (!(t522 >= UR10E_C(-1.0e15) && t522 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t532;
-    if (!(t532 >= UR10E_C(-1.0e15) && t532 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t542;
-    if (!(t542 >= UR10E_C(-1.0e15) && t542 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t550;
-    if (!(t550 >= UR10E_C(-1.0e15) && t550 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[34] = -t553;
-    if (!(ddq_by_input[34] >= UR10E_C(-1.0e15) && ddq_by_input[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t911 = t620 + t591;
     const ur10e_real_t t912 = UR10E_C(-2.0) * t324;
     const ur10e_real_t t913 = UR10E_C(2.0) * t330;
@@ -1932,58 +1302,16 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t943 = UR10E_C(0.11001100110011001) * t928;
     const ur10e_real_t t944 = UR10E_C(0.11001100110011001) * (t920 + (t330 * t503 - t324 * t502 + t919));
     ddq_by_q[5] = t501 * t944 - (t942 + t479 * t943);
-    if (!(ddq_by_q[5] >= UR10E_C(-1.0e15) && ddq_by_q[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t945 = t440 * t936 + t515 * t939 + t517 * t940 + t519 * t941;
     ddq_by_q[11] = t524 * t944 - (t945 + t522 * t943);
-    if (!(ddq_by_q[11] >= UR10E_C(-1.0e15) && ddq_by_q[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t946 = t525 * t936 + t526 * t939 + t527 * t940 + t529 * t941;
     ddq_by_q[17] = t534 * t944 - (t946 + t532 * t943);
-    if (!(ddq_by_q[17] >= UR10E_C(-1.0e15) && ddq_by_q[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t947 = t535 * t936 + t536 * t939 + t537 * t940 + t539 * t941;
     ddq_by_q[23] = t544 * t944 - (t947 + t542 * t943);
-    if (!(ddq_by_q[23] >= UR10E_C(-1.0e15) && ddq_by_q[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t948 = t545 * t936 + t546 * t939 + t547 * t940 + t542 * t941;
     ddq_by_q[29] = t553 * t944 - (t948 + t550 * t943);
-    if (!(ddq_by_q[29] >= UR10E_C(-1.0e15) && ddq_by_q[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t949 = t554 * t936 + t555 * t939 + t556 * t940 - t544 * t941;
     ddq_by_q[35] = t553 * t943 - t949 - t559 * t944;
-    if (!(ddq_by_q[35] >= UR10E_C(-1.0e15) && ddq_by_q[35] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t950 = UR10E_C(2.0) * t351 + (parameters[XX6R] * t912 + parameters[XY6] * t913);
     const ur10e_real_t t951 = UR10E_C(2.0) * t352 + parameters[XY6] * t912;
     const ur10e_real_t t952 = t1 * t951 - t2 * t950;
@@ -2013,106 +1341,22 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t975 = UR10E_C(0.11001100110011001) * t960;
     const ur10e_real_t t976 = UR10E_C(1122.2222222222222) * parameters[FV6];
     ddq_by_dq[5] = t976 * t501 - (t974 + t975 * t479);
-    if (!(ddq_by_dq[5] >= UR10E_C(-1.0e15) && ddq_by_dq[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t977 = t968 * t440 + t971 * t515 + t972 * t517 + t973 * t519;
     ddq_by_dq[11] = t976 * t524 - (t977 + t975 * t522);
-    if (!(ddq_by_dq[11] >= UR10E_C(-1.0e15) && ddq_by_dq[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t978 = t968 * t525 + t971 * t526 + t972 * t527 + t973 * t529;
     ddq_by_dq[17] = t976 * t534 - (t978 + t975 * t532);
-    if (!(ddq_by_dq[17] >= UR10E_C(-1.0e15) && ddq_by_dq[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t979 = t968 * t535 + t971 * t536 + t972 * t537 + t973 * t539;
     ddq_by_dq[23] = t976 * t544 - (t979 + t975 * t542);
-    if (!(ddq_by_dq[23] >= UR10E_C(-1.0e15) && ddq_by_dq[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t980 = t968 * t545 + t971 * t546 + t972 * t547 + t973 * t542;
     ddq_by_dq[29] = t976 * t553 - (t980 + t975 * t550);
-    if (!(ddq_by_dq[29] >= UR10E_C(-1.0e15) && ddq_by_dq[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t981 = t968 * t554 + t971 * t555 + t972 * t556 - t973 * t544;
     ddq_by_dq[35] = t975 * t553 - t981 - t976 * t559;
-    if (!(ddq_by_dq[35] >= UR10E_C(-1.0e15) && ddq_by_dq[35] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[5] = -t501;
-    if (!(ddq_by_input[5] >= UR10E_C(-1.0e15) && ddq_by_input[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[11] = -t524;
-    if (!(ddq_by_input[11] >= UR10E_C(-1.0e15) && ddq_by_input[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[17] = -t534;
-    if (!(ddq_by_input[17] >= UR10E_C(-1.0e15) && ddq_by_input[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[23] = -t544;
-    if (!(ddq_by_input[23] >= UR10E_C(-1.0e15) && ddq_by_input[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[29] = -t553;
-    if (!(ddq_by_input[29] >= UR10E_C(-1.0e15) && ddq_by_input[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t559;
-    if (!(t559 >= UR10E_C(-1.0e15) && t559 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = UR10E_C(0.0);
     ddq_by_q[6] = UR10E_C(0.0);
@@ -2120,5 +1364,15 @@ int ur10e_forward_dynamics_derivatives(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
+    if (!ur10e_within_joints(ddq, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_q, 36, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_dq, 36, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_input, 36, UR10E_C(1.0e30))) {
+        ur10e_zero(ddq, 6);
+        ur10e_zero(ddq_by_q, 36);
+        ur10e_zero(ddq_by_dq, 36);
+        ur10e_zero(ddq_by_input, 36);
+        return UR10E_STATUS_PIVOT;
+    }
     return UR10E_STATUS_OK;
 }

@@ -111,7 +111,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x922F0786UL
+#if UR10E_GENERATION != 0xCAE53365UL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -627,60 +627,18 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t359 = UR10E_C(1.0) / t164;
     const ur10e_real_t t360 = t358 * t359;
     ddq[0] = t360;
-    if (!(t360 >= UR10E_C(-1.0e15) && t360 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t361 = t357 * t162 + t163 * t360;
     ddq[1] = t361;
-    if (!(t361 >= UR10E_C(-1.0e15) && t361 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t362 = t349 * t90 - t155 * t360 - t91 * t361;
     ddq[2] = t362;
-    if (!(t362 >= UR10E_C(-1.0e15) && t362 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t363 = t343 * t60 + t147 * t360 + t92 * t361 + t61 * t362;
     ddq[3] = t363;
-    if (!(t363 >= UR10E_C(-1.0e15) && t363 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t364 = t337 * t42 + t138 * t360 - t99 * t361 + t68 * t362;
     const ur10e_real_t t365 = t364 + t43 * t363;
     ddq[4] = t365;
-    if (!(t365 >= UR10E_C(-1.0e15) && t365 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t366 = t334 * t5 + t132 * t360 - t93 * t361 + t62 * t362;
     const ur10e_real_t t367 = t366 + t33 * t363 + t6 * t365;
     ddq[5] = t367;
-    if (!(t367 >= UR10E_C(-1.0e15) && t367 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t368 = t122 * t73 + t119 * t72;
     const ur10e_real_t t369 = t119 * t73 - t122 * t72;
     const ur10e_real_t t370 = t51 * t368 + t48 * t369;
@@ -902,13 +860,6 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t582 = t72 * t578 - t73 * t579 + t581 * t526;
     const ur10e_real_t t583 = UR10E_C(0.11001100110011001) * (t122 * t580 + t119 * t582);
     ddq_by_dq[0] = t583 * t569 - (t542 + t563 * t547);
-    if (!(ddq_by_dq[0] >= UR10E_C(-1.0e15) && ddq_by_dq[0] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t584 = UR10E_C(12.12) * (t162 + t163 * t507);
     const ur10e_real_t t585 = t91 * t162 + t163 * t522;
     const ur10e_real_t t586 = UR10E_C(-10.100000000000001) * t585;
@@ -920,13 +871,6 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t592 = t162 * t566 + t163 * t568;
     const ur10e_real_t t593 = UR10E_C(9.09) * t592;
     ddq_by_dq[6] = t583 * t593 - (t589 + t563 * t591);
-    if (!(ddq_by_dq[6] >= UR10E_C(-1.0e15) && ddq_by_dq[6] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t594 = UR10E_C(-12.12) * t522;
     const ur10e_real_t t595 = UR10E_C(-12.12) * t585;
     const ur10e_real_t t596 = UR10E_C(10.100000000000001) * (t90 + t155 * t522 + t91 * t585);
@@ -938,13 +882,6 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t602 = t90 * t565 + t155 * t568 + t91 * t592;
     const ur10e_real_t t603 = UR10E_C(-9.09) * t602;
     ddq_by_dq[12] = t583 * t603 - (t599 + t563 * t601);
-    if (!(ddq_by_dq[12] >= UR10E_C(-1.0e15) && ddq_by_dq[12] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t604 = UR10E_C(-12.12) * t531;
     const ur10e_real_t t605 = UR10E_C(-12.12) * t587;
     const ur10e_real_t t606 = UR10E_C(10.100000000000001) * t597;
@@ -956,13 +893,6 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t612 = t147 * t568 - t60 * t564 + t92 * t592 - t61 * t602;
     const ur10e_real_t t613 = UR10E_C(9.09) * t612;
     ddq_by_dq[18] = t583 * t613 - (t609 + t563 * t611);
-    if (!(ddq_by_dq[18] >= UR10E_C(-1.0e15) && ddq_by_dq[18] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t614 = UR10E_C(-12.12) * t546;
     const ur10e_real_t t615 = UR10E_C(-12.12) * t590;
     const ur10e_real_t t616 = UR10E_C(10.100000000000001) * t600;
@@ -973,13 +903,6 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t621 = t620 - t43 * t612;
     const ur10e_real_t t622 = UR10E_C(-9.09) * t621;
     ddq_by_dq[24] = t583 * t622 - (t617 + t563 * t619);
-    if (!(ddq_by_dq[24] >= UR10E_C(-1.0e15) && ddq_by_dq[24] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t623 = UR10E_C(-12.12) * t568;
     const ur10e_real_t t624 = UR10E_C(-12.12) * t592;
     const ur10e_real_t t625 = UR10E_C(10.100000000000001) * t602;
@@ -987,61 +910,12 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t627 = t5 - t132 * t568 + t93 * t592 + t62 * t602;
     const ur10e_real_t t628 = UR10E_C(9.09) * (t627 - t33 * t612 + t6 * t621);
     ddq_by_dq[30] = t563 * t622 - t626 - t583 * t628;
-    if (!(ddq_by_dq[30] >= UR10E_C(-1.0e15) && ddq_by_dq[30] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t506;
-    if (!(t506 >= UR10E_C(-1.0e15) && t506 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t508;
-    if (!(t508 >= UR10E_C(-1.0e15) && t508 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t594;
-    if (!(t594 >= UR10E_C(-1.0e15) && t594 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t604;
-    if (!(t604 >= UR10E_C(-1.0e15) && t604 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t614;
-    if (!(t614 >= UR10E_C(-1.0e15) && t614 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t623;
-    if (!(t623 >= UR10E_C(-1.0e15) && t623 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t629 = t373 * t360;
     const ur10e_real_t t630 = t371 * t174;
     const ur10e_real_t t631 = t629 - t630;
@@ -1239,58 +1113,16 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t796 = t167 * t580 - t166 * t582 + (t129 * t677 + t130 * t772 - t775 * t78);
     const ur10e_real_t t797 = UR10E_C(0.11001100110011001) * (t210 * t77 - t214 * t581 + t796);
     ddq_by_q[1] = t569 * t797 - (t793 + t547 * t795);
-    if (!(ddq_by_q[1] >= UR10E_C(-1.0e15) && ddq_by_q[1] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t798 = t508 * t785 + t584 * t788 + t586 * t790 + t588 * t792;
     ddq_by_q[7] = t593 * t797 - (t798 + t591 * t795);
-    if (!(ddq_by_q[7] >= UR10E_C(-1.0e15) && ddq_by_q[7] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t799 = t594 * t785 + t595 * t788 + t596 * t790 + t598 * t792;
     ddq_by_q[13] = t603 * t797 - (t799 + t601 * t795);
-    if (!(ddq_by_q[13] >= UR10E_C(-1.0e15) && ddq_by_q[13] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t800 = t604 * t785 + t605 * t788 + t606 * t790 + t608 * t792;
     ddq_by_q[19] = t613 * t797 - (t800 + t611 * t795);
-    if (!(ddq_by_q[19] >= UR10E_C(-1.0e15) && ddq_by_q[19] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t801 = t614 * t785 + t615 * t788 + t616 * t790 + t611 * t792;
     ddq_by_q[25] = t622 * t797 - (t801 + t619 * t795);
-    if (!(ddq_by_q[25] >= UR10E_C(-1.0e15) && ddq_by_q[25] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t802 = t623 * t785 + t624 * t788 + t625 * t790 - t613 * t792;
     ddq_by_q[31] = t622 * t795 - t802 - t628 * t797;
-    if (!(ddq_by_q[31] >= UR10E_C(-1.0e15) && ddq_by_q[31] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t803 = parameters[ZZ4] - t443;
     const ur10e_real_t t804 = t374 * t803 - t174 * parameters[YZ4] + (t414 - t509 + t39 * t421);
     const ur10e_real_t t805 = t371 * t803 - t174 * parameters[XZ4] + (t18 * t448 - t22 * t446);
@@ -1328,106 +1160,22 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t835 = t834 - t581 * t559 + UR10E_C(2.0) * (t167 * t129 + t166 * t130);
     const ur10e_real_t t836 = UR10E_C(0.11001100110011001) * t835;
     ddq_by_dq[1] = t836 * t569 - (t828 + t832 * t547);
-    if (!(ddq_by_dq[1] >= UR10E_C(-1.0e15) && ddq_by_dq[1] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t837 = t816 * t508 + t820 * t584 + t823 * t586 + t827 * t588;
     ddq_by_dq[7] = t836 * t593 - (t837 + t832 * t591);
-    if (!(ddq_by_dq[7] >= UR10E_C(-1.0e15) && ddq_by_dq[7] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t838 = t816 * t594 + t820 * t595 + t823 * t596 + t827 * t598;
     ddq_by_dq[13] = t836 * t603 - (t838 + t832 * t601);
-    if (!(ddq_by_dq[13] >= UR10E_C(-1.0e15) && ddq_by_dq[13] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t839 = t816 * t604 + t820 * t605 + t823 * t606 + t827 * t608;
     ddq_by_dq[19] = t836 * t613 - (t839 + t832 * t611);
-    if (!(ddq_by_dq[19] >= UR10E_C(-1.0e15) && ddq_by_dq[19] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t840 = t816 * t614 + t820 * t615 + t823 * t616 + t827 * t611;
     ddq_by_dq[25] = t836 * t622 - (t840 + t832 * t619);
-    if (!(ddq_by_dq[25] >= UR10E_C(-1.0e15) && ddq_by_dq[25] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t841 = t816 * t623 + t820 * t624 + t823 * t625 - t827 * t613;
     ddq_by_dq[31] = t832 * t622 - t841 - t836 * t628;
-    if (!(ddq_by_dq[31] >= UR10E_C(-1.0e15) && ddq_by_dq[31] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t508;
-    if (!(t508 >= UR10E_C(-1.0e15) && t508 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t584;
-    if (!(t584 >= UR10E_C(-1.0e15) && t584 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t595;
-    if (!(t595 >= UR10E_C(-1.0e15) && t595 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t605;
-    if (!(t605 >= UR10E_C(-1.0e15) && t605 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t615;
-    if (!(t615 >= UR10E_C(-1.0e15) && t615 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t624;
-    if (!(t624 >= UR10E_C(-1.0e15) && t624 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t842 = UR10E_C(2.0) * t457;
     const ur10e_real_t t843 = UR10E_C(2.0) * t463;
     const ur10e_real_t t844 = t471 * t842 + t477 * t843 + (t685 * t149 + (t113 * t666 + t114 * t672));
@@ -1457,58 +1205,16 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t866 = t457 * t578 + t463 * t579 + (t685 * t55 + (t128 * t672 - t127 * t666));
     const ur10e_real_t t867 = UR10E_C(0.11001100110011001) * (t866 + (t76 * t673 + t54 * t665));
     ddq_by_q[2] = t569 * t867 - (t863 + t547 * t865);
-    if (!(ddq_by_q[2] >= UR10E_C(-1.0e15) && ddq_by_q[2] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t868 = t508 * t850 + t584 * t859 + t586 * t860 + t588 * t862;
     ddq_by_q[8] = t593 * t867 - (t868 + t591 * t865);
-    if (!(ddq_by_q[8] >= UR10E_C(-1.0e15) && ddq_by_q[8] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t869 = t594 * t850 + t595 * t859 + t596 * t860 + t598 * t862;
     ddq_by_q[14] = t603 * t867 - (t869 + t601 * t865);
-    if (!(ddq_by_q[14] >= UR10E_C(-1.0e15) && ddq_by_q[14] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t870 = t604 * t850 + t605 * t859 + t606 * t860 + t608 * t862;
     ddq_by_q[20] = t613 * t867 - (t870 + t611 * t865);
-    if (!(ddq_by_q[20] >= UR10E_C(-1.0e15) && ddq_by_q[20] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t871 = t614 * t850 + t615 * t859 + t616 * t860 + t611 * t862;
     ddq_by_q[26] = t622 * t867 - (t871 + t619 * t865);
-    if (!(ddq_by_q[26] >= UR10E_C(-1.0e15) && ddq_by_q[26] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t872 = t623 * t850 + t624 * t859 + t625 * t860 - t613 * t862;
     ddq_by_q[32] = t622 * t865 - t872 - t628 * t867;
-    if (!(ddq_by_q[32] >= UR10E_C(-1.0e15) && ddq_by_q[32] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t873 = UR10E_C(2.0) * t808 + (t113 * t842 + t114 * t843);
     const ur10e_real_t t874 = UR10E_C(2.0) * t810 - (t114 * t842 + t112 * t843);
     const ur10e_real_t t875 = t72 * t873 + t73 * t874 + UR10E_C(0.6127) * (t86 * t843 - t84 * t842);
@@ -1529,106 +1235,22 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t886 = UR10E_C(0.11001100110011001) * (t834 + UR10E_C(2.0) * (t463 * t128
         - t457 * t127));
     ddq_by_dq[2] = t886 * t569 - (t884 + t885 * t547);
-    if (!(ddq_by_dq[2] >= UR10E_C(-1.0e15) && ddq_by_dq[2] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t887 = t877 * t508 + t880 * t584 + t882 * t586 + t883 * t588;
     ddq_by_dq[8] = t886 * t593 - (t887 + t885 * t591);
-    if (!(ddq_by_dq[8] >= UR10E_C(-1.0e15) && ddq_by_dq[8] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t888 = t877 * t594 + t880 * t595 + t882 * t596 + t883 * t598;
     ddq_by_dq[14] = t886 * t603 - (t888 + t885 * t601);
-    if (!(ddq_by_dq[14] >= UR10E_C(-1.0e15) && ddq_by_dq[14] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t889 = t877 * t604 + t880 * t605 + t882 * t606 + t883 * t608;
     ddq_by_dq[20] = t886 * t613 - (t889 + t885 * t611);
-    if (!(ddq_by_dq[20] >= UR10E_C(-1.0e15) && ddq_by_dq[20] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t890 = t877 * t614 + t880 * t615 + t882 * t616 + t883 * t611;
     ddq_by_dq[26] = t886 * t622 - (t890 + t885 * t619);
-    if (!(ddq_by_dq[26] >= UR10E_C(-1.0e15) && ddq_by_dq[26] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t891 = t877 * t623 + t880 * t624 + t882 * t625 - t883 * t613;
     ddq_by_dq[32] = t885 * t622 - t891 - t886 * t628;
-    if (!(ddq_by_dq[32] >= UR10E_C(-1.0e15) && ddq_by_dq[32] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t523;
-    if (!(t523 >= UR10E_C(-1.0e15) && t523 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t586;
-    if (!(t586 >= UR10E_C(-1.0e15) && t586 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t596;
-    if (!(t596 >= UR10E_C(-1.0e15) && t596 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t606;
-    if (!(t606 >= UR10E_C(-1.0e15) && t606 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t616;
-    if (!(t616 >= UR10E_C(-1.0e15) && t616 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t625;
-    if (!(t625 >= UR10E_C(-1.0e15) && t625 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t892 = UR10E_C(2.0) * t374;
     const ur10e_real_t t893 = UR10E_C(2.0) * t371;
     const ur10e_real_t t894 = t445 * t893 - t431 * t892 + (t761 * t139 - (t103 * t629 + t106 * t639));
@@ -1659,58 +1281,16 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t918 = t371 * t577 - t374 * t575 + (t761 * t32 - (t126 * t629 + t4 * t639));
     const ur10e_real_t t919 = UR10E_C(0.11001100110011001) * (t918 + (t31 * t690 + t19 * t675));
     ddq_by_q[3] = t569 * t919 - (t915 + t547 * t917);
-    if (!(ddq_by_q[3] >= UR10E_C(-1.0e15) && ddq_by_q[3] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t920 = t508 * t908 + t584 * t912 + t586 * t913 + t588 * t914;
     ddq_by_q[9] = t593 * t919 - (t920 + t591 * t917);
-    if (!(ddq_by_q[9] >= UR10E_C(-1.0e15) && ddq_by_q[9] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t921 = t594 * t908 + t595 * t912 + t596 * t913 + t598 * t914;
     ddq_by_q[15] = t603 * t919 - (t921 + t601 * t917);
-    if (!(ddq_by_q[15] >= UR10E_C(-1.0e15) && ddq_by_q[15] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t922 = t604 * t908 + t605 * t912 + t606 * t913 + t608 * t914;
     ddq_by_q[21] = t613 * t919 - (t922 + t611 * t917);
-    if (!(ddq_by_q[21] >= UR10E_C(-1.0e15) && ddq_by_q[21] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t923 = t614 * t908 + t615 * t912 + t616 * t913 + t611 * t914;
     ddq_by_q[27] = t622 * t919 - (t923 + t619 * t917);
-    if (!(ddq_by_q[27] >= UR10E_C(-1.0e15) && ddq_by_q[27] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t924 = t623 * t908 + t624 * t912 + t625 * t913 - t613 * t914;
     ddq_by_q[33] = t622 * t917 - t924 - t628 * t919;
-    if (!(ddq_by_q[33] >= UR10E_C(-1.0e15) && ddq_by_q[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t925 = UR10E_C(2.0) * t804 - (t103 * t892 + t106 * t893);
     const ur10e_real_t t926 = UR10E_C(2.0) * t805 + (t104 * t893 - t106 * t892);
     const ur10e_real_t t927 = UR10E_C(-2.0) * t453 + t109 * t892;
@@ -1735,106 +1315,22 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t943 = UR10E_C(0.11001100110011001) * (t833 + UR10E_C(-2.0) * (t374 * t126
         + t371 * t4));
     ddq_by_dq[3] = t943 * t569 - (t941 + t942 * t547);
-    if (!(ddq_by_dq[3] >= UR10E_C(-1.0e15) && ddq_by_dq[3] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t944 = t935 * t508 + t937 * t584 + t938 * t586 + t940 * t588;
     ddq_by_dq[9] = t943 * t593 - (t944 + t942 * t591);
-    if (!(ddq_by_dq[9] >= UR10E_C(-1.0e15) && ddq_by_dq[9] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t945 = t935 * t594 + t937 * t595 + t938 * t596 + t940 * t598;
     ddq_by_dq[15] = t943 * t603 - (t945 + t942 * t601);
-    if (!(ddq_by_dq[15] >= UR10E_C(-1.0e15) && ddq_by_dq[15] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t946 = t935 * t604 + t937 * t605 + t938 * t606 + t940 * t608;
     ddq_by_dq[21] = t943 * t613 - (t946 + t942 * t611);
-    if (!(ddq_by_dq[21] >= UR10E_C(-1.0e15) && ddq_by_dq[21] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t947 = t935 * t614 + t937 * t615 + t938 * t616 + t940 * t611;
     ddq_by_dq[27] = t943 * t622 - (t947 + t942 * t619);
-    if (!(ddq_by_dq[27] >= UR10E_C(-1.0e15) && ddq_by_dq[27] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t948 = t935 * t623 + t937 * t624 + t938 * t625 - t940 * t613;
     ddq_by_dq[33] = t942 * t622 - t948 - t943 * t628;
-    if (!(ddq_by_dq[33] >= UR10E_C(-1.0e15) && ddq_by_dq[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t532;
-    if (!(t532 >= UR10E_C(-1.0e15) && t532 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t588;
-    if (!(t588 >= UR10E_C(-1.0e15) && t588 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t598;
-    if (!(t598 >= UR10E_C(-1.0e15) && t598 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t608;
-    if (!(t608 >= UR10E_C(-1.0e15) && t608 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t611;
-    if (!(t611 >= UR10E_C(-1.0e15) && t611 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[33] = -t613;
-    if (!(ddq_by_input[33] >= UR10E_C(-1.0e15) && ddq_by_input[33] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t949 = UR10E_C(-2.0) * t378;
     const ur10e_real_t t950 = UR10E_C(2.0) * t372;
     const ur10e_real_t t951 = t404 * t950 - t418 * t949 - (t750 * t34 + (t21 * t654 + t17 * t643));
@@ -1869,58 +1365,16 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t979 = t750 * t4 + (t20 * t654 + parameters[ZZ6] * t643) - (t378 * t572 + t372 * t574);
     const ur10e_real_t t980 = UR10E_C(0.11001100110011001) * (t979 + t3 * t697);
     ddq_by_q[4] = t569 * t980 - (t977 + t547 * t978);
-    if (!(ddq_by_q[4] >= UR10E_C(-1.0e15) && ddq_by_q[4] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t981 = t508 * t971 + t584 * t974 + t586 * t975 + t588 * t976;
     ddq_by_q[10] = t593 * t980 - (t981 + t591 * t978);
-    if (!(ddq_by_q[10] >= UR10E_C(-1.0e15) && ddq_by_q[10] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t982 = t594 * t971 + t595 * t974 + t596 * t975 + t598 * t976;
     ddq_by_q[16] = t603 * t980 - (t982 + t601 * t978);
-    if (!(ddq_by_q[16] >= UR10E_C(-1.0e15) && ddq_by_q[16] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t983 = t604 * t971 + t605 * t974 + t606 * t975 + t608 * t976;
     ddq_by_q[22] = t613 * t980 - (t983 + t611 * t978);
-    if (!(ddq_by_q[22] >= UR10E_C(-1.0e15) && ddq_by_q[22] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t984 = t614 * t971 + t615 * t974 + t616 * t975 + t611 * t976;
     ddq_by_q[28] = t622 * t980 - (t984 + t619 * t978);
-    if (!(ddq_by_q[28] >= UR10E_C(-1.0e15) && ddq_by_q[28] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t985 = t623 * t971 + t624 * t974 + t625 * t975 - t613 * t976;
     ddq_by_q[34] = t622 * t978 - t985 - t628 * t980;
-    if (!(ddq_by_q[34] >= UR10E_C(-1.0e15) && ddq_by_q[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t986 = UR10E_C(2.0) * t437 + (t21 * t950 - t16 * t949);
     const ur10e_real_t t987 = UR10E_C(2.0) * t438 - (t17 * t950 - t21 * t949);
     const ur10e_real_t t988 = UR10E_C(2.0) * t440 + t25 * t950;
@@ -1949,106 +1403,22 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t1009 = UR10E_C(0.11001100110011001) * (t576 + UR10E_C(-2.0) * (t378 * t20
         + t372 * parameters[ZZ6]));
     ddq_by_dq[4] = t1009 * t569 - (t1006 + t1008 * t547);
-    if (!(ddq_by_dq[4] >= UR10E_C(-1.0e15) && ddq_by_dq[4] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1010 = t1000 * t508 + t1003 * t584 + t1004 * t586 + t1005 * t588;
     ddq_by_dq[10] = t1009 * t593 - (t1010 + t1008 * t591);
-    if (!(ddq_by_dq[10] >= UR10E_C(-1.0e15) && ddq_by_dq[10] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1011 = t1000 * t594 + t1003 * t595 + t1004 * t596 + t1005 * t598;
     ddq_by_dq[16] = t1009 * t603 - (t1011 + t1008 * t601);
-    if (!(ddq_by_dq[16] >= UR10E_C(-1.0e15) && ddq_by_dq[16] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1012 = t1000 * t604 + t1003 * t605 + t1004 * t606 + t1005 * t608;
     ddq_by_dq[22] = t1009 * t613 - (t1012 + t1008 * t611);
-    if (!(ddq_by_dq[22] >= UR10E_C(-1.0e15) && ddq_by_dq[22] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1013 = t1000 * t614 + t1003 * t615 + t1004 * t616 + t1005 * t611;
     ddq_by_dq[28] = t1009 * t622 - (t1013 + t1008 * t619);
-    if (!(ddq_by_dq[28] >= UR10E_C(-1.0e15) && ddq_by_dq[28] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1014 = t1000 * t623 + t1003 * t624 + t1004 * t625 - t1005 * t613;
     ddq_by_dq[34] = t1008 * t622 - t1014 - t1009 * t628;
-    if (!(ddq_by_dq[34] >= UR10E_C(-1.0e15) && ddq_by_dq[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t547;
-    if (!(t547 >= UR10E_C(-1.0e15) && t547 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t591;
-    if (!(t591 >= UR10E_C(-1.0e15) && t591 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t601;
-    if (!(t601 >= UR10E_C(-1.0e15) && t601 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t611;
-    if (!(t611 >= UR10E_C(-1.0e15) && t611 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t619;
-    if (!(t619 >= UR10E_C(-1.0e15) && t619 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[34] = -t622;
-    if (!(ddq_by_input[34] >= UR10E_C(-1.0e15) && ddq_by_input[34] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1015 = UR10E_C(2.0) * t376;
     const ur10e_real_t t1016 = UR10E_C(-2.0) * t382;
     const ur10e_real_t t1017 = t381 * t1015 + t389 * t1016 - (t732 * parameters[XZ6] + (parameters[XY6] * t647
@@ -2088,58 +1458,16 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t1046 = UR10E_C(0.11001100110011001) * t1032;
     const ur10e_real_t t1047 = UR10E_C(0.11001100110011001) * (t1025 + (t376 * t570 - t382 * t571 + t1026));
     ddq_by_q[5] = t569 * t1047 - (t1045 + t547 * t1046);
-    if (!(ddq_by_q[5] >= UR10E_C(-1.0e15) && ddq_by_q[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1048 = t508 * t1039 + t584 * t1042 + t586 * t1043 + t588 * t1044;
     ddq_by_q[11] = t593 * t1047 - (t1048 + t591 * t1046);
-    if (!(ddq_by_q[11] >= UR10E_C(-1.0e15) && ddq_by_q[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1049 = t594 * t1039 + t595 * t1042 + t596 * t1043 + t598 * t1044;
     ddq_by_q[17] = t603 * t1047 - (t1049 + t601 * t1046);
-    if (!(ddq_by_q[17] >= UR10E_C(-1.0e15) && ddq_by_q[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1050 = t604 * t1039 + t605 * t1042 + t606 * t1043 + t608 * t1044;
     ddq_by_q[23] = t613 * t1047 - (t1050 + t611 * t1046);
-    if (!(ddq_by_q[23] >= UR10E_C(-1.0e15) && ddq_by_q[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1051 = t614 * t1039 + t615 * t1042 + t616 * t1043 + t611 * t1044;
     ddq_by_q[29] = t622 * t1047 - (t1051 + t619 * t1046);
-    if (!(ddq_by_q[29] >= UR10E_C(-1.0e15) && ddq_by_q[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1052 = t623 * t1039 + t624 * t1042 + t625 * t1043 - t613 * t1044;
     ddq_by_q[35] = t622 * t1046 - t1052 - t628 * t1047;
-    if (!(ddq_by_q[35] >= UR10E_C(-1.0e15) && ddq_by_q[35] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1053 = UR10E_C(2.0) * t406 + (parameters[XX6] * t1015 + parameters[XY6] * t1016);
     const ur10e_real_t t1054 = UR10E_C(-2.0) * t407 + (parameters[XY6] * t1015 + parameters[YY6] * t1016);
     const ur10e_real_t t1055 = UR10E_C(2.0) * t409 + parameters[MZ6] * t1016;
@@ -2170,106 +1498,22 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t1078 = UR10E_C(0.11001100110011001) * t1064;
     const ur10e_real_t t1079 = UR10E_C(1122.2222222222222) * parameters[FV6];
     ddq_by_dq[5] = t1079 * t569 - (t1077 + t1078 * t547);
-    if (!(ddq_by_dq[5] >= UR10E_C(-1.0e15) && ddq_by_dq[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1080 = t1071 * t508 + t1074 * t584 + t1075 * t586 + t1076 * t588;
     ddq_by_dq[11] = t1079 * t593 - (t1080 + t1078 * t591);
-    if (!(ddq_by_dq[11] >= UR10E_C(-1.0e15) && ddq_by_dq[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1081 = t1071 * t594 + t1074 * t595 + t1075 * t596 + t1076 * t598;
     ddq_by_dq[17] = t1079 * t603 - (t1081 + t1078 * t601);
-    if (!(ddq_by_dq[17] >= UR10E_C(-1.0e15) && ddq_by_dq[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1082 = t1071 * t604 + t1074 * t605 + t1075 * t606 + t1076 * t608;
     ddq_by_dq[23] = t1079 * t613 - (t1082 + t1078 * t611);
-    if (!(ddq_by_dq[23] >= UR10E_C(-1.0e15) && ddq_by_dq[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1083 = t1071 * t614 + t1074 * t615 + t1075 * t616 + t1076 * t611;
     ddq_by_dq[29] = t1079 * t622 - (t1083 + t1078 * t619);
-    if (!(ddq_by_dq[29] >= UR10E_C(-1.0e15) && ddq_by_dq[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t1084 = t1071 * t623 + t1074 * t624 + t1075 * t625 - t1076 * t613;
     ddq_by_dq[35] = t1078 * t622 - t1084 - t1079 * t628;
-    if (!(ddq_by_dq[35] >= UR10E_C(-1.0e15) && ddq_by_dq[35] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[5] = -t569;
-    if (!(ddq_by_input[5] >= UR10E_C(-1.0e15) && ddq_by_input[5] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[11] = -t593;
-    if (!(ddq_by_input[11] >= UR10E_C(-1.0e15) && ddq_by_input[11] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[17] = -t603;
-    if (!(ddq_by_input[17] >= UR10E_C(-1.0e15) && ddq_by_input[17] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[23] = -t613;
-    if (!(ddq_by_input[23] >= UR10E_C(-1.0e15) && ddq_by_input[23] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[29] = -t622;
-    if (!(ddq_by_input[29] >= UR10E_C(-1.0e15) && ddq_by_input[29] <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t628;
-    if (!(t628 >= UR10E_C(-1.0e15) && t628 <= UR10E_C(1.0e15))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = UR10E_C(0.0);
     ddq_by_q[6] = UR10E_C(0.0);
@@ -2277,5 +1521,15 @@ int ur10e_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
+    if (!ur10e_within_joints(ddq, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_q, 36, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_dq, 36, UR10E_C(1.0e30))
+        || !ur10e_within(ddq_by_input, 36, UR10E_C(1.0e30))) {
+        ur10e_zero(ddq, 6);
+        ur10e_zero(ddq_by_q, 36);
+        ur10e_zero(ddq_by_dq, 36);
+        ur10e_zero(ddq_by_input, 36);
+        return UR10E_STATUS_PIVOT;
+    }
     return UR10E_STATUS_OK;
 }

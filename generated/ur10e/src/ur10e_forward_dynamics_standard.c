@@ -107,7 +107,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x922F0786UL
+#if UR10E_GENERATION != 0xCAE53365UL
 #error "ur10e.h and ur10e_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -554,38 +554,18 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t324 = UR10E_C(1.0) / t147;
     const ur10e_real_t t325 = t323 * t324;
     out[0] = t325;
-    if (!(t325 >= UR10E_C(-1.0e15) && t325 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t326 = t322 * t145 + t146 * t325;
     out[1] = t326;
-    if (!(t326 >= UR10E_C(-1.0e15) && t326 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t327 = t314 * t84 + t141 * t325 + t85 * t326;
     out[2] = t327;
-    if (!(t327 >= UR10E_C(-1.0e15) && t327 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t328 = t133 * t325 - t308 * t58 - t86 * t326 - t59 * t327;
     out[3] = t328;
-    if (!(t328 >= UR10E_C(-1.0e15) && t328 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t329 = t125 * t325 - t302 * t41 + t90 * t326 + t66 * t327;
     const ur10e_real_t t330 = t329 - t42 * t328;
     out[4] = t330;
-    if (!(t330 >= UR10E_C(-1.0e15) && t330 <= UR10E_C(1.0e15))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
     const ur10e_real_t t331 = t120 * t325 - t299 * t5 + t87 * t326 + t60 * t327;
     out[5] = t331 - t33 * t328 + t6 * t330;
-    if (!(out[5] >= UR10E_C(-1.0e15) && out[5] <= UR10E_C(1.0e15))) {
+    if (!ur10e_within_joints(out, UR10E_C(1.0e30))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

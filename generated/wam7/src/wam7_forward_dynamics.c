@@ -92,7 +92,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xCD30D7BEUL
+#if WAM7_GENERATION != 0xBB60C589UL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -600,46 +600,22 @@ int wam7_forward_dynamics(
     const wam7_real_t t385 = WAM7_C(1.0) / t185;
     const wam7_real_t t386 = (t378 + t384 * t175) * t385;
     out[0] = t386;
-    if (!(t386 >= WAM7_C(-1.0e15) && t386 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t387 = t384 * t174 + t175 * t386;
     out[1] = t387;
-    if (!(t387 >= WAM7_C(-1.0e15) && t387 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t388 = t377 * t153 + t184 * t386 + t154 * t387;
     out[2] = t388;
-    if (!(t388 >= WAM7_C(-1.0e15) && t388 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t389 = t373 * t94 + t183 * t386 + t145 * t387 - t95 * t388;
     out[3] = t389;
-    if (!(t389 >= WAM7_C(-1.0e15) && t389 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t390 = t369 * t54 + t181 * t386 + t140 * t387 + t109 * t388;
     const wam7_real_t t391 = t390 + t55 * t389;
     out[4] = t391;
-    if (!(t391 >= WAM7_C(-1.0e15) && t391 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t392 = t365 * t20 + t180 * t386 + t134 * t387 + t108 * t388;
     const wam7_real_t t393 = t21 * t391 - (t392 + t56 * t389);
     out[5] = t393;
-    if (!(t393 >= WAM7_C(-1.0e15) && t393 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t394 = t362 * t4 + t179 * t386 + t128 * t387 + t107 * t388;
     const wam7_real_t t395 = t28 * t391 - (t394 + t57 * t389) + t5 * t393;
     out[6] = t395;
-    if (!(t395 >= WAM7_C(-1.0e15) && t395 <= WAM7_C(1.0e15))) {
+    if (!wam7_within_joints(out, WAM7_C(1.0e30))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

@@ -96,7 +96,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xCD30D7BEUL
+#if WAM7_GENERATION != 0xBB60C589UL
 #error "wam7.h and wam7_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -690,70 +690,21 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t442 = WAM7_C(1.0) / t200;
     const wam7_real_t t443 = (t435 - t441 * t189) * t442;
     ddq[0] = t443;
-    if (!(t443 >= WAM7_C(-1.0e15) && t443 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t444 = t441 * t188 - t189 * t443;
     ddq[1] = t444;
-    if (!(t444 >= WAM7_C(-1.0e15) && t444 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t445 = t434 * t161 + t199 * t443 - t162 * t444;
     ddq[2] = t445;
-    if (!(t445 >= WAM7_C(-1.0e15) && t445 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t446 = t430 * t94 + t198 * t443 + t152 * t444 + t95 * t445;
     ddq[3] = t446;
-    if (!(t446 >= WAM7_C(-1.0e15) && t446 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t447 = t426 * t54 + t196 * t443 - t146 * t444 + t109 * t445;
     const wam7_real_t t448 = t447 + t55 * t446;
     ddq[4] = t448;
-    if (!(t448 >= WAM7_C(-1.0e15) && t448 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t449 = t422 * t20 + t195 * t443 - t138 * t444 + t108 * t445;
     const wam7_real_t t450 = t449 + t56 * t446 + t21 * t448;
     ddq[5] = t450;
-    if (!(t450 >= WAM7_C(-1.0e15) && t450 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t451 = t419 * t4 + t194 * t443 - t130 * t444 - t107 * t445;
     const wam7_real_t t452 = t451 + t57 * t446 - t28 * t448 - t5 * t450;
     ddq[6] = t452;
-    if (!(t452 >= WAM7_C(-1.0e15) && t452 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t453 = t189 * t442;
     const wam7_real_t t454 = WAM7_C(-12.910250000000001) * t453;
     const wam7_real_t t455 = parameters[XZ7R] * t254;
@@ -1003,13 +954,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t696 = WAM7_C(0.9996900960702182) * (t166 * t693 + t168 * t695);
     const wam7_real_t t697 = t632 + t652 * t637 + t672 * t658 + t696 * t680;
     ddq_by_dq[0] = t697;
-    if (!(t697 >= WAM7_C(-1.0e15) && t697 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t698 = WAM7_C(-19.194) * t453;
     const wam7_real_t t699 = WAM7_C(12.910250000000001) * (t188 + t189 * t453);
     const wam7_real_t t700 = t162 * t188 + t189 * t608;
@@ -1025,13 +969,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t710 = WAM7_C(-1.00031) * t709;
     const wam7_real_t t711 = t704 + t652 * t706 + t672 * t708 + t696 * t710;
     ddq_by_dq[7] = t711;
-    if (!(t711 >= WAM7_C(-1.0e15) && t711 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t712 = WAM7_C(19.194) * t608;
     const wam7_real_t t713 = WAM7_C(12.910250000000001) * (t161 + t199 * t608 + t162 * t700);
     const wam7_real_t t714 = t95 * t161 + t199 * t619 + t162 * t702;
@@ -1045,13 +982,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t722 = WAM7_C(1.00031) * t721;
     const wam7_real_t t723 = t716 + t652 * t718 + t672 * t720 + t696 * t722;
     ddq_by_dq[14] = t723;
-    if (!(t723 >= WAM7_C(-1.0e15) && t723 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t724 = WAM7_C(19.194) * t619;
     const wam7_real_t t725 = WAM7_C(-12.910250000000001) * t702;
     const wam7_real_t t726 = WAM7_C(12.910250000000001) * t714;
@@ -1066,13 +996,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t735 = WAM7_C(-1.00031) * t734;
     const wam7_real_t t736 = t729 + t652 * t731 + t672 * t733 + t696 * t735;
     ddq_by_dq[21] = t736;
-    if (!(t736 >= WAM7_C(-1.0e15) && t736 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t737 = WAM7_C(19.194) * t636;
     const wam7_real_t t738 = WAM7_C(-12.910250000000001) * t705;
     const wam7_real_t t739 = WAM7_C(12.910250000000001) * t717;
@@ -1088,13 +1011,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t749 = WAM7_C(1.00031) * t748;
     const wam7_real_t t750 = t741 + t652 * t743 + t672 * t746 + t696 * t749;
     ddq_by_dq[28] = t750;
-    if (!(t750 >= WAM7_C(-1.0e15) && t750 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t751 = WAM7_C(19.194) * t657;
     const wam7_real_t t752 = WAM7_C(-12.910250000000001) * t707;
     const wam7_real_t t753 = WAM7_C(12.910250000000001) * t719;
@@ -1107,13 +1023,6 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t760 = WAM7_C(1.00031) * t759;
     const wam7_real_t t761 = t755 + t652 * t746 + t672 * t757 + t696 * t760;
     ddq_by_dq[35] = t761;
-    if (!(t761 >= WAM7_C(-1.0e15) && t761 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t762 = WAM7_C(19.194) * t679;
     const wam7_real_t t763 = WAM7_C(-12.910250000000001) * t709;
     const wam7_real_t t764 = WAM7_C(12.910250000000001) * t721;
@@ -1126,69 +1035,13 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t771 = WAM7_C(1.00031) * t770;
     const wam7_real_t t772 = t766 + t652 * t767 + t672 * t768 + t696 * t771;
     ddq_by_dq[42] = t772;
-    if (!(t772 >= WAM7_C(-1.0e15) && t772 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t586;
-    if (!(t586 >= WAM7_C(-1.0e15) && t586 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t698;
-    if (!(t698 >= WAM7_C(-1.0e15) && t698 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t712;
-    if (!(t712 >= WAM7_C(-1.0e15) && t712 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t724;
-    if (!(t724 >= WAM7_C(-1.0e15) && t724 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t737;
-    if (!(t737 >= WAM7_C(-1.0e15) && t737 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t751;
-    if (!(t751 >= WAM7_C(-1.0e15) && t751 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[42] = t762;
-    if (!(t762 >= WAM7_C(-1.0e15) && t762 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t773 = t209 - t444;
     const wam7_real_t t774 = t166 * t443;
     const wam7_real_t t775 = t210 + t774;
@@ -1346,73 +1199,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t910 = WAM7_C(0.9996900960702182) * (t128 * t288 + t125 * t280 + t909);
     const wam7_real_t t911 = t904 + t637 * t906 + t658 * t908 + t680 * t910;
     ddq_by_q[1] = t911;
-    if (!(t911 >= WAM7_C(-1.0e15) && t911 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t912 = t698 * t896 - t699 * t899 + t701 * t901 - t703 * t903;
     const wam7_real_t t913 = t912 + t706 * t906 + t708 * t908 + t710 * t910;
     ddq_by_q[8] = t913;
-    if (!(t913 >= WAM7_C(-1.0e15) && t913 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t914 = t712 * t896 - t701 * t899 + t713 * t901 - t715 * t903;
     const wam7_real_t t915 = t914 + t718 * t906 + t720 * t908 + t722 * t910;
     ddq_by_q[15] = t915;
-    if (!(t915 >= WAM7_C(-1.0e15) && t915 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t916 = t724 * t896 - t725 * t899 + t726 * t901 - t728 * t903;
     const wam7_real_t t917 = t916 + t731 * t906 + t733 * t908 + t735 * t910;
     ddq_by_q[22] = t917;
-    if (!(t917 >= WAM7_C(-1.0e15) && t917 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t918 = t737 * t896 - t738 * t899 + t739 * t901 - t740 * t903;
     const wam7_real_t t919 = t918 + t743 * t906 + t746 * t908 + t749 * t910;
     ddq_by_q[29] = t919;
-    if (!(t919 >= WAM7_C(-1.0e15) && t919 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t920 = t751 * t896 - t752 * t899 + t753 * t901 - t754 * t903;
     const wam7_real_t t921 = t920 + t746 * t906 + t757 * t908 + t760 * t910;
     ddq_by_q[36] = t921;
-    if (!(t921 >= WAM7_C(-1.0e15) && t921 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t922 = t762 * t896 - t763 * t899 + t764 * t901 - t765 * t903;
     const wam7_real_t t923 = t922 + t767 * t906 + t768 * t908 + t771 * t910;
     ddq_by_q[43] = t923;
-    if (!(t923 >= WAM7_C(-1.0e15) && t923 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t924 = WAM7_C(2.0) * (t595 - t599 + (t551 + t587 - t593 - t594));
     const wam7_real_t t925 = WAM7_C(0.07745783389167521) * (t924 + WAM7_C(2.0) * (t165 * t208 + t167 * t202));
     const wam7_real_t t926 = WAM7_C(61.81619256017505) * parameters[FV2] + t925;
@@ -1439,129 +1243,31 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t943 = WAM7_C(0.9996900960702182) * t942;
     const wam7_real_t t944 = t937 + t939 * t637 + t941 * t658 + t943 * t680;
     ddq_by_dq[1] = t944;
-    if (!(t944 >= WAM7_C(-1.0e15) && t944 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t945 = t932 * t698 - t926 * t699 + t934 * t701 - t936 * t703;
     const wam7_real_t t946 = t945 + t939 * t706 + t941 * t708 + t943 * t710;
     ddq_by_dq[8] = t946;
-    if (!(t946 >= WAM7_C(-1.0e15) && t946 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t947 = t932 * t712 - t926 * t701 + t934 * t713 - t936 * t715;
     const wam7_real_t t948 = t947 + t939 * t718 + t941 * t720 + t943 * t722;
     ddq_by_dq[15] = t948;
-    if (!(t948 >= WAM7_C(-1.0e15) && t948 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t949 = t932 * t724 - t926 * t725 + t934 * t726 - t936 * t728;
     const wam7_real_t t950 = t949 + t939 * t731 + t941 * t733 + t943 * t735;
     ddq_by_dq[22] = t950;
-    if (!(t950 >= WAM7_C(-1.0e15) && t950 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t951 = t932 * t737 - t926 * t738 + t934 * t739 - t936 * t740;
     const wam7_real_t t952 = t951 + t939 * t743 + t941 * t746 + t943 * t749;
     ddq_by_dq[29] = t952;
-    if (!(t952 >= WAM7_C(-1.0e15) && t952 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t953 = t932 * t751 - t926 * t752 + t934 * t753 - t936 * t754;
     const wam7_real_t t954 = t953 + t939 * t746 + t941 * t757 + t943 * t760;
     ddq_by_dq[36] = t954;
-    if (!(t954 >= WAM7_C(-1.0e15) && t954 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t955 = t932 * t762 - t926 * t763 + t934 * t764 - t936 * t765;
     const wam7_real_t t956 = t955 + t939 * t767 + t941 * t768 + t943 * t771;
     ddq_by_dq[43] = t956;
-    if (!(t956 >= WAM7_C(-1.0e15) && t956 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t454;
-    if (!(t454 >= WAM7_C(-1.0e15) && t454 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t699;
-    if (!(t699 >= WAM7_C(-1.0e15) && t699 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t701;
-    if (!(t701 >= WAM7_C(-1.0e15) && t701 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t725;
-    if (!(t725 >= WAM7_C(-1.0e15) && t725 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t738;
-    if (!(t738 >= WAM7_C(-1.0e15) && t738 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[36] = t752;
-    if (!(t752 >= WAM7_C(-1.0e15) && t752 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[43] = t763;
-    if (!(t763 >= WAM7_C(-1.0e15) && t763 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t957 = t393 + t276;
     const wam7_real_t t958 = WAM7_C(2.0) * t204;
     const wam7_real_t t959 = WAM7_C(2.0) * t203;
@@ -1591,73 +1297,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t983 = WAM7_C(0.9996900960702182) * (t982 + (t75 * t816 - t127 * t823));
     const wam7_real_t t984 = t977 + t637 * t979 + t658 * t981 + t680 * t983;
     ddq_by_q[2] = t984;
-    if (!(t984 >= WAM7_C(-1.0e15) && t984 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t985 = t698 * t971 - t699 * t973 + t701 * t974 - t703 * t976;
     const wam7_real_t t986 = t985 + t706 * t979 + t708 * t981 + t710 * t983;
     ddq_by_q[9] = t986;
-    if (!(t986 >= WAM7_C(-1.0e15) && t986 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t987 = t712 * t971 - t701 * t973 + t713 * t974 - t715 * t976;
     const wam7_real_t t988 = t987 + t718 * t979 + t720 * t981 + t722 * t983;
     ddq_by_q[16] = t988;
-    if (!(t988 >= WAM7_C(-1.0e15) && t988 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t989 = t724 * t971 - t725 * t973 + t726 * t974 - t728 * t976;
     const wam7_real_t t990 = t989 + t731 * t979 + t733 * t981 + t735 * t983;
     ddq_by_q[23] = t990;
-    if (!(t990 >= WAM7_C(-1.0e15) && t990 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t991 = t737 * t971 - t738 * t973 + t739 * t974 - t740 * t976;
     const wam7_real_t t992 = t991 + t743 * t979 + t746 * t981 + t749 * t983;
     ddq_by_q[30] = t992;
-    if (!(t992 >= WAM7_C(-1.0e15) && t992 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t993 = t751 * t971 - t752 * t973 + t753 * t974 - t754 * t976;
     const wam7_real_t t994 = t993 + t746 * t979 + t757 * t981 + t760 * t983;
     ddq_by_q[37] = t994;
-    if (!(t994 >= WAM7_C(-1.0e15) && t994 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t995 = t762 * t971 - t763 * t973 + t764 * t974 - t765 * t976;
     const wam7_real_t t996 = t995 + t767 * t979 + t768 * t981 + t771 * t983;
     ddq_by_q[44] = t996;
-    if (!(t996 >= WAM7_C(-1.0e15) && t996 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t997 = WAM7_C(2.0) * t578 + (t117 * t959 - t113 * t958);
     const wam7_real_t t998 = WAM7_C(-2.0) * t579 + (t117 * t958 + t114 * t959);
     const wam7_real_t t999 = WAM7_C(2.0) * t581 + t121 * t959;
@@ -1678,129 +1335,31 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1012 = WAM7_C(0.9996900960702182) * (t694 + WAM7_C(2.0) * (t126 * t203 - t124 * t204));
     const wam7_real_t t1013 = t1009 + t1010 * t637 + t1011 * t658 + t1012 * t680;
     ddq_by_dq[2] = t1013;
-    if (!(t1013 >= WAM7_C(-1.0e15) && t1013 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1014 = t1005 * t698 - t1002 * t699 + t1007 * t701 - t1008 * t703;
     const wam7_real_t t1015 = t1014 + t1010 * t706 + t1011 * t708 + t1012 * t710;
     ddq_by_dq[9] = t1015;
-    if (!(t1015 >= WAM7_C(-1.0e15) && t1015 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1016 = t1005 * t712 - t1002 * t701 + t1007 * t713 - t1008 * t715;
     const wam7_real_t t1017 = t1016 + t1010 * t718 + t1011 * t720 + t1012 * t722;
     ddq_by_dq[16] = t1017;
-    if (!(t1017 >= WAM7_C(-1.0e15) && t1017 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1018 = t1005 * t724 - t1002 * t725 + t1007 * t726 - t1008 * t728;
     const wam7_real_t t1019 = t1018 + t1010 * t731 + t1011 * t733 + t1012 * t735;
     ddq_by_dq[23] = t1019;
-    if (!(t1019 >= WAM7_C(-1.0e15) && t1019 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1020 = t1005 * t737 - t1002 * t738 + t1007 * t739 - t1008 * t740;
     const wam7_real_t t1021 = t1020 + t1010 * t743 + t1011 * t746 + t1012 * t749;
     ddq_by_dq[30] = t1021;
-    if (!(t1021 >= WAM7_C(-1.0e15) && t1021 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1022 = t1005 * t751 - t1002 * t752 + t1007 * t753 - t1008 * t754;
     const wam7_real_t t1023 = t1022 + t1010 * t746 + t1011 * t757 + t1012 * t760;
     ddq_by_dq[37] = t1023;
-    if (!(t1023 >= WAM7_C(-1.0e15) && t1023 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1024 = t1005 * t762 - t1002 * t763 + t1007 * t764 - t1008 * t765;
     const wam7_real_t t1025 = t1024 + t1010 * t767 + t1011 * t768 + t1012 * t771;
     ddq_by_dq[44] = t1025;
-    if (!(t1025 >= WAM7_C(-1.0e15) && t1025 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t609;
-    if (!(t609 >= WAM7_C(-1.0e15) && t609 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t701;
-    if (!(t701 >= WAM7_C(-1.0e15) && t701 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t713;
-    if (!(t713 >= WAM7_C(-1.0e15) && t713 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t726;
-    if (!(t726 >= WAM7_C(-1.0e15) && t726 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t739;
-    if (!(t739 >= WAM7_C(-1.0e15) && t739 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[37] = t753;
-    if (!(t753 >= WAM7_C(-1.0e15) && t753 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[44] = t764;
-    if (!(t764 >= WAM7_C(-1.0e15) && t764 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1026 = t300 + t272;
     const wam7_real_t t1027 = WAM7_C(-2.0) * t229;
     const wam7_real_t t1028 = WAM7_C(2.0) * t218;
@@ -1834,73 +1393,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1055 = WAM7_C(0.9996900960702182) * (t1054 + (t45 * t828 + t46 * t820));
     const wam7_real_t t1056 = t1049 + t637 * t1051 + t658 * t1053 + t680 * t1055;
     ddq_by_q[3] = t1056;
-    if (!(t1056 >= WAM7_C(-1.0e15) && t1056 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1057 = t698 * t1044 - t699 * t1046 + t701 * t1047 - t703 * t1048;
     const wam7_real_t t1058 = t1057 + t706 * t1051 + t708 * t1053 + t710 * t1055;
     ddq_by_q[10] = t1058;
-    if (!(t1058 >= WAM7_C(-1.0e15) && t1058 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1059 = t712 * t1044 - t701 * t1046 + t713 * t1047 - t715 * t1048;
     const wam7_real_t t1060 = t1059 + t718 * t1051 + t720 * t1053 + t722 * t1055;
     ddq_by_q[17] = t1060;
-    if (!(t1060 >= WAM7_C(-1.0e15) && t1060 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1061 = t724 * t1044 - t725 * t1046 + t726 * t1047 - t728 * t1048;
     const wam7_real_t t1062 = t1061 + t731 * t1051 + t733 * t1053 + t735 * t1055;
     ddq_by_q[24] = t1062;
-    if (!(t1062 >= WAM7_C(-1.0e15) && t1062 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1063 = t737 * t1044 - t738 * t1046 + t739 * t1047 - t740 * t1048;
     const wam7_real_t t1064 = t1063 + t743 * t1051 + t746 * t1053 + t749 * t1055;
     ddq_by_q[31] = t1064;
-    if (!(t1064 >= WAM7_C(-1.0e15) && t1064 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1065 = t751 * t1044 - t752 * t1046 + t753 * t1047 - t754 * t1048;
     const wam7_real_t t1066 = t1065 + t746 * t1051 + t757 * t1053 + t760 * t1055;
     ddq_by_q[38] = t1066;
-    if (!(t1066 >= WAM7_C(-1.0e15) && t1066 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1067 = t762 * t1044 - t763 * t1046 + t764 * t1047 - t765 * t1048;
     const wam7_real_t t1068 = t1067 + t767 * t1051 + t768 * t1053 + t771 * t1055;
     ddq_by_q[45] = t1068;
-    if (!(t1068 >= WAM7_C(-1.0e15) && t1068 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1069 = WAM7_C(2.0) * t557 + (t97 * t1027 + t98 * t1028);
     const wam7_real_t t1070 = WAM7_C(2.0) * t558 + (t98 * t1027 + t96 * t1028);
     const wam7_real_t t1071 = t73 * t1069 - t71 * t1070;
@@ -1924,129 +1434,31 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1088 = WAM7_C(0.9996900960702182) * (t691 + WAM7_C(2.0) * (t76 * t229 + t78 * t218));
     const wam7_real_t t1089 = t1085 + t1086 * t637 + t1087 * t658 + t1088 * t680;
     ddq_by_dq[3] = t1089;
-    if (!(t1089 >= WAM7_C(-1.0e15) && t1089 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1090 = t1081 * t698 - t1078 * t699 + t1082 * t701 - t1084 * t703;
     const wam7_real_t t1091 = t1090 + t1086 * t706 + t1087 * t708 + t1088 * t710;
     ddq_by_dq[10] = t1091;
-    if (!(t1091 >= WAM7_C(-1.0e15) && t1091 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1092 = t1081 * t712 - t1078 * t701 + t1082 * t713 - t1084 * t715;
     const wam7_real_t t1093 = t1092 + t1086 * t718 + t1087 * t720 + t1088 * t722;
     ddq_by_dq[17] = t1093;
-    if (!(t1093 >= WAM7_C(-1.0e15) && t1093 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1094 = t1081 * t724 - t1078 * t725 + t1082 * t726 - t1084 * t728;
     const wam7_real_t t1095 = t1094 + t1086 * t731 + t1087 * t733 + t1088 * t735;
     ddq_by_dq[24] = t1095;
-    if (!(t1095 >= WAM7_C(-1.0e15) && t1095 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1096 = t1081 * t737 - t1078 * t738 + t1082 * t739 - t1084 * t740;
     const wam7_real_t t1097 = t1096 + t1086 * t743 + t1087 * t746 + t1088 * t749;
     ddq_by_dq[31] = t1097;
-    if (!(t1097 >= WAM7_C(-1.0e15) && t1097 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1098 = t1081 * t751 - t1078 * t752 + t1082 * t753 - t1084 * t754;
     const wam7_real_t t1099 = t1098 + t1086 * t746 + t1087 * t757 + t1088 * t760;
     ddq_by_dq[38] = t1099;
-    if (!(t1099 >= WAM7_C(-1.0e15) && t1099 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1100 = t1081 * t762 - t1078 * t763 + t1082 * t764 - t1084 * t765;
     const wam7_real_t t1101 = t1100 + t1086 * t767 + t1087 * t768 + t1088 * t771;
     ddq_by_dq[45] = t1101;
-    if (!(t1101 >= WAM7_C(-1.0e15) && t1101 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t620;
-    if (!(t620 >= WAM7_C(-1.0e15) && t620 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t703;
-    if (!(t703 >= WAM7_C(-1.0e15) && t703 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t715;
-    if (!(t715 >= WAM7_C(-1.0e15) && t715 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t728;
-    if (!(t728 >= WAM7_C(-1.0e15) && t728 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t740;
-    if (!(t740 >= WAM7_C(-1.0e15) && t740 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[38] = t754;
-    if (!(t754 >= WAM7_C(-1.0e15) && t754 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[45] = t765;
-    if (!(t765 >= WAM7_C(-1.0e15) && t765 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1102 = t49 * t839;
     const wam7_real_t t1103 = t8 * t799;
     const wam7_real_t t1104 = t346 + t337;
@@ -2085,73 +1497,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1137 = WAM7_C(0.9996900960702182) * (t1136 + (t44 * t839 - t37 * t827));
     const wam7_real_t t1138 = t1132 + t637 * t1133 + t658 * t1135 + t680 * t1137;
     ddq_by_q[4] = t1138;
-    if (!(t1138 >= WAM7_C(-1.0e15) && t1138 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1139 = t698 * t1127 - t699 * t1129 + t701 * t1130 - t703 * t1131;
     const wam7_real_t t1140 = t1139 + t706 * t1133 + t708 * t1135 + t710 * t1137;
     ddq_by_q[11] = t1140;
-    if (!(t1140 >= WAM7_C(-1.0e15) && t1140 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1141 = t712 * t1127 - t701 * t1129 + t713 * t1130 - t715 * t1131;
     const wam7_real_t t1142 = t1141 + t718 * t1133 + t720 * t1135 + t722 * t1137;
     ddq_by_q[18] = t1142;
-    if (!(t1142 >= WAM7_C(-1.0e15) && t1142 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1143 = t724 * t1127 - t725 * t1129 + t726 * t1130 - t728 * t1131;
     const wam7_real_t t1144 = t1143 + t731 * t1133 + t733 * t1135 + t735 * t1137;
     ddq_by_q[25] = t1144;
-    if (!(t1144 >= WAM7_C(-1.0e15) && t1144 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1145 = t737 * t1127 - t738 * t1129 + t739 * t1130 - t740 * t1131;
     const wam7_real_t t1146 = t1145 + t743 * t1133 + t746 * t1135 + t749 * t1137;
     ddq_by_q[32] = t1146;
-    if (!(t1146 >= WAM7_C(-1.0e15) && t1146 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1147 = t751 * t1127 - t752 * t1129 + t753 * t1130 - t754 * t1131;
     const wam7_real_t t1148 = t1147 + t746 * t1133 + t757 * t1135 + t760 * t1137;
     ddq_by_q[39] = t1148;
-    if (!(t1148 >= WAM7_C(-1.0e15) && t1148 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1149 = t762 * t1127 - t763 * t1129 + t764 * t1130 - t765 * t1131;
     const wam7_real_t t1150 = t1149 + t767 * t1133 + t768 * t1135 + t771 * t1137;
     ddq_by_q[46] = t1150;
-    if (!(t1150 >= WAM7_C(-1.0e15) && t1150 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1151 = WAM7_C(2.0) * t534 + (t58 * t1105 + t59 * t1106);
     const wam7_real_t t1152 = WAM7_C(-2.0) * t535 + (t59 * t1105 + t8 * t1106);
     const wam7_real_t t1153 = WAM7_C(2.0) * t508 + t49 * t1106;
@@ -2180,129 +1543,31 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1176 = WAM7_C(0.9996900960702182) * (t688 + WAM7_C(2.0) * (t43 * t223 - t3 * t222));
     const wam7_real_t t1177 = t1172 + t1174 * t637 + t1175 * t658 + t1176 * t680;
     ddq_by_dq[4] = t1177;
-    if (!(t1177 >= WAM7_C(-1.0e15) && t1177 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1178 = t1169 * t698 - t1166 * t699 + t1170 * t701 - t1171 * t703;
     const wam7_real_t t1179 = t1178 + t1174 * t706 + t1175 * t708 + t1176 * t710;
     ddq_by_dq[11] = t1179;
-    if (!(t1179 >= WAM7_C(-1.0e15) && t1179 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1180 = t1169 * t712 - t1166 * t701 + t1170 * t713 - t1171 * t715;
     const wam7_real_t t1181 = t1180 + t1174 * t718 + t1175 * t720 + t1176 * t722;
     ddq_by_dq[18] = t1181;
-    if (!(t1181 >= WAM7_C(-1.0e15) && t1181 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1182 = t1169 * t724 - t1166 * t725 + t1170 * t726 - t1171 * t728;
     const wam7_real_t t1183 = t1182 + t1174 * t731 + t1175 * t733 + t1176 * t735;
     ddq_by_dq[25] = t1183;
-    if (!(t1183 >= WAM7_C(-1.0e15) && t1183 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1184 = t1169 * t737 - t1166 * t738 + t1170 * t739 - t1171 * t740;
     const wam7_real_t t1185 = t1184 + t1174 * t743 + t1175 * t746 + t1176 * t749;
     ddq_by_dq[32] = t1185;
-    if (!(t1185 >= WAM7_C(-1.0e15) && t1185 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1186 = t1169 * t751 - t1166 * t752 + t1170 * t753 - t1171 * t754;
     const wam7_real_t t1187 = t1186 + t1174 * t746 + t1175 * t757 + t1176 * t760;
     ddq_by_dq[39] = t1187;
-    if (!(t1187 >= WAM7_C(-1.0e15) && t1187 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1188 = t1169 * t762 - t1166 * t763 + t1170 * t764 - t1171 * t765;
     const wam7_real_t t1189 = t1188 + t1174 * t767 + t1175 * t768 + t1176 * t771;
     ddq_by_dq[46] = t1189;
-    if (!(t1189 >= WAM7_C(-1.0e15) && t1189 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t637;
-    if (!(t637 >= WAM7_C(-1.0e15) && t637 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t706;
-    if (!(t706 >= WAM7_C(-1.0e15) && t706 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t718;
-    if (!(t718 >= WAM7_C(-1.0e15) && t718 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t731;
-    if (!(t731 >= WAM7_C(-1.0e15) && t731 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t743;
-    if (!(t743 >= WAM7_C(-1.0e15) && t743 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[39] = t746;
-    if (!(t746 >= WAM7_C(-1.0e15) && t746 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[46] = t767;
-    if (!(t767 >= WAM7_C(-1.0e15) && t767 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1190 = t329 + t317;
     const wam7_real_t t1191 = WAM7_C(2.0) * t242;
     const wam7_real_t t1192 = WAM7_C(2.0) * t250;
@@ -2345,73 +1610,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1229 = WAM7_C(0.9996900960702182) * (t1228 + t1197);
     const wam7_real_t t1230 = t1225 + t637 * t1226 + t658 * t1227 + t680 * t1229;
     ddq_by_q[5] = t1230;
-    if (!(t1230 >= WAM7_C(-1.0e15) && t1230 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1231 = t698 * t1220 - t699 * t1222 + t701 * t1223 - t703 * t1224;
     const wam7_real_t t1232 = t1231 + t706 * t1226 + t708 * t1227 + t710 * t1229;
     ddq_by_q[12] = t1232;
-    if (!(t1232 >= WAM7_C(-1.0e15) && t1232 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1233 = t712 * t1220 - t701 * t1222 + t713 * t1223 - t715 * t1224;
     const wam7_real_t t1234 = t1233 + t718 * t1226 + t720 * t1227 + t722 * t1229;
     ddq_by_q[19] = t1234;
-    if (!(t1234 >= WAM7_C(-1.0e15) && t1234 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1235 = t724 * t1220 - t725 * t1222 + t726 * t1223 - t728 * t1224;
     const wam7_real_t t1236 = t1235 + t731 * t1226 + t733 * t1227 + t735 * t1229;
     ddq_by_q[26] = t1236;
-    if (!(t1236 >= WAM7_C(-1.0e15) && t1236 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1237 = t737 * t1220 - t738 * t1222 + t739 * t1223 - t740 * t1224;
     const wam7_real_t t1238 = t1237 + t743 * t1226 + t746 * t1227 + t749 * t1229;
     ddq_by_q[33] = t1238;
-    if (!(t1238 >= WAM7_C(-1.0e15) && t1238 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1239 = t751 * t1220 - t752 * t1222 + t753 * t1223 - t754 * t1224;
     const wam7_real_t t1240 = t1239 + t746 * t1226 + t757 * t1227 + t760 * t1229;
     ddq_by_q[40] = t1240;
-    if (!(t1240 >= WAM7_C(-1.0e15) && t1240 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1241 = t762 * t1220 - t763 * t1222 + t764 * t1223 - t765 * t1224;
     const wam7_real_t t1242 = t1241 + t767 * t1226 + t768 * t1227 + t771 * t1229;
     ddq_by_q[47] = t1242;
-    if (!(t1242 >= WAM7_C(-1.0e15) && t1242 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1243 = WAM7_C(2.0) * t491 + (t22 * t1191 + t23 * t1192);
     const wam7_real_t t1244 = WAM7_C(2.0) * t492 + (t23 * t1191 + parameters[ZZ7] * t1192);
     const wam7_real_t t1245 = t15 * t1243 - t13 * t1244;
@@ -2446,129 +1662,31 @@ int wam7_forward_dynamics_derivatives(
         + parameters[ZZ7] * t250));
     const wam7_real_t t1274 = t1269 + t1270 * t637 + t1272 * t658 + t1273 * t680;
     ddq_by_dq[5] = t1274;
-    if (!(t1274 >= WAM7_C(-1.0e15) && t1274 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1275 = t1266 * t698 - t1263 * t699 + t1267 * t701 - t1268 * t703;
     const wam7_real_t t1276 = t1275 + t1270 * t706 + t1272 * t708 + t1273 * t710;
     ddq_by_dq[12] = t1276;
-    if (!(t1276 >= WAM7_C(-1.0e15) && t1276 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1277 = t1266 * t712 - t1263 * t701 + t1267 * t713 - t1268 * t715;
     const wam7_real_t t1278 = t1277 + t1270 * t718 + t1272 * t720 + t1273 * t722;
     ddq_by_dq[19] = t1278;
-    if (!(t1278 >= WAM7_C(-1.0e15) && t1278 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1279 = t1266 * t724 - t1263 * t725 + t1267 * t726 - t1268 * t728;
     const wam7_real_t t1280 = t1279 + t1270 * t731 + t1272 * t733 + t1273 * t735;
     ddq_by_dq[26] = t1280;
-    if (!(t1280 >= WAM7_C(-1.0e15) && t1280 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1281 = t1266 * t737 - t1263 * t738 + t1267 * t739 - t1268 * t740;
     const wam7_real_t t1282 = t1281 + t1270 * t743 + t1272 * t746 + t1273 * t749;
     ddq_by_dq[33] = t1282;
-    if (!(t1282 >= WAM7_C(-1.0e15) && t1282 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1283 = t1266 * t751 - t1263 * t752 + t1267 * t753 - t1268 * t754;
     const wam7_real_t t1284 = t1283 + t1270 * t746 + t1272 * t757 + t1273 * t760;
     ddq_by_dq[40] = t1284;
-    if (!(t1284 >= WAM7_C(-1.0e15) && t1284 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1285 = t1266 * t762 - t1263 * t763 + t1267 * t764 - t1268 * t765;
     const wam7_real_t t1286 = t1285 + t1270 * t767 + t1272 * t768 + t1273 * t771;
     ddq_by_dq[47] = t1286;
-    if (!(t1286 >= WAM7_C(-1.0e15) && t1286 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t658;
-    if (!(t658 >= WAM7_C(-1.0e15) && t658 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t708;
-    if (!(t708 >= WAM7_C(-1.0e15) && t708 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t720;
-    if (!(t720 >= WAM7_C(-1.0e15) && t720 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t733;
-    if (!(t733 >= WAM7_C(-1.0e15) && t733 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t746;
-    if (!(t746 >= WAM7_C(-1.0e15) && t746 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[40] = t757;
-    if (!(t757 >= WAM7_C(-1.0e15) && t757 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[47] = t768;
-    if (!(t768 >= WAM7_C(-1.0e15) && t768 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1287 = t310 + t269;
     const wam7_real_t t1288 = WAM7_C(2.0) * t254;
     const wam7_real_t t1289 = WAM7_C(2.0) * t260;
@@ -2614,73 +1732,24 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1327 = WAM7_C(0.9996900960702182) * (t1296 + (t254 * t681 + t260 * t682 + t1295));
     const wam7_real_t t1328 = t1324 + t637 * t1325 + t658 * t1326 + t680 * t1327;
     ddq_by_q[6] = t1328;
-    if (!(t1328 >= WAM7_C(-1.0e15) && t1328 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1329 = t698 * t1319 - t699 * t1321 + t701 * t1322 - t703 * t1323;
     const wam7_real_t t1330 = t1329 + t706 * t1325 + t708 * t1326 + t710 * t1327;
     ddq_by_q[13] = t1330;
-    if (!(t1330 >= WAM7_C(-1.0e15) && t1330 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1331 = t712 * t1319 - t701 * t1321 + t713 * t1322 - t715 * t1323;
     const wam7_real_t t1332 = t1331 + t718 * t1325 + t720 * t1326 + t722 * t1327;
     ddq_by_q[20] = t1332;
-    if (!(t1332 >= WAM7_C(-1.0e15) && t1332 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1333 = t724 * t1319 - t725 * t1321 + t726 * t1322 - t728 * t1323;
     const wam7_real_t t1334 = t1333 + t731 * t1325 + t733 * t1326 + t735 * t1327;
     ddq_by_q[27] = t1334;
-    if (!(t1334 >= WAM7_C(-1.0e15) && t1334 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1335 = t737 * t1319 - t738 * t1321 + t739 * t1322 - t740 * t1323;
     const wam7_real_t t1336 = t1335 + t743 * t1325 + t746 * t1326 + t749 * t1327;
     ddq_by_q[34] = t1336;
-    if (!(t1336 >= WAM7_C(-1.0e15) && t1336 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1337 = t751 * t1319 - t752 * t1321 + t753 * t1322 - t754 * t1323;
     const wam7_real_t t1338 = t1337 + t746 * t1325 + t757 * t1326 + t760 * t1327;
     ddq_by_q[41] = t1338;
-    if (!(t1338 >= WAM7_C(-1.0e15) && t1338 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1339 = t762 * t1319 - t763 * t1321 + t764 * t1322 - t765 * t1323;
     const wam7_real_t t1340 = t1339 + t767 * t1325 + t768 * t1326 + t771 * t1327;
     ddq_by_q[48] = t1340;
-    if (!(t1340 >= WAM7_C(-1.0e15) && t1340 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1341 = WAM7_C(2.0) * t478 - (parameters[XX7R] * t1288 + parameters[XY7] * t1289);
     const wam7_real_t t1342 = WAM7_C(2.0) * t479 - parameters[XY7] * t1288;
     const wam7_real_t t1343 = t1 * t1342 - t2 * t1341;
@@ -2717,129 +1786,31 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t1374 = WAM7_C(-222.83582089552237) * parameters[FV7];
     const wam7_real_t t1375 = t1371 + t1372 * t637 + t1373 * t658 + t1374 * t680;
     ddq_by_dq[6] = t1375;
-    if (!(t1375 >= WAM7_C(-1.0e15) && t1375 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1376 = t1368 * t698 - t1365 * t699 + t1369 * t701 - t1370 * t703;
     const wam7_real_t t1377 = t1376 + t1372 * t706 + t1373 * t708 + t1374 * t710;
     ddq_by_dq[13] = t1377;
-    if (!(t1377 >= WAM7_C(-1.0e15) && t1377 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1378 = t1368 * t712 - t1365 * t701 + t1369 * t713 - t1370 * t715;
     const wam7_real_t t1379 = t1378 + t1372 * t718 + t1373 * t720 + t1374 * t722;
     ddq_by_dq[20] = t1379;
-    if (!(t1379 >= WAM7_C(-1.0e15) && t1379 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1380 = t1368 * t724 - t1365 * t725 + t1369 * t726 - t1370 * t728;
     const wam7_real_t t1381 = t1380 + t1372 * t731 + t1373 * t733 + t1374 * t735;
     ddq_by_dq[27] = t1381;
-    if (!(t1381 >= WAM7_C(-1.0e15) && t1381 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1382 = t1368 * t737 - t1365 * t738 + t1369 * t739 - t1370 * t740;
     const wam7_real_t t1383 = t1382 + t1372 * t743 + t1373 * t746 + t1374 * t749;
     ddq_by_dq[34] = t1383;
-    if (!(t1383 >= WAM7_C(-1.0e15) && t1383 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1384 = t1368 * t751 - t1365 * t752 + t1369 * t753 - t1370 * t754;
     const wam7_real_t t1385 = t1384 + t1372 * t746 + t1373 * t757 + t1374 * t760;
     ddq_by_dq[41] = t1385;
-    if (!(t1385 >= WAM7_C(-1.0e15) && t1385 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1386 = t1368 * t762 - t1365 * t763 + t1369 * t764 - t1370 * t765;
     const wam7_real_t t1387 = t1386 + t1372 * t767 + t1373 * t768 + t1374 * t771;
     ddq_by_dq[48] = t1387;
-    if (!(t1387 >= WAM7_C(-1.0e15) && t1387 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t680;
-    if (!(t680 >= WAM7_C(-1.0e15) && t680 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t710;
-    if (!(t710 >= WAM7_C(-1.0e15) && t710 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t722;
-    if (!(t722 >= WAM7_C(-1.0e15) && t722 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t735;
-    if (!(t735 >= WAM7_C(-1.0e15) && t735 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t749;
-    if (!(t749 >= WAM7_C(-1.0e15) && t749 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[41] = t760;
-    if (!(t760 >= WAM7_C(-1.0e15) && t760 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[48] = t771;
-    if (!(t771 >= WAM7_C(-1.0e15) && t771 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = WAM7_C(0.0);
     ddq_by_q[7] = WAM7_C(0.0);
@@ -2848,5 +1819,15 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
+    if (!wam7_within_joints(ddq, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_q, 49, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_dq, 49, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_input, 49, WAM7_C(1.0e30))) {
+        wam7_zero(ddq, 7);
+        wam7_zero(ddq_by_q, 49);
+        wam7_zero(ddq_by_dq, 49);
+        wam7_zero(ddq_by_input, 49);
+        return WAM7_STATUS_PIVOT;
+    }
     return WAM7_STATUS_OK;
 }

@@ -125,7 +125,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xCD30D7BEUL
+#if WAM7_GENERATION != 0xBB60C589UL
 #error "wam7.h and wam7_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -771,70 +771,21 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t496 = WAM7_C(1.0) / t222;
     const wam7_real_t t497 = (t489 - t495 * t210) * t496;
     ddq[0] = t497;
-    if (!(t497 >= WAM7_C(-1.0e15) && t497 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t498 = t495 * t209 - t210 * t497;
     ddq[1] = t498;
-    if (!(t498 >= WAM7_C(-1.0e15) && t498 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t499 = t488 * t182 + t221 * t497 - t183 * t498;
     ddq[2] = t499;
-    if (!(t499 >= WAM7_C(-1.0e15) && t499 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t500 = t484 * t105 + t220 * t497 + t172 * t498 + t106 * t499;
     ddq[3] = t500;
-    if (!(t500 >= WAM7_C(-1.0e15) && t500 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t501 = t480 * t78 + t218 * t497 - t166 * t498 + t107 * t499;
     const wam7_real_t t502 = t501 + t79 * t500;
     ddq[4] = t502;
-    if (!(t502 >= WAM7_C(-1.0e15) && t502 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t503 = t476 * t33 + t217 * t497 - t158 * t498 + t124 * t499;
     const wam7_real_t t504 = t503 + t72 * t500 + t34 * t502;
     ddq[5] = t504;
-    if (!(t504 >= WAM7_C(-1.0e15) && t504 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t505 = t473 * t5 + t216 * t497 - t150 * t498 - t108 * t499;
     const wam7_real_t t506 = t505 + t68 * t500 - t28 * t502 - t6 * t504;
     ddq[6] = t506;
-    if (!(t506 >= WAM7_C(-1.0e15) && t506 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t507 = t276 * parameters[XZ7];
     const wam7_real_t t508 = t277 * parameters[XY7];
     const wam7_real_t t509 = t507 + t508;
@@ -1102,13 +1053,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t768 = WAM7_C(0.9996900960702182) * (t187 * t765 + t189 * t767);
     const wam7_real_t t769 = t703 + t723 * t708 + t743 * t729 + t768 * t751;
     ddq_by_dq[0] = t769;
-    if (!(t769 >= WAM7_C(-1.0e15) && t769 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t770 = WAM7_C(-19.194) * t670;
     const wam7_real_t t771 = WAM7_C(12.910250000000001) * (t209 + t210 * t670);
     const wam7_real_t t772 = t183 * t209 + t210 * t679;
@@ -1124,13 +1068,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t782 = WAM7_C(-1.00031) * t781;
     const wam7_real_t t783 = t776 + t723 * t778 + t743 * t780 + t768 * t782;
     ddq_by_dq[7] = t783;
-    if (!(t783 >= WAM7_C(-1.0e15) && t783 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t784 = WAM7_C(19.194) * t679;
     const wam7_real_t t785 = WAM7_C(12.910250000000001) * (t182 + t221 * t679 + t183 * t772);
     const wam7_real_t t786 = t106 * t182 + t221 * t690 + t183 * t774;
@@ -1144,13 +1081,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t794 = WAM7_C(1.00031) * t793;
     const wam7_real_t t795 = t788 + t723 * t790 + t743 * t792 + t768 * t794;
     ddq_by_dq[14] = t795;
-    if (!(t795 >= WAM7_C(-1.0e15) && t795 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t796 = WAM7_C(19.194) * t690;
     const wam7_real_t t797 = WAM7_C(-12.910250000000001) * t774;
     const wam7_real_t t798 = WAM7_C(12.910250000000001) * t786;
@@ -1165,13 +1095,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t807 = WAM7_C(-1.00031) * t806;
     const wam7_real_t t808 = t801 + t723 * t803 + t743 * t805 + t768 * t807;
     ddq_by_dq[21] = t808;
-    if (!(t808 >= WAM7_C(-1.0e15) && t808 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t809 = WAM7_C(19.194) * t707;
     const wam7_real_t t810 = WAM7_C(-12.910250000000001) * t777;
     const wam7_real_t t811 = WAM7_C(12.910250000000001) * t789;
@@ -1187,13 +1110,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t821 = WAM7_C(1.00031) * t820;
     const wam7_real_t t822 = t813 + t723 * t815 + t743 * t818 + t768 * t821;
     ddq_by_dq[28] = t822;
-    if (!(t822 >= WAM7_C(-1.0e15) && t822 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t823 = WAM7_C(19.194) * t728;
     const wam7_real_t t824 = WAM7_C(-12.910250000000001) * t779;
     const wam7_real_t t825 = WAM7_C(12.910250000000001) * t791;
@@ -1206,13 +1122,6 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t832 = WAM7_C(1.00031) * t831;
     const wam7_real_t t833 = t827 + t723 * t818 + t743 * t829 + t768 * t832;
     ddq_by_dq[35] = t833;
-    if (!(t833 >= WAM7_C(-1.0e15) && t833 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t834 = WAM7_C(19.194) * t750;
     const wam7_real_t t835 = WAM7_C(-12.910250000000001) * t781;
     const wam7_real_t t836 = WAM7_C(12.910250000000001) * t793;
@@ -1225,69 +1134,13 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t843 = WAM7_C(1.00031) * t842;
     const wam7_real_t t844 = t838 + t723 * t839 + t743 * t840 + t768 * t843;
     ddq_by_dq[42] = t844;
-    if (!(t844 >= WAM7_C(-1.0e15) && t844 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t669;
-    if (!(t669 >= WAM7_C(-1.0e15) && t669 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t770;
-    if (!(t770 >= WAM7_C(-1.0e15) && t770 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[14] = t784;
-    if (!(t784 >= WAM7_C(-1.0e15) && t784 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[21] = t796;
-    if (!(t796 >= WAM7_C(-1.0e15) && t796 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[28] = t809;
-    if (!(t809 >= WAM7_C(-1.0e15) && t809 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[35] = t823;
-    if (!(t823 >= WAM7_C(-1.0e15) && t823 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[42] = t834;
-    if (!(t834 >= WAM7_C(-1.0e15) && t834 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t845 = t238 - t498;
     const wam7_real_t t846 = t187 * t497;
     const wam7_real_t t847 = t239 + t846;
@@ -1467,73 +1320,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1006 = WAM7_C(0.9996900960702182) * (t311 * t148 + t303 * t145 + t1005);
     const wam7_real_t t1007 = t1000 + t708 * t1002 + t729 * t1004 + t751 * t1006;
     ddq_by_q[1] = t1007;
-    if (!(t1007 >= WAM7_C(-1.0e15) && t1007 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1008 = t770 * t992 - t771 * t995 + t773 * t997 - t775 * t999;
     const wam7_real_t t1009 = t1008 + t778 * t1002 + t780 * t1004 + t782 * t1006;
     ddq_by_q[8] = t1009;
-    if (!(t1009 >= WAM7_C(-1.0e15) && t1009 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1010 = t784 * t992 - t773 * t995 + t785 * t997 - t787 * t999;
     const wam7_real_t t1011 = t1010 + t790 * t1002 + t792 * t1004 + t794 * t1006;
     ddq_by_q[15] = t1011;
-    if (!(t1011 >= WAM7_C(-1.0e15) && t1011 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1012 = t796 * t992 - t797 * t995 + t798 * t997 - t800 * t999;
     const wam7_real_t t1013 = t1012 + t803 * t1002 + t805 * t1004 + t807 * t1006;
     ddq_by_q[22] = t1013;
-    if (!(t1013 >= WAM7_C(-1.0e15) && t1013 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1014 = t809 * t992 - t810 * t995 + t811 * t997 - t812 * t999;
     const wam7_real_t t1015 = t1014 + t815 * t1002 + t818 * t1004 + t821 * t1006;
     ddq_by_q[29] = t1015;
-    if (!(t1015 >= WAM7_C(-1.0e15) && t1015 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1016 = t823 * t992 - t824 * t995 + t825 * t997 - t826 * t999;
     const wam7_real_t t1017 = t1016 + t818 * t1002 + t829 * t1004 + t832 * t1006;
     ddq_by_q[36] = t1017;
-    if (!(t1017 >= WAM7_C(-1.0e15) && t1017 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1018 = t834 * t992 - t835 * t995 + t836 * t997 - t837 * t999;
     const wam7_real_t t1019 = t1018 + t839 * t1002 + t840 * t1004 + t843 * t1006;
     ddq_by_q[43] = t1019;
-    if (!(t1019 >= WAM7_C(-1.0e15) && t1019 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1020 = WAM7_C(2.0) * (t646 - t650 + (t617 + t637 - t644 - t645));
     const wam7_real_t t1021 = WAM7_C(0.07745783389167521) * (t1020 + WAM7_C(2.0) * (t226 * t186
         + t224 * t188));
@@ -1561,129 +1365,31 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1039 = WAM7_C(0.9996900960702182) * t1038;
     const wam7_real_t t1040 = t1033 + t1035 * t708 + t1037 * t729 + t1039 * t751;
     ddq_by_dq[1] = t1040;
-    if (!(t1040 >= WAM7_C(-1.0e15) && t1040 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1041 = t1028 * t770 - t1022 * t771 + t1030 * t773 - t1032 * t775;
     const wam7_real_t t1042 = t1041 + t1035 * t778 + t1037 * t780 + t1039 * t782;
     ddq_by_dq[8] = t1042;
-    if (!(t1042 >= WAM7_C(-1.0e15) && t1042 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1043 = t1028 * t784 - t1022 * t773 + t1030 * t785 - t1032 * t787;
     const wam7_real_t t1044 = t1043 + t1035 * t790 + t1037 * t792 + t1039 * t794;
     ddq_by_dq[15] = t1044;
-    if (!(t1044 >= WAM7_C(-1.0e15) && t1044 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1045 = t1028 * t796 - t1022 * t797 + t1030 * t798 - t1032 * t800;
     const wam7_real_t t1046 = t1045 + t1035 * t803 + t1037 * t805 + t1039 * t807;
     ddq_by_dq[22] = t1046;
-    if (!(t1046 >= WAM7_C(-1.0e15) && t1046 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1047 = t1028 * t809 - t1022 * t810 + t1030 * t811 - t1032 * t812;
     const wam7_real_t t1048 = t1047 + t1035 * t815 + t1037 * t818 + t1039 * t821;
     ddq_by_dq[29] = t1048;
-    if (!(t1048 >= WAM7_C(-1.0e15) && t1048 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1049 = t1028 * t823 - t1022 * t824 + t1030 * t825 - t1032 * t826;
     const wam7_real_t t1050 = t1049 + t1035 * t818 + t1037 * t829 + t1039 * t832;
     ddq_by_dq[36] = t1050;
-    if (!(t1050 >= WAM7_C(-1.0e15) && t1050 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1051 = t1028 * t834 - t1022 * t835 + t1030 * t836 - t1032 * t837;
     const wam7_real_t t1052 = t1051 + t1035 * t839 + t1037 * t840 + t1039 * t843;
     ddq_by_dq[43] = t1052;
-    if (!(t1052 >= WAM7_C(-1.0e15) && t1052 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[1] = t671;
-    if (!(t671 >= WAM7_C(-1.0e15) && t671 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[8] = t771;
-    if (!(t771 >= WAM7_C(-1.0e15) && t771 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t773;
-    if (!(t773 >= WAM7_C(-1.0e15) && t773 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[22] = t797;
-    if (!(t797 >= WAM7_C(-1.0e15) && t797 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[29] = t810;
-    if (!(t810 >= WAM7_C(-1.0e15) && t810 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[36] = t824;
-    if (!(t824 >= WAM7_C(-1.0e15) && t824 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[43] = t835;
-    if (!(t835 >= WAM7_C(-1.0e15) && t835 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1053 = t440 + t299;
     const wam7_real_t t1054 = WAM7_C(2.0) * t229;
     const wam7_real_t t1055 = WAM7_C(2.0) * t225;
@@ -1714,73 +1420,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1080 = WAM7_C(0.9996900960702182) * (t1079 + (t89 * t889 - t147 * t896));
     const wam7_real_t t1081 = t1074 + t708 * t1076 + t729 * t1078 + t751 * t1080;
     ddq_by_q[2] = t1081;
-    if (!(t1081 >= WAM7_C(-1.0e15) && t1081 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1082 = t770 * t1068 - t771 * t1070 + t773 * t1071 - t775 * t1073;
     const wam7_real_t t1083 = t1082 + t778 * t1076 + t780 * t1078 + t782 * t1080;
     ddq_by_q[9] = t1083;
-    if (!(t1083 >= WAM7_C(-1.0e15) && t1083 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1084 = t784 * t1068 - t773 * t1070 + t785 * t1071 - t787 * t1073;
     const wam7_real_t t1085 = t1084 + t790 * t1076 + t792 * t1078 + t794 * t1080;
     ddq_by_q[16] = t1085;
-    if (!(t1085 >= WAM7_C(-1.0e15) && t1085 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1086 = t796 * t1068 - t797 * t1070 + t798 * t1071 - t800 * t1073;
     const wam7_real_t t1087 = t1086 + t803 * t1076 + t805 * t1078 + t807 * t1080;
     ddq_by_q[23] = t1087;
-    if (!(t1087 >= WAM7_C(-1.0e15) && t1087 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1088 = t809 * t1068 - t810 * t1070 + t811 * t1071 - t812 * t1073;
     const wam7_real_t t1089 = t1088 + t815 * t1076 + t818 * t1078 + t821 * t1080;
     ddq_by_q[30] = t1089;
-    if (!(t1089 >= WAM7_C(-1.0e15) && t1089 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1090 = t823 * t1068 - t824 * t1070 + t825 * t1071 - t826 * t1073;
     const wam7_real_t t1091 = t1090 + t818 * t1076 + t829 * t1078 + t832 * t1080;
     ddq_by_q[37] = t1091;
-    if (!(t1091 >= WAM7_C(-1.0e15) && t1091 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1092 = t834 * t1068 - t835 * t1070 + t836 * t1071 - t837 * t1073;
     const wam7_real_t t1093 = t1092 + t839 * t1076 + t840 * t1078 + t843 * t1080;
     ddq_by_q[44] = t1093;
-    if (!(t1093 >= WAM7_C(-1.0e15) && t1093 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1094 = WAM7_C(2.0) * t654 + (t128 * t1054 + t133 * t1055);
     const wam7_real_t t1095 = WAM7_C(-2.0) * t655 + (t133 * t1054 + t129 * t1055);
     const wam7_real_t t1096 = WAM7_C(2.0) * t656 - t138 * t1054;
@@ -1801,129 +1458,31 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1109 = WAM7_C(0.9996900960702182) * (t766 + WAM7_C(2.0) * (t225 * t146 - t229 * t144));
     const wam7_real_t t1110 = t1106 + t1107 * t708 + t1108 * t729 + t1109 * t751;
     ddq_by_dq[2] = t1110;
-    if (!(t1110 >= WAM7_C(-1.0e15) && t1110 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1111 = t1102 * t770 - t1099 * t771 + t1104 * t773 - t1105 * t775;
     const wam7_real_t t1112 = t1111 + t1107 * t778 + t1108 * t780 + t1109 * t782;
     ddq_by_dq[9] = t1112;
-    if (!(t1112 >= WAM7_C(-1.0e15) && t1112 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1113 = t1102 * t784 - t1099 * t773 + t1104 * t785 - t1105 * t787;
     const wam7_real_t t1114 = t1113 + t1107 * t790 + t1108 * t792 + t1109 * t794;
     ddq_by_dq[16] = t1114;
-    if (!(t1114 >= WAM7_C(-1.0e15) && t1114 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1115 = t1102 * t796 - t1099 * t797 + t1104 * t798 - t1105 * t800;
     const wam7_real_t t1116 = t1115 + t1107 * t803 + t1108 * t805 + t1109 * t807;
     ddq_by_dq[23] = t1116;
-    if (!(t1116 >= WAM7_C(-1.0e15) && t1116 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1117 = t1102 * t809 - t1099 * t810 + t1104 * t811 - t1105 * t812;
     const wam7_real_t t1118 = t1117 + t1107 * t815 + t1108 * t818 + t1109 * t821;
     ddq_by_dq[30] = t1118;
-    if (!(t1118 >= WAM7_C(-1.0e15) && t1118 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1119 = t1102 * t823 - t1099 * t824 + t1104 * t825 - t1105 * t826;
     const wam7_real_t t1120 = t1119 + t1107 * t818 + t1108 * t829 + t1109 * t832;
     ddq_by_dq[37] = t1120;
-    if (!(t1120 >= WAM7_C(-1.0e15) && t1120 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1121 = t1102 * t834 - t1099 * t835 + t1104 * t836 - t1105 * t837;
     const wam7_real_t t1122 = t1121 + t1107 * t839 + t1108 * t840 + t1109 * t843;
     ddq_by_dq[44] = t1122;
-    if (!(t1122 >= WAM7_C(-1.0e15) && t1122 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[2] = t680;
-    if (!(t680 >= WAM7_C(-1.0e15) && t680 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t773;
-    if (!(t773 >= WAM7_C(-1.0e15) && t773 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[16] = t785;
-    if (!(t785 >= WAM7_C(-1.0e15) && t785 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[23] = t798;
-    if (!(t798 >= WAM7_C(-1.0e15) && t798 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[30] = t811;
-    if (!(t811 >= WAM7_C(-1.0e15) && t811 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[37] = t825;
-    if (!(t825 >= WAM7_C(-1.0e15) && t825 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[44] = t836;
-    if (!(t836 >= WAM7_C(-1.0e15) && t836 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1123 = WAM7_C(-2.0) * t248;
     const wam7_real_t t1124 = WAM7_C(2.0) * t228;
     const wam7_real_t t1125 = t587 * t1123 - t598 * t1124 + (t112 * t860 - t109 * t867 - t447 * t101);
@@ -1957,73 +1516,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1152 = WAM7_C(0.9996900960702182) * (t1151 + (t65 * t901 + t66 * t893));
     const wam7_real_t t1153 = t1146 + t708 * t1148 + t729 * t1150 + t751 * t1152;
     ddq_by_q[3] = t1153;
-    if (!(t1153 >= WAM7_C(-1.0e15) && t1153 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1154 = t770 * t1141 - t771 * t1143 + t773 * t1144 - t775 * t1145;
     const wam7_real_t t1155 = t1154 + t778 * t1148 + t780 * t1150 + t782 * t1152;
     ddq_by_q[10] = t1155;
-    if (!(t1155 >= WAM7_C(-1.0e15) && t1155 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1156 = t784 * t1141 - t773 * t1143 + t785 * t1144 - t787 * t1145;
     const wam7_real_t t1157 = t1156 + t790 * t1148 + t792 * t1150 + t794 * t1152;
     ddq_by_q[17] = t1157;
-    if (!(t1157 >= WAM7_C(-1.0e15) && t1157 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1158 = t796 * t1141 - t797 * t1143 + t798 * t1144 - t800 * t1145;
     const wam7_real_t t1159 = t1158 + t803 * t1148 + t805 * t1150 + t807 * t1152;
     ddq_by_q[24] = t1159;
-    if (!(t1159 >= WAM7_C(-1.0e15) && t1159 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1160 = t809 * t1141 - t810 * t1143 + t811 * t1144 - t812 * t1145;
     const wam7_real_t t1161 = t1160 + t815 * t1148 + t818 * t1150 + t821 * t1152;
     ddq_by_q[31] = t1161;
-    if (!(t1161 >= WAM7_C(-1.0e15) && t1161 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1162 = t823 * t1141 - t824 * t1143 + t825 * t1144 - t826 * t1145;
     const wam7_real_t t1163 = t1162 + t818 * t1148 + t829 * t1150 + t832 * t1152;
     ddq_by_q[38] = t1163;
-    if (!(t1163 >= WAM7_C(-1.0e15) && t1163 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1164 = t834 * t1141 - t835 * t1143 + t836 * t1144 - t837 * t1145;
     const wam7_real_t t1165 = t1164 + t839 * t1148 + t840 * t1150 + t843 * t1152;
     ddq_by_q[45] = t1165;
-    if (!(t1165 >= WAM7_C(-1.0e15) && t1165 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1166 = WAM7_C(2.0) * t623 + (t109 * t1123 + t112 * t1124);
     const wam7_real_t t1167 = WAM7_C(2.0) * t624 + (t112 * t1123 + t110 * t1124);
     const wam7_real_t t1168 = t87 * t1166 - t84 * t1167;
@@ -2048,129 +1558,31 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1185 = WAM7_C(0.9996900960702182) * (t763 + WAM7_C(2.0) * (t248 * t90 + t228 * t92));
     const wam7_real_t t1186 = t1182 + t1183 * t708 + t1184 * t729 + t1185 * t751;
     ddq_by_dq[3] = t1186;
-    if (!(t1186 >= WAM7_C(-1.0e15) && t1186 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1187 = t1178 * t770 - t1175 * t771 + t1179 * t773 - t1181 * t775;
     const wam7_real_t t1188 = t1187 + t1183 * t778 + t1184 * t780 + t1185 * t782;
     ddq_by_dq[10] = t1188;
-    if (!(t1188 >= WAM7_C(-1.0e15) && t1188 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1189 = t1178 * t784 - t1175 * t773 + t1179 * t785 - t1181 * t787;
     const wam7_real_t t1190 = t1189 + t1183 * t790 + t1184 * t792 + t1185 * t794;
     ddq_by_dq[17] = t1190;
-    if (!(t1190 >= WAM7_C(-1.0e15) && t1190 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1191 = t1178 * t796 - t1175 * t797 + t1179 * t798 - t1181 * t800;
     const wam7_real_t t1192 = t1191 + t1183 * t803 + t1184 * t805 + t1185 * t807;
     ddq_by_dq[24] = t1192;
-    if (!(t1192 >= WAM7_C(-1.0e15) && t1192 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1193 = t1178 * t809 - t1175 * t810 + t1179 * t811 - t1181 * t812;
     const wam7_real_t t1194 = t1193 + t1183 * t815 + t1184 * t818 + t1185 * t821;
     ddq_by_dq[31] = t1194;
-    if (!(t1194 >= WAM7_C(-1.0e15) && t1194 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1195 = t1178 * t823 - t1175 * t824 + t1179 * t825 - t1181 * t826;
     const wam7_real_t t1196 = t1195 + t1183 * t818 + t1184 * t829 + t1185 * t832;
     ddq_by_dq[38] = t1196;
-    if (!(t1196 >= WAM7_C(-1.0e15) && t1196 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1197 = t1178 * t834 - t1175 * t835 + t1179 * t836 - t1181 * t837;
     const wam7_real_t t1198 = t1197 + t1183 * t839 + t1184 * t840 + t1185 * t843;
     ddq_by_dq[45] = t1198;
-    if (!(t1198 >= WAM7_C(-1.0e15) && t1198 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t691;
-    if (!(t691 >= WAM7_C(-1.0e15) && t691 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[10] = t775;
-    if (!(t775 >= WAM7_C(-1.0e15) && t775 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[17] = t787;
-    if (!(t787 >= WAM7_C(-1.0e15) && t787 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[24] = t800;
-    if (!(t800 >= WAM7_C(-1.0e15) && t800 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[31] = t812;
-    if (!(t812 >= WAM7_C(-1.0e15) && t812 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[38] = t826;
-    if (!(t826 >= WAM7_C(-1.0e15) && t826 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[45] = t837;
-    if (!(t837 >= WAM7_C(-1.0e15) && t837 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1199 = WAM7_C(2.0) * t232;
     const wam7_real_t t1200 = WAM7_C(2.0) * t231;
     const wam7_real_t t1201 = t550 * t1199 + t560 * t1200 + (t423 * t73 + (t41 * t871 - t37 * t863));
@@ -2208,73 +1620,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1233 = WAM7_C(0.9996900960702182) * (t1232 + (t64 * t906 + t19 * t900));
     const wam7_real_t t1234 = t1228 + t708 * t1229 + t729 * t1231 + t751 * t1233;
     ddq_by_q[4] = t1234;
-    if (!(t1234 >= WAM7_C(-1.0e15) && t1234 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1235 = t770 * t1223 - t771 * t1225 + t773 * t1226 - t775 * t1227;
     const wam7_real_t t1236 = t1235 + t778 * t1229 + t780 * t1231 + t782 * t1233;
     ddq_by_q[11] = t1236;
-    if (!(t1236 >= WAM7_C(-1.0e15) && t1236 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1237 = t784 * t1223 - t773 * t1225 + t785 * t1226 - t787 * t1227;
     const wam7_real_t t1238 = t1237 + t790 * t1229 + t792 * t1231 + t794 * t1233;
     ddq_by_q[18] = t1238;
-    if (!(t1238 >= WAM7_C(-1.0e15) && t1238 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1239 = t796 * t1223 - t797 * t1225 + t798 * t1226 - t800 * t1227;
     const wam7_real_t t1240 = t1239 + t803 * t1229 + t805 * t1231 + t807 * t1233;
     ddq_by_q[25] = t1240;
-    if (!(t1240 >= WAM7_C(-1.0e15) && t1240 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1241 = t809 * t1223 - t810 * t1225 + t811 * t1226 - t812 * t1227;
     const wam7_real_t t1242 = t1241 + t815 * t1229 + t818 * t1231 + t821 * t1233;
     ddq_by_q[32] = t1242;
-    if (!(t1242 >= WAM7_C(-1.0e15) && t1242 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1243 = t823 * t1223 - t824 * t1225 + t825 * t1226 - t826 * t1227;
     const wam7_real_t t1244 = t1243 + t818 * t1229 + t829 * t1231 + t832 * t1233;
     ddq_by_q[39] = t1244;
-    if (!(t1244 >= WAM7_C(-1.0e15) && t1244 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1245 = t834 * t1223 - t835 * t1225 + t836 * t1226 - t837 * t1227;
     const wam7_real_t t1246 = t1245 + t839 * t1229 + t840 * t1231 + t843 * t1233;
     ddq_by_q[46] = t1246;
-    if (!(t1246 >= WAM7_C(-1.0e15) && t1246 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1247 = WAM7_C(2.0) * t593 + (t37 * t1199 + t41 * t1200);
     const wam7_real_t t1248 = WAM7_C(-2.0) * t594 + (t41 * t1199 + t38 * t1200);
     const wam7_real_t t1249 = WAM7_C(2.0) * t571 + t58 * t1199;
@@ -2303,129 +1666,31 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1272 = WAM7_C(0.9996900960702182) * (t760 + WAM7_C(2.0) * (t232 * t63 - t231 * t4));
     const wam7_real_t t1273 = t1268 + t1270 * t708 + t1271 * t729 + t1272 * t751;
     ddq_by_dq[4] = t1273;
-    if (!(t1273 >= WAM7_C(-1.0e15) && t1273 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1274 = t1265 * t770 - t1262 * t771 + t1266 * t773 - t1267 * t775;
     const wam7_real_t t1275 = t1274 + t1270 * t778 + t1271 * t780 + t1272 * t782;
     ddq_by_dq[11] = t1275;
-    if (!(t1275 >= WAM7_C(-1.0e15) && t1275 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1276 = t1265 * t784 - t1262 * t773 + t1266 * t785 - t1267 * t787;
     const wam7_real_t t1277 = t1276 + t1270 * t790 + t1271 * t792 + t1272 * t794;
     ddq_by_dq[18] = t1277;
-    if (!(t1277 >= WAM7_C(-1.0e15) && t1277 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1278 = t1265 * t796 - t1262 * t797 + t1266 * t798 - t1267 * t800;
     const wam7_real_t t1279 = t1278 + t1270 * t803 + t1271 * t805 + t1272 * t807;
     ddq_by_dq[25] = t1279;
-    if (!(t1279 >= WAM7_C(-1.0e15) && t1279 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1280 = t1265 * t809 - t1262 * t810 + t1266 * t811 - t1267 * t812;
     const wam7_real_t t1281 = t1280 + t1270 * t815 + t1271 * t818 + t1272 * t821;
     ddq_by_dq[32] = t1281;
-    if (!(t1281 >= WAM7_C(-1.0e15) && t1281 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1282 = t1265 * t823 - t1262 * t824 + t1266 * t825 - t1267 * t826;
     const wam7_real_t t1283 = t1282 + t1270 * t818 + t1271 * t829 + t1272 * t832;
     ddq_by_dq[39] = t1283;
-    if (!(t1283 >= WAM7_C(-1.0e15) && t1283 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1284 = t1265 * t834 - t1262 * t835 + t1266 * t836 - t1267 * t837;
     const wam7_real_t t1285 = t1284 + t1270 * t839 + t1271 * t840 + t1272 * t843;
     ddq_by_dq[46] = t1285;
-    if (!(t1285 >= WAM7_C(-1.0e15) && t1285 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[4] = t708;
-    if (!(t708 >= WAM7_C(-1.0e15) && t708 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[11] = t778;
-    if (!(t778 >= WAM7_C(-1.0e15) && t778 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[18] = t790;
-    if (!(t790 >= WAM7_C(-1.0e15) && t790 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[25] = t803;
-    if (!(t803 >= WAM7_C(-1.0e15) && t803 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[32] = t815;
-    if (!(t815 >= WAM7_C(-1.0e15) && t815 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[39] = t818;
-    if (!(t818 >= WAM7_C(-1.0e15) && t818 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[46] = t839;
-    if (!(t839 >= WAM7_C(-1.0e15) && t839 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1286 = WAM7_C(2.0) * t264;
     const wam7_real_t t1287 = WAM7_C(2.0) * t272;
     const wam7_real_t t1288 = t545 * t1286 + t531 * t1287 - (t21 * t882 - t17 * t874 - t398 * t29);
@@ -2467,73 +1732,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1324 = WAM7_C(0.9996900960702182) * (t1323 + t3 * t910);
     const wam7_real_t t1325 = t1320 + t708 * t1321 + t729 * t1322 + t751 * t1324;
     ddq_by_q[5] = t1325;
-    if (!(t1325 >= WAM7_C(-1.0e15) && t1325 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1326 = t770 * t1315 - t771 * t1317 + t773 * t1318 - t775 * t1319;
     const wam7_real_t t1327 = t1326 + t778 * t1321 + t780 * t1322 + t782 * t1324;
     ddq_by_q[12] = t1327;
-    if (!(t1327 >= WAM7_C(-1.0e15) && t1327 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1328 = t784 * t1315 - t773 * t1317 + t785 * t1318 - t787 * t1319;
     const wam7_real_t t1329 = t1328 + t790 * t1321 + t792 * t1322 + t794 * t1324;
     ddq_by_q[19] = t1329;
-    if (!(t1329 >= WAM7_C(-1.0e15) && t1329 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1330 = t796 * t1315 - t797 * t1317 + t798 * t1318 - t800 * t1319;
     const wam7_real_t t1331 = t1330 + t803 * t1321 + t805 * t1322 + t807 * t1324;
     ddq_by_q[26] = t1331;
-    if (!(t1331 >= WAM7_C(-1.0e15) && t1331 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1332 = t809 * t1315 - t810 * t1317 + t811 * t1318 - t812 * t1319;
     const wam7_real_t t1333 = t1332 + t815 * t1321 + t818 * t1322 + t821 * t1324;
     ddq_by_q[33] = t1333;
-    if (!(t1333 >= WAM7_C(-1.0e15) && t1333 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1334 = t823 * t1315 - t824 * t1317 + t825 * t1318 - t826 * t1319;
     const wam7_real_t t1335 = t1334 + t818 * t1321 + t829 * t1322 + t832 * t1324;
     ddq_by_q[40] = t1335;
-    if (!(t1335 >= WAM7_C(-1.0e15) && t1335 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1336 = t834 * t1315 - t835 * t1317 + t836 * t1318 - t837 * t1319;
     const wam7_real_t t1337 = t1336 + t839 * t1321 + t840 * t1322 + t843 * t1324;
     ddq_by_q[47] = t1337;
-    if (!(t1337 >= WAM7_C(-1.0e15) && t1337 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1338 = WAM7_C(2.0) * t556 + (t16 * t1286 + t21 * t1287);
     const wam7_real_t t1339 = WAM7_C(2.0) * t557 + (t21 * t1286 + t17 * t1287);
     const wam7_real_t t1340 = t18 * t1338 - t22 * t1339;
@@ -2568,129 +1784,31 @@ int wam7_forward_dynamics_derivatives_standard(
         + t272 * parameters[ZZ7]));
     const wam7_real_t t1369 = t1364 + t1365 * t708 + t1367 * t729 + t1368 * t751;
     ddq_by_dq[5] = t1369;
-    if (!(t1369 >= WAM7_C(-1.0e15) && t1369 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1370 = t1361 * t770 - t1358 * t771 + t1362 * t773 - t1363 * t775;
     const wam7_real_t t1371 = t1370 + t1365 * t778 + t1367 * t780 + t1368 * t782;
     ddq_by_dq[12] = t1371;
-    if (!(t1371 >= WAM7_C(-1.0e15) && t1371 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1372 = t1361 * t784 - t1358 * t773 + t1362 * t785 - t1363 * t787;
     const wam7_real_t t1373 = t1372 + t1365 * t790 + t1367 * t792 + t1368 * t794;
     ddq_by_dq[19] = t1373;
-    if (!(t1373 >= WAM7_C(-1.0e15) && t1373 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1374 = t1361 * t796 - t1358 * t797 + t1362 * t798 - t1363 * t800;
     const wam7_real_t t1375 = t1374 + t1365 * t803 + t1367 * t805 + t1368 * t807;
     ddq_by_dq[26] = t1375;
-    if (!(t1375 >= WAM7_C(-1.0e15) && t1375 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1376 = t1361 * t809 - t1358 * t810 + t1362 * t811 - t1363 * t812;
     const wam7_real_t t1377 = t1376 + t1365 * t815 + t1367 * t818 + t1368 * t821;
     ddq_by_dq[33] = t1377;
-    if (!(t1377 >= WAM7_C(-1.0e15) && t1377 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1378 = t1361 * t823 - t1358 * t824 + t1362 * t825 - t1363 * t826;
     const wam7_real_t t1379 = t1378 + t1365 * t818 + t1367 * t829 + t1368 * t832;
     ddq_by_dq[40] = t1379;
-    if (!(t1379 >= WAM7_C(-1.0e15) && t1379 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1380 = t1361 * t834 - t1358 * t835 + t1362 * t836 - t1363 * t837;
     const wam7_real_t t1381 = t1380 + t1365 * t839 + t1367 * t840 + t1368 * t843;
     ddq_by_dq[47] = t1381;
-    if (!(t1381 >= WAM7_C(-1.0e15) && t1381 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t729;
-    if (!(t729 >= WAM7_C(-1.0e15) && t729 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t780;
-    if (!(t780 >= WAM7_C(-1.0e15) && t780 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[19] = t792;
-    if (!(t792 >= WAM7_C(-1.0e15) && t792 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[26] = t805;
-    if (!(t805 >= WAM7_C(-1.0e15) && t805 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[33] = t818;
-    if (!(t818 >= WAM7_C(-1.0e15) && t818 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[40] = t829;
-    if (!(t829 >= WAM7_C(-1.0e15) && t829 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[47] = t840;
-    if (!(t840 >= WAM7_C(-1.0e15) && t840 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1382 = WAM7_C(2.0) * t276;
     const wam7_real_t t1383 = WAM7_C(-2.0) * t282;
     const wam7_real_t t1384 = t509 * t1382 - t516 * t1383 - (t391 * parameters[XZ7] - (parameters[XX7] * t879
@@ -2735,73 +1853,24 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1421 = WAM7_C(0.9996900960702182) * (t1392 + (t276 * t752 + t282 * t753 + t1393));
     const wam7_real_t t1422 = t1418 + t708 * t1419 + t729 * t1420 + t751 * t1421;
     ddq_by_q[6] = t1422;
-    if (!(t1422 >= WAM7_C(-1.0e15) && t1422 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1423 = t770 * t1413 - t771 * t1415 + t773 * t1416 - t775 * t1417;
     const wam7_real_t t1424 = t1423 + t778 * t1419 + t780 * t1420 + t782 * t1421;
     ddq_by_q[13] = t1424;
-    if (!(t1424 >= WAM7_C(-1.0e15) && t1424 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1425 = t784 * t1413 - t773 * t1415 + t785 * t1416 - t787 * t1417;
     const wam7_real_t t1426 = t1425 + t790 * t1419 + t792 * t1420 + t794 * t1421;
     ddq_by_q[20] = t1426;
-    if (!(t1426 >= WAM7_C(-1.0e15) && t1426 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1427 = t796 * t1413 - t797 * t1415 + t798 * t1416 - t800 * t1417;
     const wam7_real_t t1428 = t1427 + t803 * t1419 + t805 * t1420 + t807 * t1421;
     ddq_by_q[27] = t1428;
-    if (!(t1428 >= WAM7_C(-1.0e15) && t1428 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1429 = t809 * t1413 - t810 * t1415 + t811 * t1416 - t812 * t1417;
     const wam7_real_t t1430 = t1429 + t815 * t1419 + t818 * t1420 + t821 * t1421;
     ddq_by_q[34] = t1430;
-    if (!(t1430 >= WAM7_C(-1.0e15) && t1430 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1431 = t823 * t1413 - t824 * t1415 + t825 * t1416 - t826 * t1417;
     const wam7_real_t t1432 = t1431 + t818 * t1419 + t829 * t1420 + t832 * t1421;
     ddq_by_q[41] = t1432;
-    if (!(t1432 >= WAM7_C(-1.0e15) && t1432 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1433 = t834 * t1413 - t835 * t1415 + t836 * t1416 - t837 * t1417;
     const wam7_real_t t1434 = t1433 + t839 * t1419 + t840 * t1420 + t843 * t1421;
     ddq_by_q[48] = t1434;
-    if (!(t1434 >= WAM7_C(-1.0e15) && t1434 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1435 = WAM7_C(2.0) * t533 - (parameters[XX7] * t1382 - parameters[XY7] * t1383);
     const wam7_real_t t1436 = WAM7_C(2.0) * t534 + (parameters[YY7] * t1383 - parameters[XY7] * t1382);
     const wam7_real_t t1437 = WAM7_C(2.0) * t536 + parameters[MZ7] * t1383;
@@ -2838,129 +1907,31 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1468 = WAM7_C(-222.83582089552237) * parameters[FV7];
     const wam7_real_t t1469 = t1465 + t1466 * t708 + t1467 * t729 + t1468 * t751;
     ddq_by_dq[6] = t1469;
-    if (!(t1469 >= WAM7_C(-1.0e15) && t1469 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1470 = t1462 * t770 - t1459 * t771 + t1463 * t773 - t1464 * t775;
     const wam7_real_t t1471 = t1470 + t1466 * t778 + t1467 * t780 + t1468 * t782;
     ddq_by_dq[13] = t1471;
-    if (!(t1471 >= WAM7_C(-1.0e15) && t1471 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1472 = t1462 * t784 - t1459 * t773 + t1463 * t785 - t1464 * t787;
     const wam7_real_t t1473 = t1472 + t1466 * t790 + t1467 * t792 + t1468 * t794;
     ddq_by_dq[20] = t1473;
-    if (!(t1473 >= WAM7_C(-1.0e15) && t1473 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1474 = t1462 * t796 - t1459 * t797 + t1463 * t798 - t1464 * t800;
     const wam7_real_t t1475 = t1474 + t1466 * t803 + t1467 * t805 + t1468 * t807;
     ddq_by_dq[27] = t1475;
-    if (!(t1475 >= WAM7_C(-1.0e15) && t1475 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1476 = t1462 * t809 - t1459 * t810 + t1463 * t811 - t1464 * t812;
     const wam7_real_t t1477 = t1476 + t1466 * t815 + t1467 * t818 + t1468 * t821;
     ddq_by_dq[34] = t1477;
-    if (!(t1477 >= WAM7_C(-1.0e15) && t1477 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1478 = t1462 * t823 - t1459 * t824 + t1463 * t825 - t1464 * t826;
     const wam7_real_t t1479 = t1478 + t1466 * t818 + t1467 * t829 + t1468 * t832;
     ddq_by_dq[41] = t1479;
-    if (!(t1479 >= WAM7_C(-1.0e15) && t1479 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t1480 = t1462 * t834 - t1459 * t835 + t1463 * t836 - t1464 * t837;
     const wam7_real_t t1481 = t1480 + t1466 * t839 + t1467 * t840 + t1468 * t843;
     ddq_by_dq[48] = t1481;
-    if (!(t1481 >= WAM7_C(-1.0e15) && t1481 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t751;
-    if (!(t751 >= WAM7_C(-1.0e15) && t751 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t782;
-    if (!(t782 >= WAM7_C(-1.0e15) && t782 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[20] = t794;
-    if (!(t794 >= WAM7_C(-1.0e15) && t794 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[27] = t807;
-    if (!(t807 >= WAM7_C(-1.0e15) && t807 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[34] = t821;
-    if (!(t821 >= WAM7_C(-1.0e15) && t821 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[41] = t832;
-    if (!(t832 >= WAM7_C(-1.0e15) && t832 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     ddq_by_input[48] = t843;
-    if (!(t843 >= WAM7_C(-1.0e15) && t843 <= WAM7_C(1.0e15))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = WAM7_C(0.0);
     ddq_by_q[7] = WAM7_C(0.0);
@@ -2969,5 +1940,15 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
+    if (!wam7_within_joints(ddq, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_q, 49, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_dq, 49, WAM7_C(1.0e30))
+        || !wam7_within(ddq_by_input, 49, WAM7_C(1.0e30))) {
+        wam7_zero(ddq, 7);
+        wam7_zero(ddq_by_q, 49);
+        wam7_zero(ddq_by_dq, 49);
+        wam7_zero(ddq_by_input, 49);
+        return WAM7_STATUS_PIVOT;
+    }
     return WAM7_STATUS_OK;
 }

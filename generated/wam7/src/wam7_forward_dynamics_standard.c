@@ -121,7 +121,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xCD30D7BEUL
+#if WAM7_GENERATION != 0xBB60C589UL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -690,46 +690,22 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t426 = WAM7_C(1.0) / t197;
     const wam7_real_t t427 = (t419 + t425 * t187) * t426;
     out[0] = t427;
-    if (!(t427 >= WAM7_C(-1.0e15) && t427 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t428 = t425 * t186 + t187 * t427;
     out[1] = t428;
-    if (!(t428 >= WAM7_C(-1.0e15) && t428 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t429 = t418 * t165 + t196 * t427 + t166 * t428;
     out[2] = t429;
-    if (!(t429 >= WAM7_C(-1.0e15) && t429 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t430 = t414 * t102 + t195 * t427 + t157 * t428 - t103 * t429;
     out[3] = t430;
-    if (!(t430 >= WAM7_C(-1.0e15) && t430 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t431 = t410 * t75 + t193 * t427 + t152 * t428 + t104 * t429;
     const wam7_real_t t432 = t431 + t76 * t430;
     out[4] = t432;
-    if (!(t432 >= WAM7_C(-1.0e15) && t432 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t433 = t406 * t33 + t192 * t427 + t146 * t428 + t120 * t429;
     const wam7_real_t t434 = t433 + t69 * t430 + t34 * t432;
     out[5] = t434;
-    if (!(t434 >= WAM7_C(-1.0e15) && t434 <= WAM7_C(1.0e15))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
     const wam7_real_t t435 = t403 * t5 + t191 * t427 + t140 * t428 + t105 * t429;
     const wam7_real_t t436 = t28 * t432 - (t435 + t65 * t430) - t6 * t434;
     out[6] = t436;
-    if (!(t436 >= WAM7_C(-1.0e15) && t436 <= WAM7_C(1.0e15))) {
+    if (!wam7_within_joints(out, WAM7_C(1.0e30))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

@@ -49,7 +49,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x87E0A27FUL
+#if YAW3PITCH_GENERATION != 0x97DAFF68UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -251,25 +251,13 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t130 = YAW3PITCH_C(1.0) / t54;
     const yaw3pitch_real_t t131 = t129 * t130;
     out[0] = t131;
-    if (!(t131 >= YAW3PITCH_C(-1.0e15) && t131 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t132 = t128 * t52 + t53 * t131;
     out[1] = t132;
-    if (!(t132 >= YAW3PITCH_C(-1.0e15) && t132 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t133 = t123 * t18 + t49 * t131 + t19 * t132;
     out[2] = t133;
-    if (!(t133 >= YAW3PITCH_C(-1.0e15) && t133 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t134 = t43 * t131 - t117 * t4 - t20 * t132 - t5 * t133;
     out[3] = t134;
-    if (!(t134 >= YAW3PITCH_C(-1.0e15) && t134 <= YAW3PITCH_C(1.0e15))) {
+    if (!yaw3pitch_within_joints(out, YAW3PITCH_C(1.0e30))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

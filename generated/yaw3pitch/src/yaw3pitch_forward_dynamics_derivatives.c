@@ -53,7 +53,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x87E0A27FUL
+#if YAW3PITCH_GENERATION != 0x97DAFF68UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -294,40 +294,12 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t145 = YAW3PITCH_C(1.0) / t62;
     const yaw3pitch_real_t t146 = t144 * t145;
     ddq[0] = t146;
-    if (!(t146 >= YAW3PITCH_C(-1.0e15) && t146 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t147 = t143 * t60 - t61 * t146;
     ddq[1] = t147;
-    if (!(t147 >= YAW3PITCH_C(-1.0e15) && t147 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t148 = t138 * t20 + t56 * t146 + t21 * t147;
     ddq[2] = -t148;
-    if (!(ddq[2] >= YAW3PITCH_C(-1.0e15) && ddq[2] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t149 = t132 * t4 + t50 * t146 + t22 * t147 - t5 * t148;
     ddq[3] = t149;
-    if (!(t149 >= YAW3PITCH_C(-1.0e15) && t149 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t150 = t39 * t14 + t36 * t12;
     const yaw3pitch_real_t t151 = t36 * t14 - t39 * t12;
     const yaw3pitch_real_t t152 = t0 * t150 - t1 * t151;
@@ -428,78 +400,22 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t245 = t39 * t242 + t36 * t244 + (t36 * t243 - t39 * t17) * t226;
     const yaw3pitch_real_t t246 = t227 * t212 - t145 * t211 + t234 * t228 - t245 * t236;
     ddq_by_dq[0] = t246;
-    if (!(t246 >= YAW3PITCH_C(-1.0e15) && t246 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t247 = t60 + t61 * t212;
     const yaw3pitch_real_t t248 = t61 * t228 - t21 * t60;
     const yaw3pitch_real_t t249 = t60 * t235 - t61 * t236;
     const yaw3pitch_real_t t250 = t211 * t212 - t227 * t247 - t234 * t248 - t245 * t249;
     ddq_by_dq[4] = t250;
-    if (!(t250 >= YAW3PITCH_C(-1.0e15) && t250 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t251 = t20 - t56 * t228 + t21 * t248;
     const yaw3pitch_real_t t252 = t5 * t20 + t56 * t236 + t21 * t249;
     const yaw3pitch_real_t t253 = t245 * t252 - (t227 * t248 - t211 * t228 - t234 * t251);
     ddq_by_dq[8] = t253;
-    if (!(t253 >= YAW3PITCH_C(-1.0e15) && t253 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t254 = t4 + t50 * t236 + t22 * t249 - t5 * t252;
     const yaw3pitch_real_t t255 = t234 * t252 - (t211 * t236 + t227 * t249) - t245 * t254;
     ddq_by_dq[12] = t255;
-    if (!(t255 >= YAW3PITCH_C(-1.0e15) && t255 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t145;
-    if (!(t145 >= YAW3PITCH_C(-1.0e15) && t145 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[4] = -t212;
-    if (!(ddq_by_input[4] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[4] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[8] = -t228;
-    if (!(ddq_by_input[8] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[8] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t236;
-    if (!(t236 >= YAW3PITCH_C(-1.0e15) && t236 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t256 = t147 - t148;
     const yaw3pitch_real_t t257 = t149 + t256;
     const yaw3pitch_real_t t258 = t158 * t153;
@@ -571,40 +487,12 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t316 = t243 * t122 + t17 * t119 + t315;
     const yaw3pitch_real_t t317 = t212 * t312 - t145 * t310 + t228 * t314 - t236 * t316;
     ddq_by_q[1] = t317;
-    if (!(t317 >= YAW3PITCH_C(-1.0e15) && t317 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t318 = t212 * t310 - t247 * t312 - t248 * t314 - t249 * t316;
     ddq_by_q[5] = t318;
-    if (!(t318 >= YAW3PITCH_C(-1.0e15) && t318 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t319 = t252 * t316 - (t248 * t312 - t228 * t310 - t251 * t314);
     ddq_by_q[9] = t319;
-    if (!(t319 >= YAW3PITCH_C(-1.0e15) && t319 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t320 = t252 * t314 - (t236 * t310 + t249 * t312) - t254 * t316;
     ddq_by_q[13] = t320;
-    if (!(t320 >= YAW3PITCH_C(-1.0e15) && t320 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t321 = parameters[ZZ4] - t161;
     const yaw3pitch_real_t t322 = parameters[YZ4] * t70 + t153 * t321;
     const yaw3pitch_real_t t323 = t158 * t321 - parameters[XZ4] * t70;
@@ -629,72 +517,16 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t341 = t340 + t243 * t337 + YAW3PITCH_C(2.0) * (t48 * t64 - t47 * t65);
     const yaw3pitch_real_t t342 = t335 * t212 - t145 * t332 + t338 * t228 - t341 * t236;
     ddq_by_dq[1] = t342;
-    if (!(t342 >= YAW3PITCH_C(-1.0e15) && t342 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t343 = t332 * t212 - t335 * t247 - t338 * t248 - t341 * t249;
     ddq_by_dq[5] = t343;
-    if (!(t343 >= YAW3PITCH_C(-1.0e15) && t343 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t344 = t341 * t252 - (t335 * t248 - t332 * t228 - t338 * t251);
     ddq_by_dq[9] = t344;
-    if (!(t344 >= YAW3PITCH_C(-1.0e15) && t344 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t345 = t338 * t252 - (t332 * t236 + t335 * t249) - t341 * t254;
     ddq_by_dq[13] = t345;
-    if (!(t345 >= YAW3PITCH_C(-1.0e15) && t345 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[1] = -t212;
-    if (!(ddq_by_input[1] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[1] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t247;
-    if (!(t247 >= YAW3PITCH_C(-1.0e15) && t247 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t248;
-    if (!(t248 >= YAW3PITCH_C(-1.0e15) && t248 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t249;
-    if (!(t249 >= YAW3PITCH_C(-1.0e15) && t249 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t346 = t293 + t288;
     const yaw3pitch_real_t t347 = YAW3PITCH_C(-2.0) * t174;
     const yaw3pitch_real_t t348 = YAW3PITCH_C(-2.0) * t178;
@@ -724,40 +556,12 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t370 = t369 + (t10 * t365 - t2 * t364);
     const yaw3pitch_real_t t371 = t212 * t367 - t145 * t355 + t228 * t368 - t236 * t370;
     ddq_by_q[2] = t371;
-    if (!(t371 >= YAW3PITCH_C(-1.0e15) && t371 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t372 = t212 * t355 - t247 * t367 - t248 * t368 - t249 * t370;
     ddq_by_q[6] = t372;
-    if (!(t372 >= YAW3PITCH_C(-1.0e15) && t372 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t373 = t252 * t370 - (t248 * t367 - t228 * t355 - t251 * t368);
     ddq_by_q[10] = t373;
-    if (!(t373 >= YAW3PITCH_C(-1.0e15) && t373 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t374 = t252 * t368 - (t236 * t355 + t249 * t367) - t254 * t370;
     ddq_by_q[14] = t374;
-    if (!(t374 >= YAW3PITCH_C(-1.0e15) && t374 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t375 = YAW3PITCH_C(2.0) * t325 - (t30 * t347 + t31 * t348);
     const yaw3pitch_real_t t376 = YAW3PITCH_C(2.0) * t326 + (t31 * t347 + t29 * t348);
     const yaw3pitch_real_t t377 = t11 * t347 - t13 * t348;
@@ -770,72 +574,16 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t383 = t340 + YAW3PITCH_C(-2.0) * (t45 * t174 + t46 * t178);
     const yaw3pitch_real_t t384 = t381 * t212 - t145 * t379 + t382 * t228 - t383 * t236;
     ddq_by_dq[2] = t384;
-    if (!(t384 >= YAW3PITCH_C(-1.0e15) && t384 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t385 = t379 * t212 - t381 * t247 - t382 * t248 - t383 * t249;
     ddq_by_dq[6] = t385;
-    if (!(t385 >= YAW3PITCH_C(-1.0e15) && t385 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t386 = t383 * t252 - (t381 * t248 - t379 * t228 - t382 * t251);
     ddq_by_dq[10] = t386;
-    if (!(t386 >= YAW3PITCH_C(-1.0e15) && t386 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t387 = t382 * t252 - (t379 * t236 + t381 * t249) - t383 * t254;
     ddq_by_dq[14] = t387;
-    if (!(t387 >= YAW3PITCH_C(-1.0e15) && t387 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[2] = -t228;
-    if (!(ddq_by_input[2] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[2] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t248;
-    if (!(t248 >= YAW3PITCH_C(-1.0e15) && t248 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[10] = -t251;
-    if (!(ddq_by_input[10] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[10] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[14] = -t252;
-    if (!(ddq_by_input[14] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[14] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t388 = t279 + t267;
     const yaw3pitch_real_t t389 = YAW3PITCH_C(2.0) * t153;
     const yaw3pitch_real_t t390 = YAW3PITCH_C(2.0) * t158;
@@ -865,40 +613,12 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t410 = t406 + (t153 * t237 + t158 * t238 - t407);
     const yaw3pitch_real_t t411 = t212 * t409 - t145 * t399 + t228 * t408 - t236 * t410;
     ddq_by_q[3] = t411;
-    if (!(t411 >= YAW3PITCH_C(-1.0e15) && t411 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t412 = t212 * t399 - t247 * t409 - t248 * t408 - t249 * t410;
     ddq_by_q[7] = t412;
-    if (!(t412 >= YAW3PITCH_C(-1.0e15) && t412 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t413 = t252 * t410 - (t248 * t409 - t228 * t399 - t251 * t408);
     ddq_by_q[11] = t413;
-    if (!(t413 >= YAW3PITCH_C(-1.0e15) && t413 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t414 = t252 * t408 - (t236 * t399 + t249 * t409) - t254 * t410;
     ddq_by_q[15] = t414;
-    if (!(t414 >= YAW3PITCH_C(-1.0e15) && t414 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t415 = YAW3PITCH_C(-2.0) * t322 - (parameters[XY4] * t390
         + parameters[XX4R] * t389);
     const yaw3pitch_real_t t416 = parameters[XY4] * t389 + YAW3PITCH_C(2.0) * t323;
@@ -915,73 +635,27 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t426 = t12 * (t1 * t422 + t0 * t423) + t14 * t424;
     const yaw3pitch_real_t t427 = t425 + YAW3PITCH_C(0.8) * t426;
     ddq_by_dq[3] = t427 * t212 - t145 * t421 + t425 * t228;
-    if (!(ddq_by_dq[3] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[3] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[7] = t421 * t212 - t427 * t247 - t425 * t248;
-    if (!(ddq_by_dq[7] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[7] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[11] = t425 * t251 - (t427 * t248 - t421 * t228);
-    if (!(ddq_by_dq[11] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[11] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[15] = t425 * t252 - (t421 * t236 + t427 * t249);
-    if (!(ddq_by_dq[15] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[15] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t236;
-    if (!(t236 >= YAW3PITCH_C(-1.0e15) && t236 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t249;
-    if (!(t249 >= YAW3PITCH_C(-1.0e15) && t249 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[11] = -t252;
-    if (!(ddq_by_input[11] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[11] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t254;
-    if (!(t254 >= YAW3PITCH_C(-1.0e15) && t254 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = YAW3PITCH_C(0.0);
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
+    if (!yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_q, 16, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_dq, 16, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_input, 16, YAW3PITCH_C(1.0e30))) {
+        yaw3pitch_zero(ddq, 4);
+        yaw3pitch_zero(ddq_by_q, 16);
+        yaw3pitch_zero(ddq_by_dq, 16);
+        yaw3pitch_zero(ddq_by_input, 16);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
     return YAW3PITCH_STATUS_OK;
 }

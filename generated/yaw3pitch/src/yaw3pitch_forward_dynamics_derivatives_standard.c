@@ -71,7 +71,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x87E0A27FUL
+#if YAW3PITCH_GENERATION != 0x97DAFF68UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -341,40 +341,12 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t164 = YAW3PITCH_C(1.0) / t69;
     const yaw3pitch_real_t t165 = t163 * t164;
     ddq[0] = t165;
-    if (!(t165 >= YAW3PITCH_C(-1.0e15) && t165 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t166 = t162 * t67 - t68 * t165;
     ddq[1] = t166;
-    if (!(t166 >= YAW3PITCH_C(-1.0e15) && t166 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t167 = t157 * t22 + t62 * t165 + t23 * t166;
     ddq[2] = -t167;
-    if (!(ddq[2] >= YAW3PITCH_C(-1.0e15) && ddq[2] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t168 = t151 * t4 + t56 * t165 + t24 * t166 - t5 * t167;
     ddq[3] = t168;
-    if (!(t168 >= YAW3PITCH_C(-1.0e15) && t168 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t169 = t44 * t16 + t41 * t13;
     const yaw3pitch_real_t t170 = t44 * t13 - t41 * t16;
     const yaw3pitch_real_t t171 = t0 * t169 + t1 * t170;
@@ -484,78 +456,22 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t270 = t44 * t267 + t41 * t269 + (t41 * t268 - t44 * t19) * t251;
     const yaw3pitch_real_t t271 = t252 * t239 - t164 * t238 + t259 * t253 - t270 * t261;
     ddq_by_dq[0] = t271;
-    if (!(t271 >= YAW3PITCH_C(-1.0e15) && t271 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t272 = t67 + t68 * t239;
     const yaw3pitch_real_t t273 = t68 * t253 - t23 * t67;
     const yaw3pitch_real_t t274 = t67 * t260 - t68 * t261;
     const yaw3pitch_real_t t275 = t238 * t239 - t252 * t272 - t259 * t273 - t270 * t274;
     ddq_by_dq[4] = t275;
-    if (!(t275 >= YAW3PITCH_C(-1.0e15) && t275 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t276 = t22 - t62 * t253 + t23 * t273;
     const yaw3pitch_real_t t277 = t5 * t22 + t62 * t261 + t23 * t274;
     const yaw3pitch_real_t t278 = t270 * t277 - (t252 * t273 - t238 * t253 - t259 * t276);
     ddq_by_dq[8] = t278;
-    if (!(t278 >= YAW3PITCH_C(-1.0e15) && t278 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t279 = t4 + t56 * t261 + t24 * t274 - t5 * t277;
     const yaw3pitch_real_t t280 = t259 * t277 - (t238 * t261 + t252 * t274) - t270 * t279;
     ddq_by_dq[12] = t280;
-    if (!(t280 >= YAW3PITCH_C(-1.0e15) && t280 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[0] = t164;
-    if (!(t164 >= YAW3PITCH_C(-1.0e15) && t164 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[4] = -t239;
-    if (!(ddq_by_input[4] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[4] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[8] = -t253;
-    if (!(ddq_by_input[8] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[8] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[12] = t261;
-    if (!(t261 >= YAW3PITCH_C(-1.0e15) && t261 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t281 = t166 - t167;
     const yaw3pitch_real_t t282 = t168 + t281;
     const yaw3pitch_real_t t283 = t177 * t172;
@@ -647,40 +563,12 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t359 = t93 * t268 + t88 * t19 + t358;
     const yaw3pitch_real_t t360 = t239 * t355 - t164 * t353 + t253 * t357 - t261 * t359;
     ddq_by_q[1] = t360;
-    if (!(t360 >= YAW3PITCH_C(-1.0e15) && t360 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t361 = t239 * t353 - t272 * t355 - t273 * t357 - t274 * t359;
     ddq_by_q[5] = t361;
-    if (!(t361 >= YAW3PITCH_C(-1.0e15) && t361 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t362 = t277 * t359 - (t273 * t355 - t253 * t353 - t276 * t357);
     ddq_by_q[9] = t362;
-    if (!(t362 >= YAW3PITCH_C(-1.0e15) && t362 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t363 = t277 * t357 - (t261 * t353 + t274 * t355) - t279 * t359;
     ddq_by_q[13] = t363;
-    if (!(t363 >= YAW3PITCH_C(-1.0e15) && t363 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t364 = parameters[ZZ4] - t180;
     const yaw3pitch_real_t t365 = t77 * parameters[YZ4] + t172 * t364;
     const yaw3pitch_real_t t366 = t77 * parameters[XZ4] + t177 * t364;
@@ -707,72 +595,16 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t384 = t383 + t268 * t380 + YAW3PITCH_C(2.0) * (t71 * t54 - t72 * t53);
     const yaw3pitch_real_t t385 = t378 * t239 - t164 * t375 + t381 * t253 - t384 * t261;
     ddq_by_dq[1] = t385;
-    if (!(t385 >= YAW3PITCH_C(-1.0e15) && t385 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t386 = t375 * t239 - t378 * t272 - t381 * t273 - t384 * t274;
     ddq_by_dq[5] = t386;
-    if (!(t386 >= YAW3PITCH_C(-1.0e15) && t386 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t387 = t384 * t277 - (t378 * t273 - t375 * t253 - t381 * t276);
     ddq_by_dq[9] = t387;
-    if (!(t387 >= YAW3PITCH_C(-1.0e15) && t387 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t388 = t381 * t277 - (t375 * t261 + t378 * t274) - t384 * t279;
     ddq_by_dq[13] = t388;
-    if (!(t388 >= YAW3PITCH_C(-1.0e15) && t388 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[1] = -t239;
-    if (!(ddq_by_input[1] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[1] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[5] = t272;
-    if (!(t272 >= YAW3PITCH_C(-1.0e15) && t272 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[9] = t273;
-    if (!(t273 >= YAW3PITCH_C(-1.0e15) && t273 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[13] = t274;
-    if (!(t274 >= YAW3PITCH_C(-1.0e15) && t274 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t389 = YAW3PITCH_C(2.0) * t193;
     const yaw3pitch_real_t t390 = YAW3PITCH_C(-2.0) * t200;
     const yaw3pitch_real_t t391 = t338 * t57 + (t36 * t324 - t35 * t299) - (t389 * t199 + t390 * t206);
@@ -805,40 +637,12 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t415 = t414 + (t11 * t308 - t2 * t310);
     const yaw3pitch_real_t t416 = t239 * t412 - t164 * t397 + t253 * t413 - t261 * t415;
     ddq_by_q[2] = t416;
-    if (!(t416 >= YAW3PITCH_C(-1.0e15) && t416 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t417 = t239 * t397 - t272 * t412 - t273 * t413 - t274 * t415;
     ddq_by_q[6] = t417;
-    if (!(t417 >= YAW3PITCH_C(-1.0e15) && t417 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t418 = t277 * t415 - (t273 * t412 - t253 * t397 - t276 * t413);
     ddq_by_q[10] = t418;
-    if (!(t418 >= YAW3PITCH_C(-1.0e15) && t418 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t419 = t277 * t413 - (t261 * t397 + t274 * t412) - t279 * t415;
     ddq_by_q[14] = t419;
-    if (!(t419 >= YAW3PITCH_C(-1.0e15) && t419 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t420 = YAW3PITCH_C(2.0) * t368 - (t35 * t389 + t36 * t390);
     const yaw3pitch_real_t t421 = YAW3PITCH_C(2.0) * t369 + (t36 * t389 + t34 * t390);
     const yaw3pitch_real_t t422 = t12 * t389 - t15 * t390;
@@ -851,72 +655,16 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t428 = t383 + YAW3PITCH_C(2.0) * (t193 * t51 - t200 * t52);
     const yaw3pitch_real_t t429 = t426 * t239 - t164 * t424 + t427 * t253 - t428 * t261;
     ddq_by_dq[2] = t429;
-    if (!(t429 >= YAW3PITCH_C(-1.0e15) && t429 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t430 = t424 * t239 - t426 * t272 - t427 * t273 - t428 * t274;
     ddq_by_dq[6] = t430;
-    if (!(t430 >= YAW3PITCH_C(-1.0e15) && t430 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t431 = t428 * t277 - (t426 * t273 - t424 * t253 - t427 * t276);
     ddq_by_dq[10] = t431;
-    if (!(t431 >= YAW3PITCH_C(-1.0e15) && t431 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t432 = t427 * t277 - (t424 * t261 + t426 * t274) - t428 * t279;
     ddq_by_dq[14] = t432;
-    if (!(t432 >= YAW3PITCH_C(-1.0e15) && t432 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[2] = -t253;
-    if (!(ddq_by_input[2] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[2] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[6] = t273;
-    if (!(t273 >= YAW3PITCH_C(-1.0e15) && t273 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[10] = -t276;
-    if (!(ddq_by_input[10] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[10] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[14] = -t277;
-    if (!(ddq_by_input[14] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[14] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t433 = YAW3PITCH_C(2.0) * t172;
     const yaw3pitch_real_t t434 = YAW3PITCH_C(2.0) * t177;
     const yaw3pitch_real_t t435 = t433 * t175 - t434 * t184 + (parameters[XY4] * t285 - parameters[XX4] * t288
@@ -942,40 +690,12 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t452 = t448 + (t172 * t262 - t177 * t263 + t449);
     const yaw3pitch_real_t t453 = t239 * t451 - t164 * t443 + t253 * t450 - t261 * t452;
     ddq_by_q[3] = t453;
-    if (!(t453 >= YAW3PITCH_C(-1.0e15) && t453 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t454 = t239 * t443 - t272 * t451 - t273 * t450 - t274 * t452;
     ddq_by_q[7] = t454;
-    if (!(t454 >= YAW3PITCH_C(-1.0e15) && t454 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t455 = t277 * t452 - (t273 * t451 - t253 * t443 - t276 * t450);
     ddq_by_q[11] = t455;
-    if (!(t455 >= YAW3PITCH_C(-1.0e15) && t455 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t456 = t277 * t450 - (t261 * t443 + t274 * t451) - t279 * t452;
     ddq_by_q[15] = t456;
-    if (!(t456 >= YAW3PITCH_C(-1.0e15) && t456 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t457 = YAW3PITCH_C(-2.0) * t365 + (parameters[XY4] * t434
         - parameters[XX4] * t433);
     const yaw3pitch_real_t t458 = YAW3PITCH_C(-2.0) * t366 + (parameters[XY4] * t433
@@ -993,73 +713,27 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t468 = t13 * (t1 * t464 + t0 * t465) + t16 * t466;
     const yaw3pitch_real_t t469 = t467 + YAW3PITCH_C(0.8) * t468;
     ddq_by_dq[3] = t469 * t239 - t164 * t463 + t467 * t253;
-    if (!(ddq_by_dq[3] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[3] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[7] = t463 * t239 - t469 * t272 - t467 * t273;
-    if (!(ddq_by_dq[7] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[7] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[11] = t467 * t276 - (t469 * t273 - t463 * t253);
-    if (!(ddq_by_dq[11] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[11] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_dq[15] = t467 * t277 - (t463 * t261 + t469 * t274);
-    if (!(ddq_by_dq[15] >= YAW3PITCH_C(-1.0e15) && ddq_by_dq[15] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[3] = t261;
-    if (!(t261 >= YAW3PITCH_C(-1.0e15) && t261 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[7] = t274;
-    if (!(t274 >= YAW3PITCH_C(-1.0e15) && t274 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[11] = -t277;
-    if (!(ddq_by_input[11] >= YAW3PITCH_C(-1.0e15) && ddq_by_input[11] <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     ddq_by_input[15] = t279;
-    if (!(t279 >= YAW3PITCH_C(-1.0e15) && t279 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* always zero */
     ddq_by_q[0] = YAW3PITCH_C(0.0);
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
+    if (!yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_q, 16, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_dq, 16, YAW3PITCH_C(1.0e30))
+        || !yaw3pitch_within(ddq_by_input, 16, YAW3PITCH_C(1.0e30))) {
+        yaw3pitch_zero(ddq, 4);
+        yaw3pitch_zero(ddq_by_q, 16);
+        yaw3pitch_zero(ddq_by_dq, 16);
+        yaw3pitch_zero(ddq_by_input, 16);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
     return YAW3PITCH_STATUS_OK;
 }

@@ -67,7 +67,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x87E0A27FUL
+#if YAW3PITCH_GENERATION != 0x97DAFF68UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -292,25 +292,13 @@ int yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t t142 = YAW3PITCH_C(1.0) / t59;
     const yaw3pitch_real_t t143 = (t130 + t136 * t54 + t141 * t58) * t142;
     out[0] = t143;
-    if (!(t143 >= YAW3PITCH_C(-1.0e15) && t143 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t144 = t141 * t57 + t58 * t143;
     out[1] = t144;
-    if (!(t144 >= YAW3PITCH_C(-1.0e15) && t144 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t145 = t136 * t19 + t54 * t143 + t20 * t144;
     out[2] = t145;
-    if (!(t145 >= YAW3PITCH_C(-1.0e15) && t145 <= YAW3PITCH_C(1.0e15))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     const yaw3pitch_real_t t146 = t48 * t143 - t129 * t4 - t21 * t144 - t5 * t145;
     out[3] = t146;
-    if (!(t146 >= YAW3PITCH_C(-1.0e15) && t146 <= YAW3PITCH_C(1.0e15))) {
+    if (!yaw3pitch_within_joints(out, YAW3PITCH_C(1.0e30))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

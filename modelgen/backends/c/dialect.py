@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
@@ -19,12 +18,9 @@ from modelgen.functions.objects import (
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
-_TEMPORARY = re.compile(r"t[0-9]+")
 
 # Normal numbers of IEEE 754 single precision: every constant must be one, or zero.
 _SMALLEST, _LARGEST = 1.1754943508222875e-38, 3.4028234663852886e38
-# Largest magnitude of an output where these are checked.
-OUTPUT_LIMIT = 1e15
 
 
 def literal(arm: str, value: float) -> str:
@@ -66,13 +62,10 @@ def arrays(function: Function) -> dict[str, int]:
 
 
 class CDialect:
-    """Statements of one function in C99. `checked`: the status to report for an output beyond the limit."""
+    """Statements of one function in C99."""
 
-    def __init__(
-        self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]], checked: int = 0
-    ) -> None:
+    def __init__(self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> None:
         self.arm = arm
-        self.checked = checked
         self.macro = arm.upper()
         self.named = named
         self.places = destinations(function)
@@ -134,15 +127,9 @@ class CDialect:
         )
 
     def store(self, output: str, index: int, text: str) -> str:
-        """Store an element in the array that holds the output, checked before it is used."""
+        """Store an element in the array that holds the output."""
         array, offset = self.places[output]
-        element = f"{array}[{offset + index}]"
-        line = wrapped_code(f"{element} = {text};", INDENT, INDENT * 2)
-        if not self.checked:
-            return line
-        value = text if _TEMPORARY.fullmatch(text) else element
-        limits = f"{value} >= {self.constant(-OUTPUT_LIMIT)} && {value} <= {self.constant(OUTPUT_LIMIT)}"
-        return f"{line}\n{self.leave(f'!({limits})', f'{self.macro}_STATUS_{STATUS[self.checked]}')}"
+        return wrapped_code(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
 
     def guard(self, status: int, text: str) -> str:
         """Zeros and a status; the comparison is false for what is not a number."""
