@@ -32,7 +32,7 @@ class Refinement(Result):
     parameters : Named of Refined
         Base parameters (p,) by name: start, value, std (None where held), unit.
     converged : bool
-        Whether the last step lowered the cost by less than it is worth.
+        Whether no step is left that lowers the errors by what is worth it; `found.stopped` says why not.
     """
 
     def __init__(self, found: Found) -> None:

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dpotrf
 
 from modelgen.effects import applied_effects
 from modelgen.functions import Model
@@ -84,9 +85,11 @@ class Nearest:
         total = weight / 2 * float(np.sum((self.matrix @ x - self.target) ** 2))
         for i, inverse in enumerate(self.inverses):
             pseudo = pseudo_inertia(x[10 * i : 10 * i + 10])
-            if np.linalg.eigvalsh(pseudo)[0] <= 0:
+            lower, broken = dpotrf(pseudo, lower=1)
+            # Inside is where the slope can be had: eigenvalues say other things of a body on the edge.
+            if broken:
                 return np.inf
-            total += float(np.trace(inverse @ pseudo)) - float(np.linalg.slogdet(pseudo)[1])
+            total += float(np.trace(inverse @ pseudo)) - 2 * float(np.log(np.diag(lower)).sum())
         above = self._above(x)
         if np.any(above[self.bounded] <= 0):
             return np.inf

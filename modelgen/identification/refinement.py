@@ -63,6 +63,7 @@ def to_json(found: Refinement) -> dict[str, Any]:
         ],
         "steps": found.rounds,
         "converged": found.converged,
+        "stopped": found.stopped or None,
     }
 
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from modelgen.dataset import (
     Chosen,
     Prepared,
@@ -199,8 +197,8 @@ def _whole(
 
 def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:
     """Questions about what was found."""
-    s, theta = found.solution, np.array([e.value for e in found.estimates])
-    return tuple(doubts(train, found.model, evaluator, theta, s.covariance, s.determined))
+    s = found.solution  # as the data have it: consistent parameters hide what is impossible
+    return tuple(doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
 
 
 def _payloads(

@@ -211,3 +211,45 @@ def test_stiction_is_found_in_swings_that_end_beside_the_rest_angle(tmp_path: Pa
     assert values["FS1"]["value"] > 10 * values["FS1"]["std"]
     assert values["FC1"]["value"] == pytest.approx(HIDDEN.coulomb, rel=0.05)
     assert values["KS1"]["value"] == pytest.approx(HIDDEN.stiffness, rel=0.02)
+
+
+def test_a_bound_holds_its_parameter_and_not_the_others(tmp_path: Path) -> None:
+    """A link that is driven a little: its viscous friction would be negative, the dry one is there."""
+    made, log = plant(ARMS["gravity_link2"]), tmp_path / "log.csv"
+    names = [b.name for b in made.model.grouping.base]
+    values = made.parameters.copy()
+    values[names.index("FV1")], values[names.index("FC1")] = -0.02, 0.12
+    run = simulate(plant(ARMS["gravity_link2"], dict(zip(names, values, strict=True))), 0.5, 0.0, 3.0, 200.0)
+    q = run.q + 1e-4 * np.random.default_rng(2).standard_normal(run.q.shape)
+    np.savetxt(log, np.column_stack([run.t, q]), delimiter=",", header="t,q1", comments="", fmt="%.7g")
+    words = ["--arm", "gravity_link2", "--log", str(log), "--out", str(tmp_path / "r"), "--json"]
+    status, out, said = invoked(*words)
+    assert status == 0, said
+    both = json.loads(out)
+    assert both["converged"]
+    assert both["steps"] < 15
+    # The same as where there is no viscous friction to begin with.
+    start = tmp_path / "start.yaml"
+    without = dict(zip(names, made.parameters, strict=True)) | {"FV1": 0.0}
+    text = "".join(f"  {k}: {v!s}\n" for k, v in without.items())
+    start.write_text(f"schema: 1\narm: gravity_link2\nparameters:\n{text}", encoding="utf-8")
+    status, out, said = invoked(*words, "--parameters", str(start), "--free", "FC1")
+    assert status == 0, said
+    found, alone = ({x["name"]: x["value"] for x in d["parameters"]} for d in (both, json.loads(out)))
+    assert 0 <= found["FV1"] < 1e-3
+    assert found["FC1"] == pytest.approx(alone["FC1"], rel=0.02)
+
+
+def test_a_motion_that_the_arm_cannot_make_ends_with_exit_code_1(tmp_path: Path) -> None:
+    """A link that wanders at random: steps promise much and bring nothing."""
+    random, log = np.random.default_rng(5), tmp_path / "log.csv"
+    t = np.arange(601) / 200
+    q = 0.3 + 0.02 * np.cumsum(random.standard_normal(len(t)))
+    np.savetxt(log, np.column_stack([t, q]), delimiter=",", header="t,q1", comments="", fmt="%.7g")
+    words = ["--arm", "gravity_link2", "--log", str(log), "--out", str(tmp_path / "r")]
+    status, out, said = invoked(*words, "--json")
+    assert status == 1
+    assert said.startswith("not converged: step")
+    data = json.loads(out)
+    assert not data["converged"]
+    assert data["stopped"] in said

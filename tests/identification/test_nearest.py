@@ -43,3 +43,13 @@ def test_links_could_exist_and_no_others_are_nearer(seed: int) -> None:
         assert problem.value(found.standard + share * (truth - found.standard), 1 / PRIOR) >= least - 1e-6
     if seed % len(NOISE) == 0:
         assert found.distance < 0.05
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_no_body_is_near_has_an_answer_too(seed: int) -> None:
+    """Efforts counted the other way round: bodies as light as can be, on the edge of what could exist."""
+    model, _, theta, precision = drawn(seed)
+    found = consistent(model, -theta, 1e4 * precision)
+    assert np.isfinite(found.base).all()
+    assert found.violated
+    assert found.distance > 1.0

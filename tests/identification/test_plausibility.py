@@ -186,3 +186,9 @@ def test_a_spring_that_the_model_lacks_is_not_taken_for_another_reading(
     found = mg.identify(arm, *sprung)
     assert found.test is not None
     assert found.test.nrmse_percent[1] > 15.0
+
+
+def test_consistent_parameters_hide_no_question(arm: mg.Arm, logs: list[Table]) -> None:
+    train, test = ({k: -x if k[0] == "i" else x for k, x in table.items()} for table in logs)
+    found = mg.identify(arm, train, test, consistent=True)
+    assert any("sign of the efforts the other way round" in doubt for doubt in found.to_json()["doubts"])

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from modelgen.cli.guard import guarded
+from modelgen.cli.guard import CHECK_FAILED, guarded
 from modelgen.cli.options import Arms, Folder, Json, OneArm, with_options
 from modelgen.options import RefinementOptions
 
@@ -31,7 +31,7 @@ def refine(
     options: RefinementOptions,
     as_json: Json = False,
 ) -> None:
-    """Tune base parameters until the simulated motion is the measured one, with or without efforts."""
+    """Tune base parameters until the simulated motion is the measured one; exit 1 where that does not end."""
     from modelgen.api.refinement import refine as refined
     from modelgen.cli.arms import one
     from modelgen.cli.output import print_result, progress_bar
@@ -43,5 +43,6 @@ def refine(
         result = refined(found, log, options, progress=progress)
     result.write(out)
     print_result(result, as_json=as_json)
-    if not result.converged and not as_json:
-        typer.echo(f"not converged after {result.found.rounds} steps", err=True)
+    if not result.converged:
+        typer.echo(f"not converged: {result.found.stopped}; what was found so far is in {out}", err=True)
+        raise typer.Exit(CHECK_FAILED)

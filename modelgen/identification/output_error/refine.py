@@ -17,15 +17,17 @@ from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.identification.output_error.parts import Guess, parts
 from modelgen.identification.output_error.sensitivities import Sensitive
-from modelgen.identification.output_error.shooting import Fit, scored
+from modelgen.identification.output_error.shooting import Fit, Linear, Step, scored
 from modelgen.numeric import Array
 from modelgen.simulation.metrics import Scores
 from modelgen.simulation.plant import Plant
 
 ROUNDS = 40
 BOUNDARY = 0.9  # of the way to a bound in one step
+BLOCKED = 0.01  # of a step, at which a bound is so near that its parameter stays and the others go on
 HALVINGS = 8  # of a step that does not lower the cost
 LEAST_GAIN = 1e-4  # of the cost, at which a fit ends
+UNKEPT = 0.01  # of the cost: where a step promises more and brings less than the least, nothing has converged
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,7 @@ class Refinement:
     """plant: with the refined parameters. before, after: scores of the whole simulated parts (rad, m).
 
     measured, simulated: positions part by part (K, n); t their times. rounds: Gauss-Newton steps.
+    stopped: why it ended before it converged, empty where it did converge.
     """
 
     plant: Plant
@@ -54,7 +57,12 @@ class Refinement:
     measured: tuple[Array, ...]
     simulated: tuple[Array, ...]
     rounds: int
-    converged: bool
+    stopped: str
+
+    @property
+    def converged(self) -> bool:
+        """Whether no step is left that would lower the cost by what is worth it."""
+        return not self.stopped
 
 
 def default_free(plant: Plant, effort: bool) -> list[str]:
@@ -97,18 +105,19 @@ def refine(
     fit = Fit(model, every)
     before = fit.whole(p, guesses)
     names = [plant.model.grouping.base[k].name for k in chosen]
-    rounds = 0
+    rounds, stopped = 0, ""
     for stage in (every, [part.single() for part in every]):
         # Shooting at many points finds the way; the last steps are those of the motion as one.
         fit = Fit(model, stage)
         guesses = [Guess(g.states[: len(part.intervals)]) for g, part in zip(guesses, stage, strict=True)]
-        done = False
+        done, stopped = False, f"the errors still fell at step {ROUNDS}, the last one"
         while rounds < ROUNDS and not done:
             rounds += 1
             now = fit.linear(p, guesses)
             weights = now.weights()
-            cost, step = now.cost(weights), now.step(weights, names)
-            alpha = _room(p[chosen], step.parameters, low, high)
+            cost, (step, alpha) = now.cost(weights), _step(now, weights, names, p[chosen], low, high)
+            promised = 1.0 - step.promised / max(cost, 1e-300)
+            end = "" if promised < UNKEPT else _unkept(rounds, promised)
             for _ in range(HALVINGS):
                 tried = p.copy()
                 tried[chosen] += alpha * step.parameters
@@ -121,6 +130,7 @@ def refine(
                 alpha /= 2
             else:
                 done = True
+            stopped = end if done else stopped
             if progress is not None:
                 progress(rounds, cost)
     final = fit.linear(p, guesses)
@@ -146,8 +156,33 @@ def refine(
         tuple(part.q for part in every),
         tuple(runs),
         rounds,
-        done,
+        stopped,
     )
+
+
+def _unkept(number: int, promised: float) -> str:
+    """Why a fit ends at a step that promised a share of the cost and brought nothing."""
+    return (
+        f"step {number} promises {100 * promised:.2g} % less of the squared errors, and no part of it, down "
+        f"to 1/{2 ** (HALVINGS - 1)}, keeps that"
+    )
+
+
+def _step(
+    now: Linear, weights: Array, names: Sequence[str], p: Array, low: Array, high: Array
+) -> tuple[Step, float]:
+    """The step from parameters p (f,), and how much of it stays inside their bounds.
+
+    A parameter that a bound stops at once is held: the others would creep with it.
+    """
+    free = np.ones(len(p), dtype=bool)
+    while True:
+        step = now.step(weights, names, free)
+        room = _room(p, step.parameters, low, high)
+        stuck = free & (room < BLOCKED)
+        if not stuck.any():
+            return step, float(min(1.0, room.min(initial=1.0)))
+        free &= ~stuck
 
 
 def _bounds(plant: Plant) -> Mapping[str, tuple[float, float]]:
@@ -167,12 +202,11 @@ def _limits(plant: Plant, chosen: Sequence[int]) -> tuple[Array, Array]:
     return low, high
 
 
-def _room(p: Array, step: Array, low: Array, high: Array) -> float:
-    """How far of the step may be gone before a bound is near."""
+def _room(p: Array, step: Array, low: Array, high: Array) -> Array:
+    """How much of the step each parameter (f,) may go before its bound is near."""
     edge = np.where(step < 0, low, high) - p
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where((step != 0) & np.isfinite(edge), BOUNDARY * edge / step, np.inf)
-    return float(min(1.0, share.min(initial=1.0)))
+        return np.where((step != 0) & np.isfinite(edge), BOUNDARY * edge / step, np.inf)
 
 
 def _chosen(plant: Plant, free: Sequence[str], effort: bool) -> list[int]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.errors import InputError
 from modelgen.identification.output_error.parts import Guess, Part
@@ -18,10 +19,14 @@ SINGULAR = 1e7  # condition of the scaled columns, beyond which values are not t
 
 @dataclass(frozen=True)
 class Step:
-    """Changes of the parameters (f,) and, by part, of the states at the beginnings of its intervals."""
+    """Changes of the parameters (f,) and, by part, of the states at the beginnings of its intervals.
+
+    promised: cost where everything is as linear as it is taken for.
+    """
 
     parameters: Array
     states: list[Array]
+    promised: float
 
 
 @dataclass(frozen=True)
@@ -60,28 +65,33 @@ class Linear:
             bases.append(u)
         return errors, columns, bases
 
-    def step(self, weights: Array, names: Sequence[str]) -> Step:
-        """Gauss-Newton. Raises InputError where the parameters `names` are not told apart."""
+    def step(self, weights: Array, names: Sequence[str], free: NDArray[np.bool_]) -> Step:
+        """Gauss-Newton, over the parameters `free` (f,) alone.
+
+        Raises InputError where those of the parameters `names` are not told apart.
+        """
         errors, columns, _ = self._projected(weights)
-        a = np.concatenate([c.reshape(-1, c.shape[2]) for c in columns])
+        a = np.concatenate([c.reshape(-1, c.shape[2]) for c in columns])[:, free]
         size = np.linalg.norm(a, axis=0)
         _, s, v = np.linalg.svd(a / np.where(size > 0, size, 1.0), full_matrices=False)
-        if s[-1] * SINGULAR < s[0]:
-            weak = [name for name, x in zip(names, v[-1], strict=True) if abs(x) > 0.1]
+        if len(s) and s[-1] * SINGULAR < s[0]:
+            left = [name for name, wanted in zip(names, free, strict=True) if wanted]
+            weak = [name for name, x in zip(left, v[-1], strict=True) if abs(x) > 0.1]
             raise InputError(
                 f"these motions do not tell {', '.join(weak)} apart: hold one of them (--free names those "
                 "that are tuned); without efforts the links' inertias must give the scale"
             )
         b = np.concatenate([e.ravel() for e in errors])
-        change = np.asarray(np.linalg.lstsq(a / size, b, rcond=None)[0] / size)
-        states = []
+        change, states = np.zeros(len(names)), []
+        change[free] = np.linalg.lstsq(a / size, b, rcond=None)[0] / size
+        promised = float(np.sum((b - a @ change[free]) ** 2))
         for e, c, x, follow in zip(self.errors, self.columns, self.initial, self.follow, strict=True):
             rest = ((e - c @ change) * weights).ravel()
             own = (x * weights[:, None]).reshape(len(rest), -1)
             first = np.linalg.lstsq(own, rest, rcond=1e-9)[0]
             z = np.concatenate([first, change])
             states.append(np.array([offset + matrix @ z for offset, matrix in follow]))
-        return Step(change, states)
+        return Step(change, states, promised)
 
     def deviations(self, weights: Array) -> Array:
         """Standard deviations of the parameters (f,): B (sum of V_j X_j' X_j) B, B the inverse of X' X and
