@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from modelgen.functions.objects import Function
-from modelgen.graph import Program, Term
+from modelgen.graph import Program, Term, read
 from modelgen.numeric import Array
 
 _CHUNK = 4096  # samples at a time: the live values then stay in the processor's cache
@@ -189,7 +189,7 @@ def _steps(program: Program) -> tuple[list[_Step], int]:
     last_use: dict[int, int] = {}
     wanted = [s for s in program.statements if not (isinstance(s.target, tuple) and s.target[0] == "guard")]
     for position, statement in enumerate(wanted):
-        for number in _lets(statement.term):
+        for number in read(statement.term):
             last_use[number] = position
     steps: list[_Step] = []
     free: list[int] = []
@@ -229,16 +229,9 @@ def _steps(program: Program) -> tuple[list[_Step], int]:
             steps.append(_Step("", (value,), -1, statement.target))
             if isinstance(value, int) and statement.term[0] != "let":
                 free.append(value)
-        used = {*_lets(statement.term), *([statement.target] if isinstance(statement.target, int) else [])}
+        used = {*read(statement.term), *([statement.target] if isinstance(statement.target, int) else [])}
         free += [holder[number] for number in sorted(used) if last_use[number] == position]
     return steps, count
-
-
-def _lets(term: Term) -> list[int]:
-    """Numbers of the temporaries in a term."""
-    if term[0] == "let":
-        return [term[1]]
-    return [number for part in term[1:] if isinstance(part, tuple) for number in _lets(part)]
 
 
 def _run(tape: _Tape, inputs: Mapping[str, Array], registers: Array, results: Mapping[str, Array]) -> None:

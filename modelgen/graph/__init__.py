@@ -2,7 +2,7 @@
 
 from modelgen.graph.cut import cut
 from modelgen.graph.graph import Expr, Graph, Number
-from modelgen.graph.lowering import Program, Statement, Term, lower
+from modelgen.graph.lowering import Program, Statement, Term, lower, read
 from modelgen.graph.operations import OPERATION_KINDS, count_operations
 
 __all__ = [
@@ -16,4 +16,5 @@ __all__ = [
     "count_operations",
     "cut",
     "lower",
+    "read",
 ]

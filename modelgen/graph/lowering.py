@@ -31,6 +31,13 @@ class Statement:
     term: Term
 
 
+def read(term: Term) -> list[int]:
+    """Numbers of the temporaries in a term."""
+    if term[0] == "let":
+        return [term[1]]
+    return [number for part in term[1:] if isinstance(part, tuple) for number in read(part)]
+
+
 @dataclass(frozen=True)
 class Program:
     """Statements in order of execution. Outputs that are constant zero are not among them."""

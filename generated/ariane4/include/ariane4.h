@@ -61,7 +61,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0xA136F4CEUL
+#define ARIANE4_GENERATION 0x219312A7UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_MODEL "8a3fccb07c9b67498d750a5b873df117b4723e20699a1d2172320a7751cb2c94"

@@ -51,7 +51,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xA136F4CEUL
+#if ARIANE4_GENERATION != 0x219312A7UL
 #error "ariane4.h and ariane4_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -93,7 +93,7 @@ int ariane4_forward_dynamics(
     const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t3 + ARIANE4_C(0.242037));
     const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
     const ariane4_real_t t6 = t2 * (ARIANE4_C(7124.375926654358) * t5);
-    const ariane4_real_t t7 = parameters[ZZ3R] + parameters[IA3] * (t6 * t6);
+    const ariane4_real_t t7 = ariane4_bounded(parameters[ZZ3R] + parameters[IA3] * (t6 * t6));
     if (!(t7 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -109,7 +109,7 @@ int ariane4_forward_dynamics(
     const ariane4_real_t t18 = ARIANE4_C(-1.0) / t7;
     const ariane4_real_t t19 = ARIANE4_C(-0.443) * t15 - parameters[ZZ3R];
     const ariane4_real_t t20 = t19 * t18;
-    const ariane4_real_t t21 = t17 + t19 * t20;
+    const ariane4_real_t t21 = ariane4_bounded(t17 + t19 * t20);
     if (!(t21 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -141,7 +141,7 @@ int ariane4_forward_dynamics(
     const ariane4_real_t t42 = ARIANE4_C(1.0) / t21;
     const ariane4_real_t t43 = t8 * (t38 - parameters[XZ2R]) - t9 * (parameters[YZ2] + t39) + t40 * t20;
     const ariane4_real_t t44 = t43 * t42;
-    const ariane4_real_t t45 = t37 + t40 * t41 - t43 * t44;
+    const ariane4_real_t t45 = ariane4_bounded(t37 + t40 * t41 - t43 * t44);
     if (!(t45 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -226,12 +226,12 @@ int ariane4_forward_dynamics(
         - ARIANE4_C(0.443) * t97)));
     const ariane4_real_t t104 = t103 + t95 * t20;
     const ariane4_real_t t105 = ARIANE4_C(1.0) / t45;
-    const ariane4_real_t t106 = (t96 + t104 * t44) * t105;
+    const ariane4_real_t t106 = ariane4_bounded((t96 + t104 * t44) * t105);
     out[0] = t106;
-    const ariane4_real_t t107 = t104 * t42 + t44 * t106;
+    const ariane4_real_t t107 = ariane4_bounded(t104 * t42 + t44 * t106);
     out[1] = t107;
     out[2] = t95 * t18 + t41 * t106 - t20 * t107;
-    if (!ariane4_within_joints(out, ARIANE4_C(1.0e30))) {
+    if (!ariane4_all_bounded(out, 3)) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

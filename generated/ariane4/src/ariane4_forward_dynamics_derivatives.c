@@ -55,7 +55,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xA136F4CEUL
+#if ARIANE4_GENERATION != 0x219312A7UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -104,7 +104,7 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
     const ariane4_real_t t6 = ARIANE4_C(7124.375926654358) * t5;
     const ariane4_real_t t7 = t2 * t6;
-    const ariane4_real_t t8 = parameters[ZZ3R] + parameters[IA3] * (t7 * t7);
+    const ariane4_real_t t8 = ariane4_bounded(parameters[ZZ3R] + parameters[IA3] * (t7 * t7));
     if (!(t8 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -124,7 +124,7 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t20 = ARIANE4_C(-1.0) / t8;
     const ariane4_real_t t21 = ARIANE4_C(-0.443) * t17 - parameters[ZZ3R];
     const ariane4_real_t t22 = t21 * t20;
-    const ariane4_real_t t23 = t19 + t21 * t22;
+    const ariane4_real_t t23 = ariane4_bounded(t19 + t21 * t22);
     if (!(t23 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -163,7 +163,7 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t45 = ARIANE4_C(1.0) / t23;
     const ariane4_real_t t46 = t9 * (parameters[XZ2R] + t41) + t10 * (parameters[YZ2] + t42) - t43 * t22;
     const ariane4_real_t t47 = t46 * t45;
-    const ariane4_real_t t48 = t40 + t43 * t44 - t46 * t47;
+    const ariane4_real_t t48 = ariane4_bounded(t40 + t43 * t44 - t46 * t47);
     if (!(t48 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -269,11 +269,11 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t129 = ARIANE4_C(-0.012) * t16;
     const ariane4_real_t t130 = t114 * t22 - (input[1] * t129 + t128);
     const ariane4_real_t t131 = ARIANE4_C(1.0) / t48;
-    const ariane4_real_t t132 = (t115 - t130 * t47) * t131;
+    const ariane4_real_t t132 = ariane4_bounded((t115 - t130 * t47) * t131);
     ddq[0] = t132;
-    const ariane4_real_t t133 = t130 * t45 - t47 * t132;
+    const ariane4_real_t t133 = ariane4_bounded(t130 * t45 - t47 * t132);
     ddq[1] = t133;
-    const ariane4_real_t t134 = t114 * t20 + t44 * t132 - t22 * t133;
+    const ariane4_real_t t134 = ariane4_bounded(t114 * t20 + t44 * t132 - t22 * t133);
     ddq[2] = t134;
     const ariane4_real_t t135 = t9 * t1 + t10 * t0;
     const ariane4_real_t t136 = t132 * t135;
@@ -339,7 +339,7 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t190 = t95 * t131;
     ddq_by_q[0] = -(t190 * t189);
     const ariane4_real_t t191 = t47 * t131;
-    const ariane4_real_t t192 = t95 * t191;
+    const ariane4_real_t t192 = ariane4_bounded(t95 * t191);
     ddq_by_q[3] = t192 * t189;
     const ariane4_real_t t193 = t131 * (t44 + t22 * t47);
     const ariane4_real_t t194 = t95 * t193;
@@ -392,7 +392,7 @@ int ariane4_forward_dynamics_derivatives(
         + t213) - parameters[XX2R] * t210);
     const ariane4_real_t t232 = ARIANE4_C(0.03137188092799786) * t13 / t11;
     const ariane4_real_t t233 = t232 * (t231 + (t229 + ARIANE4_C(0.443) * t230));
-    const ariane4_real_t t234 = t129 * t191;
+    const ariane4_real_t t234 = ariane4_bounded(t129 * t191);
     const ariane4_real_t t235 = t113 * t193;
     const ariane4_real_t t236 = ARIANE4_C(-0.046787723832235825) * t4 / t2;
     const ariane4_real_t t237 = t236 * t229;
@@ -401,7 +401,7 @@ int ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t239 = t22 * t45 + t47 * t193;
     const ariane4_real_t t240 = t113 * t239;
     ddq_by_dq[3] = t222 * t192 + t233 * t238 - t237 * t240;
-    const ariane4_real_t t241 = t129 * t239;
+    const ariane4_real_t t241 = ariane4_bounded(t129 * t239);
     const ariane4_real_t t242 = t113 * (t20 - t44 * t193 - t22 * t239);
     ddq_by_dq[6] = -(t222 * t194 + t233 * t241 + t237 * t242);
     ddq_by_input[0] = -t190;
@@ -534,10 +534,10 @@ int ariane4_forward_dynamics_derivatives(
     ddq_by_input[2] = -t235;
     ddq_by_input[5] = t240;
     ddq_by_input[8] = t242;
-    if (!ariane4_within_joints(ddq, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_q, 9, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_dq, 9, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_input, 9, ARIANE4_C(1.0e30))) {
+    if (!ariane4_all_bounded(ddq, 3)
+        || !ariane4_all_bounded(ddq_by_q, 9)
+        || !ariane4_all_bounded(ddq_by_dq, 9)
+        || !ariane4_all_bounded(ddq_by_input, 9)) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

@@ -79,7 +79,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xA136F4CEUL
+#if ARIANE4_GENERATION != 0x219312A7UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -134,7 +134,7 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t10 = ARIANE4_C(0.436) * parameters[M4];
     const ariane4_real_t t11 = ARIANE4_C(0.436) * (t10 + ARIANE4_C(2.0) * parameters[MZ4]);
     const ariane4_real_t t12 = parameters[ZZ3] + (parameters[YY4] + (t9 + t11));
-    const ariane4_real_t t13 = t12 + t7 * t7 * parameters[IA3];
+    const ariane4_real_t t13 = ariane4_bounded(t12 + t7 * t7 * parameters[IA3]);
     if (!(t13 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -161,7 +161,7 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t32 = ARIANE4_C(-1.0) / t13;
     const ariane4_real_t t33 = ARIANE4_C(-0.443) * t26 - t12;
     const ariane4_real_t t34 = t33 * t32;
-    const ariane4_real_t t35 = t31 + t33 * t34;
+    const ariane4_real_t t35 = ariane4_bounded(t31 + t33 * t34);
     if (!(t35 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -213,7 +213,7 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t69 = t63 - parameters[YZ2];
     const ariane4_real_t t70 = t64 * t34 - (t14 * t68 + t15 * t69);
     const ariane4_real_t t71 = t70 * t66;
-    const ariane4_real_t t72 = t59 + t64 * t65 - t70 * t71;
+    const ariane4_real_t t72 = ariane4_bounded(t59 + t64 * t65 - t70 * t71);
     if (!(t72 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -362,11 +362,11 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t185 = t170 * t34 - (t21 * t183 - t176 - t184 * input[1]);
     const ariane4_real_t t186 = t151 - input[0] * t152 + t170 * t65 - t185 * t71;
     const ariane4_real_t t187 = ARIANE4_C(1.0) / t72;
-    const ariane4_real_t t188 = t186 * t187;
+    const ariane4_real_t t188 = ariane4_bounded(t186 * t187);
     ddq[0] = t188;
-    const ariane4_real_t t189 = t185 * t66 - t71 * t188;
+    const ariane4_real_t t189 = ariane4_bounded(t185 * t66 - t71 * t188);
     ddq[1] = t189;
-    const ariane4_real_t t190 = t170 * t32 - t65 * t188 - t34 * t189;
+    const ariane4_real_t t190 = ariane4_bounded(t170 * t32 - t65 * t188 - t34 * t189);
     ddq[2] = t190;
     const ariane4_real_t t191 = ARIANE4_C(-0.116) * t188;
     const ariane4_real_t t192 = t15 * t188;
@@ -456,10 +456,10 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t260 = t152 * t187;
     ddq_by_q[0] = -(t260 * t259);
     const ariane4_real_t t261 = t71 * t187;
-    const ariane4_real_t t262 = t152 * t261;
+    const ariane4_real_t t262 = ariane4_bounded(t152 * t261);
     ddq_by_q[3] = t262 * t259;
     const ariane4_real_t t263 = t187 * (t65 - t34 * t71);
-    const ariane4_real_t t264 = t152 * t263;
+    const ariane4_real_t t264 = ariane4_bounded(t152 * t263);
     ddq_by_q[6] = t264 * t259;
     const ariane4_real_t t265 = ARIANE4_C(-0.436) * t77;
     const ariane4_real_t t266 = t24 * t265;
@@ -552,11 +552,11 @@ int ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t346 = t345 * t344;
     const ariane4_real_t t347 = t169 * t263;
     ddq_by_dq[0] = t346 * t347 - (t323 * t260 + t337 * t338);
-    const ariane4_real_t t348 = t184 * (t66 + t71 * t261);
+    const ariane4_real_t t348 = ariane4_bounded(t184 * (t66 + t71 * t261));
     const ariane4_real_t t349 = t71 * t263 - t34 * t66;
     const ariane4_real_t t350 = t169 * t349;
     ddq_by_dq[3] = t323 * t262 + t337 * t348 - t346 * t350;
-    const ariane4_real_t t351 = t184 * t349;
+    const ariane4_real_t t351 = ariane4_bounded(t184 * t349);
     const ariane4_real_t t352 = t169 * (t32 - t65 * t263 + t34 * t349);
     ddq_by_dq[6] = t323 * t264 + t337 * t351 + t346 * t352;
     ddq_by_input[0] = -t260;
@@ -695,10 +695,10 @@ int ariane4_forward_dynamics_derivatives_standard(
     ddq_by_input[2] = t347;
     ddq_by_input[5] = -t350;
     ddq_by_input[8] = t352;
-    if (!ariane4_within_joints(ddq, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_q, 9, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_dq, 9, ARIANE4_C(1.0e30))
-        || !ariane4_within(ddq_by_input, 9, ARIANE4_C(1.0e30))) {
+    if (!ariane4_all_bounded(ddq, 3)
+        || !ariane4_all_bounded(ddq_by_q, 9)
+        || !ariane4_all_bounded(ddq_by_dq, 9)
+        || !ariane4_all_bounded(ddq_by_input, 9)) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

@@ -75,7 +75,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xA136F4CEUL
+#if ARIANE4_GENERATION != 0x219312A7UL
 #error "ariane4.h and ariane4_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -123,7 +123,7 @@ int ariane4_forward_dynamics_standard(
     const ariane4_real_t t9 = ARIANE4_C(0.436) * parameters[M4];
     const ariane4_real_t t10 = ARIANE4_C(0.436) * (t9 + ARIANE4_C(2.0) * parameters[MZ4]);
     const ariane4_real_t t11 = parameters[ZZ3] + (parameters[YY4] + (t8 + t10));
-    const ariane4_real_t t12 = t11 + t6 * t6 * parameters[IA3];
+    const ariane4_real_t t12 = ariane4_bounded(t11 + t6 * t6 * parameters[IA3]);
     if (!(t12 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -144,7 +144,7 @@ int ariane4_forward_dynamics_standard(
     const ariane4_real_t t28 = ARIANE4_C(-1.0) / t12;
     const ariane4_real_t t29 = ARIANE4_C(-0.443) * t23 - t11;
     const ariane4_real_t t30 = t29 * t28;
-    const ariane4_real_t t31 = t27 + t29 * t30;
+    const ariane4_real_t t31 = ariane4_bounded(t27 + t29 * t30);
     if (!(t31 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -185,7 +185,7 @@ int ariane4_forward_dynamics_standard(
         - parameters[XZ2]) + t14 * (t55 - parameters[YZ2]);
     const ariane4_real_t t60 = t59 - t56 * t30;
     const ariane4_real_t t61 = t60 * t58;
-    const ariane4_real_t t62 = t51 + t56 * t57 - t60 * t61;
+    const ariane4_real_t t62 = ariane4_bounded(t51 + t56 * t57 - t60 * t61);
     if (!(t62 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -305,12 +305,12 @@ int ariane4_forward_dynamics_standard(
         + t18 * t144 * t81 * parameters[IA2];
     const ariane4_real_t t146 = ARIANE4_C(0.012) * t19 * input[1] - (t19 * t145 - t141) + t137 * t30;
     const ariane4_real_t t147 = ARIANE4_C(1.0) / t62;
-    const ariane4_real_t t148 = (t126 + t137 * t57 + t146 * t61) * t147;
+    const ariane4_real_t t148 = ariane4_bounded((t126 + t137 * t57 + t146 * t61) * t147);
     out[0] = t148;
-    const ariane4_real_t t149 = t146 * t58 + t61 * t148;
+    const ariane4_real_t t149 = ariane4_bounded(t146 * t58 + t61 * t148);
     out[1] = t149;
     out[2] = t137 * t28 - t57 * t148 - t30 * t149;
-    if (!ariane4_within_joints(out, ARIANE4_C(1.0e30))) {
+    if (!ariane4_all_bounded(out, 3)) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0xA136F4CEUL
+#if ARIANE4_GENERATION != 0x219312A7UL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int ariane4_within(const ariane4_real_t x[], int n, ariane4_real_t
 static inline int ariane4_within_joints(const ariane4_real_t x[], ariane4_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline ariane4_real_t ariane4_bounded(ariane4_real_t x)
+{
+    return x >= ARIANE4_C(-1.0e15) && x <= ARIANE4_C(1.0e15) ? x : ARIANE4_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int ariane4_all_bounded(const ariane4_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= ARIANE4_C(-1.0e15) && x[i] <= ARIANE4_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DARIANE4_PARAMETERS_CHECKED, for parameters that ariane4_check_parameters has seen. */

@@ -61,7 +61,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
+#if ARIANE4_FREE_GENERATION != 0x261051E4UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -100,7 +100,8 @@ int ariane4_free_forward_dynamics(
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t9, t8;
     ARIANE4_FREE_SINCOS(q[3], &t9, &t8);
-    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
+        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -122,7 +123,7 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t16 = t9 * parameters[XZ4R] + t8 * parameters[YZ4R];
     const ariane4_free_real_t t17 = ARIANE4_FREE_C(-1.0) / t0;
     const ariane4_free_real_t t18 = t16 * t17;
-    const ariane4_free_real_t t19 = t15 + t16 * t18;
+    const ariane4_free_real_t t19 = ariane4_free_bounded(t15 + t16 * t18);
     if (!(t19 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -150,7 +151,7 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.443) * t29 - t14 + t33 * t18;
     const ariane4_free_real_t t36 = ARIANE4_FREE_C(-1.0) / t19;
     const ariane4_free_real_t t37 = t35 * t36;
-    const ariane4_free_real_t t38 = t31 + t33 * t34 + t35 * t37;
+    const ariane4_free_real_t t38 = ariane4_free_bounded(t31 + t33 * t34 + t35 * t37);
     if (!(t38 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -197,7 +198,7 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t70 = t69 + t61 * t34 + t67 * t37;
     const ariane4_free_real_t t71 = ARIANE4_FREE_C(1.0) / t38;
     const ariane4_free_real_t t72 = t70 * t71;
-    const ariane4_free_real_t t73 = t58 + t61 * t62 + t67 * t68 - t70 * t72;
+    const ariane4_free_real_t t73 = ariane4_free_bounded(t58 + t61 * t62 + t67 * t68 - t70 * t72);
     if (!(t73 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -330,15 +331,15 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t169 = input[1] * (ARIANE4_FREE_C(0.012) * t27) - t168 + t151 * t34
         + t160 * t37;
     const ariane4_free_real_t t170 = ARIANE4_FREE_C(1.0) / t73;
-    const ariane4_free_real_t t171 = (t152 - t160 * t68 + t169 * t72) * t170;
+    const ariane4_free_real_t t171 = ariane4_free_bounded((t152 - t160 * t68 + t169 * t72) * t170);
     out[0] = t171;
-    const ariane4_free_real_t t172 = t169 * t71 + t72 * t171;
+    const ariane4_free_real_t t172 = ariane4_free_bounded(t169 * t71 + t72 * t171);
     out[1] = t172;
-    const ariane4_free_real_t t173 = t160 * t36 + t68 * t171 - t37 * t172;
+    const ariane4_free_real_t t173 = ariane4_free_bounded(t160 * t36 + t68 * t171 - t37 * t172);
     out[2] = t173;
     const ariane4_free_real_t t174 = t34 * t172 - (t151 * t17 + t62 * t171) - t18 * t173;
     out[3] = t174;
-    if (!ariane4_free_within_joints(out, ARIANE4_FREE_C(1.0e30))) {
+    if (!ariane4_free_all_bounded(out, 4)) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

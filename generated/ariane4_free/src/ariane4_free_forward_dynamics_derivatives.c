@@ -65,7 +65,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
+#if ARIANE4_FREE_GENERATION != 0x261051E4UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -110,7 +110,8 @@ int ariane4_free_forward_dynamics_derivatives(
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t10, t9;
     ARIANE4_FREE_SINCOS(q[3], &t10, &t9);
-    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
+        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -136,7 +137,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t17 = t10 * parameters[XZ4R] + t9 * parameters[YZ4R];
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(1.0) / t0;
     const ariane4_free_real_t t19 = t17 * t18;
-    const ariane4_free_real_t t20 = t16 - t17 * t19;
+    const ariane4_free_real_t t20 = ariane4_free_bounded(t16 - t17 * t19);
     if (!(t20 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -174,7 +175,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t40 = t39 + t37 * t19;
     const ariane4_free_real_t t41 = ARIANE4_FREE_C(-1.0) / t20;
     const ariane4_free_real_t t42 = t40 * t41;
-    const ariane4_free_real_t t43 = t34 - t37 * t38 + t40 * t42;
+    const ariane4_free_real_t t43 = ariane4_free_bounded(t34 - t37 * t38 + t40 * t42);
     if (!(t43 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -230,7 +231,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t81 = t77 * t42 - (t71 * t38 - (t22 * t79 + t23 * t80));
     const ariane4_free_real_t t82 = ARIANE4_FREE_C(1.0) / t43;
     const ariane4_free_real_t t83 = t81 * t82;
-    const ariane4_free_real_t t84 = t67 - t71 * t72 + t77 * t78 - t81 * t83;
+    const ariane4_free_real_t t84 = ariane4_free_bounded(t67 - t71 * t72 + t77 * t78 - t81 * t83);
     if (!(t84 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -386,11 +387,11 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t206 = ARIANE4_FREE_C(-1.0) / t84;
     const ariane4_free_real_t t207 = (t176 - t189 * t78 + t205 * t83) * t206;
     ddq[0] = -t207;
-    const ariane4_free_real_t t208 = t205 * t82 - t83 * t207;
+    const ariane4_free_real_t t208 = ariane4_free_bounded(t205 * t82 - t83 * t207);
     ddq[1] = t208;
-    const ariane4_free_real_t t209 = t189 * t41 - t78 * t207 - t42 * t208;
+    const ariane4_free_real_t t209 = ariane4_free_bounded(t189 * t41 - t78 * t207 - t42 * t208);
     ddq[2] = t209;
-    const ariane4_free_real_t t210 = t175 * t18 + t72 * t207 + t38 * t208 + t19 * t209;
+    const ariane4_free_real_t t210 = ariane4_free_bounded(t175 * t18 + t72 * t207 + t38 * t208 + t19 * t209);
     ddq[3] = t210;
     const ariane4_free_real_t t211 = t22 * t1 - t23 * t2;
     const ariane4_free_real_t t212 = t207 * t211;
@@ -489,17 +490,17 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t292 = parameters[FV1] * (dq[0] * t289) + parameters[IA1] * (t291
         - t207 * t289);
     const ariane4_free_real_t t293 = ARIANE4_FREE_C(250.0) * t292 + t287 * (parameters[ZZ1R] * t207 + t281);
-    const ariane4_free_real_t t294 = t172 * t206;
+    const ariane4_free_real_t t294 = ariane4_free_bounded(t172 * t206);
     ddq_by_q[0] = t294 * t293;
     const ariane4_free_real_t t295 = t83 * t206;
-    const ariane4_free_real_t t296 = t172 * t295;
+    const ariane4_free_real_t t296 = ariane4_free_bounded(t172 * t295);
     ddq_by_q[4] = t296 * t293;
     const ariane4_free_real_t t297 = t206 * (t78 - t42 * t83);
-    const ariane4_free_real_t t298 = t172 * t297;
+    const ariane4_free_real_t t298 = ariane4_free_bounded(t172 * t297);
     ddq_by_q[8] = t298 * t293;
     const ariane4_free_real_t t299 = t38 - t19 * t42;
     const ariane4_free_real_t t300 = t206 * (t83 * t299 - (t72 - t19 * t78));
-    const ariane4_free_real_t t301 = t172 * t300;
+    const ariane4_free_real_t t301 = ariane4_free_bounded(t172 * t300);
     ddq_by_q[12] = t301 * t293;
     const ariane4_free_real_t t302 = parameters[XZ4R] * t219;
     const ariane4_free_real_t t303 = parameters[XY4] * t250;
@@ -584,7 +585,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t377 = t22 * t373 - t23 * t375 - (t23 * t56 + t22 * t57) * t376;
     const ariane4_free_real_t t378 = ARIANE4_FREE_C(0.03137188092799786) * t26 / t24;
     const ariane4_free_real_t t379 = t378 * t377;
-    const ariane4_free_real_t t380 = t188 * t297;
+    const ariane4_free_real_t t380 = ariane4_free_bounded(t188 * t297);
     const ariane4_free_real_t t381 = ARIANE4_FREE_C(2.0) * t369;
     const ariane4_free_real_t t382 = ARIANE4_FREE_C(2.0) * t370;
     const ariane4_free_real_t t383 = ARIANE4_FREE_C(0.886) * t87;
@@ -608,21 +609,21 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t401 = ARIANE4_FREE_C(0.2) * t400;
     const ariane4_free_real_t t402 = t365 * t294 + t379 * t366 + t388 * t380 + t401 * t389;
     ddq_by_dq[0] = t402;
-    const ariane4_free_real_t t403 = t203 * (t82 - t83 * t295);
+    const ariane4_free_real_t t403 = ariane4_free_bounded(t203 * (t82 - t83 * t295));
     const ariane4_free_real_t t404 = t42 * t82 + t83 * t297;
-    const ariane4_free_real_t t405 = t188 * t404;
+    const ariane4_free_real_t t405 = ariane4_free_bounded(t188 * t404);
     const ariane4_free_real_t t406 = t82 * t299 - t83 * t300;
     const ariane4_free_real_t t407 = ARIANE4_FREE_C(5.0) * t406;
     const ariane4_free_real_t t408 = t388 * t405 - (t379 * t403 - t365 * t296) + t401 * t407;
     ddq_by_dq[4] = t408;
     const ariane4_free_real_t t409 = t203 * t404;
-    const ariane4_free_real_t t410 = t188 * (t41 + t78 * t297 - t42 * t404);
+    const ariane4_free_real_t t410 = ariane4_free_bounded(t188 * (t41 + t78 * t297 - t42 * t404));
     const ariane4_free_real_t t411 = t19 * t41 + t78 * t300 + t42 * t406;
     const ariane4_free_real_t t412 = ARIANE4_FREE_C(-5.0) * t411;
     const ariane4_free_real_t t413 = t365 * t298 + t379 * t409 + t388 * t410 + t401 * t412;
     ddq_by_dq[8] = t413;
-    const ariane4_free_real_t t414 = t203 * t406;
-    const ariane4_free_real_t t415 = t188 * t411;
+    const ariane4_free_real_t t414 = ariane4_free_bounded(t203 * t406);
+    const ariane4_free_real_t t415 = ariane4_free_bounded(t188 * t411);
     const ariane4_free_real_t t416 = t18 + t72 * t300 + t38 * t406 - t19 * t411;
     const ariane4_free_real_t t417 = ARIANE4_FREE_C(5.0) * t416;
     const ariane4_free_real_t t418 = t388 * t415 - (t379 * t414 - t365 * t301) + t401 * t417;
@@ -856,10 +857,10 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_input[7] = t407;
     ddq_by_input[11] = t412;
     ddq_by_input[15] = t417;
-    if (!ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_q, 16, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_dq, 16, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_input, 16, ARIANE4_FREE_C(1.0e30))) {
+    if (!ariane4_free_all_bounded(ddq, 4)
+        || !ariane4_free_all_bounded(ddq_by_q, 16)
+        || !ariane4_free_all_bounded(ddq_by_dq, 16)
+        || !ariane4_free_all_bounded(ddq_by_input, 16)) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

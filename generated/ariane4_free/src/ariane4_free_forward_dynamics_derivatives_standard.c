@@ -83,7 +83,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
+#if ARIANE4_FREE_GENERATION != 0x261051E4UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -129,7 +129,8 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t9, t10;
     ARIANE4_FREE_SINCOS(q[3], &t9, &t10);
-    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
+        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -161,7 +162,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         + t10 * parameters[YZ4]);
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(1.0) / t0;
     const ariane4_free_real_t t24 = t22 * t23;
-    const ariane4_free_real_t t25 = t20 - t22 * t24;
+    const ariane4_free_real_t t25 = ariane4_free_bounded(t20 - t22 * t24);
     if (!(t25 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -203,7 +204,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t49 = ARIANE4_FREE_C(-0.443) * t39 - t19;
     const ariane4_free_real_t t50 = t49 - t46 * t24;
     const ariane4_free_real_t t51 = t50 * t48;
-    const ariane4_free_real_t t52 = t44 - t46 * t47 + t50 * t51;
+    const ariane4_free_real_t t52 = ariane4_free_bounded(t44 - t46 * t47 + t50 * t51);
     if (!(t52 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -265,7 +266,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t93 = t82 * t47 - (t27 * t91 + t28 * t92) + t88 * t51;
     const ariane4_free_real_t t94 = ARIANE4_FREE_C(1.0) / t52;
     const ariane4_free_real_t t95 = t93 * t94;
-    const ariane4_free_real_t t96 = t77 - t82 * t83 + t88 * t89 - t93 * t95;
+    const ariane4_free_real_t t96 = ariane4_free_bounded(t77 - t82 * t83 + t88 * t89 - t93 * t95);
     if (!(t96 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -449,13 +450,13 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t236 = t235 * input[1] - (t34 * t234 - t227) + t203 * t47;
     const ariane4_free_real_t t237 = t236 + t220 * t51;
     const ariane4_free_real_t t238 = ARIANE4_FREE_C(1.0) / t96;
-    const ariane4_free_real_t t239 = (t221 - t237 * t95) * t238;
+    const ariane4_free_real_t t239 = ariane4_free_bounded((t221 - t237 * t95) * t238);
     ddq[0] = t239;
-    const ariane4_free_real_t t240 = t237 * t94 - t95 * t239;
+    const ariane4_free_real_t t240 = ariane4_free_bounded(t237 * t94 - t95 * t239);
     ddq[1] = t240;
-    const ariane4_free_real_t t241 = t220 * t48 - t89 * t239 - t51 * t240;
+    const ariane4_free_real_t t241 = ariane4_free_bounded(t220 * t48 - t89 * t239 - t51 * t240);
     ddq[2] = t241;
-    const ariane4_free_real_t t242 = t203 * t23 - t83 * t239 + t47 * t240 - t24 * t241;
+    const ariane4_free_real_t t242 = ariane4_free_bounded(t203 * t23 - t83 * t239 + t47 * t240 - t24 * t241);
     ddq[3] = t242;
     const ariane4_free_real_t t243 = t240 + t241;
     const ariane4_free_real_t t244 = t27 * t2 + t28 * t1;
@@ -574,14 +575,14 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t340 = t200 * t238;
     ddq_by_q[0] = -(t340 * t339);
     const ariane4_free_real_t t341 = t95 * t238;
-    const ariane4_free_real_t t342 = t200 * t341;
+    const ariane4_free_real_t t342 = ariane4_free_bounded(t200 * t341);
     ddq_by_q[4] = t342 * t339;
     const ariane4_free_real_t t343 = t238 * (t89 - t51 * t95);
-    const ariane4_free_real_t t344 = t200 * t343;
+    const ariane4_free_real_t t344 = ariane4_free_bounded(t200 * t343);
     ddq_by_q[8] = t344 * t339;
     const ariane4_free_real_t t345 = t47 + t24 * t51;
     const ariane4_free_real_t t346 = t238 * (t83 - t24 * t89 + t95 * t345);
-    const ariane4_free_real_t t347 = t200 * t346;
+    const ariane4_free_real_t t347 = ariane4_free_bounded(t200 * t346);
     ddq_by_q[12] = t347 * t339;
     const ariane4_free_real_t t348 = t255 * parameters[MZ4] + t256 * parameters[MY4];
     const ariane4_free_real_t t349 = t256 * parameters[MX4] - t260 * parameters[MZ4];
@@ -682,7 +683,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t433 = t27 * t429 - t28 * t431 - (t28 * t65 + t27 * t67) * t432;
     const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.03137188092799786) * t31 / t29;
     const ariane4_free_real_t t435 = t434 * t433;
-    const ariane4_free_real_t t436 = t219 * t343;
+    const ariane4_free_real_t t436 = ariane4_free_bounded(t219 * t343);
     const ariane4_free_real_t t437 = ARIANE4_FREE_C(2.0) * t424;
     const ariane4_free_real_t t438 = ARIANE4_FREE_C(2.0) * t426;
     const ariane4_free_real_t t439 = ARIANE4_FREE_C(0.886) * t101;
@@ -707,21 +708,21 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t457 = ARIANE4_FREE_C(0.2) * t456;
     const ariane4_free_real_t t458 = t435 * t421 - t420 * t340 + t444 * t436 + t457 * t445;
     ddq_by_dq[0] = t458;
-    const ariane4_free_real_t t459 = t235 * (t94 + t95 * t341);
+    const ariane4_free_real_t t459 = ariane4_free_bounded(t235 * (t94 + t95 * t341));
     const ariane4_free_real_t t460 = t95 * t343 - t51 * t94;
     const ariane4_free_real_t t461 = t219 * t460;
     const ariane4_free_real_t t462 = t94 * t345 + t95 * t346;
     const ariane4_free_real_t t463 = ARIANE4_FREE_C(5.0) * t462;
     const ariane4_free_real_t t464 = t420 * t342 - t435 * t459 - t444 * t461 + t457 * t463;
     ddq_by_dq[4] = t464;
-    const ariane4_free_real_t t465 = t235 * t460;
-    const ariane4_free_real_t t466 = t219 * (t48 - t89 * t343 + t51 * t460);
+    const ariane4_free_real_t t465 = ariane4_free_bounded(t235 * t460);
+    const ariane4_free_real_t t466 = ariane4_free_bounded(t219 * (t48 - t89 * t343 + t51 * t460));
     const ariane4_free_real_t t467 = t51 * t462 - (t24 * t48 + t89 * t346);
     const ariane4_free_real_t t468 = ARIANE4_FREE_C(-5.0) * t467;
     const ariane4_free_real_t t469 = t420 * t344 - t435 * t465 + t444 * t466 + t457 * t468;
     ddq_by_dq[8] = t469;
-    const ariane4_free_real_t t470 = t235 * t462;
-    const ariane4_free_real_t t471 = t219 * t467;
+    const ariane4_free_real_t t470 = ariane4_free_bounded(t235 * t462);
+    const ariane4_free_real_t t471 = ariane4_free_bounded(t219 * t467);
     const ariane4_free_real_t t472 = t23 + t83 * t346 + t47 * t462 + t24 * t467;
     const ariane4_free_real_t t473 = ARIANE4_FREE_C(5.0) * t472;
     const ariane4_free_real_t t474 = t420 * t347 - t435 * t470 + t444 * t471 + t457 * t473;
@@ -964,10 +965,10 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ddq_by_input[7] = t463;
     ddq_by_input[11] = t468;
     ddq_by_input[15] = t473;
-    if (!ariane4_free_within_joints(ddq, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_q, 16, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_dq, 16, ARIANE4_FREE_C(1.0e30))
-        || !ariane4_free_within(ddq_by_input, 16, ARIANE4_FREE_C(1.0e30))) {
+    if (!ariane4_free_all_bounded(ddq, 4)
+        || !ariane4_free_all_bounded(ddq_by_q, 16)
+        || !ariane4_free_all_bounded(ddq_by_dq, 16)
+        || !ariane4_free_all_bounded(ddq_by_input, 16)) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

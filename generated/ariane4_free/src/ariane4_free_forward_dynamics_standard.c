@@ -79,7 +79,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
+#if ARIANE4_FREE_GENERATION != 0x261051E4UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -119,7 +119,8 @@ int ariane4_free_forward_dynamics_standard(
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t8, t9;
     ARIANE4_FREE_SINCOS(q[3], &t8, &t9);
-    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
+        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -147,7 +148,7 @@ int ariane4_free_forward_dynamics_standard(
         + t9 * parameters[YZ4]);
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(-1.0) / t0;
     const ariane4_free_real_t t23 = t21 * t22;
-    const ariane4_free_real_t t24 = t19 + t21 * t23;
+    const ariane4_free_real_t t24 = ariane4_free_bounded(t19 + t21 * t23);
     if (!(t24 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -178,7 +179,7 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t43 = ARIANE4_FREE_C(-1.0) / t24;
     const ariane4_free_real_t t44 = ARIANE4_FREE_C(-0.443) * t36 - t18 - t41 * t23;
     const ariane4_free_real_t t45 = t44 * t43;
-    const ariane4_free_real_t t46 = t40 + t41 * t42 + t44 * t45;
+    const ariane4_free_real_t t46 = ariane4_free_bounded(t40 + t41 * t42 + t44 * t45);
     if (!(t46 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -229,7 +230,7 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t80 = t79 + t71 * t42 - t77 * t45;
     const ariane4_free_real_t t81 = ARIANE4_FREE_C(1.0) / t46;
     const ariane4_free_real_t t82 = t80 * t81;
-    const ariane4_free_real_t t83 = t67 + t71 * t72 + t77 * t78 - t80 * t82;
+    const ariane4_free_real_t t83 = ariane4_free_bounded(t67 + t71 * t72 + t77 * t78 - t80 * t82);
     if (!(t83 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -384,15 +385,15 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t193 = t192 + t183 * t45;
     const ariane4_free_real_t t194 = t169 - t172 * t72 + t183 * t78 + t193 * t82;
     const ariane4_free_real_t t195 = ARIANE4_FREE_C(1.0) / t83;
-    const ariane4_free_real_t t196 = t194 * t195;
+    const ariane4_free_real_t t196 = ariane4_free_bounded(t194 * t195);
     out[0] = t196;
-    const ariane4_free_real_t t197 = t193 * t81 + t82 * t196;
+    const ariane4_free_real_t t197 = ariane4_free_bounded(t193 * t81 + t82 * t196);
     out[1] = t197;
-    const ariane4_free_real_t t198 = t183 * t43 - t78 * t196 - t45 * t197;
+    const ariane4_free_real_t t198 = ariane4_free_bounded(t183 * t43 - t78 * t196 - t45 * t197);
     out[2] = t198;
     const ariane4_free_real_t t199 = t42 * t197 - (t172 * t22 + t72 * t196) + t23 * t198;
     out[3] = t199;
-    if (!ariane4_free_within_joints(out, ARIANE4_FREE_C(1.0e30))) {
+    if (!ariane4_free_all_bounded(out, 4)) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x7DBBA0BCUL
+#if ARIANE4_FREE_GENERATION != 0x261051E4UL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int ariane4_free_within(const ariane4_free_real_t x[], int n, aria
 static inline int ariane4_free_within_joints(const ariane4_free_real_t x[], ariane4_free_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline ariane4_free_real_t ariane4_free_bounded(ariane4_free_real_t x)
+{
+    return x >= ARIANE4_FREE_C(-1.0e15) && x <= ARIANE4_FREE_C(1.0e15) ? x : ARIANE4_FREE_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int ariane4_free_all_bounded(const ariane4_free_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= ARIANE4_FREE_C(-1.0e15) && x[i] <= ARIANE4_FREE_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DARIANE4_FREE_PARAMETERS_CHECKED, for parameters that ariane4_free_check_parameters has seen. */

@@ -83,7 +83,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xDEB12DDEUL
+#if ARIANE6_GENERATION != 0xBA206C14UL
 #error "ariane6.h and ariane6_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -128,7 +128,7 @@ int ariane6_forward_dynamics(
     ARIANE6_SINCOS(q[4], &t6, &t9);
     ariane6_real_t t2, t1;
     ARIANE6_SINCOS(q[5], &t2, &t1);
-    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -143,7 +143,7 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t12 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t13 = ARIANE6_C(-1.0) / t0;
     const ariane6_real_t t14 = t12 * t13;
-    const ariane6_real_t t15 = t11 + t12 * t14;
+    const ariane6_real_t t15 = ariane6_bounded(t11 + t12 * t14);
     if (!(t15 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -168,7 +168,7 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t29 = parameters[ZZ4R] + (t25 + t28);
     const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
     const ariane6_real_t t31 = t21 * t13;
-    const ariane6_real_t t32 = t30 + t21 * t31 - t22 * t24;
+    const ariane6_real_t t32 = ariane6_bounded(t30 + t21 * t31 - t22 * t24);
     if (!(t32 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -217,7 +217,7 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t74 = t73 - t64 * t31 - t68 * t24;
     const ariane6_real_t t75 = ARIANE6_C(-1.0) / t32;
     const ariane6_real_t t76 = t74 * t75;
-    const ariane6_real_t t77 = t59 + t64 * t65 - t68 * t69 + t74 * t76;
+    const ariane6_real_t t77 = ariane6_bounded(t59 + t64 * t65 - t68 * t69 + t74 * t76);
     if (!(t77 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -248,7 +248,7 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t99 = ARIANE6_C(-0.685) * t81 - t51 - t91 * t65 - t93 * t69;
     const ariane6_real_t t100 = t99 - t95 * t76;
     const ariane6_real_t t101 = t100 * t98;
-    const ariane6_real_t t102 = t97 - t100 * t101;
+    const ariane6_real_t t102 = ariane6_bounded(t97 - t100 * t101);
     if (!(t102 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -309,7 +309,7 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t151 = t150 + t147 * t101;
     const ariane6_real_t t152 = ARIANE6_C(1.0) / t102;
     const ariane6_real_t t153 = t151 * t152;
-    const ariane6_real_t t154 = t141 - t147 * t148 - t151 * t153;
+    const ariane6_real_t t154 = ariane6_bounded(t141 - t147 * t148 - t151 * t153);
     if (!(t154 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -524,20 +524,20 @@ int ariane6_forward_dynamics(
     const ariane6_real_t t319 = t318 - t290 * t92 + t296 * t94 + t299 * t96;
     const ariane6_real_t t320 = t319 + t310 * t101;
     const ariane6_real_t t321 = ARIANE6_C(1.0) / t154;
-    const ariane6_real_t t322 = (t311 + t320 * t153) * t321;
+    const ariane6_real_t t322 = ariane6_bounded((t311 + t320 * t153) * t321);
     out[0] = t322;
-    const ariane6_real_t t323 = t320 * t152 + t153 * t322;
+    const ariane6_real_t t323 = ariane6_bounded(t320 * t152 + t153 * t322);
     out[1] = t323;
-    const ariane6_real_t t324 = t310 * t98 + t148 * t322 + t101 * t323;
+    const ariane6_real_t t324 = ariane6_bounded(t310 * t98 + t148 * t322 + t101 * t323);
     out[2] = t324;
-    const ariane6_real_t t325 = t96 * t323 - (t299 * t75 + t140 * t322) + t76 * t324;
+    const ariane6_real_t t325 = ariane6_bounded(t96 * t323 - (t299 * t75 + t140 * t322) + t76 * t324);
     out[3] = t325;
     const ariane6_real_t t326 = t296 * t23 + t134 * t322 + t94 * t323 - t69 * t324;
-    const ariane6_real_t t327 = t326 - t24 * t325;
+    const ariane6_real_t t327 = ariane6_bounded(t326 - t24 * t325);
     out[4] = t327;
     const ariane6_real_t t328 = t290 * t13 + t127 * t322 + t92 * t323 + t65 * t324;
     out[5] = t31 * t325 - t328 - t14 * t327;
-    if (!ariane6_within_joints(out, ARIANE6_C(1.0e30))) {
+    if (!ariane6_all_bounded(out, 6)) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

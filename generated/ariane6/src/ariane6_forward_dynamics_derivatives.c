@@ -87,7 +87,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xDEB12DDEUL
+#if ARIANE6_GENERATION != 0xBA206C14UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -138,7 +138,7 @@ int ariane6_forward_dynamics_derivatives(
     ARIANE6_SINCOS(q[4], &t6, &t10);
     ariane6_real_t t2, t1;
     ARIANE6_SINCOS(q[5], &t2, &t1);
-    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -157,7 +157,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t13 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t14 = ARIANE6_C(1.0) / t0;
     const ariane6_real_t t15 = t13 * t14;
-    const ariane6_real_t t16 = t12 - t13 * t15;
+    const ariane6_real_t t16 = ariane6_bounded(t12 - t13 * t15);
     if (!(t16 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -188,7 +188,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t30 = parameters[ZZ4R] + (t26 + t29);
     const ariane6_real_t t31 = t30 + ARIANE6_C(1.0e4) * parameters[IA4];
     const ariane6_real_t t32 = t22 * t14;
-    const ariane6_real_t t33 = t31 - t22 * t32 - t23 * t25;
+    const ariane6_real_t t33 = ariane6_bounded(t31 - t22 * t32 - t23 * t25);
     if (!(t33 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -244,7 +244,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t76 = t75 + t66 * t32 - t70 * t25;
     const ariane6_real_t t77 = ARIANE6_C(1.0) / t33;
     const ariane6_real_t t78 = t76 * t77;
-    const ariane6_real_t t79 = t61 - t66 * t67 - t70 * t71 - t76 * t78;
+    const ariane6_real_t t79 = ariane6_bounded(t61 - t66 * t67 - t70 * t71 - t76 * t78);
     if (!(t79 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -288,7 +288,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t108 = ARIANE6_C(0.685) * t83 - t52;
     const ariane6_real_t t109 = t108 + t96 * t67 + t100 * t71 + t104 * t78;
     const ariane6_real_t t110 = t109 * t107;
-    const ariane6_real_t t111 = t106 - t109 * t110;
+    const ariane6_real_t t111 = ariane6_bounded(t106 - t109 * t110);
     if (!(t111 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -359,7 +359,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t167 = t166 - t154 * t105 + t162 * t110;
     const ariane6_real_t t168 = ARIANE6_C(1.0) / t111;
     const ariane6_real_t t169 = t167 * t168;
-    const ariane6_real_t t170 = t156 - t162 * t163 - t167 * t169;
+    const ariane6_real_t t170 = ariane6_bounded(t156 - t162 * t163 - t167 * t169);
     if (!(t170 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -603,19 +603,19 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t366 = input[1] * t365 - t364 - t321 * t97 - t332 * t101;
     const ariane6_real_t t367 = t366 + t335 * t105 + t351 * t110;
     const ariane6_real_t t368 = ARIANE6_C(-1.0) / t170;
-    const ariane6_real_t t369 = (t367 * t169 - t352) * t368;
+    const ariane6_real_t t369 = ariane6_bounded((t367 * t169 - t352) * t368);
     ddq[0] = t369;
-    const ariane6_real_t t370 = t367 * t168 - t169 * t369;
+    const ariane6_real_t t370 = ariane6_bounded(t367 * t168 - t169 * t369);
     ddq[1] = t370;
-    const ariane6_real_t t371 = t351 * t107 - t163 * t369 + t110 * t370;
+    const ariane6_real_t t371 = ariane6_bounded(t351 * t107 - t163 * t369 + t110 * t370);
     ddq[2] = t371;
-    const ariane6_real_t t372 = t335 * t77 + t155 * t369 + t105 * t370 + t78 * t371;
+    const ariane6_real_t t372 = ariane6_bounded(t335 * t77 + t155 * t369 + t105 * t370 + t78 * t371);
     ddq[3] = t372;
     const ariane6_real_t t373 = t332 * t24 - t148 * t369 - t101 * t370 - t71 * t371;
-    const ariane6_real_t t374 = t373 + t25 * t372;
+    const ariane6_real_t t374 = ariane6_bounded(t373 + t25 * t372);
     ddq[4] = t374;
     const ariane6_real_t t375 = t321 * t14 - t141 * t369 - t97 * t370 - t67 * t371;
-    const ariane6_real_t t376 = t375 - t32 * t372 + t15 * t374;
+    const ariane6_real_t t376 = ariane6_bounded(t375 - t32 * t372 + t15 * t374);
     ddq[5] = t376;
     const ariane6_real_t t377 = t370 + t371;
     const ariane6_real_t t378 = t86 * t54 + t87 * t53;
@@ -785,7 +785,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t517 = t221 * (t315 * t514 + t130 * (ARIANE6_C(-4063.3400000000006) * t132 + t516));
     const ariane6_real_t t518 = parameters[FV1] * (dq[0] * t515) + parameters[IA1] * (t517 + t369 * t515);
     const ariane6_real_t t519 = ARIANE6_C(250.0) * t518 + t513 * (parameters[ZZ1R] * t369 + t507);
-    const ariane6_real_t t520 = t318 * t368;
+    const ariane6_real_t t520 = ariane6_bounded(t318 * t368);
     ddq_by_q[0] = -(t520 * t519);
     const ariane6_real_t t521 = t169 * t368;
     const ariane6_real_t t522 = t318 * t521;
@@ -923,7 +923,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t648 = ARIANE6_C(250.0) * (parameters[IA1] * (t316 * (ARIANE6_C(-2.0) * dq[0]))
         - t133 * parameters[FV1]);
     const ariane6_real_t t649 = t648 + t511 * (ARIANE6_C(2.0) * (t635 + t644 + t647));
-    const ariane6_real_t t650 = t365 * t521;
+    const ariane6_real_t t650 = ariane6_bounded(t365 * t521);
     const ariane6_real_t t651 = t39 * t583;
     const ariane6_real_t t652 = t39 * t590 + t36 * t592;
     const ariane6_real_t t653 = parameters[XY3R] * t379 + t381 * t620 - (t582 - t651 - (ARIANE6_C(0.17) * t652
@@ -940,7 +940,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t662 = t86 * t658 + t87 * t660 - (t87 * t125 + t86 * t126) * t661;
     const ariane6_real_t t663 = ARIANE6_C(0.019697757607273984) * t90 / t88;
     const ariane6_real_t t664 = t663 * t662;
-    const ariane6_real_t t665 = t349 * t523;
+    const ariane6_real_t t665 = ariane6_bounded(t349 * t523);
     const ariane6_real_t t666 = ARIANE6_C(2.0) * t653;
     const ariane6_real_t t667 = ARIANE6_C(2.0) * t655;
     const ariane6_real_t t668 = ARIANE6_C(1.37) * t173;
@@ -949,7 +949,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t671 = t86 * t669 - t87 * t670 - (t87 * t122 + t86 * t83) * t661;
     const ariane6_real_t t672 = ARIANE6_C(0.029841482047364396) * t57 / t55;
     const ariane6_real_t t673 = t672 * t671;
-    const ariane6_real_t t674 = ARIANE6_C(5.0) * t526;
+    const ariane6_real_t t674 = ariane6_bounded(ARIANE6_C(5.0) * t526);
     const ariane6_real_t t675 = ARIANE6_C(2.0) * t617;
     const ariane6_real_t t676 = ARIANE6_C(2.0) * t618;
     const ariane6_real_t t677 = ARIANE6_C(0.34) * t177;
@@ -965,7 +965,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t687 = t86 * t684 + t87 * t686 + (t87 * t685 - t86 * t102) * t661;
     const ariane6_real_t t688 = ARIANE6_C(0.2) * t687;
     const ariane6_real_t t689 = t688 * t674 - (t649 * t520 - t664 * t650 - t673 * t665);
-    const ariane6_real_t t690 = t331 * t531;
+    const ariane6_real_t t690 = ariane6_bounded(t331 * t531);
     const ariane6_real_t t691 = ARIANE6_C(2.0) * t579;
     const ariane6_real_t t692 = ARIANE6_C(2.0) * t580;
     const ariane6_real_t t693 = t6 * t692 - t10 * t691;
@@ -995,51 +995,51 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t717 = t86 * t714 + t87 * t716 - (t87 * t715 + t86 * t95) * t661;
     const ariane6_real_t t718 = ARIANE6_C(0.2) * t717;
     ddq_by_dq[0] = t689 + t703 * t690 + t718 * t704;
-    const ariane6_real_t t719 = t365 * (t168 - t169 * t521);
+    const ariane6_real_t t719 = ariane6_bounded(t365 * (t168 - t169 * t521));
     const ariane6_real_t t720 = t110 * t168 - t169 * t523;
-    const ariane6_real_t t721 = t349 * t720;
+    const ariane6_real_t t721 = ariane6_bounded(t349 * t720);
     const ariane6_real_t t722 = t168 * t525 - t169 * t526;
-    const ariane6_real_t t723 = ARIANE6_C(5.0) * t722;
+    const ariane6_real_t t723 = ariane6_bounded(ARIANE6_C(5.0) * t722);
     const ariane6_real_t t724 = t649 * t522 + t664 * t719 + t673 * t721 + t688 * t723;
     const ariane6_real_t t725 = t168 * t529 - t169 * t531;
-    const ariane6_real_t t726 = t331 * t725;
+    const ariane6_real_t t726 = ariane6_bounded(t331 * t725);
     const ariane6_real_t t727 = t168 * t535 - t169 * t537;
     const ariane6_real_t t728 = ARIANE6_C(5.0) * t727;
     ddq_by_dq[6] = t724 + t703 * t726 + t718 * t728;
-    const ariane6_real_t t729 = t365 * t720;
-    const ariane6_real_t t730 = t349 * (t107 - t163 * t523 + t110 * t720);
+    const ariane6_real_t t729 = ariane6_bounded(t365 * t720);
+    const ariane6_real_t t730 = ariane6_bounded(t349 * (t107 - t163 * t523 + t110 * t720));
     const ariane6_real_t t731 = t78 * t107 - t163 * t526 + t110 * t722;
-    const ariane6_real_t t732 = ARIANE6_C(5.0) * t731;
+    const ariane6_real_t t732 = ariane6_bounded(ARIANE6_C(5.0) * t731);
     const ariane6_real_t t733 = t649 * t524 + t664 * t729 + t673 * t730 + t688 * t732;
     const ariane6_real_t t734 = t107 * t528 - t163 * t531 + t110 * t725;
-    const ariane6_real_t t735 = t331 * t734;
+    const ariane6_real_t t735 = ariane6_bounded(t331 * t734);
     const ariane6_real_t t736 = t107 * t534 - t163 * t537 + t110 * t727;
     const ariane6_real_t t737 = ARIANE6_C(5.0) * t736;
     ddq_by_dq[12] = t733 + t703 * t735 + t718 * t737;
-    const ariane6_real_t t738 = t365 * t722;
-    const ariane6_real_t t739 = t349 * t731;
+    const ariane6_real_t t738 = ariane6_bounded(t365 * t722);
+    const ariane6_real_t t739 = ariane6_bounded(t349 * t731);
     const ariane6_real_t t740 = t77 + t155 * t526 + t105 * t722 + t78 * t731;
-    const ariane6_real_t t741 = ARIANE6_C(5.0) * t740;
+    const ariane6_real_t t741 = ariane6_bounded(ARIANE6_C(5.0) * t740);
     const ariane6_real_t t742 = t649 * t527 + t664 * t738 + t673 * t739 + t688 * t741;
     const ariane6_real_t t743 = t25 * t77 + t155 * t531 + t105 * t725 + t78 * t734;
-    const ariane6_real_t t744 = t331 * t743;
+    const ariane6_real_t t744 = ariane6_bounded(t331 * t743);
     const ariane6_real_t t745 = t77 * t533 + t155 * t537 + t105 * t727 + t78 * t736;
-    const ariane6_real_t t746 = ARIANE6_C(5.0) * t745;
+    const ariane6_real_t t746 = ariane6_bounded(ARIANE6_C(5.0) * t745);
     ddq_by_dq[18] = t742 + t703 * t744 + t718 * t746;
-    const ariane6_real_t t747 = t365 * t725;
-    const ariane6_real_t t748 = t349 * t734;
-    const ariane6_real_t t749 = ARIANE6_C(5.0) * t743;
+    const ariane6_real_t t747 = ariane6_bounded(t365 * t725);
+    const ariane6_real_t t748 = ariane6_bounded(t349 * t734);
+    const ariane6_real_t t749 = ariane6_bounded(ARIANE6_C(5.0) * t743);
     const ariane6_real_t t750 = t649 * t532 + t664 * t747 + t673 * t748 + t688 * t749;
     const ariane6_real_t t751 = t24 - t148 * t531 - t101 * t725 - t71 * t734;
-    const ariane6_real_t t752 = t331 * (t751 + t25 * t743);
+    const ariane6_real_t t752 = ariane6_bounded(t331 * (t751 + t25 * t743));
     const ariane6_real_t t753 = t15 * t24 - t148 * t537 - t101 * t727 - t71 * t736;
     const ariane6_real_t t754 = t753 + t25 * t745;
     const ariane6_real_t t755 = ARIANE6_C(5.0) * t754;
     ddq_by_dq[24] = t750 + t703 * t752 + t718 * t755;
-    const ariane6_real_t t756 = t365 * t727;
-    const ariane6_real_t t757 = t349 * t736;
+    const ariane6_real_t t756 = ariane6_bounded(t365 * t727);
+    const ariane6_real_t t757 = ariane6_bounded(t349 * t736);
     const ariane6_real_t t758 = t649 * t538 + t664 * t756 + t673 * t757 + t688 * t746;
-    const ariane6_real_t t759 = t331 * t754;
+    const ariane6_real_t t759 = ariane6_bounded(t331 * t754);
     const ariane6_real_t t760 = t14 - t141 * t537 - t97 * t727 - t67 * t736;
     const ariane6_real_t t761 = ARIANE6_C(5.0) * (t760 - t32 * t745 + t15 * t754);
     ddq_by_dq[30] = t758 + t703 * t759 + t718 * t761;
@@ -1518,10 +1518,10 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[23] = t746;
     ddq_by_input[29] = t755;
     ddq_by_input[35] = t761;
-    if (!ariane6_within_joints(ddq, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_q, 36, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_dq, 36, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_input, 36, ARIANE6_C(1.0e30))) {
+    if (!ariane6_all_bounded(ddq, 6)
+        || !ariane6_all_bounded(ddq_by_q, 36)
+        || !ariane6_all_bounded(ddq_by_dq, 36)
+        || !ariane6_all_bounded(ddq_by_input, 36)) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);

@@ -111,7 +111,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xDEB12DDEUL
+#if ARIANE6_GENERATION != 0xBA206C14UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -163,7 +163,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ARIANE6_SINCOS(q[4], &t13, &t17);
     ariane6_real_t t1, t2;
     ARIANE6_SINCOS(q[5], &t1, &t2);
-    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -186,7 +186,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t16 = ARIANE6_C(-3549.6000000000004) * t15;
     const ariane6_real_t t18 = t17 * t16;
     const ariane6_real_t t19 = t12 + t18 * t18 * parameters[IA5];
-    const ariane6_real_t t20 = t19 - t4 * t6;
+    const ariane6_real_t t20 = ariane6_bounded(t19 - t4 * t6);
     if (!(t20 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -219,7 +219,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t36 = t35 + t31 * t6;
     const ariane6_real_t t37 = ARIANE6_C(1.0) / t20;
     const ariane6_real_t t38 = t36 * t37;
-    const ariane6_real_t t39 = t30 - t31 * t32 - t36 * t38;
+    const ariane6_real_t t39 = ariane6_bounded(t30 - t31 * t32 - t36 * t38);
     if (!(t39 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -282,7 +282,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t89 = t88 + t79 * t32 + t83 * t38;
     const ariane6_real_t t90 = ARIANE6_C(1.0) / t39;
     const ariane6_real_t t91 = t89 * t90;
-    const ariane6_real_t t92 = t74 - t79 * t80 - t83 * t84 - t89 * t91;
+    const ariane6_real_t t92 = ariane6_bounded(t74 - t79 * t80 - t83 * t84 - t89 * t91);
     if (!(t92 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -330,7 +330,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t125 = t104 * t37;
     const ariane6_real_t t126 = t107 * t90;
     const ariane6_real_t t127 = t123 - t101 * t124 - t104 * t125 - t107 * t126;
-    const ariane6_real_t t128 = t127 - t108 * t110;
+    const ariane6_real_t t128 = ariane6_bounded(t127 - t108 * t110);
     if (!(t128 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -404,7 +404,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t185 = t184 - t171 * t126 + t179 * t110;
     const ariane6_real_t t186 = ARIANE6_C(1.0) / t128;
     const ariane6_real_t t187 = t185 * t186;
-    const ariane6_real_t t188 = t173 - t179 * t180 - t185 * t187;
+    const ariane6_real_t t188 = ariane6_bounded(t173 - t179 * t180 - t185 * t187);
     if (!(t188 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -698,19 +698,19 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t421 = t420 + t383 * t125 + t387 * t126 + t405 * t110;
     const ariane6_real_t t422 = t384 + t387 * t172 - t405 * t180 - t421 * t187;
     const ariane6_real_t t423 = ARIANE6_C(1.0) / t188;
-    const ariane6_real_t t424 = t422 * t423;
+    const ariane6_real_t t424 = ariane6_bounded(t422 * t423);
     ddq[0] = t424;
-    const ariane6_real_t t425 = t421 * t186 - t187 * t424;
+    const ariane6_real_t t425 = ariane6_bounded(t421 * t186 - t187 * t424);
     ddq[1] = t425;
-    const ariane6_real_t t426 = t405 * t109 - t180 * t424 + t110 * t425;
+    const ariane6_real_t t426 = ariane6_bounded(t405 * t109 - t180 * t424 + t110 * t425);
     ddq[2] = t426;
-    const ariane6_real_t t427 = t387 * t90 + t172 * t424 + t126 * t425 + t91 * t426;
+    const ariane6_real_t t427 = ariane6_bounded(t387 * t90 + t172 * t424 + t126 * t425 + t91 * t426);
     ddq[3] = t427;
     const ariane6_real_t t428 = t383 * t37 - t165 * t424 + t125 * t425 + t84 * t426;
-    const ariane6_real_t t429 = t428 + t38 * t427;
+    const ariane6_real_t t429 = ariane6_bounded(t428 + t38 * t427);
     ddq[4] = t429;
     const ariane6_real_t t430 = t373 * t5 - t136 * t424 - t124 * t425 - t80 * t426;
-    const ariane6_real_t t431 = t430 - t32 * t427 - t6 * t429;
+    const ariane6_real_t t431 = ariane6_bounded(t430 - t32 * t427 - t6 * t429);
     ddq[5] = t431;
     const ariane6_real_t t432 = t425 + t426;
     const ariane6_real_t t433 = t115 * t67 + t116 * t66;
@@ -921,27 +921,27 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t605 = t370 * t423;
     ddq_by_q[0] = t605 * t604;
     const ariane6_real_t t606 = t187 * t423;
-    const ariane6_real_t t607 = t370 * t606;
+    const ariane6_real_t t607 = ariane6_bounded(t370 * t606);
     ddq_by_q[6] = -(t607 * t604);
     const ariane6_real_t t608 = t423 * (t180 + t110 * t187);
-    const ariane6_real_t t609 = t370 * t608;
+    const ariane6_real_t t609 = ariane6_bounded(t370 * t608);
     ddq_by_q[12] = -(t609 * t604);
     const ariane6_real_t t610 = t126 + t91 * t110;
     const ariane6_real_t t611 = t423 * (t91 * t180 - t172 + t187 * t610);
-    const ariane6_real_t t612 = t370 * t611;
+    const ariane6_real_t t612 = ariane6_bounded(t370 * t611);
     ddq_by_q[18] = -(t612 * t604);
     const ariane6_real_t t613 = t84 + t38 * t91;
     const ariane6_real_t t614 = t125 + t38 * t126 + t110 * t613;
     const ariane6_real_t t615 = t165 - t38 * t172 + t180 * t613 + t187 * t614;
     const ariane6_real_t t616 = t423 * t615;
-    const ariane6_real_t t617 = t370 * t616;
+    const ariane6_real_t t617 = ariane6_bounded(t370 * t616);
     ddq_by_q[24] = -(t617 * t604);
     const ariane6_real_t t618 = t32 + t6 * t38;
     const ariane6_real_t t619 = t80 + t6 * t84 + t91 * t618;
     const ariane6_real_t t620 = t124 + t6 * t125 + t126 * t618 + t110 * t619;
     const ariane6_real_t t621 = t136 - t6 * t165 + t172 * t618 - t180 * t619;
     const ariane6_real_t t622 = t423 * (t621 - t187 * t620);
-    const ariane6_real_t t623 = t370 * t622;
+    const ariane6_real_t t623 = ariane6_bounded(t370 * t622);
     ddq_by_q[30] = -(t623 * t604);
     const ariane6_real_t t624 = t470 * parameters[XZ6];
     const ariane6_real_t t625 = t471 * parameters[XY6];
@@ -1101,7 +1101,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t772 = t115 * t770 - t116 * t771 - (t116 * t145 + t115 * t98) * t762;
     const ariane6_real_t t773 = ARIANE6_C(-0.029841482047364396) * t70 / t68;
     const ariane6_real_t t774 = t773 * t772;
-    const ariane6_real_t t775 = ARIANE6_C(-5.0) * t611;
+    const ariane6_real_t t775 = ariane6_bounded(ARIANE6_C(-5.0) * t611);
     const ariane6_real_t t776 = ARIANE6_C(2.0) * t716;
     const ariane6_real_t t777 = ARIANE6_C(2.0) * t717;
     const ariane6_real_t t778 = ARIANE6_C(0.34) * t205;
@@ -1148,51 +1148,51 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t819 = t115 * t816 - t116 * t818 - (t116 * t817 + t115 * t100) * t762;
     const ariane6_real_t t820 = ARIANE6_C(0.2) * t819;
     ddq_by_dq[0] = t790 - t804 * t791 + t820 * t805;
-    const ariane6_real_t t821 = t419 * (t186 + t187 * t606);
+    const ariane6_real_t t821 = ariane6_bounded(t419 * (t186 + t187 * t606));
     const ariane6_real_t t822 = t110 * t186 + t187 * t608;
-    const ariane6_real_t t823 = t403 * t822;
+    const ariane6_real_t t823 = ariane6_bounded(t403 * t822);
     const ariane6_real_t t824 = t186 * t610 + t187 * t611;
-    const ariane6_real_t t825 = ARIANE6_C(5.0) * t824;
+    const ariane6_real_t t825 = ariane6_bounded(ARIANE6_C(5.0) * t824);
     const ariane6_real_t t826 = t765 * t821 - t750 * t607 - t774 * t823 - t789 * t825;
     const ariane6_real_t t827 = t186 * t614 + t187 * t616;
-    const ariane6_real_t t828 = t382 * t827;
+    const ariane6_real_t t828 = ariane6_bounded(t382 * t827);
     const ariane6_real_t t829 = t187 * t622 - t186 * t620;
     const ariane6_real_t t830 = ARIANE6_C(5.0) * t829;
     ddq_by_dq[6] = t826 + t804 * t828 + t820 * t830;
-    const ariane6_real_t t831 = t419 * t822;
-    const ariane6_real_t t832 = t403 * (t109 + t180 * t608 + t110 * t822);
+    const ariane6_real_t t831 = ariane6_bounded(t419 * t822);
+    const ariane6_real_t t832 = ariane6_bounded(t403 * (t109 + t180 * t608 + t110 * t822));
     const ariane6_real_t t833 = t91 * t109 + t180 * t611 + t110 * t824;
-    const ariane6_real_t t834 = ARIANE6_C(5.0) * t833;
+    const ariane6_real_t t834 = ariane6_bounded(ARIANE6_C(5.0) * t833);
     const ariane6_real_t t835 = t765 * t831 - t750 * t609 - t774 * t832 - t789 * t834;
     const ariane6_real_t t836 = t109 * t613 + t180 * t616 + t110 * t827;
-    const ariane6_real_t t837 = t382 * t836;
+    const ariane6_real_t t837 = ariane6_bounded(t382 * t836);
     const ariane6_real_t t838 = t180 * t622 - t109 * t619 + t110 * t829;
     const ariane6_real_t t839 = ARIANE6_C(5.0) * t838;
     ddq_by_dq[12] = t835 + t804 * t837 + t820 * t839;
-    const ariane6_real_t t840 = t419 * t824;
-    const ariane6_real_t t841 = t403 * t833;
+    const ariane6_real_t t840 = ariane6_bounded(t419 * t824);
+    const ariane6_real_t t841 = ariane6_bounded(t403 * t833);
     const ariane6_real_t t842 = t90 - t172 * t611 + t126 * t824 + t91 * t833;
-    const ariane6_real_t t843 = ARIANE6_C(5.0) * t842;
+    const ariane6_real_t t843 = ariane6_bounded(ARIANE6_C(5.0) * t842);
     const ariane6_real_t t844 = t765 * t840 - t750 * t612 - t774 * t841 - t789 * t843;
     const ariane6_real_t t845 = t38 * t90 - t172 * t616 + t126 * t827 + t91 * t836;
-    const ariane6_real_t t846 = t382 * t845;
+    const ariane6_real_t t846 = ariane6_bounded(t382 * t845);
     const ariane6_real_t t847 = t90 * t618 + t172 * t622 - t126 * t829 - t91 * t838;
-    const ariane6_real_t t848 = ARIANE6_C(-5.0) * t847;
+    const ariane6_real_t t848 = ariane6_bounded(ARIANE6_C(-5.0) * t847);
     ddq_by_dq[18] = t844 + t804 * t846 + t820 * t848;
-    const ariane6_real_t t849 = t419 * t827;
-    const ariane6_real_t t850 = t403 * t836;
-    const ariane6_real_t t851 = ARIANE6_C(5.0) * t845;
+    const ariane6_real_t t849 = ariane6_bounded(t419 * t827);
+    const ariane6_real_t t850 = ariane6_bounded(t403 * t836);
+    const ariane6_real_t t851 = ariane6_bounded(ARIANE6_C(5.0) * t845);
     const ariane6_real_t t852 = t765 * t849 - t750 * t617 - t774 * t850 - t789 * t851;
     const ariane6_real_t t853 = t37 + t165 * t616 + t125 * t827 + t84 * t836;
-    const ariane6_real_t t854 = t382 * (t853 + t38 * t845);
+    const ariane6_real_t t854 = ariane6_bounded(t382 * (t853 + t38 * t845));
     const ariane6_real_t t855 = t165 * t622 - t6 * t37 + t125 * t829 + t84 * t838;
     const ariane6_real_t t856 = t855 - t38 * t847;
     const ariane6_real_t t857 = ARIANE6_C(5.0) * t856;
     ddq_by_dq[24] = t852 + t804 * t854 + t820 * t857;
-    const ariane6_real_t t858 = t419 * t829;
-    const ariane6_real_t t859 = t403 * t838;
+    const ariane6_real_t t858 = ariane6_bounded(t419 * t829);
+    const ariane6_real_t t859 = ariane6_bounded(t403 * t838);
     const ariane6_real_t t860 = t765 * t858 - t750 * t623 - t774 * t859 - t789 * t848;
-    const ariane6_real_t t861 = t382 * t856;
+    const ariane6_real_t t861 = ariane6_bounded(t382 * t856);
     const ariane6_real_t t862 = t5 + t136 * t622 - t124 * t829 - t80 * t838;
     const ariane6_real_t t863 = ARIANE6_C(5.0) * (t862 + t32 * t847 - t6 * t856);
     ddq_by_dq[30] = t860 + t804 * t861 + t820 * t863;
@@ -1674,10 +1674,10 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[23] = t848;
     ddq_by_input[29] = t857;
     ddq_by_input[35] = t863;
-    if (!ariane6_within_joints(ddq, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_q, 36, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_dq, 36, ARIANE6_C(1.0e30))
-        || !ariane6_within(ddq_by_input, 36, ARIANE6_C(1.0e30))) {
+    if (!ariane6_all_bounded(ddq, 6)
+        || !ariane6_all_bounded(ddq_by_q, 36)
+        || !ariane6_all_bounded(ddq_by_dq, 36)
+        || !ariane6_all_bounded(ddq_by_input, 36)) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);

@@ -107,7 +107,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xDEB12DDEUL
+#if ARIANE6_GENERATION != 0xBA206C14UL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -153,7 +153,7 @@ int ariane6_forward_dynamics_standard(
     ARIANE6_SINCOS(q[4], &t13, &t16);
     ariane6_real_t t1, t2;
     ARIANE6_SINCOS(q[5], &t1, &t2);
-    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -172,7 +172,7 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t15 = ARIANE6_C(1.0) / t14;
     const ariane6_real_t t17 = t16 * (ARIANE6_C(3549.6000000000004) * t15);
     const ariane6_real_t t18 = t12 + t17 * t17 * parameters[IA5];
-    const ariane6_real_t t19 = t18 + t4 * t6;
+    const ariane6_real_t t19 = ariane6_bounded(t18 + t4 * t6);
     if (!(t19 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -199,7 +199,7 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t35 = t34 + t30 * t6;
     const ariane6_real_t t36 = ARIANE6_C(1.0) / t19;
     const ariane6_real_t t37 = t35 * t36;
-    const ariane6_real_t t38 = t29 + t30 * t31 - t35 * t37;
+    const ariane6_real_t t38 = ariane6_bounded(t29 + t30 * t31 - t35 * t37);
     if (!(t38 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -252,7 +252,7 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t84 = t83 + t74 * t31 - t78 * t37;
     const ariane6_real_t t85 = ARIANE6_C(-1.0) / t38;
     const ariane6_real_t t86 = t84 * t85;
-    const ariane6_real_t t87 = t69 + t74 * t75 - t78 * t79 + t84 * t86;
+    const ariane6_real_t t87 = ariane6_bounded(t69 + t74 * t75 - t78 * t79 + t84 * t86);
     if (!(t87 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -286,7 +286,7 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t112 = t94 * t36;
     const ariane6_real_t t113 = t96 * t85;
     const ariane6_real_t t114 = t110 + t93 * t111 - t94 * t112 + t96 * t113;
-    const ariane6_real_t t115 = t114 - t97 * t99;
+    const ariane6_real_t t115 = ariane6_bounded(t114 - t97 * t99);
     if (!(t115 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -347,7 +347,7 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t164 = t163 + t160 * t99;
     const ariane6_real_t t165 = ARIANE6_C(1.0) / t115;
     const ariane6_real_t t166 = t164 * t165;
-    const ariane6_real_t t167 = t154 - t160 * t161 - t164 * t166;
+    const ariane6_real_t t167 = ariane6_bounded(t154 - t160 * t161 - t164 * t166);
     if (!(t167 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -601,20 +601,20 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t358 = ARIANE6_C(0.004) * t109 * input[1] - (t109 * t357 - t353) - t328 * t111;
     const ariane6_real_t t359 = t358 + t333 * t112 + t336 * t113 + t349 * t99;
     const ariane6_real_t t360 = ARIANE6_C(1.0) / t167;
-    const ariane6_real_t t361 = (t337 + t349 * t161 + t359 * t166) * t360;
+    const ariane6_real_t t361 = ariane6_bounded((t337 + t349 * t161 + t359 * t166) * t360);
     out[0] = t361;
-    const ariane6_real_t t362 = t359 * t165 + t166 * t361;
+    const ariane6_real_t t362 = ariane6_bounded(t359 * t165 + t166 * t361);
     out[1] = t362;
-    const ariane6_real_t t363 = t349 * t98 + t161 * t361 + t99 * t362;
+    const ariane6_real_t t363 = ariane6_bounded(t349 * t98 + t161 * t361 + t99 * t362);
     out[2] = t363;
-    const ariane6_real_t t364 = t113 * t362 - (t336 * t85 + t153 * t361) + t86 * t363;
+    const ariane6_real_t t364 = ariane6_bounded(t113 * t362 - (t336 * t85 + t153 * t361) + t86 * t363);
     out[3] = t364;
     const ariane6_real_t t365 = t333 * t36 + t147 * t361 + t112 * t362 - t79 * t363;
-    const ariane6_real_t t366 = t365 - t37 * t364;
+    const ariane6_real_t t366 = ariane6_bounded(t365 - t37 * t364);
     out[4] = t366;
     const ariane6_real_t t367 = t328 * t5 + t122 * t361 + t111 * t362 - t75 * t363;
     out[5] = t31 * t364 - t367 + t6 * t366;
-    if (!ariane6_within_joints(out, ARIANE6_C(1.0e30))) {
+    if (!ariane6_all_bounded(out, 6)) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

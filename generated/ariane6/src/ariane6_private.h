@@ -13,7 +13,7 @@
 
 #include "ariane6.h"
 
-#if ARIANE6_GENERATION != 0xDEB12DDEUL
+#if ARIANE6_GENERATION != 0xBA206C14UL
 #error "ariane6.h and ariane6_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int ariane6_within(const ariane6_real_t x[], int n, ariane6_real_t
 static inline int ariane6_within_joints(const ariane6_real_t x[], ariane6_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline ariane6_real_t ariane6_bounded(ariane6_real_t x)
+{
+    return x >= ARIANE6_C(-1.0e15) && x <= ARIANE6_C(1.0e15) ? x : ARIANE6_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int ariane6_all_bounded(const ariane6_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= ARIANE6_C(-1.0e15) && x[i] <= ARIANE6_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DARIANE6_PARAMETERS_CHECKED, for parameters that ariane6_check_parameters has seen. */

@@ -39,7 +39,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x56C37991UL
+#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -86,7 +86,7 @@ int gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
     const gravity_arm_real_t t5 = t3 * t4;
     const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2);
-    const gravity_arm_real_t t7 = t6 - t3 * t5;
+    const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
     if (!(t7 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
@@ -119,15 +119,15 @@ int gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t24 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t23 - t16);
     const gravity_arm_real_t t25 = input[0] + (t21 - (parameters[FV1] * dq[0] + parameters[FC1] * t22))
         + t24 * t5;
-    const gravity_arm_real_t t26 = GRAVITY_ARM_C(1.0) / t7;
-    const gravity_arm_real_t t27 = t25 * t26;
+    const gravity_arm_real_t t26 = gravity_arm_bounded(GRAVITY_ARM_C(1.0) / t7);
+    const gravity_arm_real_t t27 = gravity_arm_bounded(t25 * t26);
     ddq[0] = t27;
-    const gravity_arm_real_t t28 = t24 * t4 + t5 * t27;
+    const gravity_arm_real_t t28 = gravity_arm_bounded(t24 * t4 + t5 * t27);
     ddq[1] = t28;
     const gravity_arm_real_t t29 = t1 * parameters[MY2] + t0 * parameters[MX2];
     const gravity_arm_real_t t30 = (parameters[MX1R] - t2) * t10 - (parameters[MY1] + t29) * t14;
     const gravity_arm_real_t t31 = t29 * t14 + t2 * t10;
-    const gravity_arm_real_t t32 = t5 * t26;
+    const gravity_arm_real_t t32 = gravity_arm_bounded(t5 * t26);
     ddq_by_q[0] = t26 * t30 - t31 * t32;
     const gravity_arm_real_t t33 = t4 + t5 * t32;
     ddq_by_q[2] = t30 * t32 - t31 * t33;
@@ -154,10 +154,10 @@ int gravity_arm_forward_dynamics_derivatives(
     ddq_by_dq[3] = t44 * t32 - parameters[FV2] * t33;
     ddq_by_input[1] = t32;
     ddq_by_input[3] = t33;
-    if (!gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_q, 4, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_dq, 4, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_input, 4, GRAVITY_ARM_C(1.0e30))) {
+    if (!gravity_arm_all_bounded(ddq, 2)
+        || !gravity_arm_all_bounded(ddq_by_q, 4)
+        || !gravity_arm_all_bounded(ddq_by_dq, 4)
+        || !gravity_arm_all_bounded(ddq_by_input, 4)) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

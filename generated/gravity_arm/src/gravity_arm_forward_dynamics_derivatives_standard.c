@@ -53,7 +53,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x56C37991UL
+#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -103,7 +103,7 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t6 = GRAVITY_ARM_C(0.538534) * parameters[M2];
     const gravity_arm_real_t t7 = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t6
         + GRAVITY_ARM_C(-2.0) * t2));
-    const gravity_arm_real_t t8 = t7 - t3 * t5;
+    const gravity_arm_real_t t8 = gravity_arm_bounded(t7 - t3 * t5);
     if (!(t8 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
@@ -139,15 +139,15 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t28 = input[1] - (dq[1] * parameters[FV2] + t27 * parameters[FC2] - t24);
     const gravity_arm_real_t t29 = input[0] + (t25 - (dq[0] * parameters[FV1] + t26 * parameters[FC1]))
         + t28 * t5;
-    const gravity_arm_real_t t30 = GRAVITY_ARM_C(1.0) / t8;
-    const gravity_arm_real_t t31 = t29 * t30;
+    const gravity_arm_real_t t30 = gravity_arm_bounded(GRAVITY_ARM_C(1.0) / t8);
+    const gravity_arm_real_t t31 = gravity_arm_bounded(t29 * t30);
     ddq[0] = t31;
-    const gravity_arm_real_t t32 = t28 * t4 + t5 * t31;
+    const gravity_arm_real_t t32 = gravity_arm_bounded(t28 * t4 + t5 * t31);
     ddq[1] = t32;
     const gravity_arm_real_t t33 = t1 * parameters[MY2] + t0 * parameters[MX2];
     const gravity_arm_real_t t34 = t11 * (parameters[MX1] - (t2 - t6)) - t15 * (parameters[MY1] + t33);
     const gravity_arm_real_t t35 = t15 * t33 + t11 * t2;
-    const gravity_arm_real_t t36 = t5 * t30;
+    const gravity_arm_real_t t36 = gravity_arm_bounded(t5 * t30);
     ddq_by_q[0] = t30 * t34 - t35 * t36;
     const gravity_arm_real_t t37 = t4 + t5 * t36;
     ddq_by_q[2] = t34 * t36 - t35 * t37;
@@ -174,10 +174,10 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     ddq_by_dq[3] = t48 * t36 - parameters[FV2] * t37;
     ddq_by_input[1] = t36;
     ddq_by_input[3] = t37;
-    if (!gravity_arm_within_joints(ddq, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_q, 4, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_dq, 4, GRAVITY_ARM_C(1.0e30))
-        || !gravity_arm_within(ddq_by_input, 4, GRAVITY_ARM_C(1.0e30))) {
+    if (!gravity_arm_all_bounded(ddq, 2)
+        || !gravity_arm_all_bounded(ddq_by_q, 4)
+        || !gravity_arm_all_bounded(ddq_by_dq, 4)
+        || !gravity_arm_all_bounded(ddq_by_input, 4)) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

@@ -13,7 +13,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x56C37991UL
+#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int gravity_arm_within(const gravity_arm_real_t x[], int n, gravit
 static inline int gravity_arm_within_joints(const gravity_arm_real_t x[], gravity_arm_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline gravity_arm_real_t gravity_arm_bounded(gravity_arm_real_t x)
+{
+    return x >= GRAVITY_ARM_C(-1.0e15) && x <= GRAVITY_ARM_C(1.0e15) ? x : GRAVITY_ARM_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int gravity_arm_all_bounded(const gravity_arm_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= GRAVITY_ARM_C(-1.0e15) && x[i] <= GRAVITY_ARM_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DGRAVITY_ARM_PARAMETERS_CHECKED, for parameters that gravity_arm_check_parameters has seen. */

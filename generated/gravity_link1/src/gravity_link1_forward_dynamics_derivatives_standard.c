@@ -40,7 +40,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x65A1D402UL
+#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -90,10 +90,10 @@ int gravity_link1_forward_dynamics_derivatives_standard(
     ddq_by_q[0] = t6 * (t4 * parameters[MX1] + t2 * parameters[MY1]);
     ddq_by_dq[0] = -(parameters[FV1] * t6);
     ddq_by_input[0] = t6;
-    if (!gravity_link1_within_joints(ddq, GRAVITY_LINK1_C(1.0e30))
-        || !gravity_link1_within_joints(ddq_by_q, GRAVITY_LINK1_C(1.0e30))
-        || !gravity_link1_within_joints(ddq_by_dq, GRAVITY_LINK1_C(1.0e30))
-        || !gravity_link1_within_joints(ddq_by_input, GRAVITY_LINK1_C(1.0e30))) {
+    if (!gravity_link1_all_bounded(ddq, 1)
+        || !gravity_link1_all_bounded(ddq_by_q, 1)
+        || !gravity_link1_all_bounded(ddq_by_dq, 1)
+        || !gravity_link1_all_bounded(ddq_by_input, 1)) {
         gravity_link1_zero(ddq, 1);
         gravity_link1_zero(ddq_by_q, 1);
         gravity_link1_zero(ddq_by_dq, 1);

@@ -13,7 +13,7 @@
 
 #include "gravity_link1.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x65A1D402UL
+#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
 #error "gravity_link1.h and gravity_link1_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int gravity_link1_within(const gravity_link1_real_t x[], int n, gr
 static inline int gravity_link1_within_joints(const gravity_link1_real_t x[], gravity_link1_real_t limit)
 {
     return x[0] * x[0] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline gravity_link1_real_t gravity_link1_bounded(gravity_link1_real_t x)
+{
+    return x >= GRAVITY_LINK1_C(-1.0e15) && x <= GRAVITY_LINK1_C(1.0e15) ? x : GRAVITY_LINK1_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int gravity_link1_all_bounded(const gravity_link1_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= GRAVITY_LINK1_C(-1.0e15) && x[i] <= GRAVITY_LINK1_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DGRAVITY_LINK1_PARAMETERS_CHECKED, for parameters that gravity_link1_check_parameters has seen. */

@@ -50,7 +50,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x5D9BE62CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -85,8 +85,8 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
     gravity_link1_loaded_real_t t5, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t5, &t2);
     const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2];
-    const gravity_link1_loaded_real_t t1 = parameters[ZZ1] + (parameters[ZZ2]
-        + GRAVITY_LINK1_LOADED_C(0.538534) * (t0 + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2]));
+    const gravity_link1_loaded_real_t t1 = gravity_link1_loaded_bounded(parameters[ZZ1] + (parameters[ZZ2]
+        + GRAVITY_LINK1_LOADED_C(0.538534) * (t0 + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2])));
     if (!(t1 > GRAVITY_LINK1_LOADED_C(1.0e-12))) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
@@ -113,10 +113,10 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
         + parameters[MY2] * (GRAVITY_LINK1_LOADED_C(-0.538534) * dq[0]));
     ddq_by_dq[0] = t10 * (t12 - parameters[FV1]);
     ddq_by_input[0] = t10;
-    if (!gravity_link1_loaded_within_joints(ddq, GRAVITY_LINK1_LOADED_C(1.0e30))
-        || !gravity_link1_loaded_within_joints(ddq_by_q, GRAVITY_LINK1_LOADED_C(1.0e30))
-        || !gravity_link1_loaded_within_joints(ddq_by_dq, GRAVITY_LINK1_LOADED_C(1.0e30))
-        || !gravity_link1_loaded_within_joints(ddq_by_input, GRAVITY_LINK1_LOADED_C(1.0e30))) {
+    if (!gravity_link1_loaded_all_bounded(ddq, 1)
+        || !gravity_link1_loaded_all_bounded(ddq_by_q, 1)
+        || !gravity_link1_loaded_all_bounded(ddq_by_dq, 1)
+        || !gravity_link1_loaded_all_bounded(ddq_by_input, 1)) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
         gravity_link1_loaded_zero(ddq_by_dq, 1);

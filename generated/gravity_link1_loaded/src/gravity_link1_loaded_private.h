@@ -13,7 +13,7 @@
 
 #include "gravity_link1_loaded.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x5D9BE62CUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int gravity_link1_loaded_within(const gravity_link1_loaded_real_t 
 static inline int gravity_link1_loaded_within_joints(const gravity_link1_loaded_real_t x[], gravity_link1_loaded_real_t limit)
 {
     return x[0] * x[0] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline gravity_link1_loaded_real_t gravity_link1_loaded_bounded(gravity_link1_loaded_real_t x)
+{
+    return x >= GRAVITY_LINK1_LOADED_C(-1.0e15) && x <= GRAVITY_LINK1_LOADED_C(1.0e15) ? x : GRAVITY_LINK1_LOADED_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int gravity_link1_loaded_all_bounded(const gravity_link1_loaded_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= GRAVITY_LINK1_LOADED_C(-1.0e15) && x[i] <= GRAVITY_LINK1_LOADED_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DGRAVITY_LINK1_LOADED_PARAMETERS_CHECKED, for parameters that gravity_link1_loaded_check_parameters has seen. */

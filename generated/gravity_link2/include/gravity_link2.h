@@ -29,7 +29,7 @@
 #define GRAVITY_LINK2_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK2_GENERATION 0xBF3DAB83UL
+#define GRAVITY_LINK2_GENERATION 0x29702C56UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK2_MODEL "1ddde3a17ccda7a0e65720f8a04e520c2a47c634edf20149046c6a68c38abc01"

@@ -33,7 +33,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xBF3DAB83UL
+#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
 #error "gravity_link2.h and gravity_link2_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -83,10 +83,10 @@ int gravity_link2_forward_dynamics_derivatives(
     ddq_by_q[0] = t6 * (parameters[MX1] * t4 + parameters[MY1] * t2);
     ddq_by_dq[0] = -(parameters[FV1] * t6);
     ddq_by_input[0] = t6;
-    if (!gravity_link2_within_joints(ddq, GRAVITY_LINK2_C(1.0e30))
-        || !gravity_link2_within_joints(ddq_by_q, GRAVITY_LINK2_C(1.0e30))
-        || !gravity_link2_within_joints(ddq_by_dq, GRAVITY_LINK2_C(1.0e30))
-        || !gravity_link2_within_joints(ddq_by_input, GRAVITY_LINK2_C(1.0e30))) {
+    if (!gravity_link2_all_bounded(ddq, 1)
+        || !gravity_link2_all_bounded(ddq_by_q, 1)
+        || !gravity_link2_all_bounded(ddq_by_dq, 1)
+        || !gravity_link2_all_bounded(ddq_by_input, 1)) {
         gravity_link2_zero(ddq, 1);
         gravity_link2_zero(ddq_by_q, 1);
         gravity_link2_zero(ddq_by_dq, 1);

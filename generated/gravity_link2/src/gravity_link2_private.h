@@ -13,7 +13,7 @@
 
 #include "gravity_link2.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xBF3DAB83UL
+#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
 #error "gravity_link2.h and gravity_link2_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int gravity_link2_within(const gravity_link2_real_t x[], int n, gr
 static inline int gravity_link2_within_joints(const gravity_link2_real_t x[], gravity_link2_real_t limit)
 {
     return x[0] * x[0] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline gravity_link2_real_t gravity_link2_bounded(gravity_link2_real_t x)
+{
+    return x >= GRAVITY_LINK2_C(-1.0e15) && x <= GRAVITY_LINK2_C(1.0e15) ? x : GRAVITY_LINK2_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int gravity_link2_all_bounded(const gravity_link2_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= GRAVITY_LINK2_C(-1.0e15) && x[i] <= GRAVITY_LINK2_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DGRAVITY_LINK2_PARAMETERS_CHECKED, for parameters that gravity_link2_check_parameters has seen. */

@@ -92,7 +92,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -132,7 +132,7 @@ int iiwa14_forward_dynamics(
     IIWA14_SINCOS(q[5], &t13, &t15);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -144,7 +144,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const iiwa14_real_t t9 = t8 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t10 = t9 + t3 * t5;
+    const iiwa14_real_t t10 = iiwa14_bounded(t9 + t3 * t5);
     if (!(t10 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -169,7 +169,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
     const iiwa14_real_t t27 = t26 + IIWA14_C(1.0e4) * parameters[IA5];
     const iiwa14_real_t t28 = t18 * t4;
-    const iiwa14_real_t t29 = t27 + t18 * t28 + t19 * t21;
+    const iiwa14_real_t t29 = iiwa14_bounded(t27 + t18 * t28 + t19 * t21);
     if (!(t29 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -210,7 +210,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t61 = parameters[ZZ4R] + (t56 + t59 + t60);
     const iiwa14_real_t t62 = t61 + IIWA14_C(2.56e4) * parameters[IA4];
     const iiwa14_real_t t63 = t51 * t20;
-    const iiwa14_real_t t64 = t62 + t46 * t55 + t51 * t63 + t52 * t54;
+    const iiwa14_real_t t64 = iiwa14_bounded(t62 + t46 * t55 + t51 * t63 + t52 * t54);
     if (!(t64 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -247,7 +247,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t92 = t91 + t78 * t55 + t83 * t63 + t86 * t54;
     const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
     const iiwa14_real_t t94 = t92 * t93;
-    const iiwa14_real_t t95 = t88 - t92 * t94;
+    const iiwa14_real_t t95 = iiwa14_bounded(t88 - t92 * t94);
     if (!(t95 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -294,7 +294,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t133 = t116 * t53;
     const iiwa14_real_t t134 = t130 + t108 * t131 + t112 * t132 + t116 * t133;
     const iiwa14_real_t t135 = t121 * t93;
-    const iiwa14_real_t t136 = t134 - t121 * t135 - t122 * t124;
+    const iiwa14_real_t t136 = iiwa14_bounded(t134 - t121 * t135 - t122 * t124);
     if (!(t136 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -331,7 +331,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t163 = t162 + t156 * t135 + t159 * t124;
     const iiwa14_real_t t164 = IIWA14_C(1.0) / t136;
     const iiwa14_real_t t165 = t163 * t164;
-    const iiwa14_real_t t166 = t153 - t156 * t157 - t159 * t160 - t163 * t165;
+    const iiwa14_real_t t166 = iiwa14_bounded(t153 - t156 * t157 - t159 * t160 - t163 * t165);
     if (!(t166 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -571,24 +571,24 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t357 = IIWA14_C(16.0) * input[1] + t356 - t336 * t131 - t339 * t132;
     const iiwa14_real_t t358 = t357 - t343 * t133 + t347 * t135 + t351 * t124;
     const iiwa14_real_t t359 = IIWA14_C(1.0) / t166;
-    const iiwa14_real_t t360 = (t352 + t358 * t165) * t359;
+    const iiwa14_real_t t360 = iiwa14_bounded((t352 + t358 * t165) * t359);
     out[0] = t360;
-    const iiwa14_real_t t361 = t358 * t164 + t165 * t360;
+    const iiwa14_real_t t361 = iiwa14_bounded(t358 * t164 + t165 * t360);
     out[1] = t361;
-    const iiwa14_real_t t362 = t351 * t123 + t160 * t360 + t124 * t361;
+    const iiwa14_real_t t362 = iiwa14_bounded(t351 * t123 + t160 * t360 + t124 * t361);
     out[2] = t362;
-    const iiwa14_real_t t363 = t347 * t93 + t157 * t360 + t135 * t361 + t94 * t362;
+    const iiwa14_real_t t363 = iiwa14_bounded(t347 * t93 + t157 * t360 + t135 * t361 + t94 * t362);
     out[3] = t363;
     const iiwa14_real_t t364 = t343 * t53 + t152 * t360 + t133 * t361 + t87 * t362;
-    const iiwa14_real_t t365 = t54 * t363 - t364;
+    const iiwa14_real_t t365 = iiwa14_bounded(t54 * t363 - t364);
     out[4] = t365;
     const iiwa14_real_t t366 = t339 * t20 + t149 * t360 + t132 * t361 + t84 * t362;
-    const iiwa14_real_t t367 = t63 * t363 - t366 + t21 * t365;
+    const iiwa14_real_t t367 = iiwa14_bounded(t63 * t363 - t366 + t21 * t365);
     out[5] = t367;
     const iiwa14_real_t t368 = t336 * t4 + t146 * t360 + t131 * t361 + t79 * t362;
     const iiwa14_real_t t369 = t55 * t363 - t368 + t28 * t365 + t5 * t367;
     out[6] = t369;
-    if (!iiwa14_within_joints(out, IIWA14_C(1.0e30))) {
+    if (!iiwa14_all_bounded(out, 7)) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -142,7 +142,7 @@ int iiwa14_forward_dynamics_derivatives(
     IIWA14_SINCOS(q[5], &t13, &t15);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -157,7 +157,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const iiwa14_real_t t9 = t8 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t10 = t9 - t3 * t5;
+    const iiwa14_real_t t10 = iiwa14_bounded(t9 - t3 * t5);
     if (!(t10 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -188,7 +188,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
     const iiwa14_real_t t27 = t26 + IIWA14_C(1.0e4) * parameters[IA5];
     const iiwa14_real_t t28 = t18 * t4;
-    const iiwa14_real_t t29 = t27 - t18 * t28 - t19 * t21;
+    const iiwa14_real_t t29 = iiwa14_bounded(t27 - t18 * t28 - t19 * t21);
     if (!(t29 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -235,7 +235,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t61 = parameters[ZZ4R] + (t56 - t59 + t60);
     const iiwa14_real_t t62 = t61 + IIWA14_C(2.56e4) * parameters[IA4];
     const iiwa14_real_t t63 = t51 * t20;
-    const iiwa14_real_t t64 = t62 - t46 * t55 - t51 * t63 - t52 * t54;
+    const iiwa14_real_t t64 = iiwa14_bounded(t62 - t46 * t55 - t51 * t63 - t52 * t54);
     if (!(t64 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -278,7 +278,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t92 = t91 - t78 * t55 + t83 * t63 + t86 * t54;
     const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
     const iiwa14_real_t t94 = t92 * t93;
-    const iiwa14_real_t t95 = t88 - t92 * t94;
+    const iiwa14_real_t t95 = iiwa14_bounded(t88 - t92 * t94);
     if (!(t95 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -338,7 +338,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t140 = t122 * t53;
     const iiwa14_real_t t141 = t137 - t112 * t138 - t117 * t139 - t122 * t140;
     const iiwa14_real_t t142 = t128 * t93;
-    const iiwa14_real_t t143 = t141 - t128 * t142 - t129 * t131;
+    const iiwa14_real_t t143 = iiwa14_bounded(t141 - t128 * t142 - t129 * t131);
     if (!(t143 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -387,7 +387,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t177 = t176 - t163 * t140 - t169 * t142 + t172 * t131;
     const iiwa14_real_t t178 = IIWA14_C(1.0) / t143;
     const iiwa14_real_t t179 = t177 * t178;
-    const iiwa14_real_t t180 = t165 - t169 * t170 - t172 * t173 - t177 * t179;
+    const iiwa14_real_t t180 = iiwa14_bounded(t165 - t169 * t170 - t172 * t173 - t177 * t179);
     if (!(t180 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -667,24 +667,24 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t411 = IIWA14_C(16.0) * input[1] + t410 + t390 * t138 + t393 * t139;
     const iiwa14_real_t t412 = t411 + t397 * t140 + t401 * t142 + t405 * t131;
     const iiwa14_real_t t413 = IIWA14_C(1.0) / t180;
-    const iiwa14_real_t t414 = (t406 - t412 * t179) * t413;
+    const iiwa14_real_t t414 = iiwa14_bounded((t406 - t412 * t179) * t413);
     ddq[0] = t414;
-    const iiwa14_real_t t415 = t412 * t178 - t179 * t414;
+    const iiwa14_real_t t415 = iiwa14_bounded(t412 * t178 - t179 * t414);
     ddq[1] = t415;
-    const iiwa14_real_t t416 = t405 * t130 - t173 * t414 + t131 * t415;
+    const iiwa14_real_t t416 = iiwa14_bounded(t405 * t130 - t173 * t414 + t131 * t415);
     ddq[2] = t416;
-    const iiwa14_real_t t417 = t401 * t93 + t170 * t414 + t142 * t415 - t94 * t416;
+    const iiwa14_real_t t417 = iiwa14_bounded(t401 * t93 + t170 * t414 + t142 * t415 - t94 * t416);
     ddq[3] = t417;
     const iiwa14_real_t t418 = t397 * t53 + t164 * t414 + t140 * t415 - t87 * t416;
-    const iiwa14_real_t t419 = t418 + t54 * t417;
+    const iiwa14_real_t t419 = iiwa14_bounded(t418 + t54 * t417);
     ddq[4] = t419;
     const iiwa14_real_t t420 = t393 * t20 + t160 * t414 + t139 * t415 - t84 * t416;
-    const iiwa14_real_t t421 = t420 + t63 * t417 + t21 * t419;
+    const iiwa14_real_t t421 = iiwa14_bounded(t420 + t63 * t417 + t21 * t419);
     ddq[5] = t421;
     const iiwa14_real_t t422 = t390 * t4 + t156 * t414 + t138 * t415 - t79 * t416;
-    const iiwa14_real_t t423 = t422 - t55 * t417 - t28 * t419 - t5 * t421;
+    const iiwa14_real_t t423 = iiwa14_bounded(t422 - t55 * t417 - t28 * t419 - t5 * t421);
     ddq[6] = t423;
-    const iiwa14_real_t t424 = IIWA14_C(16.0) * t413;
+    const iiwa14_real_t t424 = iiwa14_bounded(IIWA14_C(16.0) * t413);
     const iiwa14_real_t t425 = parameters[XZ7R] * t234;
     const iiwa14_real_t t426 = parameters[XY7] * t235;
     const iiwa14_real_t t427 = t425 - t426;
@@ -818,7 +818,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t555 = t146 * (t146 * (t540 - t537) + t150 * (t554 + t546));
     const iiwa14_real_t t556 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t537 + t555);
     const iiwa14_real_t t557 = t179 * t413;
-    const iiwa14_real_t t558 = IIWA14_C(-16.0) * t557;
+    const iiwa14_real_t t558 = iiwa14_bounded(IIWA14_C(-16.0) * t557);
     const iiwa14_real_t t559 = t98 * t524;
     const iiwa14_real_t t560 = parameters[XY2] * t182 + t188 * t545 + (t559 - t523 - t147 * t532);
     const iiwa14_real_t t561 = IIWA14_C(2.0) * t560;
@@ -827,7 +827,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t564 = IIWA14_C(2.0) * t563;
     const iiwa14_real_t t565 = IIWA14_C(0.0625) * (t150 * t561 - t146 * t564);
     const iiwa14_real_t t566 = t413 * (t173 + t131 * t179);
-    const iiwa14_real_t t567 = IIWA14_C(-16.0) * t566;
+    const iiwa14_real_t t567 = iiwa14_bounded(IIWA14_C(-16.0) * t566);
     const iiwa14_real_t t568 = IIWA14_C(-2.0) * t542;
     const iiwa14_real_t t569 = IIWA14_C(-2.0) * t543;
     const iiwa14_real_t t570 = t98 * t569 - t100 * t568;
@@ -838,7 +838,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t575 = IIWA14_C(0.0625) * (t150 * t570 - t146 * t574);
     const iiwa14_real_t t576 = t142 - t94 * t131;
     const iiwa14_real_t t577 = t413 * (t170 + t94 * t173 - t179 * t576);
-    const iiwa14_real_t t578 = IIWA14_C(16.0) * t577;
+    const iiwa14_real_t t578 = iiwa14_bounded(IIWA14_C(16.0) * t577);
     const iiwa14_real_t t579 = IIWA14_C(2.0) * t518;
     const iiwa14_real_t t580 = IIWA14_C(2.0) * t521;
     const iiwa14_real_t t581 = t67 * t579 - t71 * t580;
@@ -852,7 +852,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t589 = t140 + t54 * t142 - t131 * t588;
     const iiwa14_real_t t590 = t164 + t54 * t170 + t173 * t588 - t179 * t589;
     const iiwa14_real_t t591 = t413 * t590;
-    const iiwa14_real_t t592 = IIWA14_C(8.0) * t591;
+    const iiwa14_real_t t592 = iiwa14_bounded(IIWA14_C(8.0) * t591);
     const iiwa14_real_t t593 = IIWA14_C(2.0) * t490;
     const iiwa14_real_t t594 = IIWA14_C(2.0) * t491;
     const iiwa14_real_t t595 = t34 * t593 - t32 * t594;
@@ -872,7 +872,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t609 = t139 + t21 * t140 + t142 * t607 - t131 * t608;
     const iiwa14_real_t t610 = t160 + t21 * t164 + t170 * t607 + t173 * t608;
     const iiwa14_real_t t611 = t413 * (t610 - t179 * t609);
-    const iiwa14_real_t t612 = IIWA14_C(8.0) * t611;
+    const iiwa14_real_t t612 = iiwa14_bounded(IIWA14_C(8.0) * t611);
     const iiwa14_real_t t613 = IIWA14_C(-2.0) * t465;
     const iiwa14_real_t t614 = IIWA14_C(2.0) * t466;
     const iiwa14_real_t t615 = t15 * t613 + t13 * t614;
@@ -913,74 +913,74 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t650 = IIWA14_C(0.125) * (t150 * t647 + t146 * t649);
     const iiwa14_real_t t651 = t587 + t606 * t592 + t626 * t612 + t650 * t634;
     ddq_by_dq[0] = t651;
-    const iiwa14_real_t t652 = IIWA14_C(16.0) * (t178 + t179 * t557);
+    const iiwa14_real_t t652 = iiwa14_bounded(IIWA14_C(16.0) * (t178 + t179 * t557));
     const iiwa14_real_t t653 = t131 * t178 + t179 * t566;
-    const iiwa14_real_t t654 = IIWA14_C(16.0) * t653;
+    const iiwa14_real_t t654 = iiwa14_bounded(IIWA14_C(16.0) * t653);
     const iiwa14_real_t t655 = t179 * t577 - t178 * t576;
-    const iiwa14_real_t t656 = IIWA14_C(-16.0) * t655;
+    const iiwa14_real_t t656 = iiwa14_bounded(IIWA14_C(-16.0) * t655);
     const iiwa14_real_t t657 = t556 * t558 - t565 * t652 - t575 * t654 + t586 * t656;
     const iiwa14_real_t t658 = t179 * t591 - t178 * t589;
-    const iiwa14_real_t t659 = IIWA14_C(-8.0) * t658;
+    const iiwa14_real_t t659 = iiwa14_bounded(IIWA14_C(-8.0) * t658);
     const iiwa14_real_t t660 = t179 * t611 - t178 * t609;
-    const iiwa14_real_t t661 = IIWA14_C(-8.0) * t660;
+    const iiwa14_real_t t661 = iiwa14_bounded(IIWA14_C(-8.0) * t660);
     const iiwa14_real_t t662 = t179 * t633 - t178 * t631;
     const iiwa14_real_t t663 = IIWA14_C(-8.0) * t662;
     const iiwa14_real_t t664 = t657 + t606 * t659 + t626 * t661 + t650 * t663;
     ddq_by_dq[7] = t664;
-    const iiwa14_real_t t665 = IIWA14_C(16.0) * (t130 + t173 * t566 + t131 * t653);
+    const iiwa14_real_t t665 = iiwa14_bounded(IIWA14_C(16.0) * (t130 + t173 * t566 + t131 * t653));
     const iiwa14_real_t t666 = t94 * t130 + t173 * t577 + t131 * t655;
-    const iiwa14_real_t t667 = IIWA14_C(-16.0) * t666;
+    const iiwa14_real_t t667 = iiwa14_bounded(IIWA14_C(-16.0) * t666);
     const iiwa14_real_t t668 = t556 * t567 - t565 * t654 - t575 * t665 + t586 * t667;
     const iiwa14_real_t t669 = t130 * t588 + t173 * t591 + t131 * t658;
-    const iiwa14_real_t t670 = IIWA14_C(-8.0) * t669;
+    const iiwa14_real_t t670 = iiwa14_bounded(IIWA14_C(-8.0) * t669);
     const iiwa14_real_t t671 = t130 * t608 + t173 * t611 + t131 * t660;
-    const iiwa14_real_t t672 = IIWA14_C(-8.0) * t671;
+    const iiwa14_real_t t672 = iiwa14_bounded(IIWA14_C(-8.0) * t671);
     const iiwa14_real_t t673 = t130 * t629 + t173 * t633 + t131 * t662;
     const iiwa14_real_t t674 = IIWA14_C(-8.0) * t673;
     const iiwa14_real_t t675 = t668 + t606 * t670 + t626 * t672 + t650 * t674;
     ddq_by_dq[14] = t675;
     const iiwa14_real_t t676 = t93 + t170 * t577 - t142 * t655 + t94 * t666;
-    const iiwa14_real_t t677 = IIWA14_C(16.0) * t676;
+    const iiwa14_real_t t677 = iiwa14_bounded(IIWA14_C(16.0) * t676);
     const iiwa14_real_t t678 = t556 * t578 - t565 * t656 - t575 * t667 + t586 * t677;
     const iiwa14_real_t t679 = t54 * t93 + t170 * t591 - t142 * t658 + t94 * t669;
-    const iiwa14_real_t t680 = IIWA14_C(8.0) * t679;
+    const iiwa14_real_t t680 = iiwa14_bounded(IIWA14_C(8.0) * t679);
     const iiwa14_real_t t681 = t93 * t607 + t170 * t611 - t142 * t660 + t94 * t671;
-    const iiwa14_real_t t682 = IIWA14_C(8.0) * t681;
+    const iiwa14_real_t t682 = iiwa14_bounded(IIWA14_C(8.0) * t681);
     const iiwa14_real_t t683 = t170 * t633 - t93 * t628 - t142 * t662 + t94 * t673;
     const iiwa14_real_t t684 = IIWA14_C(8.0) * t683;
     const iiwa14_real_t t685 = t678 + t606 * t680 + t626 * t682 + t650 * t684;
     ddq_by_dq[21] = t685;
-    const iiwa14_real_t t686 = IIWA14_C(16.0) * t591;
-    const iiwa14_real_t t687 = IIWA14_C(-16.0) * t658;
-    const iiwa14_real_t t688 = IIWA14_C(-16.0) * t669;
-    const iiwa14_real_t t689 = IIWA14_C(16.0) * t679;
+    const iiwa14_real_t t686 = iiwa14_bounded(IIWA14_C(16.0) * t591);
+    const iiwa14_real_t t687 = iiwa14_bounded(IIWA14_C(-16.0) * t658);
+    const iiwa14_real_t t688 = iiwa14_bounded(IIWA14_C(-16.0) * t669);
+    const iiwa14_real_t t689 = iiwa14_bounded(IIWA14_C(16.0) * t679);
     const iiwa14_real_t t690 = t556 * t686 - t565 * t687 - t575 * t688 + t586 * t689;
     const iiwa14_real_t t691 = t53 + t164 * t591 - t140 * t658 + t87 * t669;
-    const iiwa14_real_t t692 = IIWA14_C(8.0) * (t691 + t54 * t679);
+    const iiwa14_real_t t692 = iiwa14_bounded(IIWA14_C(8.0) * (t691 + t54 * t679));
     const iiwa14_real_t t693 = t21 * t53 + t164 * t611 - t140 * t660 + t87 * t671;
     const iiwa14_real_t t694 = t693 + t54 * t681;
-    const iiwa14_real_t t695 = IIWA14_C(8.0) * t694;
+    const iiwa14_real_t t695 = iiwa14_bounded(IIWA14_C(8.0) * t694);
     const iiwa14_real_t t696 = t164 * t633 - t53 * t627 - t140 * t662 + t87 * t673;
     const iiwa14_real_t t697 = t696 + t54 * t683;
-    const iiwa14_real_t t698 = IIWA14_C(8.0) * t697;
+    const iiwa14_real_t t698 = iiwa14_bounded(IIWA14_C(8.0) * t697);
     const iiwa14_real_t t699 = t690 + t606 * t692 + t626 * t695 + t650 * t698;
     ddq_by_dq[28] = t699;
-    const iiwa14_real_t t700 = IIWA14_C(16.0) * t611;
-    const iiwa14_real_t t701 = IIWA14_C(-16.0) * t660;
-    const iiwa14_real_t t702 = IIWA14_C(-16.0) * t671;
-    const iiwa14_real_t t703 = IIWA14_C(16.0) * t681;
+    const iiwa14_real_t t700 = iiwa14_bounded(IIWA14_C(16.0) * t611);
+    const iiwa14_real_t t701 = iiwa14_bounded(IIWA14_C(-16.0) * t660);
+    const iiwa14_real_t t702 = iiwa14_bounded(IIWA14_C(-16.0) * t671);
+    const iiwa14_real_t t703 = iiwa14_bounded(IIWA14_C(16.0) * t681);
     const iiwa14_real_t t704 = t556 * t700 - t565 * t701 - t575 * t702 + t586 * t703;
     const iiwa14_real_t t705 = t20 + t160 * t611 - t139 * t660 + t84 * t671;
-    const iiwa14_real_t t706 = IIWA14_C(8.0) * (t705 + t63 * t681 + t21 * t694);
+    const iiwa14_real_t t706 = iiwa14_bounded(IIWA14_C(8.0) * (t705 + t63 * t681 + t21 * t694));
     const iiwa14_real_t t707 = t5 * t20 - t160 * t633 + t139 * t662 - t84 * t673;
     const iiwa14_real_t t708 = t707 - t63 * t683 - t21 * t697;
-    const iiwa14_real_t t709 = IIWA14_C(-8.0) * t708;
+    const iiwa14_real_t t709 = iiwa14_bounded(IIWA14_C(-8.0) * t708);
     const iiwa14_real_t t710 = t704 + t606 * t695 + t626 * t706 + t650 * t709;
     ddq_by_dq[35] = t710;
-    const iiwa14_real_t t711 = IIWA14_C(16.0) * t633;
-    const iiwa14_real_t t712 = IIWA14_C(-16.0) * t662;
-    const iiwa14_real_t t713 = IIWA14_C(-16.0) * t673;
-    const iiwa14_real_t t714 = IIWA14_C(16.0) * t683;
+    const iiwa14_real_t t711 = iiwa14_bounded(IIWA14_C(16.0) * t633);
+    const iiwa14_real_t t712 = iiwa14_bounded(IIWA14_C(-16.0) * t662);
+    const iiwa14_real_t t713 = iiwa14_bounded(IIWA14_C(-16.0) * t673);
+    const iiwa14_real_t t714 = iiwa14_bounded(IIWA14_C(16.0) * t683);
     const iiwa14_real_t t715 = t556 * t711 - t565 * t712 - t575 * t713 + t586 * t714;
     const iiwa14_real_t t716 = t4 + t156 * t633 - t138 * t662 + t79 * t673;
     const iiwa14_real_t t717 = t716 - t55 * t683 - t28 * t697 + t5 * t708;
@@ -1748,10 +1748,10 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
-    if (!iiwa14_within_joints(ddq, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_q, 49, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_dq, 49, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_input, 49, IIWA14_C(1.0e30))) {
+    if (!iiwa14_all_bounded(ddq, 7)
+        || !iiwa14_all_bounded(ddq_by_q, 49)
+        || !iiwa14_all_bounded(ddq_by_dq, 49)
+        || !iiwa14_all_bounded(ddq_by_input, 49)) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);

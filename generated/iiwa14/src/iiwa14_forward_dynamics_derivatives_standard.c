@@ -125,7 +125,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -172,7 +172,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     IIWA14_SINCOS(q[5], &t22, &t18);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -191,7 +191,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t11 = IIWA14_C(0.126) * (t10 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const iiwa14_real_t t13 = t12 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t14 = t13 - t4 * t6;
+    const iiwa14_real_t t14 = iiwa14_bounded(t13 - t4 * t6);
     if (!(t14 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -224,7 +224,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t32 = t31 - t27 * t6;
     const iiwa14_real_t t33 = IIWA14_C(1.0) / t14;
     const iiwa14_real_t t34 = t32 * t33;
-    const iiwa14_real_t t35 = t26 - t27 * t28 - t32 * t34;
+    const iiwa14_real_t t35 = iiwa14_bounded(t26 - t27 * t28 - t32 * t34);
     if (!(t35 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -277,7 +277,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t73 = t59 * t28 - t72 - t63 * t34;
     const iiwa14_real_t t74 = IIWA14_C(1.0) / t35;
     const iiwa14_real_t t75 = t73 * t74;
-    const iiwa14_real_t t76 = t55 - t59 * t60 - t63 * t64 - t73 * t75;
+    const iiwa14_real_t t76 = iiwa14_bounded(t55 - t59 * t60 - t63 * t64 - t73 * t75);
     if (!(t76 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -321,7 +321,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t105 = t89 * t33;
     const iiwa14_real_t t106 = t93 * t74;
     const iiwa14_real_t t107 = t103 - t85 * t104 - t89 * t105 - t93 * t106;
-    const iiwa14_real_t t108 = t107 - t94 * t96;
+    const iiwa14_real_t t108 = iiwa14_bounded(t107 - t94 * t96);
     if (!(t108 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -389,7 +389,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t161 = t160 - t150 * t96;
     const iiwa14_real_t t162 = IIWA14_C(1.0) / t108;
     const iiwa14_real_t t163 = t161 * t162;
-    const iiwa14_real_t t164 = t147 - t150 * t151 - t161 * t163;
+    const iiwa14_real_t t164 = iiwa14_bounded(t147 - t150 * t151 - t161 * t163);
     if (!(t164 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -439,7 +439,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t199 = t195 - t172 * t196 - t175 * t197 - t179 * t198;
     const iiwa14_real_t t200 = t183 * t95;
     const iiwa14_real_t t201 = t187 * t162;
-    const iiwa14_real_t t202 = t199 - t183 * t200 - t187 * t201 - t188 * t190;
+    const iiwa14_real_t t202 = iiwa14_bounded(t199 - t183 * t200 - t187 * t201 - t188 * t190);
     if (!(t202 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -761,22 +761,22 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t464 = IIWA14_C(16.0) * input[1] + t463 + t443 * t134 + t446 * t140;
     const iiwa14_real_t t465 = t464 + t450 * t146 + t454 * t151 + t458 * t163;
     const iiwa14_real_t t466 = IIWA14_C(1.0) / t202;
-    const iiwa14_real_t t467 = (t459 - t465 * t190) * t466;
+    const iiwa14_real_t t467 = iiwa14_bounded((t459 - t465 * t190) * t466);
     ddq[0] = t467;
-    const iiwa14_real_t t468 = t465 * t189 - t190 * t467;
+    const iiwa14_real_t t468 = iiwa14_bounded(t465 * t189 - t190 * t467);
     ddq[1] = t468;
-    const iiwa14_real_t t469 = t458 * t162 - t201 * t467 + t163 * t468;
+    const iiwa14_real_t t469 = iiwa14_bounded(t458 * t162 - t201 * t467 + t163 * t468);
     ddq[2] = t469;
-    const iiwa14_real_t t470 = t454 * t95 + t200 * t467 + t151 * t468 - t96 * t469;
+    const iiwa14_real_t t470 = iiwa14_bounded(t454 * t95 + t200 * t467 + t151 * t468 - t96 * t469);
     ddq[3] = t470;
     const iiwa14_real_t t471 = t450 * t74 + t198 * t467 + t146 * t468 - t106 * t469;
-    const iiwa14_real_t t472 = t471 + t75 * t470;
+    const iiwa14_real_t t472 = iiwa14_bounded(t471 + t75 * t470);
     ddq[4] = t472;
     const iiwa14_real_t t473 = t446 * t33 + t197 * t467 + t140 * t468 - t105 * t469;
-    const iiwa14_real_t t474 = t473 - t64 * t470 + t34 * t472;
+    const iiwa14_real_t t474 = iiwa14_bounded(t473 - t64 * t470 + t34 * t472);
     ddq[5] = t474;
     const iiwa14_real_t t475 = t443 * t5 + t196 * t467 + t134 * t468 - t104 * t469;
-    const iiwa14_real_t t476 = t475 - t60 * t470 - t28 * t472 + t6 * t474;
+    const iiwa14_real_t t476 = iiwa14_bounded(t475 - t60 * t470 - t28 * t472 + t6 * t474);
     ddq[6] = t476;
     const iiwa14_real_t t477 = t256 * parameters[XZ7];
     const iiwa14_real_t t478 = t257 * parameters[XY7];
@@ -929,9 +929,9 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t623 = dq[1] * t622 - t204 * parameters[XZ2] + (t115 * t621 - t112 * t620);
     const iiwa14_real_t t624 = t169 * (t169 * (t607 - t604) + t167 * (t619 + t623));
     const iiwa14_real_t t625 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t604 + t624);
-    const iiwa14_real_t t626 = IIWA14_C(16.0) * t466;
+    const iiwa14_real_t t626 = iiwa14_bounded(IIWA14_C(16.0) * t466);
     const iiwa14_real_t t627 = t190 * t466;
-    const iiwa14_real_t t628 = IIWA14_C(-16.0) * t627;
+    const iiwa14_real_t t628 = iiwa14_bounded(IIWA14_C(-16.0) * t627);
     const iiwa14_real_t t629 = t115 * t591;
     const iiwa14_real_t t630 = t204 * parameters[XY2] + t206 * t622 + (t629 - t590 - t184 * t599);
     const iiwa14_real_t t631 = IIWA14_C(2.0) * t630;
@@ -940,7 +940,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t634 = IIWA14_C(2.0) * t633;
     const iiwa14_real_t t635 = IIWA14_C(0.0625) * (t167 * t631 - t169 * t634);
     const iiwa14_real_t t636 = t466 * (t201 + t163 * t190);
-    const iiwa14_real_t t637 = IIWA14_C(-16.0) * t636;
+    const iiwa14_real_t t637 = iiwa14_bounded(IIWA14_C(-16.0) * t636);
     const iiwa14_real_t t638 = IIWA14_C(-2.0) * t620;
     const iiwa14_real_t t639 = IIWA14_C(-2.0) * t621;
     const iiwa14_real_t t640 = t115 * t639 - t112 * t638;
@@ -951,7 +951,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t645 = IIWA14_C(0.0625) * (t167 * t640 - t169 * t644);
     const iiwa14_real_t t646 = t151 - t96 * t163;
     const iiwa14_real_t t647 = t466 * (t200 + t96 * t201 - t190 * t646);
-    const iiwa14_real_t t648 = IIWA14_C(16.0) * t647;
+    const iiwa14_real_t t648 = iiwa14_bounded(IIWA14_C(16.0) * t647);
     const iiwa14_real_t t649 = IIWA14_C(2.0) * t585;
     const iiwa14_real_t t650 = IIWA14_C(2.0) * t588;
     const iiwa14_real_t t651 = t81 * t649 - t79 * t650;
@@ -965,7 +965,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t659 = t146 + t75 * t151 - t163 * t658;
     const iiwa14_real_t t660 = t198 + t75 * t200 + t201 * t658 - t190 * t659;
     const iiwa14_real_t t661 = t466 * t660;
-    const iiwa14_real_t t662 = IIWA14_C(8.0) * t661;
+    const iiwa14_real_t t662 = iiwa14_bounded(IIWA14_C(8.0) * t661);
     const iiwa14_real_t t663 = IIWA14_C(2.0) * t566;
     const iiwa14_real_t t664 = IIWA14_C(2.0) * t567;
     const iiwa14_real_t t665 = t39 * t663 - t42 * t664;
@@ -985,7 +985,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t679 = t140 + t34 * t146 + t151 * t677 - t163 * t678;
     const iiwa14_real_t t680 = t197 + t34 * t198 + t200 * t677 + t201 * t678;
     const iiwa14_real_t t681 = t466 * (t680 - t190 * t679);
-    const iiwa14_real_t t682 = IIWA14_C(8.0) * t681;
+    const iiwa14_real_t t682 = iiwa14_bounded(IIWA14_C(8.0) * t681);
     const iiwa14_real_t t683 = IIWA14_C(-2.0) * t531;
     const iiwa14_real_t t684 = IIWA14_C(2.0) * t534;
     const iiwa14_real_t t685 = t18 * t683 + t22 * t684;
@@ -1027,74 +1027,74 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t721 = IIWA14_C(0.125) * (t167 * t718 + t169 * t720);
     const iiwa14_real_t t722 = t657 + t676 * t662 + t696 * t682 + t721 * t704;
     ddq_by_dq[0] = t722;
-    const iiwa14_real_t t723 = IIWA14_C(16.0) * (t189 + t190 * t627);
+    const iiwa14_real_t t723 = iiwa14_bounded(IIWA14_C(16.0) * (t189 + t190 * t627));
     const iiwa14_real_t t724 = t163 * t189 + t190 * t636;
-    const iiwa14_real_t t725 = IIWA14_C(16.0) * t724;
+    const iiwa14_real_t t725 = iiwa14_bounded(IIWA14_C(16.0) * t724);
     const iiwa14_real_t t726 = t190 * t647 - t189 * t646;
-    const iiwa14_real_t t727 = IIWA14_C(-16.0) * t726;
+    const iiwa14_real_t t727 = iiwa14_bounded(IIWA14_C(-16.0) * t726);
     const iiwa14_real_t t728 = t625 * t628 - t635 * t723 - t645 * t725 + t656 * t727;
     const iiwa14_real_t t729 = t190 * t661 - t189 * t659;
-    const iiwa14_real_t t730 = IIWA14_C(-8.0) * t729;
+    const iiwa14_real_t t730 = iiwa14_bounded(IIWA14_C(-8.0) * t729);
     const iiwa14_real_t t731 = t190 * t681 - t189 * t679;
-    const iiwa14_real_t t732 = IIWA14_C(-8.0) * t731;
+    const iiwa14_real_t t732 = iiwa14_bounded(IIWA14_C(-8.0) * t731);
     const iiwa14_real_t t733 = t190 * t703 - t189 * t701;
     const iiwa14_real_t t734 = IIWA14_C(-8.0) * t733;
     const iiwa14_real_t t735 = t728 + t676 * t730 + t696 * t732 + t721 * t734;
     ddq_by_dq[7] = t735;
-    const iiwa14_real_t t736 = IIWA14_C(16.0) * (t162 + t201 * t636 + t163 * t724);
+    const iiwa14_real_t t736 = iiwa14_bounded(IIWA14_C(16.0) * (t162 + t201 * t636 + t163 * t724));
     const iiwa14_real_t t737 = t96 * t162 + t201 * t647 + t163 * t726;
-    const iiwa14_real_t t738 = IIWA14_C(-16.0) * t737;
+    const iiwa14_real_t t738 = iiwa14_bounded(IIWA14_C(-16.0) * t737);
     const iiwa14_real_t t739 = t625 * t637 - t635 * t725 - t645 * t736 + t656 * t738;
     const iiwa14_real_t t740 = t162 * t658 + t201 * t661 + t163 * t729;
-    const iiwa14_real_t t741 = IIWA14_C(-8.0) * t740;
+    const iiwa14_real_t t741 = iiwa14_bounded(IIWA14_C(-8.0) * t740);
     const iiwa14_real_t t742 = t162 * t678 + t201 * t681 + t163 * t731;
-    const iiwa14_real_t t743 = IIWA14_C(-8.0) * t742;
+    const iiwa14_real_t t743 = iiwa14_bounded(IIWA14_C(-8.0) * t742);
     const iiwa14_real_t t744 = t162 * t699 + t201 * t703 + t163 * t733;
     const iiwa14_real_t t745 = IIWA14_C(-8.0) * t744;
     const iiwa14_real_t t746 = t739 + t676 * t741 + t696 * t743 + t721 * t745;
     ddq_by_dq[14] = t746;
     const iiwa14_real_t t747 = t95 + t200 * t647 - t151 * t726 + t96 * t737;
-    const iiwa14_real_t t748 = IIWA14_C(16.0) * t747;
+    const iiwa14_real_t t748 = iiwa14_bounded(IIWA14_C(16.0) * t747);
     const iiwa14_real_t t749 = t625 * t648 - t635 * t727 - t645 * t738 + t656 * t748;
     const iiwa14_real_t t750 = t75 * t95 + t200 * t661 - t151 * t729 + t96 * t740;
-    const iiwa14_real_t t751 = IIWA14_C(8.0) * t750;
+    const iiwa14_real_t t751 = iiwa14_bounded(IIWA14_C(8.0) * t750);
     const iiwa14_real_t t752 = t95 * t677 + t200 * t681 - t151 * t731 + t96 * t742;
-    const iiwa14_real_t t753 = IIWA14_C(8.0) * t752;
+    const iiwa14_real_t t753 = iiwa14_bounded(IIWA14_C(8.0) * t752);
     const iiwa14_real_t t754 = t95 * t698 + t200 * t703 - t151 * t733 + t96 * t744;
     const iiwa14_real_t t755 = IIWA14_C(8.0) * t754;
     const iiwa14_real_t t756 = t749 + t676 * t751 + t696 * t753 + t721 * t755;
     ddq_by_dq[21] = t756;
-    const iiwa14_real_t t757 = IIWA14_C(16.0) * t661;
-    const iiwa14_real_t t758 = IIWA14_C(-16.0) * t729;
-    const iiwa14_real_t t759 = IIWA14_C(-16.0) * t740;
-    const iiwa14_real_t t760 = IIWA14_C(16.0) * t750;
+    const iiwa14_real_t t757 = iiwa14_bounded(IIWA14_C(16.0) * t661);
+    const iiwa14_real_t t758 = iiwa14_bounded(IIWA14_C(-16.0) * t729);
+    const iiwa14_real_t t759 = iiwa14_bounded(IIWA14_C(-16.0) * t740);
+    const iiwa14_real_t t760 = iiwa14_bounded(IIWA14_C(16.0) * t750);
     const iiwa14_real_t t761 = t625 * t757 - t635 * t758 - t645 * t759 + t656 * t760;
     const iiwa14_real_t t762 = t74 + t198 * t661 - t146 * t729 + t106 * t740;
-    const iiwa14_real_t t763 = IIWA14_C(8.0) * (t762 + t75 * t750);
+    const iiwa14_real_t t763 = iiwa14_bounded(IIWA14_C(8.0) * (t762 + t75 * t750));
     const iiwa14_real_t t764 = t34 * t74 + t198 * t681 - t146 * t731 + t106 * t742;
     const iiwa14_real_t t765 = t764 + t75 * t752;
-    const iiwa14_real_t t766 = IIWA14_C(8.0) * t765;
+    const iiwa14_real_t t766 = iiwa14_bounded(IIWA14_C(8.0) * t765);
     const iiwa14_real_t t767 = t74 * t697 + t198 * t703 - t146 * t733 + t106 * t744;
     const iiwa14_real_t t768 = t767 + t75 * t754;
-    const iiwa14_real_t t769 = IIWA14_C(8.0) * t768;
+    const iiwa14_real_t t769 = iiwa14_bounded(IIWA14_C(8.0) * t768);
     const iiwa14_real_t t770 = t761 + t676 * t763 + t696 * t766 + t721 * t769;
     ddq_by_dq[28] = t770;
-    const iiwa14_real_t t771 = IIWA14_C(16.0) * t681;
-    const iiwa14_real_t t772 = IIWA14_C(-16.0) * t731;
-    const iiwa14_real_t t773 = IIWA14_C(-16.0) * t742;
-    const iiwa14_real_t t774 = IIWA14_C(16.0) * t752;
+    const iiwa14_real_t t771 = iiwa14_bounded(IIWA14_C(16.0) * t681);
+    const iiwa14_real_t t772 = iiwa14_bounded(IIWA14_C(-16.0) * t731);
+    const iiwa14_real_t t773 = iiwa14_bounded(IIWA14_C(-16.0) * t742);
+    const iiwa14_real_t t774 = iiwa14_bounded(IIWA14_C(16.0) * t752);
     const iiwa14_real_t t775 = t625 * t771 - t635 * t772 - t645 * t773 + t656 * t774;
     const iiwa14_real_t t776 = t33 + t197 * t681 - t140 * t731 + t105 * t742;
-    const iiwa14_real_t t777 = IIWA14_C(8.0) * (t776 - t64 * t752 + t34 * t765);
+    const iiwa14_real_t t777 = iiwa14_bounded(IIWA14_C(8.0) * (t776 - t64 * t752 + t34 * t765));
     const iiwa14_real_t t778 = t140 * t733 - (t6 * t33 + t197 * t703) - t105 * t744;
     const iiwa14_real_t t779 = t778 + t64 * t754 - t34 * t768;
-    const iiwa14_real_t t780 = IIWA14_C(-8.0) * t779;
+    const iiwa14_real_t t780 = iiwa14_bounded(IIWA14_C(-8.0) * t779);
     const iiwa14_real_t t781 = t775 + t676 * t766 + t696 * t777 + t721 * t780;
     ddq_by_dq[35] = t781;
-    const iiwa14_real_t t782 = IIWA14_C(16.0) * t703;
-    const iiwa14_real_t t783 = IIWA14_C(-16.0) * t733;
-    const iiwa14_real_t t784 = IIWA14_C(-16.0) * t744;
-    const iiwa14_real_t t785 = IIWA14_C(16.0) * t754;
+    const iiwa14_real_t t782 = iiwa14_bounded(IIWA14_C(16.0) * t703);
+    const iiwa14_real_t t783 = iiwa14_bounded(IIWA14_C(-16.0) * t733);
+    const iiwa14_real_t t784 = iiwa14_bounded(IIWA14_C(-16.0) * t744);
+    const iiwa14_real_t t785 = iiwa14_bounded(IIWA14_C(16.0) * t754);
     const iiwa14_real_t t786 = t625 * t782 - t635 * t783 - t645 * t784 + t656 * t785;
     const iiwa14_real_t t787 = t5 + t196 * t703 - t134 * t733 + t104 * t744;
     const iiwa14_real_t t788 = t787 - t60 * t754 - t28 * t768 - t6 * t779;
@@ -1886,10 +1886,10 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
-    if (!iiwa14_within_joints(ddq, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_q, 49, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_dq, 49, IIWA14_C(1.0e30))
-        || !iiwa14_within(ddq_by_input, 49, IIWA14_C(1.0e30))) {
+    if (!iiwa14_all_bounded(ddq, 7)
+        || !iiwa14_all_bounded(ddq_by_q, 49)
+        || !iiwa14_all_bounded(ddq_by_dq, 49)
+        || !iiwa14_all_bounded(ddq_by_input, 49)) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);

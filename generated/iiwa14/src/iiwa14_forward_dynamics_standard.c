@@ -121,7 +121,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -162,7 +162,7 @@ int iiwa14_forward_dynamics_standard(
     IIWA14_SINCOS(q[5], &t22, &t18);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -178,7 +178,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t11 = IIWA14_C(0.126) * (t10 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const iiwa14_real_t t13 = t12 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t14 = t13 + t4 * t6;
+    const iiwa14_real_t t14 = iiwa14_bounded(t13 + t4 * t6);
     if (!(t14 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -205,7 +205,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t32 = t31 + t27 * t6;
     const iiwa14_real_t t33 = IIWA14_C(-1.0) / t14;
     const iiwa14_real_t t34 = t32 * t33;
-    const iiwa14_real_t t35 = t26 + t27 * t28 + t32 * t34;
+    const iiwa14_real_t t35 = iiwa14_bounded(t26 + t27 * t28 + t32 * t34);
     if (!(t35 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -249,7 +249,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t70 = t69 + t57 * t28 + t61 * t34;
     const iiwa14_real_t t71 = IIWA14_C(-1.0) / t35;
     const iiwa14_real_t t72 = t70 * t71;
-    const iiwa14_real_t t73 = t53 + t57 * t58 + t61 * t62 + t70 * t72;
+    const iiwa14_real_t t73 = iiwa14_bounded(t53 + t57 * t58 + t61 * t62 + t70 * t72);
     if (!(t73 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -287,7 +287,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t102 = t86 * t33;
     const iiwa14_real_t t103 = t90 * t71;
     const iiwa14_real_t t104 = t100 + t82 * t101 + t86 * t102 + t90 * t103;
-    const iiwa14_real_t t105 = t104 - t91 * t93;
+    const iiwa14_real_t t105 = iiwa14_bounded(t104 - t91 * t93);
     if (!(t105 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -337,7 +337,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t145 = t144 + t137 * t93;
     const iiwa14_real_t t146 = IIWA14_C(1.0) / t105;
     const iiwa14_real_t t147 = t145 * t146;
-    const iiwa14_real_t t148 = t135 - t137 * t138 - t145 * t147;
+    const iiwa14_real_t t148 = iiwa14_bounded(t135 - t137 * t138 - t145 * t147);
     if (!(t148 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -375,7 +375,7 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t175 = t171 + t154 * t172 + t156 * t173 + t158 * t174;
     const iiwa14_real_t t176 = t162 * t92;
     const iiwa14_real_t t177 = t165 * t146;
-    const iiwa14_real_t t178 = t175 - t162 * t176 - t165 * t177 - t166 * t168;
+    const iiwa14_real_t t178 = iiwa14_bounded(t175 - t162 * t176 - t165 * t177 - t166 * t168);
     if (!(t178 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -660,24 +660,24 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t396 = IIWA14_C(16.0) * input[1] + t395 - t375 * t124 - t378 * t129;
     const iiwa14_real_t t397 = t396 - t382 * t134 + t386 * t138 + t390 * t147;
     const iiwa14_real_t t398 = IIWA14_C(1.0) / t178;
-    const iiwa14_real_t t399 = (t391 + t397 * t168) * t398;
+    const iiwa14_real_t t399 = iiwa14_bounded((t391 + t397 * t168) * t398);
     out[0] = t399;
-    const iiwa14_real_t t400 = t397 * t167 + t168 * t399;
+    const iiwa14_real_t t400 = iiwa14_bounded(t397 * t167 + t168 * t399);
     out[1] = t400;
-    const iiwa14_real_t t401 = t390 * t146 + t177 * t399 + t147 * t400;
+    const iiwa14_real_t t401 = iiwa14_bounded(t390 * t146 + t177 * t399 + t147 * t400);
     out[2] = t401;
-    const iiwa14_real_t t402 = t386 * t92 + t176 * t399 + t138 * t400 + t93 * t401;
+    const iiwa14_real_t t402 = iiwa14_bounded(t386 * t92 + t176 * t399 + t138 * t400 + t93 * t401);
     out[3] = t402;
     const iiwa14_real_t t403 = t382 * t71 + t174 * t399 + t134 * t400 + t103 * t401;
-    const iiwa14_real_t t404 = t72 * t402 - t403;
+    const iiwa14_real_t t404 = iiwa14_bounded(t72 * t402 - t403);
     out[4] = t404;
     const iiwa14_real_t t405 = t378 * t33 + t173 * t399 + t129 * t400 + t102 * t401;
-    const iiwa14_real_t t406 = t62 * t402 - t405 + t34 * t404;
+    const iiwa14_real_t t406 = iiwa14_bounded(t62 * t402 - t405 + t34 * t404);
     out[5] = t406;
     const iiwa14_real_t t407 = t375 * t5 + t172 * t399 + t124 * t400 + t101 * t401;
     const iiwa14_real_t t408 = t58 * t402 - t407 + t28 * t404 + t6 * t406;
     out[6] = t408;
-    if (!iiwa14_within_joints(out, IIWA14_C(1.0e30))) {
+    if (!iiwa14_all_bounded(out, 7)) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

@@ -23,7 +23,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_jacobian.c are of different generations: generate the arm again"
 #endif
 

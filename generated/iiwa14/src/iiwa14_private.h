@@ -13,7 +13,7 @@
 
 #include "iiwa14.h"
 
-#if IIWA14_GENERATION != 0x578E42E6UL
+#if IIWA14_GENERATION != 0x27C72E36UL
 #error "iiwa14.h and iiwa14_private.h are of different generations: generate the arm again"
 #endif
 
@@ -118,6 +118,24 @@ static inline int iiwa14_within_joints(const iiwa14_real_t x[], iiwa14_real_t li
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
         limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline iiwa14_real_t iiwa14_bounded(iiwa14_real_t x)
+{
+    return x >= IIWA14_C(-1.0e15) && x <= IIWA14_C(1.0e15) ? x : IIWA14_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int iiwa14_all_bounded(const iiwa14_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= IIWA14_C(-1.0e15) && x[i] <= IIWA14_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DIIWA14_PARAMETERS_CHECKED, for parameters that iiwa14_check_parameters has seen. */

@@ -82,7 +82,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -119,7 +119,8 @@ int puma560_forward_dynamics(
     PUMA560_SINCOS(q[4], &t13, &t15);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
+        + PUMA560_C(5880.742596000001) * parameters[IA6]);
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -131,7 +132,7 @@ int puma560_forward_dynamics(
     const puma560_real_t t7 = t2 * t6;
     const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const puma560_real_t t9 = t8 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t10 = t9 - t3 * t5;
+    const puma560_real_t t10 = puma560_bounded(t9 - t3 * t5);
     if (!(t10 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -156,7 +157,7 @@ int puma560_forward_dynamics(
     const puma560_real_t t26 = parameters[ZZ4R] + (t22 + t25);
     const puma560_real_t t27 = t26 + PUMA560_C(5781.53412496) * parameters[IA4];
     const puma560_real_t t28 = t18 * t4;
-    const puma560_real_t t29 = t27 - t18 * t28 + t19 * t21;
+    const puma560_real_t t29 = puma560_bounded(t27 - t18 * t28 + t19 * t21);
     if (!(t29 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -201,7 +202,7 @@ int puma560_forward_dynamics(
     const puma560_real_t t65 = PUMA560_C(0.8636) * t50;
     const puma560_real_t t66 = parameters[ZZ3R] + (t59 - t62 + (t64 + t65));
     const puma560_real_t t67 = t66 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t68 = t67 - t48 * t58 + t53 * t57 + t54 * t56;
+    const puma560_real_t t68 = puma560_bounded(t67 - t48 * t58 + t53 * t57 + t54 * t56);
     if (!(t68 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -230,7 +231,7 @@ int puma560_forward_dynamics(
     const puma560_real_t t88 = PUMA560_C(0.8636) * t80;
     const puma560_real_t t89 = parameters[ZZ2R] + (t66 + t88);
     const puma560_real_t t90 = t89 - t74 * t87 + t76 * t86 + t77 * t85;
-    const puma560_real_t t91 = t90 + t82 * t84;
+    const puma560_real_t t91 = puma560_bounded(t90 + t82 * t84);
     if (!(t91 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -293,7 +294,7 @@ int puma560_forward_dynamics(
     const puma560_real_t t141 = t140 - t137 * t84;
     const puma560_real_t t142 = PUMA560_C(1.0) / t91;
     const puma560_real_t t143 = t141 * t142;
-    const puma560_real_t t144 = t130 + t137 * t138 - t141 * t143;
+    const puma560_real_t t144 = puma560_bounded(t130 + t137 * t138 - t141 * t143);
     if (!(t144 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -491,20 +492,20 @@ int puma560_forward_dynamics(
     const puma560_real_t t297 = t296 - t285 * t85 - t292 * t84;
     const puma560_real_t t298 = t297 * t143 - (t282 + t285 * t129 + t292 * t138);
     const puma560_real_t t299 = PUMA560_C(-1.0) / t144;
-    const puma560_real_t t300 = t298 * t299;
+    const puma560_real_t t300 = puma560_bounded(t298 * t299);
     out[0] = t300;
-    const puma560_real_t t301 = t297 * t142 - t143 * t300;
+    const puma560_real_t t301 = puma560_bounded(t297 * t142 - t143 * t300);
     out[1] = t301;
-    const puma560_real_t t302 = t138 * t300 - t292 * t83 - t84 * t301;
+    const puma560_real_t t302 = puma560_bounded(t138 * t300 - t292 * t83 - t84 * t301);
     out[2] = t302;
-    const puma560_real_t t303 = t56 * t302 - (t285 * t55 - t129 * t300 + t85 * t301);
+    const puma560_real_t t303 = puma560_bounded(t56 * t302 - (t285 * t55 - t129 * t300 + t85 * t301));
     out[3] = t303;
     const puma560_real_t t304 = t281 * t20 - t123 * t300 + t86 * t301 - t57 * t302;
-    const puma560_real_t t305 = t21 * t303 - t304;
+    const puma560_real_t t305 = puma560_bounded(t21 * t303 - t304);
     out[4] = t305;
     const puma560_real_t t306 = t278 * t4 - t115 * t300 + t87 * t301 - t58 * t302;
     out[5] = t306 + t28 * t303 + t5 * t305;
-    if (!puma560_within_joints(out, PUMA560_C(1.0e30))) {
+    if (!puma560_all_bounded(out, 6)) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

@@ -86,7 +86,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -129,7 +129,8 @@ int puma560_forward_dynamics_derivatives(
     PUMA560_SINCOS(q[4], &t13, &t15);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
+        + PUMA560_C(5880.742596000001) * parameters[IA6]);
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -144,7 +145,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t7 = t2 * t6;
     const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const puma560_real_t t9 = t8 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t10 = t9 - t3 * t5;
+    const puma560_real_t t10 = puma560_bounded(t9 - t3 * t5);
     if (!(t10 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -175,7 +176,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t26 = parameters[ZZ4R] + (t22 - t25);
     const puma560_real_t t27 = t26 + PUMA560_C(5781.53412496) * parameters[IA4];
     const puma560_real_t t28 = t18 * t4;
-    const puma560_real_t t29 = t27 - t18 * t28 - t19 * t21;
+    const puma560_real_t t29 = puma560_bounded(t27 - t18 * t28 - t19 * t21);
     if (!(t29 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -226,7 +227,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t65 = PUMA560_C(0.8636) * t50;
     const puma560_real_t t66 = parameters[ZZ3R] + (t59 - t62 + (t64 + t65));
     const puma560_real_t t67 = t66 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t68 = t67 - t48 * t58 - t53 * t57 - t54 * t56;
+    const puma560_real_t t68 = puma560_bounded(t67 - t48 * t58 - t53 * t57 - t54 * t56);
     if (!(t68 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -263,7 +264,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t90 = PUMA560_C(-0.8636) * t82;
     const puma560_real_t t91 = parameters[ZZ2R] + (t66 + t90);
     const puma560_real_t t92 = t91 - t75 * t89 - t78 * t88 - t79 * t87;
-    const puma560_real_t t93 = t92 + t84 * t86;
+    const puma560_real_t t93 = puma560_bounded(t92 + t84 * t86);
     if (!(t93 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -334,7 +335,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t149 = t144 * t86 - (t148 + t134 * t87);
     const puma560_real_t t150 = PUMA560_C(1.0) / t93;
     const puma560_real_t t151 = t149 * t150;
-    const puma560_real_t t152 = t136 + t144 * t145 - t149 * t151;
+    const puma560_real_t t152 = puma560_bounded(t136 + t144 * t145 - t149 * t151);
     if (!(t152 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -549,19 +550,19 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t318 = t317 + t306 * t87 - t313 * t86;
     const puma560_real_t t319 = t303 - t306 * t135 + t313 * t145 + t318 * t151;
     const puma560_real_t t320 = PUMA560_C(1.0) / t152;
-    const puma560_real_t t321 = t319 * t320;
+    const puma560_real_t t321 = puma560_bounded(t319 * t320);
     ddq[0] = t321;
-    const puma560_real_t t322 = t318 * t150 + t151 * t321;
+    const puma560_real_t t322 = puma560_bounded(t318 * t150 + t151 * t321);
     ddq[1] = t322;
-    const puma560_real_t t323 = t145 * t321 - t313 * t85 - t86 * t322;
+    const puma560_real_t t323 = puma560_bounded(t145 * t321 - t313 * t85 - t86 * t322);
     ddq[2] = t323;
-    const puma560_real_t t324 = t306 * t55 - t135 * t321 + t87 * t322 + t56 * t323;
+    const puma560_real_t t324 = puma560_bounded(t306 * t55 - t135 * t321 + t87 * t322 + t56 * t323);
     ddq[3] = t324;
     const puma560_real_t t325 = t302 * t20 + t128 * t321 - t88 * t322 - t57 * t323;
-    const puma560_real_t t326 = t325 - t21 * t324;
+    const puma560_real_t t326 = puma560_bounded(t325 - t21 * t324);
     ddq[4] = t326;
     const puma560_real_t t327 = t299 * t4 + t119 * t321 - t89 * t322 - t58 * t323;
-    const puma560_real_t t328 = t327 - t28 * t324 + t5 * t326;
+    const puma560_real_t t328 = puma560_bounded(t327 - t28 * t324 + t5 * t326);
     ddq[5] = t328;
     const puma560_real_t t329 = t108 * t73 + t105 * t70;
     const puma560_real_t t330 = dq[0] * t329;
@@ -690,9 +691,9 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t452 = t105 * (t105 * (t445 - t443) + t108 * (t448 + t451));
     const puma560_real_t t453 = PUMA560_C(-272.2221739130435) * parameters[FV1]
         + PUMA560_C(0.13888355537457484) * (t443 + t452);
-    const puma560_real_t t454 = PUMA560_C(-14.400553) * t320;
+    const puma560_real_t t454 = puma560_bounded(PUMA560_C(-14.400553) * t320);
     const puma560_real_t t455 = t151 * t320;
-    const puma560_real_t t456 = PUMA560_C(24.79745) * t455;
+    const puma560_real_t t456 = puma560_bounded(PUMA560_C(24.79745) * t455);
     const puma560_real_t t457 = t32 * t386;
     const puma560_real_t t458 = parameters[XY3R] * t330 + t333 * t423 + (t385 - t457
         + (PUMA560_C(0.0203) * t433 - t63 * t402));
@@ -705,7 +706,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t464 = PUMA560_C(2.0) * t463;
     const puma560_real_t t465 = PUMA560_C(0.04032672714331514) * (t108 * t462 + t105 * t464);
     const puma560_real_t t466 = t320 * (t86 * t151 - t145);
-    const puma560_real_t t467 = PUMA560_C(12.352449) * t466;
+    const puma560_real_t t467 = puma560_bounded(PUMA560_C(12.352449) * t466);
     const puma560_real_t t468 = PUMA560_C(2.0) * t458;
     const puma560_real_t t469 = PUMA560_C(2.0) * t460;
     const puma560_real_t t470 = PUMA560_C(0.8636) * t155;
@@ -714,7 +715,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t473 = PUMA560_C(0.08095560645504385) * (t108 * t471 - t105 * t472);
     const puma560_real_t t474 = t87 - t56 * t86;
     const puma560_real_t t475 = t320 * (t56 * t145 - t135 + t151 * t474);
-    const puma560_real_t t476 = PUMA560_C(5.322548) * t475;
+    const puma560_real_t t476 = puma560_bounded(PUMA560_C(5.322548) * t475);
     const puma560_real_t t477 = PUMA560_C(2.0) * t420;
     const puma560_real_t t478 = PUMA560_C(2.0) * t421;
     const puma560_real_t t479 = PUMA560_C(-0.0406) * t159;
@@ -733,7 +734,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t492 = t86 * t491 - (t88 + t21 * t87);
     const puma560_real_t t493 = t128 + t21 * t135 - t145 * t491 + t151 * t492;
     const puma560_real_t t494 = t320 * t493;
-    const puma560_real_t t495 = PUMA560_C(5.034610000000001) * t494;
+    const puma560_real_t t495 = puma560_bounded(PUMA560_C(5.034610000000001) * t494);
     const puma560_real_t t496 = PUMA560_C(2.0) * t382;
     const puma560_real_t t497 = PUMA560_C(2.0) * t383;
     const puma560_real_t t498 = t13 * t497 - t15 * t496;
@@ -763,57 +764,57 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t522 = t70 * t518 + t73 * t520 + (t111 * t487 - t115 * t470);
     const puma560_real_t t523 = PUMA560_C(0.1862884266452062) * (t108 * t521 - t105 * t522);
     ddq_by_dq[0] = t490 + t505 * t495 + t523 * t511;
-    const puma560_real_t t524 = PUMA560_C(-14.400553) * t455;
-    const puma560_real_t t525 = PUMA560_C(24.79745) * (t150 + t151 * t455);
+    const puma560_real_t t524 = puma560_bounded(PUMA560_C(-14.400553) * t455);
+    const puma560_real_t t525 = puma560_bounded(PUMA560_C(24.79745) * (t150 + t151 * t455));
     const puma560_real_t t526 = t86 * t150 + t151 * t466;
-    const puma560_real_t t527 = PUMA560_C(12.352449) * t526;
+    const puma560_real_t t527 = puma560_bounded(PUMA560_C(12.352449) * t526);
     const puma560_real_t t528 = t150 * t474 + t151 * t475;
-    const puma560_real_t t529 = PUMA560_C(5.322548) * t528;
+    const puma560_real_t t529 = puma560_bounded(PUMA560_C(5.322548) * t528);
     const puma560_real_t t530 = t465 * t525 - t453 * t524 - t473 * t527 + t489 * t529;
     const puma560_real_t t531 = t150 * t492 + t151 * t494;
-    const puma560_real_t t532 = PUMA560_C(5.034610000000001) * t531;
+    const puma560_real_t t532 = puma560_bounded(PUMA560_C(5.034610000000001) * t531);
     const puma560_real_t t533 = t150 * t508 + t151 * t510;
     const puma560_real_t t534 = PUMA560_C(5.368020000000001) * t533;
     ddq_by_dq[6] = t530 + t505 * t532 + t523 * t534;
-    const puma560_real_t t535 = PUMA560_C(14.400553) * t466;
-    const puma560_real_t t536 = PUMA560_C(-24.79745) * t526;
-    const puma560_real_t t537 = PUMA560_C(12.352449) * (t85 + t145 * t466 - t86 * t526);
+    const puma560_real_t t535 = puma560_bounded(PUMA560_C(14.400553) * t466);
+    const puma560_real_t t536 = puma560_bounded(PUMA560_C(-24.79745) * t526);
+    const puma560_real_t t537 = puma560_bounded(PUMA560_C(12.352449) * (t85 + t145 * t466 - t86 * t526));
     const puma560_real_t t538 = t145 * t475 - t56 * t85 - t86 * t528;
-    const puma560_real_t t539 = PUMA560_C(5.322548) * t538;
+    const puma560_real_t t539 = puma560_bounded(PUMA560_C(5.322548) * t538);
     const puma560_real_t t540 = t465 * t536 - t453 * t535 - t473 * t537 + t489 * t539;
     const puma560_real_t t541 = t85 * t491 + t145 * t494 - t86 * t531;
-    const puma560_real_t t542 = PUMA560_C(5.034610000000001) * t541;
+    const puma560_real_t t542 = puma560_bounded(PUMA560_C(5.034610000000001) * t541);
     const puma560_real_t t543 = t85 * t507 + t145 * t510 - t86 * t533;
     const puma560_real_t t544 = PUMA560_C(5.368020000000001) * t543;
     ddq_by_dq[12] = t540 + t505 * t542 + t523 * t544;
-    const puma560_real_t t545 = PUMA560_C(-14.400553) * t475;
-    const puma560_real_t t546 = PUMA560_C(24.79745) * t528;
-    const puma560_real_t t547 = PUMA560_C(-12.352449) * t538;
+    const puma560_real_t t545 = puma560_bounded(PUMA560_C(-14.400553) * t475);
+    const puma560_real_t t546 = puma560_bounded(PUMA560_C(24.79745) * t528);
+    const puma560_real_t t547 = puma560_bounded(PUMA560_C(-12.352449) * t538);
     const puma560_real_t t548 = t55 - t135 * t475 + t87 * t528 + t56 * t538;
-    const puma560_real_t t549 = PUMA560_C(5.322548) * t548;
+    const puma560_real_t t549 = puma560_bounded(PUMA560_C(5.322548) * t548);
     const puma560_real_t t550 = t465 * t546 - t453 * t545 - t473 * t547 + t489 * t549;
     const puma560_real_t t551 = t87 * t531 - (t21 * t55 + t135 * t494) + t56 * t541;
-    const puma560_real_t t552 = PUMA560_C(5.034610000000001) * t551;
+    const puma560_real_t t552 = puma560_bounded(PUMA560_C(5.034610000000001) * t551);
     const puma560_real_t t553 = t55 * t506 + t135 * t510 - t87 * t533 - t56 * t543;
     const puma560_real_t t554 = PUMA560_C(-5.368020000000001) * t553;
     ddq_by_dq[18] = t550 + t505 * t552 + t523 * t554;
-    const puma560_real_t t555 = PUMA560_C(-14.400553) * t494;
-    const puma560_real_t t556 = PUMA560_C(24.79745) * t531;
-    const puma560_real_t t557 = PUMA560_C(-12.352449) * t541;
-    const puma560_real_t t558 = PUMA560_C(5.322548) * t551;
+    const puma560_real_t t555 = puma560_bounded(PUMA560_C(-14.400553) * t494);
+    const puma560_real_t t556 = puma560_bounded(PUMA560_C(24.79745) * t531);
+    const puma560_real_t t557 = puma560_bounded(PUMA560_C(-12.352449) * t541);
+    const puma560_real_t t558 = puma560_bounded(PUMA560_C(5.322548) * t551);
     const puma560_real_t t559 = t465 * t556 - t453 * t555 - t473 * t557 + t489 * t558;
     const puma560_real_t t560 = t20 + t128 * t494 - t88 * t531 - t57 * t541;
-    const puma560_real_t t561 = PUMA560_C(5.034610000000001) * (t560 - t21 * t551);
+    const puma560_real_t t561 = puma560_bounded(PUMA560_C(5.034610000000001) * (t560 - t21 * t551));
     const puma560_real_t t562 = t5 * t20 + t128 * t510 - t88 * t533 - t57 * t543;
     const puma560_real_t t563 = t562 + t21 * t553;
     const puma560_real_t t564 = PUMA560_C(5.368020000000001) * t563;
     ddq_by_dq[24] = t559 + t505 * t561 + t523 * t564;
-    const puma560_real_t t565 = PUMA560_C(-14.400553) * t510;
-    const puma560_real_t t566 = PUMA560_C(24.79745) * t533;
-    const puma560_real_t t567 = PUMA560_C(-12.352449) * t543;
-    const puma560_real_t t568 = PUMA560_C(-5.322548) * t553;
+    const puma560_real_t t565 = puma560_bounded(PUMA560_C(-14.400553) * t510);
+    const puma560_real_t t566 = puma560_bounded(PUMA560_C(24.79745) * t533);
+    const puma560_real_t t567 = puma560_bounded(PUMA560_C(-12.352449) * t543);
+    const puma560_real_t t568 = puma560_bounded(PUMA560_C(-5.322548) * t553);
     const puma560_real_t t569 = t465 * t566 - t453 * t565 - t473 * t567 + t489 * t568;
-    const puma560_real_t t570 = PUMA560_C(5.034610000000001) * t563;
+    const puma560_real_t t570 = puma560_bounded(PUMA560_C(5.034610000000001) * t563);
     const puma560_real_t t571 = t4 + t119 * t510 - t89 * t533 - t58 * t543;
     const puma560_real_t t572 = PUMA560_C(5.368020000000001) * (t571 + t28 * t553 + t5 * t563);
     ddq_by_dq[30] = t569 + t505 * t570 + t523 * t572;
@@ -1414,10 +1415,10 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
-    if (!puma560_within_joints(ddq, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_q, 36, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_dq, 36, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_input, 36, PUMA560_C(1.0e30))) {
+    if (!puma560_all_bounded(ddq, 6)
+        || !puma560_all_bounded(ddq_by_q, 36)
+        || !puma560_all_bounded(ddq_by_dq, 36)
+        || !puma560_all_bounded(ddq_by_input, 36)) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);

@@ -111,7 +111,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -155,7 +155,8 @@ int puma560_forward_dynamics_derivatives_standard(
     PUMA560_SINCOS(q[4], &t14, &t16);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
+        + PUMA560_C(5880.742596000001) * parameters[IA6]);
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -171,7 +172,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] - t8);
     const puma560_real_t t10 = t9 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t11 = t10 - t3 * t5;
+    const puma560_real_t t11 = puma560_bounded(t10 - t3 * t5);
     if (!(t11 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -203,7 +204,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t28 = parameters[ZZ4] + (t23 - t27);
     const puma560_real_t t29 = t28 + PUMA560_C(5781.53412496) * parameters[IA4];
     const puma560_real_t t30 = t19 * t4;
-    const puma560_real_t t31 = t29 - t19 * t30 - t20 * t22;
+    const puma560_real_t t31 = puma560_bounded(t29 - t19 * t30 - t20 * t22);
     if (!(t31 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -261,7 +262,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t74 = PUMA560_C(0.4318) * (t73 + PUMA560_C(2.0) * t72);
     const puma560_real_t t75 = parameters[ZZ3] + (t62 - t66 + (t71 + t74));
     const puma560_real_t t76 = t75 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t77 = t76 - t51 * t61 - t56 * t60 - t57 * t59;
+    const puma560_real_t t77 = puma560_bounded(t76 - t51 * t61 - t56 * t60 - t57 * t59);
     if (!(t77 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -303,7 +304,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t104 = parameters[ZZ2] + (t75 + t103);
     const puma560_real_t t105 = t104 + PUMA560_C(11624.074225) * parameters[IA2];
     const puma560_real_t t106 = t105 - t84 * t100 - t87 * t99 - t88 * t98;
-    const puma560_real_t t107 = t106 + t95 * t97;
+    const puma560_real_t t107 = puma560_bounded(t106 + t95 * t97);
     if (!(t107 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -378,7 +379,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t165 = t159 * t97 - (t164 + t150 * t98);
     const puma560_real_t t166 = PUMA560_C(1.0) / t107;
     const puma560_real_t t167 = t165 * t166;
-    const puma560_real_t t168 = t152 + t159 * t160 - t165 * t167;
+    const puma560_real_t t168 = puma560_bounded(t152 + t159 * t160 - t165 * t167);
     if (!(t168 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -633,19 +634,19 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t360 = t359 + t348 * t98 - t355 * t97;
     const puma560_real_t t361 = t345 - t348 * t151 + t355 * t160 + t360 * t167;
     const puma560_real_t t362 = PUMA560_C(1.0) / t168;
-    const puma560_real_t t363 = t361 * t362;
+    const puma560_real_t t363 = puma560_bounded(t361 * t362);
     ddq[0] = t363;
-    const puma560_real_t t364 = t360 * t166 + t167 * t363;
+    const puma560_real_t t364 = puma560_bounded(t360 * t166 + t167 * t363);
     ddq[1] = t364;
-    const puma560_real_t t365 = t160 * t363 - t355 * t96 - t97 * t364;
+    const puma560_real_t t365 = puma560_bounded(t160 * t363 - t355 * t96 - t97 * t364);
     ddq[2] = t365;
-    const puma560_real_t t366 = t348 * t58 - t151 * t363 + t98 * t364 - t59 * t365;
+    const puma560_real_t t366 = puma560_bounded(t348 * t58 - t151 * t363 + t98 * t364 - t59 * t365);
     ddq[3] = t366;
     const puma560_real_t t367 = t344 * t21 + t143 * t363 - t99 * t364 - t60 * t365;
-    const puma560_real_t t368 = t367 + t22 * t366;
+    const puma560_real_t t368 = puma560_bounded(t367 + t22 * t366);
     ddq[4] = t368;
     const puma560_real_t t369 = t341 * t4 + t134 * t363 - t100 * t364 - t61 * t365;
-    const puma560_real_t t370 = t369 + t30 * t366 + t5 * t368;
+    const puma560_real_t t370 = puma560_bounded(t369 + t30 * t366 + t5 * t368);
     ddq[5] = t370;
     const puma560_real_t t371 = t123 * t82 + t120 * t79;
     const puma560_real_t t372 = dq[0] * t371;
@@ -780,9 +781,9 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t500 = t120 * (t120 * (t492 - t490) + t123 * (t496 + t499));
     const puma560_real_t t501 = PUMA560_C(-272.2221739130435) * parameters[FV1]
         + PUMA560_C(0.13888355537457484) * (t490 + t500);
-    const puma560_real_t t502 = PUMA560_C(-14.400553) * t362;
+    const puma560_real_t t502 = puma560_bounded(PUMA560_C(-14.400553) * t362);
     const puma560_real_t t503 = t167 * t362;
-    const puma560_real_t t504 = PUMA560_C(24.79745) * t503;
+    const puma560_real_t t504 = puma560_bounded(PUMA560_C(24.79745) * t503);
     const puma560_real_t t505 = t34 * t431;
     const puma560_real_t t506 = t372 * parameters[XY3] + t375 * t469 + (t430 - t505
         - (PUMA560_C(-0.0203) * t479 + t89 * t447));
@@ -795,7 +796,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t512 = PUMA560_C(2.0) * t511;
     const puma560_real_t t513 = PUMA560_C(0.04032672714331514) * (t123 * t510 + t120 * t512);
     const puma560_real_t t514 = t362 * (t97 * t167 - t160);
-    const puma560_real_t t515 = PUMA560_C(12.352449) * t514;
+    const puma560_real_t t515 = puma560_bounded(PUMA560_C(12.352449) * t514);
     const puma560_real_t t516 = PUMA560_C(2.0) * t506;
     const puma560_real_t t517 = PUMA560_C(2.0) * t508;
     const puma560_real_t t518 = PUMA560_C(0.8636) * t171;
@@ -804,7 +805,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t521 = PUMA560_C(0.08095560645504385) * (t123 * t519 - t120 * t520);
     const puma560_real_t t522 = t98 + t59 * t97;
     const puma560_real_t t523 = t362 * (t167 * t522 - (t151 + t59 * t160));
-    const puma560_real_t t524 = PUMA560_C(5.322548) * t523;
+    const puma560_real_t t524 = puma560_bounded(PUMA560_C(5.322548) * t523);
     const puma560_real_t t525 = PUMA560_C(2.0) * t466;
     const puma560_real_t t526 = PUMA560_C(2.0) * t467;
     const puma560_real_t t527 = PUMA560_C(-0.0406) * t175;
@@ -823,7 +824,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t540 = t22 * t98 - t99 + t97 * t539;
     const puma560_real_t t541 = t143 - t22 * t151 - t160 * t539 + t167 * t540;
     const puma560_real_t t542 = t362 * t541;
-    const puma560_real_t t543 = PUMA560_C(5.034610000000001) * t542;
+    const puma560_real_t t543 = puma560_bounded(PUMA560_C(5.034610000000001) * t542);
     const puma560_real_t t544 = PUMA560_C(2.0) * t427;
     const puma560_real_t t545 = PUMA560_C(2.0) * t428;
     const puma560_real_t t546 = t16 * t544 - t14 * t545;
@@ -853,57 +854,57 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t570 = t79 * t566 + t82 * t568 + (t126 * t535 - t130 * t518);
     const puma560_real_t t571 = PUMA560_C(0.1862884266452062) * (t123 * t569 - t120 * t570);
     ddq_by_dq[0] = t538 + t553 * t543 + t571 * t559;
-    const puma560_real_t t572 = PUMA560_C(-14.400553) * t503;
-    const puma560_real_t t573 = PUMA560_C(24.79745) * (t166 + t167 * t503);
+    const puma560_real_t t572 = puma560_bounded(PUMA560_C(-14.400553) * t503);
+    const puma560_real_t t573 = puma560_bounded(PUMA560_C(24.79745) * (t166 + t167 * t503));
     const puma560_real_t t574 = t97 * t166 + t167 * t514;
-    const puma560_real_t t575 = PUMA560_C(12.352449) * t574;
+    const puma560_real_t t575 = puma560_bounded(PUMA560_C(12.352449) * t574);
     const puma560_real_t t576 = t166 * t522 + t167 * t523;
-    const puma560_real_t t577 = PUMA560_C(5.322548) * t576;
+    const puma560_real_t t577 = puma560_bounded(PUMA560_C(5.322548) * t576);
     const puma560_real_t t578 = t513 * t573 - t501 * t572 - t521 * t575 + t537 * t577;
     const puma560_real_t t579 = t166 * t540 + t167 * t542;
-    const puma560_real_t t580 = PUMA560_C(5.034610000000001) * t579;
+    const puma560_real_t t580 = puma560_bounded(PUMA560_C(5.034610000000001) * t579);
     const puma560_real_t t581 = t166 * t556 + t167 * t558;
     const puma560_real_t t582 = PUMA560_C(5.368020000000001) * t581;
     ddq_by_dq[6] = t578 + t553 * t580 + t571 * t582;
-    const puma560_real_t t583 = PUMA560_C(14.400553) * t514;
-    const puma560_real_t t584 = PUMA560_C(-24.79745) * t574;
-    const puma560_real_t t585 = PUMA560_C(12.352449) * (t96 + t160 * t514 - t97 * t574);
+    const puma560_real_t t583 = puma560_bounded(PUMA560_C(14.400553) * t514);
+    const puma560_real_t t584 = puma560_bounded(PUMA560_C(-24.79745) * t574);
+    const puma560_real_t t585 = puma560_bounded(PUMA560_C(12.352449) * (t96 + t160 * t514 - t97 * t574));
     const puma560_real_t t586 = t59 * t96 + t160 * t523 - t97 * t576;
-    const puma560_real_t t587 = PUMA560_C(5.322548) * t586;
+    const puma560_real_t t587 = puma560_bounded(PUMA560_C(5.322548) * t586);
     const puma560_real_t t588 = t513 * t584 - t501 * t583 - t521 * t585 + t537 * t587;
     const puma560_real_t t589 = t96 * t539 + t160 * t542 - t97 * t579;
-    const puma560_real_t t590 = PUMA560_C(5.034610000000001) * t589;
+    const puma560_real_t t590 = puma560_bounded(PUMA560_C(5.034610000000001) * t589);
     const puma560_real_t t591 = t96 * t555 + t160 * t558 - t97 * t581;
     const puma560_real_t t592 = PUMA560_C(5.368020000000001) * t591;
     ddq_by_dq[12] = t588 + t553 * t590 + t571 * t592;
-    const puma560_real_t t593 = PUMA560_C(-14.400553) * t523;
-    const puma560_real_t t594 = PUMA560_C(24.79745) * t576;
-    const puma560_real_t t595 = PUMA560_C(-12.352449) * t586;
+    const puma560_real_t t593 = puma560_bounded(PUMA560_C(-14.400553) * t523);
+    const puma560_real_t t594 = puma560_bounded(PUMA560_C(24.79745) * t576);
+    const puma560_real_t t595 = puma560_bounded(PUMA560_C(-12.352449) * t586);
     const puma560_real_t t596 = t58 - t151 * t523 + t98 * t576 - t59 * t586;
-    const puma560_real_t t597 = PUMA560_C(5.322548) * t596;
+    const puma560_real_t t597 = puma560_bounded(PUMA560_C(5.322548) * t596);
     const puma560_real_t t598 = t513 * t594 - t501 * t593 - t521 * t595 + t537 * t597;
     const puma560_real_t t599 = t22 * t58 - t151 * t542 + t98 * t579 - t59 * t589;
-    const puma560_real_t t600 = PUMA560_C(5.034610000000001) * t599;
+    const puma560_real_t t600 = puma560_bounded(PUMA560_C(5.034610000000001) * t599);
     const puma560_real_t t601 = t151 * t558 - t58 * t554 - t98 * t581 + t59 * t591;
     const puma560_real_t t602 = PUMA560_C(-5.368020000000001) * t601;
     ddq_by_dq[18] = t598 + t553 * t600 + t571 * t602;
-    const puma560_real_t t603 = PUMA560_C(-14.400553) * t542;
-    const puma560_real_t t604 = PUMA560_C(24.79745) * t579;
-    const puma560_real_t t605 = PUMA560_C(-12.352449) * t589;
-    const puma560_real_t t606 = PUMA560_C(5.322548) * t599;
+    const puma560_real_t t603 = puma560_bounded(PUMA560_C(-14.400553) * t542);
+    const puma560_real_t t604 = puma560_bounded(PUMA560_C(24.79745) * t579);
+    const puma560_real_t t605 = puma560_bounded(PUMA560_C(-12.352449) * t589);
+    const puma560_real_t t606 = puma560_bounded(PUMA560_C(5.322548) * t599);
     const puma560_real_t t607 = t513 * t604 - t501 * t603 - t521 * t605 + t537 * t606;
     const puma560_real_t t608 = t21 + t143 * t542 - t99 * t579 - t60 * t589;
-    const puma560_real_t t609 = PUMA560_C(5.034610000000001) * (t608 + t22 * t599);
+    const puma560_real_t t609 = puma560_bounded(PUMA560_C(5.034610000000001) * (t608 + t22 * t599));
     const puma560_real_t t610 = t5 * t21 + t143 * t558 - t99 * t581 - t60 * t591;
     const puma560_real_t t611 = t610 - t22 * t601;
     const puma560_real_t t612 = PUMA560_C(5.368020000000001) * t611;
     ddq_by_dq[24] = t607 + t553 * t609 + t571 * t612;
-    const puma560_real_t t613 = PUMA560_C(-14.400553) * t558;
-    const puma560_real_t t614 = PUMA560_C(24.79745) * t581;
-    const puma560_real_t t615 = PUMA560_C(-12.352449) * t591;
-    const puma560_real_t t616 = PUMA560_C(-5.322548) * t601;
+    const puma560_real_t t613 = puma560_bounded(PUMA560_C(-14.400553) * t558);
+    const puma560_real_t t614 = puma560_bounded(PUMA560_C(24.79745) * t581);
+    const puma560_real_t t615 = puma560_bounded(PUMA560_C(-12.352449) * t591);
+    const puma560_real_t t616 = puma560_bounded(PUMA560_C(-5.322548) * t601);
     const puma560_real_t t617 = t513 * t614 - t501 * t613 - t521 * t615 + t537 * t616;
-    const puma560_real_t t618 = PUMA560_C(5.034610000000001) * t611;
+    const puma560_real_t t618 = puma560_bounded(PUMA560_C(5.034610000000001) * t611);
     const puma560_real_t t619 = t4 + t134 * t558 - t100 * t581 - t61 * t591;
     const puma560_real_t t620 = PUMA560_C(5.368020000000001) * (t619 - t30 * t601 + t5 * t611);
     ddq_by_dq[30] = t617 + t553 * t618 + t571 * t620;
@@ -1542,10 +1543,10 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
-    if (!puma560_within_joints(ddq, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_q, 36, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_dq, 36, PUMA560_C(1.0e30))
-        || !puma560_within(ddq_by_input, 36, PUMA560_C(1.0e30))) {
+    if (!puma560_all_bounded(ddq, 6)
+        || !puma560_all_bounded(ddq_by_q, 36)
+        || !puma560_all_bounded(ddq_by_dq, 36)
+        || !puma560_all_bounded(ddq_by_input, 36)) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);

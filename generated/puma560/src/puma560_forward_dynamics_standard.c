@@ -107,7 +107,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,7 +145,8 @@ int puma560_forward_dynamics_standard(
     PUMA560_SINCOS(q[4], &t14, &t16);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
+        + PUMA560_C(5880.742596000001) * parameters[IA6]);
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -158,7 +159,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const puma560_real_t t10 = t9 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t11 = t10 - t3 * t5;
+    const puma560_real_t t11 = puma560_bounded(t10 - t3 * t5);
     if (!(t11 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -184,7 +185,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t28 = parameters[ZZ4] + (t23 + t27);
     const puma560_real_t t29 = t28 + PUMA560_C(5781.53412496) * parameters[IA4];
     const puma560_real_t t30 = t19 * t4;
-    const puma560_real_t t31 = t29 - t19 * t30 + t20 * t22;
+    const puma560_real_t t31 = puma560_bounded(t29 - t19 * t30 + t20 * t22);
     if (!(t31 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -234,7 +235,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t72 = PUMA560_C(0.4318) * (t71 + PUMA560_C(2.0) * t70);
     const puma560_real_t t73 = parameters[ZZ3] + (t61 - t65 + (t69 + t72));
     const puma560_real_t t74 = t73 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t75 = t74 - t50 * t60 + t55 * t59 + t56 * t58;
+    const puma560_real_t t75 = puma560_bounded(t74 - t50 * t60 + t55 * t59 + t56 * t58);
     if (!(t75 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -266,7 +267,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t98 = PUMA560_C(0.4318) * (t97 + PUMA560_C(2.0) * t88);
     const puma560_real_t t99 = parameters[ZZ2] + (t73 + t98) + PUMA560_C(11624.074225) * parameters[IA2];
     const puma560_real_t t100 = t99 - t81 * t95 + t83 * t94 + t84 * t93;
-    const puma560_real_t t101 = t100 + t90 * t92;
+    const puma560_real_t t101 = puma560_bounded(t100 + t90 * t92);
     if (!(t101 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -331,7 +332,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t151 = t150 - t132 * t94 - t139 * t93 - t147 * t92;
     const puma560_real_t t152 = PUMA560_C(1.0) / t101;
     const puma560_real_t t153 = t151 * t152;
-    const puma560_real_t t154 = t141 + t147 * t148 - t151 * t153;
+    const puma560_real_t t154 = puma560_bounded(t141 + t147 * t148 - t151 * t153);
     if (!(t154 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -563,20 +564,20 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t327 = t326 - t315 * t93 - t322 * t92;
     const puma560_real_t t328 = t327 * t153 - (t312 + t315 * t140 + t322 * t148);
     const puma560_real_t t329 = PUMA560_C(-1.0) / t154;
-    const puma560_real_t t330 = t328 * t329;
+    const puma560_real_t t330 = puma560_bounded(t328 * t329);
     out[0] = t330;
-    const puma560_real_t t331 = t327 * t152 - t153 * t330;
+    const puma560_real_t t331 = puma560_bounded(t327 * t152 - t153 * t330);
     out[1] = t331;
-    const puma560_real_t t332 = t148 * t330 - t322 * t91 - t92 * t331;
+    const puma560_real_t t332 = puma560_bounded(t148 * t330 - t322 * t91 - t92 * t331);
     out[2] = t332;
-    const puma560_real_t t333 = t58 * t332 - (t315 * t57 - t140 * t330 + t93 * t331);
+    const puma560_real_t t333 = puma560_bounded(t58 * t332 - (t315 * t57 - t140 * t330 + t93 * t331));
     out[3] = t333;
     const puma560_real_t t334 = t311 * t21 - t133 * t330 + t94 * t331 - t59 * t332;
-    const puma560_real_t t335 = t22 * t333 - t334;
+    const puma560_real_t t335 = puma560_bounded(t22 * t333 - t334);
     out[4] = t335;
     const puma560_real_t t336 = t308 * t4 - t125 * t330 + t95 * t331 - t60 * t332;
     out[5] = t336 + t30 * t333 + t5 * t335;
-    if (!puma560_within_joints(out, PUMA560_C(1.0e30))) {
+    if (!puma560_all_bounded(out, 6)) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int puma560_within(const puma560_real_t x[], int n, puma560_real_t
 static inline int puma560_within_joints(const puma560_real_t x[], puma560_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline puma560_real_t puma560_bounded(puma560_real_t x)
+{
+    return x >= PUMA560_C(-1.0e15) && x <= PUMA560_C(1.0e15) ? x : PUMA560_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int puma560_all_bounded(const puma560_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= PUMA560_C(-1.0e15) && x[i] <= PUMA560_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DPUMA560_PARAMETERS_CHECKED, for parameters that puma560_check_parameters has seen. */

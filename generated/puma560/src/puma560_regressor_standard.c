@@ -35,7 +35,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xFE2532ABUL
+#if PUMA560_GENERATION != 0xAC9DC6F4UL
 #error "puma560.h and puma560_regressor_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -82,7 +82,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x8E90BDAFUL
+#define RX90_GENERATION 0xD1F0D18FUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"

@@ -80,7 +80,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_energy.c are of different generations: generate the arm again"
 #endif
 

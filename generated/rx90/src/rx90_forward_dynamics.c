@@ -81,7 +81,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -118,7 +118,7 @@ int rx90_forward_dynamics(
     RX90_SINCOS(q[4], &t13, &t15);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -130,7 +130,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const rx90_real_t t9 = t8 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t10 = t9 + t3 * t5;
+    const rx90_real_t t10 = rx90_bounded(t9 + t3 * t5);
     if (!(t10 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -155,7 +155,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
     const rx90_real_t t27 = t26 + RX90_C(2.5e3) * parameters[IA4];
     const rx90_real_t t28 = t18 * t4;
-    const rx90_real_t t29 = t27 + t18 * t28 - t19 * t21;
+    const rx90_real_t t29 = rx90_bounded(t27 + t18 * t28 - t19 * t21);
     if (!(t29 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -197,7 +197,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t62 = parameters[ZZ3R] + (t57 - t60 + t61);
     const rx90_real_t t63 = t62 + RX90_C(1.0e4) * parameters[IA3];
     const rx90_real_t t64 = t52 * t20;
-    const rx90_real_t t65 = t63 + t47 * t56 - t52 * t64 + t53 * t55;
+    const rx90_real_t t65 = rx90_bounded(t63 + t47 * t56 - t52 * t64 + t53 * t55);
     if (!(t65 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -224,7 +224,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t83 = RX90_C(-0.9) * t75;
     const rx90_real_t t84 = parameters[ZZ2R] + (t62 + t83);
     const rx90_real_t t85 = t84 + t69 * t82 - t70 * t81 + t71 * t80;
-    const rx90_real_t t86 = t85 - t77 * t79;
+    const rx90_real_t t86 = rx90_bounded(t85 - t77 * t79);
     if (!(t86 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -269,7 +269,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t122 = t121 + t118 * t79;
     const rx90_real_t t123 = RX90_C(1.0) / t86;
     const rx90_real_t t124 = t122 * t123;
-    const rx90_real_t t125 = t112 - t118 * t119 - t122 * t124;
+    const rx90_real_t t125 = rx90_bounded(t112 - t118 * t119 - t122 * t124);
     if (!(t125 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -462,20 +462,20 @@ int rx90_forward_dynamics(
     const rx90_real_t t275 = t274 + t260 * t80 + t267 * t79;
     const rx90_real_t t276 = t257 - t260 * t111 + t267 * t119 + t275 * t124;
     const rx90_real_t t277 = RX90_C(1.0) / t125;
-    const rx90_real_t t278 = t276 * t277;
+    const rx90_real_t t278 = rx90_bounded(t276 * t277);
     out[0] = t278;
-    const rx90_real_t t279 = t275 * t123 + t124 * t278;
+    const rx90_real_t t279 = rx90_bounded(t275 * t123 + t124 * t278);
     out[1] = t279;
-    const rx90_real_t t280 = t267 * t78 + t119 * t278 + t79 * t279;
+    const rx90_real_t t280 = rx90_bounded(t267 * t78 + t119 * t278 + t79 * t279);
     out[2] = t280;
-    const rx90_real_t t281 = t80 * t279 - (t260 * t54 + t111 * t278) + t55 * t280;
+    const rx90_real_t t281 = rx90_bounded(t80 * t279 - (t260 * t54 + t111 * t278) + t55 * t280);
     out[3] = t281;
     const rx90_real_t t282 = t256 * t20 + t108 * t278 + t81 * t279 - t64 * t280;
-    const rx90_real_t t283 = t282 - t21 * t281;
+    const rx90_real_t t283 = rx90_bounded(t282 - t21 * t281);
     out[4] = t283;
     const rx90_real_t t284 = t253 * t4 + t103 * t278 + t82 * t279 + t56 * t280;
     out[5] = t28 * t281 - t284 - t5 * t283;
-    if (!rx90_within_joints(out, RX90_C(1.0e30))) {
+    if (!rx90_all_bounded(out, 6)) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

@@ -85,7 +85,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -128,7 +128,7 @@ int rx90_forward_dynamics_derivatives(
     RX90_SINCOS(q[4], &t13, &t15);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -143,7 +143,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const rx90_real_t t9 = t8 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t10 = t9 - t3 * t5;
+    const rx90_real_t t10 = rx90_bounded(t9 - t3 * t5);
     if (!(t10 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -174,7 +174,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
     const rx90_real_t t27 = t26 + RX90_C(2.5e3) * parameters[IA4];
     const rx90_real_t t28 = t18 * t4;
-    const rx90_real_t t29 = t27 - t18 * t28 - t19 * t21;
+    const rx90_real_t t29 = rx90_bounded(t27 - t18 * t28 - t19 * t21);
     if (!(t29 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -222,7 +222,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t62 = parameters[ZZ3R] + (t60 - t57 + t61);
     const rx90_real_t t63 = t62 + RX90_C(1.0e4) * parameters[IA3];
     const rx90_real_t t64 = t52 * t20;
-    const rx90_real_t t65 = t63 - t47 * t56 - t52 * t64 - t53 * t55;
+    const rx90_real_t t65 = rx90_bounded(t63 - t47 * t56 - t52 * t64 - t53 * t55);
     if (!(t65 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -261,7 +261,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t89 = RX90_C(-0.9) * t81;
     const rx90_real_t t90 = parameters[ZZ2R] + (t62 + t89);
     const rx90_real_t t91 = t90 - t73 * t88 - t76 * t87 - t77 * t86;
-    const rx90_real_t t92 = t91 - t83 * t85;
+    const rx90_real_t t92 = rx90_bounded(t91 - t83 * t85);
     if (!(t92 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -321,7 +321,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t137 = t136 - t124 * t86 + t132 * t85;
     const rx90_real_t t138 = RX90_C(1.0) / t92;
     const rx90_real_t t139 = t137 * t138;
-    const rx90_real_t t140 = t126 - t132 * t133 - t137 * t139;
+    const rx90_real_t t140 = rx90_bounded(t126 - t132 * t133 - t137 * t139);
     if (!(t140 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -529,19 +529,19 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t301 = t300 + t286 * t86 + t293 * t85;
     const rx90_real_t t302 = t283 + t286 * t125 - t293 * t133 - t301 * t139;
     const rx90_real_t t303 = RX90_C(1.0) / t140;
-    const rx90_real_t t304 = t302 * t303;
+    const rx90_real_t t304 = rx90_bounded(t302 * t303);
     ddq[0] = t304;
-    const rx90_real_t t305 = t301 * t138 - t139 * t304;
+    const rx90_real_t t305 = rx90_bounded(t301 * t138 - t139 * t304);
     ddq[1] = t305;
-    const rx90_real_t t306 = t293 * t84 - t133 * t304 + t85 * t305;
+    const rx90_real_t t306 = rx90_bounded(t293 * t84 - t133 * t304 + t85 * t305);
     ddq[2] = t306;
-    const rx90_real_t t307 = t286 * t54 + t125 * t304 + t86 * t305 + t55 * t306;
+    const rx90_real_t t307 = rx90_bounded(t286 * t54 + t125 * t304 + t86 * t305 + t55 * t306);
     ddq[3] = t307;
     const rx90_real_t t308 = t282 * t20 - t121 * t304 - t87 * t305 - t64 * t306;
-    const rx90_real_t t309 = t308 - t21 * t307;
+    const rx90_real_t t309 = rx90_bounded(t308 - t21 * t307);
     ddq[4] = t309;
     const rx90_real_t t310 = t279 * t4 - t114 * t304 - t88 * t305 - t56 * t306;
-    const rx90_real_t t311 = t310 - t28 * t307 + t5 * t309;
+    const rx90_real_t t311 = rx90_bounded(t310 - t28 * t307 + t5 * t309);
     ddq[5] = t311;
     const rx90_real_t t312 = t105 * t71 + t102 * t67;
     const rx90_real_t t313 = dq[0] * t312;
@@ -659,9 +659,9 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t425 = t102 * (t102 * (t418 - t416) + t105 * (t421 + t424));
     const rx90_real_t t426 = RX90_C(333.33333333333337) * parameters[FV1]
         + RX90_C(0.06666666666666667) * (t416 + t425);
-    const rx90_real_t t427 = RX90_C(30.0) * t303;
+    const rx90_real_t t427 = rx90_bounded(RX90_C(30.0) * t303);
     const rx90_real_t t428 = t139 * t303;
-    const rx90_real_t t429 = RX90_C(-30.0) * t428;
+    const rx90_real_t t429 = rx90_bounded(RX90_C(-30.0) * t428);
     const rx90_real_t t430 = t32 * t369;
     const rx90_real_t t431 = parameters[XY3] * t313 + t316 * t402 - (t368 - t430 - t78 * t380);
     const rx90_real_t t432 = t32 * t393 - t34 * t395;
@@ -674,7 +674,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t439 = RX90_C(2.0) * t438;
     const rx90_real_t t440 = RX90_C(0.03333333333333333) * (t105 * t437 + t102 * t439);
     const rx90_real_t t441 = t303 * (t133 + t85 * t139);
-    const rx90_real_t t442 = RX90_C(-30.0) * t441;
+    const rx90_real_t t442 = rx90_bounded(RX90_C(-30.0) * t441);
     const rx90_real_t t443 = RX90_C(2.0) * t431;
     const rx90_real_t t444 = RX90_C(2.0) * t434;
     const rx90_real_t t445 = RX90_C(0.9) * t143;
@@ -683,7 +683,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t448 = RX90_C(0.03333333333333333) * (t105 * t446 - t102 * t447);
     const rx90_real_t t449 = t86 + t55 * t85;
     const rx90_real_t t450 = t303 * (t55 * t133 - t125 + t139 * t449);
-    const rx90_real_t t451 = RX90_C(-10.0) * t450;
+    const rx90_real_t t451 = rx90_bounded(RX90_C(-10.0) * t450);
     const rx90_real_t t452 = RX90_C(2.0) * t400;
     const rx90_real_t t453 = RX90_C(2.0) * t401;
     const rx90_real_t t454 = t34 * t452 + t32 * t453;
@@ -701,7 +701,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t466 = t87 + t21 * t86 + t85 * t465;
     const rx90_real_t t467 = t121 + t21 * t125 - t133 * t465 - t139 * t466;
     const rx90_real_t t468 = t303 * t467;
-    const rx90_real_t t469 = RX90_C(-10.0) * t468;
+    const rx90_real_t t469 = rx90_bounded(RX90_C(-10.0) * t468);
     const rx90_real_t t470 = RX90_C(2.0) * t365;
     const rx90_real_t t471 = RX90_C(2.0) * t366;
     const rx90_real_t t472 = t13 * t471 - t15 * t470;
@@ -733,53 +733,53 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t498 = t67 * t493 - t71 * t495 - t497 * t445;
     const rx90_real_t t499 = RX90_C(0.16666666666666666) * (t105 * t496 + t102 * t498);
     ddq_by_dq[0] = t464 + t480 * t469 + t499 * t486;
-    const rx90_real_t t500 = RX90_C(30.0) * (t138 + t139 * t428);
+    const rx90_real_t t500 = rx90_bounded(RX90_C(30.0) * (t138 + t139 * t428));
     const rx90_real_t t501 = t85 * t138 + t139 * t441;
-    const rx90_real_t t502 = RX90_C(30.0) * t501;
+    const rx90_real_t t502 = rx90_bounded(RX90_C(30.0) * t501);
     const rx90_real_t t503 = t138 * t449 + t139 * t450;
-    const rx90_real_t t504 = RX90_C(10.0) * t503;
+    const rx90_real_t t504 = rx90_bounded(RX90_C(10.0) * t503);
     const rx90_real_t t505 = t440 * t500 - t426 * t429 + t448 * t502 + t463 * t504;
     const rx90_real_t t506 = t139 * t468 - t138 * t466;
-    const rx90_real_t t507 = RX90_C(10.0) * t506;
+    const rx90_real_t t507 = rx90_bounded(RX90_C(10.0) * t506);
     const rx90_real_t t508 = t139 * t485 - t138 * t483;
     const rx90_real_t t509 = RX90_C(6.0) * t508;
     ddq_by_dq[6] = t505 + t480 * t507 + t499 * t509;
-    const rx90_real_t t510 = RX90_C(30.0) * (t84 + t133 * t441 + t85 * t501);
+    const rx90_real_t t510 = rx90_bounded(RX90_C(30.0) * (t84 + t133 * t441 + t85 * t501));
     const rx90_real_t t511 = t55 * t84 + t133 * t450 + t85 * t503;
-    const rx90_real_t t512 = RX90_C(10.0) * t511;
+    const rx90_real_t t512 = rx90_bounded(RX90_C(10.0) * t511);
     const rx90_real_t t513 = t440 * t502 - t426 * t442 + t448 * t510 + t463 * t512;
     const rx90_real_t t514 = t133 * t468 - t84 * t465 + t85 * t506;
-    const rx90_real_t t515 = RX90_C(10.0) * t514;
+    const rx90_real_t t515 = rx90_bounded(RX90_C(10.0) * t514);
     const rx90_real_t t516 = t133 * t485 - t84 * t482 + t85 * t508;
     const rx90_real_t t517 = RX90_C(6.0) * t516;
     ddq_by_dq[12] = t513 + t480 * t515 + t499 * t517;
-    const rx90_real_t t518 = RX90_C(-30.0) * t450;
-    const rx90_real_t t519 = RX90_C(30.0) * t503;
-    const rx90_real_t t520 = RX90_C(30.0) * t511;
+    const rx90_real_t t518 = rx90_bounded(RX90_C(-30.0) * t450);
+    const rx90_real_t t519 = rx90_bounded(RX90_C(30.0) * t503);
+    const rx90_real_t t520 = rx90_bounded(RX90_C(30.0) * t511);
     const rx90_real_t t521 = t54 - t125 * t450 + t86 * t503 + t55 * t511;
-    const rx90_real_t t522 = RX90_C(10.0) * t521;
+    const rx90_real_t t522 = rx90_bounded(RX90_C(10.0) * t521);
     const rx90_real_t t523 = t440 * t519 - t426 * t518 + t448 * t520 + t463 * t522;
     const rx90_real_t t524 = t21 * t54 + t125 * t468 - t86 * t506 - t55 * t514;
-    const rx90_real_t t525 = RX90_C(-10.0) * t524;
+    const rx90_real_t t525 = rx90_bounded(RX90_C(-10.0) * t524);
     const rx90_real_t t526 = t54 * t481 + t125 * t485 - t86 * t508 - t55 * t516;
     const rx90_real_t t527 = RX90_C(-6.0) * t526;
     ddq_by_dq[18] = t523 + t480 * t525 + t499 * t527;
-    const rx90_real_t t528 = RX90_C(-30.0) * t468;
-    const rx90_real_t t529 = RX90_C(30.0) * t506;
-    const rx90_real_t t530 = RX90_C(30.0) * t514;
+    const rx90_real_t t528 = rx90_bounded(RX90_C(-30.0) * t468);
+    const rx90_real_t t529 = rx90_bounded(RX90_C(30.0) * t506);
+    const rx90_real_t t530 = rx90_bounded(RX90_C(30.0) * t514);
     const rx90_real_t t531 = t440 * t529 - t426 * t528 + t448 * t530 + t463 * t525;
     const rx90_real_t t532 = t20 + t121 * t468 - t87 * t506 - t64 * t514;
-    const rx90_real_t t533 = RX90_C(10.0) * (t532 + t21 * t524);
+    const rx90_real_t t533 = rx90_bounded(RX90_C(10.0) * (t532 + t21 * t524));
     const rx90_real_t t534 = t5 * t20 + t121 * t485 - t87 * t508 - t64 * t516;
     const rx90_real_t t535 = t534 + t21 * t526;
     const rx90_real_t t536 = RX90_C(6.0) * t535;
     ddq_by_dq[24] = t531 + t480 * t533 + t499 * t536;
-    const rx90_real_t t537 = RX90_C(-30.0) * t485;
-    const rx90_real_t t538 = RX90_C(30.0) * t508;
-    const rx90_real_t t539 = RX90_C(30.0) * t516;
-    const rx90_real_t t540 = RX90_C(-10.0) * t526;
+    const rx90_real_t t537 = rx90_bounded(RX90_C(-30.0) * t485);
+    const rx90_real_t t538 = rx90_bounded(RX90_C(30.0) * t508);
+    const rx90_real_t t539 = rx90_bounded(RX90_C(30.0) * t516);
+    const rx90_real_t t540 = rx90_bounded(RX90_C(-10.0) * t526);
     const rx90_real_t t541 = t440 * t538 - t426 * t537 + t448 * t539 + t463 * t540;
-    const rx90_real_t t542 = RX90_C(10.0) * t535;
+    const rx90_real_t t542 = rx90_bounded(RX90_C(10.0) * t535);
     const rx90_real_t t543 = t4 + t114 * t485 - t88 * t508 - t56 * t516;
     const rx90_real_t t544 = RX90_C(6.0) * (t543 + t28 * t526 + t5 * t535);
     ddq_by_dq[30] = t541 + t480 * t542 + t499 * t544;
@@ -1325,10 +1325,10 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
-    if (!rx90_within_joints(ddq, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_q, 36, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_dq, 36, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_input, 36, RX90_C(1.0e30))) {
+    if (!rx90_all_bounded(ddq, 6)
+        || !rx90_all_bounded(ddq_by_q, 36)
+        || !rx90_all_bounded(ddq_by_dq, 36)
+        || !rx90_all_bounded(ddq_by_input, 36)) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);

@@ -111,7 +111,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -155,7 +155,7 @@ int rx90_forward_dynamics_derivatives_standard(
     RX90_SINCOS(q[4], &t14, &t16);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -171,7 +171,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const rx90_real_t t10 = t9 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t11 = t10 - t3 * t5;
+    const rx90_real_t t11 = rx90_bounded(t10 - t3 * t5);
     if (!(t11 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -203,7 +203,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
     const rx90_real_t t29 = t28 + RX90_C(2.5e3) * parameters[IA4];
     const rx90_real_t t30 = t19 * t4;
-    const rx90_real_t t31 = t29 - t19 * t30 - t20 * t22;
+    const rx90_real_t t31 = rx90_bounded(t29 - t19 * t30 - t20 * t22);
     if (!(t31 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -257,7 +257,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t70 = parameters[ZZ3] + (t64 - t60 + t69);
     const rx90_real_t t71 = t70 + RX90_C(1.0e4) * parameters[IA3];
     const rx90_real_t t72 = t55 * t21;
-    const rx90_real_t t73 = t71 - t50 * t59 - t55 * t72 - t56 * t58;
+    const rx90_real_t t73 = rx90_bounded(t71 - t50 * t59 - t55 * t72 - t56 * t58);
     if (!(t73 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -300,7 +300,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t101 = parameters[ZZ2] + (t70 + t100);
     const rx90_real_t t102 = t101 + RX90_C(1.0e4) * parameters[IA2];
     const rx90_real_t t103 = t102 - t81 * t97 - t84 * t96 - t85 * t95;
-    const rx90_real_t t104 = t103 - t92 * t94;
+    const rx90_real_t t104 = rx90_bounded(t103 - t92 * t94);
     if (!(t104 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -362,7 +362,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t151 = t150 - t137 * t95 + t145 * t94;
     const rx90_real_t t152 = RX90_C(1.0) / t104;
     const rx90_real_t t153 = t151 * t152;
-    const rx90_real_t t154 = t139 - t145 * t146 - t151 * t153;
+    const rx90_real_t t154 = rx90_bounded(t139 - t145 * t146 - t151 * t153);
     if (!(t154 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -611,19 +611,19 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t343 = t342 + t326 * t95 + t333 * t94;
     const rx90_real_t t344 = t323 + t326 * t138 - t333 * t146 - t343 * t153;
     const rx90_real_t t345 = RX90_C(1.0) / t154;
-    const rx90_real_t t346 = t344 * t345;
+    const rx90_real_t t346 = rx90_bounded(t344 * t345);
     ddq[0] = t346;
-    const rx90_real_t t347 = t343 * t152 - t153 * t346;
+    const rx90_real_t t347 = rx90_bounded(t343 * t152 - t153 * t346);
     ddq[1] = t347;
-    const rx90_real_t t348 = t333 * t93 - t146 * t346 + t94 * t347;
+    const rx90_real_t t348 = rx90_bounded(t333 * t93 - t146 * t346 + t94 * t347);
     ddq[2] = t348;
-    const rx90_real_t t349 = t326 * t57 + t138 * t346 + t95 * t347 + t58 * t348;
+    const rx90_real_t t349 = rx90_bounded(t326 * t57 + t138 * t346 + t95 * t347 + t58 * t348);
     ddq[3] = t349;
     const rx90_real_t t350 = t322 * t21 - t134 * t346 - t96 * t347 - t72 * t348;
-    const rx90_real_t t351 = t350 - t22 * t349;
+    const rx90_real_t t351 = rx90_bounded(t350 - t22 * t349);
     ddq[4] = t351;
     const rx90_real_t t352 = t319 * t4 - t127 * t346 - t97 * t347 - t59 * t348;
-    const rx90_real_t t353 = t352 - t30 * t349 + t5 * t351;
+    const rx90_real_t t353 = rx90_bounded(t352 - t30 * t349 + t5 * t351);
     ddq[5] = t353;
     const rx90_real_t t354 = t118 * t79 + t115 * t75;
     const rx90_real_t t355 = dq[0] * t354;
@@ -747,9 +747,9 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t473 = t115 * (t115 * (t464 - t462) + t118 * (t468 + t472));
     const rx90_real_t t474 = RX90_C(333.33333333333337) * parameters[FV1]
         + RX90_C(0.06666666666666667) * (t462 + t473);
-    const rx90_real_t t475 = RX90_C(30.0) * t345;
+    const rx90_real_t t475 = rx90_bounded(RX90_C(30.0) * t345);
     const rx90_real_t t476 = t153 * t345;
-    const rx90_real_t t477 = RX90_C(-30.0) * t476;
+    const rx90_real_t t477 = rx90_bounded(RX90_C(-30.0) * t476);
     const rx90_real_t t478 = t34 * t414;
     const rx90_real_t t479 = t355 * parameters[XY3] + t358 * t448 - (t413 - t478 - t86 * t425);
     const rx90_real_t t480 = t34 * t438 - t36 * t440;
@@ -762,7 +762,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t487 = RX90_C(2.0) * t486;
     const rx90_real_t t488 = RX90_C(0.03333333333333333) * (t118 * t485 + t115 * t487);
     const rx90_real_t t489 = t345 * (t146 + t94 * t153);
-    const rx90_real_t t490 = RX90_C(-30.0) * t489;
+    const rx90_real_t t490 = rx90_bounded(RX90_C(-30.0) * t489);
     const rx90_real_t t491 = RX90_C(2.0) * t479;
     const rx90_real_t t492 = RX90_C(2.0) * t482;
     const rx90_real_t t493 = RX90_C(0.9) * t157;
@@ -771,7 +771,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t496 = RX90_C(0.03333333333333333) * (t118 * t494 - t115 * t495);
     const rx90_real_t t497 = t95 + t58 * t94;
     const rx90_real_t t498 = t345 * (t58 * t146 - t138 + t153 * t497);
-    const rx90_real_t t499 = RX90_C(-10.0) * t498;
+    const rx90_real_t t499 = rx90_bounded(RX90_C(-10.0) * t498);
     const rx90_real_t t500 = RX90_C(2.0) * t446;
     const rx90_real_t t501 = RX90_C(2.0) * t447;
     const rx90_real_t t502 = t36 * t500 - t34 * t501;
@@ -789,7 +789,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t514 = t96 + t22 * t95 + t94 * t513;
     const rx90_real_t t515 = t134 + t22 * t138 - t146 * t513 - t153 * t514;
     const rx90_real_t t516 = t345 * t515;
-    const rx90_real_t t517 = RX90_C(-10.0) * t516;
+    const rx90_real_t t517 = rx90_bounded(RX90_C(-10.0) * t516);
     const rx90_real_t t518 = RX90_C(2.0) * t410;
     const rx90_real_t t519 = RX90_C(2.0) * t411;
     const rx90_real_t t520 = t16 * t518 - t14 * t519;
@@ -821,53 +821,53 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t546 = t75 * t541 + t79 * t543 + t545 * t493;
     const rx90_real_t t547 = RX90_C(0.16666666666666666) * (t118 * t544 - t115 * t546);
     ddq_by_dq[0] = t512 + t528 * t517 + t547 * t534;
-    const rx90_real_t t548 = RX90_C(30.0) * (t152 + t153 * t476);
+    const rx90_real_t t548 = rx90_bounded(RX90_C(30.0) * (t152 + t153 * t476));
     const rx90_real_t t549 = t94 * t152 + t153 * t489;
-    const rx90_real_t t550 = RX90_C(30.0) * t549;
+    const rx90_real_t t550 = rx90_bounded(RX90_C(30.0) * t549);
     const rx90_real_t t551 = t152 * t497 + t153 * t498;
-    const rx90_real_t t552 = RX90_C(10.0) * t551;
+    const rx90_real_t t552 = rx90_bounded(RX90_C(10.0) * t551);
     const rx90_real_t t553 = t488 * t548 - t474 * t477 + t496 * t550 - t511 * t552;
     const rx90_real_t t554 = t153 * t516 - t152 * t514;
-    const rx90_real_t t555 = RX90_C(10.0) * t554;
+    const rx90_real_t t555 = rx90_bounded(RX90_C(10.0) * t554);
     const rx90_real_t t556 = t153 * t533 - t152 * t531;
     const rx90_real_t t557 = RX90_C(6.0) * t556;
     ddq_by_dq[6] = t553 + t528 * t555 + t547 * t557;
-    const rx90_real_t t558 = RX90_C(30.0) * (t93 + t146 * t489 + t94 * t549);
+    const rx90_real_t t558 = rx90_bounded(RX90_C(30.0) * (t93 + t146 * t489 + t94 * t549));
     const rx90_real_t t559 = t58 * t93 + t146 * t498 + t94 * t551;
-    const rx90_real_t t560 = RX90_C(10.0) * t559;
+    const rx90_real_t t560 = rx90_bounded(RX90_C(10.0) * t559);
     const rx90_real_t t561 = t488 * t550 - t474 * t490 + t496 * t558 - t511 * t560;
     const rx90_real_t t562 = t146 * t516 - t93 * t513 + t94 * t554;
-    const rx90_real_t t563 = RX90_C(10.0) * t562;
+    const rx90_real_t t563 = rx90_bounded(RX90_C(10.0) * t562);
     const rx90_real_t t564 = t146 * t533 - t93 * t530 + t94 * t556;
     const rx90_real_t t565 = RX90_C(6.0) * t564;
     ddq_by_dq[12] = t561 + t528 * t563 + t547 * t565;
-    const rx90_real_t t566 = RX90_C(-30.0) * t498;
-    const rx90_real_t t567 = RX90_C(30.0) * t551;
-    const rx90_real_t t568 = RX90_C(30.0) * t559;
+    const rx90_real_t t566 = rx90_bounded(RX90_C(-30.0) * t498);
+    const rx90_real_t t567 = rx90_bounded(RX90_C(30.0) * t551);
+    const rx90_real_t t568 = rx90_bounded(RX90_C(30.0) * t559);
     const rx90_real_t t569 = t57 - t138 * t498 + t95 * t551 + t58 * t559;
-    const rx90_real_t t570 = RX90_C(10.0) * t569;
+    const rx90_real_t t570 = rx90_bounded(RX90_C(10.0) * t569);
     const rx90_real_t t571 = t488 * t567 - t474 * t566 + t496 * t568 - t511 * t570;
     const rx90_real_t t572 = t22 * t57 + t138 * t516 - t95 * t554 - t58 * t562;
-    const rx90_real_t t573 = RX90_C(-10.0) * t572;
+    const rx90_real_t t573 = rx90_bounded(RX90_C(-10.0) * t572);
     const rx90_real_t t574 = t57 * t529 + t138 * t533 - t95 * t556 - t58 * t564;
     const rx90_real_t t575 = RX90_C(-6.0) * t574;
     ddq_by_dq[18] = t571 + t528 * t573 + t547 * t575;
-    const rx90_real_t t576 = RX90_C(-30.0) * t516;
-    const rx90_real_t t577 = RX90_C(30.0) * t554;
-    const rx90_real_t t578 = RX90_C(30.0) * t562;
+    const rx90_real_t t576 = rx90_bounded(RX90_C(-30.0) * t516);
+    const rx90_real_t t577 = rx90_bounded(RX90_C(30.0) * t554);
+    const rx90_real_t t578 = rx90_bounded(RX90_C(30.0) * t562);
     const rx90_real_t t579 = t488 * t577 - t474 * t576 + t496 * t578 - t511 * t573;
     const rx90_real_t t580 = t21 + t134 * t516 - t96 * t554 - t72 * t562;
-    const rx90_real_t t581 = RX90_C(10.0) * (t580 + t22 * t572);
+    const rx90_real_t t581 = rx90_bounded(RX90_C(10.0) * (t580 + t22 * t572));
     const rx90_real_t t582 = t5 * t21 + t134 * t533 - t96 * t556 - t72 * t564;
     const rx90_real_t t583 = t582 + t22 * t574;
     const rx90_real_t t584 = RX90_C(6.0) * t583;
     ddq_by_dq[24] = t579 + t528 * t581 + t547 * t584;
-    const rx90_real_t t585 = RX90_C(-30.0) * t533;
-    const rx90_real_t t586 = RX90_C(30.0) * t556;
-    const rx90_real_t t587 = RX90_C(30.0) * t564;
-    const rx90_real_t t588 = RX90_C(-10.0) * t574;
+    const rx90_real_t t585 = rx90_bounded(RX90_C(-30.0) * t533);
+    const rx90_real_t t586 = rx90_bounded(RX90_C(30.0) * t556);
+    const rx90_real_t t587 = rx90_bounded(RX90_C(30.0) * t564);
+    const rx90_real_t t588 = rx90_bounded(RX90_C(-10.0) * t574);
     const rx90_real_t t589 = t488 * t586 - t474 * t585 + t496 * t587 - t511 * t588;
-    const rx90_real_t t590 = RX90_C(10.0) * t583;
+    const rx90_real_t t590 = rx90_bounded(RX90_C(10.0) * t583);
     const rx90_real_t t591 = t4 + t127 * t533 - t97 * t556 - t59 * t564;
     const rx90_real_t t592 = RX90_C(6.0) * (t591 + t30 * t574 + t5 * t583);
     ddq_by_dq[30] = t589 + t528 * t590 + t547 * t592;
@@ -1444,10 +1444,10 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
-    if (!rx90_within_joints(ddq, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_q, 36, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_dq, 36, RX90_C(1.0e30))
-        || !rx90_within(ddq_by_input, 36, RX90_C(1.0e30))) {
+    if (!rx90_all_bounded(ddq, 6)
+        || !rx90_all_bounded(ddq_by_q, 36)
+        || !rx90_all_bounded(ddq_by_dq, 36)
+        || !rx90_all_bounded(ddq_by_input, 36)) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);

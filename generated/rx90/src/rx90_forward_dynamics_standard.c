@@ -107,7 +107,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,7 +145,7 @@ int rx90_forward_dynamics_standard(
     RX90_SINCOS(q[4], &t14, &t16);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -158,7 +158,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const rx90_real_t t10 = t9 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t11 = t10 + t3 * t5;
+    const rx90_real_t t11 = rx90_bounded(t10 + t3 * t5);
     if (!(t11 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -184,7 +184,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
     const rx90_real_t t29 = t28 + RX90_C(2.5e3) * parameters[IA4];
     const rx90_real_t t30 = t19 * t4;
-    const rx90_real_t t31 = t29 + t19 * t30 - t20 * t22;
+    const rx90_real_t t31 = rx90_bounded(t29 + t19 * t30 - t20 * t22);
     if (!(t31 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -230,7 +230,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t68 = parameters[ZZ3] + (t59 - t63 + t67);
     const rx90_real_t t69 = t68 + RX90_C(1.0e4) * parameters[IA3];
     const rx90_real_t t70 = t54 * t21;
-    const rx90_real_t t71 = t69 + t49 * t58 - t54 * t70 + t55 * t57;
+    const rx90_real_t t71 = rx90_bounded(t69 + t49 * t58 - t54 * t70 + t55 * t57);
     if (!(t71 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -257,7 +257,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t89 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t65) + RX90_C(-2.0) * t81);
     const rx90_real_t t90 = parameters[ZZ2] + (t68 + t89) + RX90_C(1.0e4) * parameters[IA2];
     const rx90_real_t t91 = t90 + t75 * t88 - t76 * t87 + t77 * t86;
-    const rx90_real_t t92 = t91 - t83 * t85;
+    const rx90_real_t t92 = rx90_bounded(t91 - t83 * t85);
     if (!(t92 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -305,7 +305,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t129 = t128 + t125 * t85;
     const rx90_real_t t130 = RX90_C(1.0) / t92;
     const rx90_real_t t131 = t129 * t130;
-    const rx90_real_t t132 = t119 - t125 * t126 - t129 * t131;
+    const rx90_real_t t132 = rx90_bounded(t119 - t125 * t126 - t129 * t131);
     if (!(t132 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -531,20 +531,20 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t302 = t301 + t285 * t86 + t292 * t85;
     const rx90_real_t t303 = t282 - t285 * t118 + t292 * t126 + t302 * t131;
     const rx90_real_t t304 = RX90_C(1.0) / t132;
-    const rx90_real_t t305 = t303 * t304;
+    const rx90_real_t t305 = rx90_bounded(t303 * t304);
     out[0] = t305;
-    const rx90_real_t t306 = t302 * t130 + t131 * t305;
+    const rx90_real_t t306 = rx90_bounded(t302 * t130 + t131 * t305);
     out[1] = t306;
-    const rx90_real_t t307 = t292 * t84 + t126 * t305 + t85 * t306;
+    const rx90_real_t t307 = rx90_bounded(t292 * t84 + t126 * t305 + t85 * t306);
     out[2] = t307;
-    const rx90_real_t t308 = t86 * t306 - (t285 * t56 + t118 * t305) + t57 * t307;
+    const rx90_real_t t308 = rx90_bounded(t86 * t306 - (t285 * t56 + t118 * t305) + t57 * t307);
     out[3] = t308;
     const rx90_real_t t309 = t281 * t21 + t115 * t305 + t87 * t306 - t70 * t307;
-    const rx90_real_t t310 = t309 - t22 * t308;
+    const rx90_real_t t310 = rx90_bounded(t309 - t22 * t308);
     out[4] = t310;
     const rx90_real_t t311 = t278 * t4 + t110 * t305 + t88 * t306 + t58 * t307;
     out[5] = t30 * t308 - t311 - t5 * t310;
-    if (!rx90_within_joints(out, RX90_C(1.0e30))) {
+    if (!rx90_all_bounded(out, 6)) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "rx90.h"
 
-#if RX90_GENERATION != 0x8E90BDAFUL
+#if RX90_GENERATION != 0xD1F0D18FUL
 #error "rx90.h and rx90_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int rx90_within(const rx90_real_t x[], int n, rx90_real_t limit)
 static inline int rx90_within_joints(const rx90_real_t x[], rx90_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline rx90_real_t rx90_bounded(rx90_real_t x)
+{
+    return x >= RX90_C(-1.0e15) && x <= RX90_C(1.0e15) ? x : RX90_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int rx90_all_bounded(const rx90_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= RX90_C(-1.0e15) && x[i] <= RX90_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DRX90_PARAMETERS_CHECKED, for parameters that rx90_check_parameters has seen. */

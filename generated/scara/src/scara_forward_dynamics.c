@@ -46,7 +46,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xAD5E1746UL
+#if SCARA_GENERATION != 0x5A40077AUL
 #error "scara.h and scara_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -76,12 +76,12 @@ int scara_forward_dynamics(
     SCARA_SINCOS(q[1], &t14, &t15);
     scara_real_t t2, t3;
     SCARA_SINCOS(q[3], &t2, &t3);
-    const scara_real_t t0 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t0 = scara_bounded(parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t0 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t1 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    const scara_real_t t1 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -93,7 +93,7 @@ int scara_forward_dynamics(
     const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R];
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t11 = t10 - t5 * t7;
+    const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
     if (!(t11 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -112,7 +112,7 @@ int scara_forward_dynamics(
     const scara_real_t t21 = t17 * t6;
     const scara_real_t t22 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(-2.0) * t16));
-    const scara_real_t t23 = t22 - t17 * t21 - t18 * t20;
+    const scara_real_t t23 = scara_bounded(t22 - t17 * t21 - t18 * t20);
     if (!(t23 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -151,9 +151,9 @@ int scara_forward_dynamics(
     const scara_real_t t47 = SCARA_C(10.0) * input[1] - t46 + t44 * t7;
     const scara_real_t t48 = SCARA_C(16.0) * input[0] + t41 + t44 * t21 + t47 * t20;
     const scara_real_t t49 = SCARA_C(1.0) / t23;
-    const scara_real_t t50 = t48 * t49;
+    const scara_real_t t50 = scara_bounded(t48 * t49);
     out[0] = t50;
-    const scara_real_t t51 = t47 * t19 + t20 * t50;
+    const scara_real_t t51 = scara_bounded(t47 * t19 + t20 * t50);
     out[1] = t51;
     const scara_real_t t52 = scara_sign(dq[2]);
     const scara_real_t
@@ -162,7 +162,7 @@ int scara_forward_dynamics(
     const scara_real_t t54 = SCARA_C(1.0) / t0;
     out[2] = (SCARA_C(31.415926535897935) * input[2] + t53) * t54;
     out[3] = t44 * t6 + t21 * t50 + t7 * t51;
-    if (!scara_within_joints(out, SCARA_C(1.0e30))) {
+    if (!scara_all_bounded(out, 4)) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }

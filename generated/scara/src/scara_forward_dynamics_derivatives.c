@@ -87,7 +87,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xAD5E1746UL
+#if SCARA_GENERATION != 0x5A40077AUL
 #error "scara.h and scara_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -123,7 +123,7 @@ int scara_forward_dynamics_derivatives(
     SCARA_SINCOS(q[1], &t15, &t17);
     scara_real_t t2, t3;
     SCARA_SINCOS(q[3], &t2, &t3);
-    const scara_real_t t0 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t0 = scara_bounded(parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t0 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -131,7 +131,7 @@ int scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t1 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    const scara_real_t t1 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -146,7 +146,7 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R];
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t11 = t10 - t5 * t7;
+    const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
     if (!(t11 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -173,7 +173,7 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t23 = t19 * t6;
     const scara_real_t t24 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(-2.0) * t18));
-    const scara_real_t t25 = t24 - t19 * t23 - t20 * t22;
+    const scara_real_t t25 = scara_bounded(t24 - t19 * t23 - t20 * t22);
     if (!(t25 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -221,9 +221,9 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t52 = SCARA_C(10.0) * input[1] - t51 + t49 * t7;
     const scara_real_t t53 = SCARA_C(16.0) * input[0] + t46 + t49 * t23 + t52 * t22;
     const scara_real_t t54 = SCARA_C(1.0) / t25;
-    const scara_real_t t55 = t53 * t54;
+    const scara_real_t t55 = scara_bounded(t53 * t54);
     ddq[0] = t55;
-    const scara_real_t t56 = t52 * t21 + t22 * t55;
+    const scara_real_t t56 = scara_bounded(t52 * t21 + t22 * t55);
     ddq[1] = t56;
     const scara_real_t t57 = scara_sign(dq[2]);
     const scara_real_t
@@ -231,9 +231,9 @@ int scara_forward_dynamics_derivatives(
         - parameters[FC3] * t57) + SCARA_C(9.81) * parameters[M3R];
     const scara_real_t t59 = SCARA_C(1.0) / t0;
     ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t58) * t59;
-    const scara_real_t t60 = t49 * t6 + t23 * t55 + t7 * t56;
+    const scara_real_t t60 = scara_bounded(t49 * t6 + t23 * t55 + t7 * t56);
     ddq[3] = t60;
-    const scara_real_t t61 = SCARA_C(16.0) * t54;
+    const scara_real_t t61 = scara_bounded(SCARA_C(16.0) * t54);
     const scara_real_t t62 = parameters[MY4] * t35;
     const scara_real_t t63 = parameters[MX4] * t35;
     const scara_real_t t64 = t3 * t62 + t2 * t63;
@@ -246,7 +246,7 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t71 = t70 + (SCARA_C(0.275) * t64 + (t13 * t66 - t70));
     const scara_real_t t72 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t71 + t69);
     const scara_real_t t73 = t22 * t54;
-    const scara_real_t t74 = SCARA_C(10.0) * t73;
+    const scara_real_t t74 = scara_bounded(SCARA_C(10.0) * t73);
     const scara_real_t t75 = SCARA_C(2.0) * t71;
     const scara_real_t t76 = SCARA_C(-0.65) * dq[0];
     const scara_real_t t77 = SCARA_C(0.1) * (t75 + t68 * t76);
@@ -255,13 +255,13 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t80 = t13 * (SCARA_C(-0.55) * t27);
     const scara_real_t t81 = SCARA_C(0.5) * (t80 - (t15 * t4 - t17 * t13) * t76);
     ddq_by_dq[0] = t72 * t61 + t77 * t74 + t81 * t79;
-    const scara_real_t t82 = SCARA_C(16.0) * t73;
-    const scara_real_t t83 = SCARA_C(10.0) * (t21 + t22 * t73);
+    const scara_real_t t82 = scara_bounded(SCARA_C(16.0) * t73);
+    const scara_real_t t83 = scara_bounded(SCARA_C(10.0) * (t21 + t22 * t73));
     const scara_real_t t84 = t7 * t21 + t22 * t78;
     const scara_real_t t85 = SCARA_C(2.0) * t84;
     ddq_by_dq[4] = t72 * t82 + t77 * t83 + t81 * t85;
-    const scara_real_t t86 = SCARA_C(16.0) * t78;
-    const scara_real_t t87 = SCARA_C(10.0) * t84;
+    const scara_real_t t86 = scara_bounded(SCARA_C(16.0) * t78);
+    const scara_real_t t87 = scara_bounded(SCARA_C(10.0) * t84);
     const scara_real_t t88 = SCARA_C(2.0) * (t6 + t23 * t78 + t7 * t84);
     ddq_by_dq[12] = t72 * t86 + t77 * t87 + t81 * t88;
     ddq_by_input[0] = t61;
@@ -337,10 +337,10 @@ int scara_forward_dynamics_derivatives(
     ddq_by_input[6] = SCARA_C(0.0);
     ddq_by_input[8] = ddq_by_input[9] = ddq_by_input[11] = SCARA_C(0.0);
     ddq_by_input[14] = SCARA_C(0.0);
-    if (!scara_within_joints(ddq, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_q, 16, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_dq, 16, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_input, 16, SCARA_C(1.0e30))) {
+    if (!scara_all_bounded(ddq, 4)
+        || !scara_all_bounded(ddq_by_q, 16)
+        || !scara_all_bounded(ddq_by_dq, 16)
+        || !scara_all_bounded(ddq_by_input, 16)) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);

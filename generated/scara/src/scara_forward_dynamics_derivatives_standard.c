@@ -120,7 +120,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xAD5E1746UL
+#if SCARA_GENERATION != 0x5A40077AUL
 #error "scara.h and scara_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -158,7 +158,7 @@ int scara_forward_dynamics_derivatives_standard(
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
     const scara_real_t t0 = parameters[M3] + parameters[M4];
-    const scara_real_t t1 = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -166,7 +166,7 @@ int scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t2 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    const scara_real_t t2 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
     if (!(t2 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -183,7 +183,7 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t13 = t12 - t6 * t8;
+    const scara_real_t t13 = scara_bounded(t12 - t6 * t8);
     if (!(t13 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -213,7 +213,7 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t28 = parameters[ZZ1] + (t11 + SCARA_C(0.325) * (SCARA_C(0.325) * t27
         + SCARA_C(-2.0) * t21));
     const scara_real_t t29 = t28 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t30 = t29 - t22 * t26 - t23 * t25;
+    const scara_real_t t30 = scara_bounded(t29 - t22 * t26 - t23 * t25);
     if (!(t30 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -268,9 +268,9 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t64 = SCARA_C(10.0) * input[1] - t63 + t61 * t8;
     const scara_real_t t65 = SCARA_C(16.0) * input[0] + t58 + t61 * t26 + t64 * t25;
     const scara_real_t t66 = SCARA_C(1.0) / t30;
-    const scara_real_t t67 = t65 * t66;
+    const scara_real_t t67 = scara_bounded(t65 * t66);
     ddq[0] = t67;
-    const scara_real_t t68 = t64 * t24 + t25 * t67;
+    const scara_real_t t68 = scara_bounded(t64 * t24 + t25 * t67);
     ddq[1] = t68;
     const scara_real_t t69 = scara_sign(dq[2]);
     const scara_real_t
@@ -278,9 +278,9 @@ int scara_forward_dynamics_derivatives_standard(
         - t69 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
     const scara_real_t t71 = SCARA_C(1.0) / t1;
     ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t70) * t71;
-    const scara_real_t t72 = t61 * t7 + t26 * t67 + t8 * t68;
+    const scara_real_t t72 = scara_bounded(t61 * t7 + t26 * t67 + t8 * t68);
     ddq[3] = t72;
-    const scara_real_t t73 = SCARA_C(16.0) * t66;
+    const scara_real_t t73 = scara_bounded(SCARA_C(16.0) * t66);
     const scara_real_t t74 = t40 * parameters[MY4];
     const scara_real_t t75 = t40 * parameters[MX4];
     const scara_real_t t76 = SCARA_C(0.275) * t32;
@@ -294,7 +294,7 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t84 = t83 + (SCARA_C(-0.275) * t79 + (t16 * t76 - t83));
     const scara_real_t t85 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t84 + t82);
     const scara_real_t t86 = t25 * t66;
-    const scara_real_t t87 = SCARA_C(10.0) * t86;
+    const scara_real_t t87 = scara_bounded(SCARA_C(10.0) * t86);
     const scara_real_t t88 = SCARA_C(2.0) * t84;
     const scara_real_t t89 = SCARA_C(-0.65) * dq[0];
     const scara_real_t t90 = SCARA_C(0.1) * (t88 + t81 * t89);
@@ -303,13 +303,13 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t93 = t15 * (SCARA_C(-0.55) * t32);
     const scara_real_t t94 = SCARA_C(0.5) * (t93 - (t18 * t5 - t20 * t15) * t89);
     ddq_by_dq[0] = t85 * t73 + t90 * t87 + t94 * t92;
-    const scara_real_t t95 = SCARA_C(16.0) * t86;
-    const scara_real_t t96 = SCARA_C(10.0) * (t24 + t25 * t86);
+    const scara_real_t t95 = scara_bounded(SCARA_C(16.0) * t86);
+    const scara_real_t t96 = scara_bounded(SCARA_C(10.0) * (t24 + t25 * t86));
     const scara_real_t t97 = t8 * t24 + t25 * t91;
     const scara_real_t t98 = SCARA_C(2.0) * t97;
     ddq_by_dq[4] = t85 * t95 + t90 * t96 + t94 * t98;
-    const scara_real_t t99 = SCARA_C(16.0) * t91;
-    const scara_real_t t100 = SCARA_C(10.0) * t97;
+    const scara_real_t t99 = scara_bounded(SCARA_C(16.0) * t91);
+    const scara_real_t t100 = scara_bounded(SCARA_C(10.0) * t97);
     const scara_real_t t101 = SCARA_C(2.0) * (t7 + t26 * t91 + t8 * t97);
     ddq_by_dq[12] = t85 * t99 + t90 * t100 + t94 * t101;
     ddq_by_input[0] = t73;
@@ -390,10 +390,10 @@ int scara_forward_dynamics_derivatives_standard(
     ddq_by_input[6] = SCARA_C(0.0);
     ddq_by_input[8] = ddq_by_input[9] = ddq_by_input[11] = SCARA_C(0.0);
     ddq_by_input[14] = SCARA_C(0.0);
-    if (!scara_within_joints(ddq, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_q, 16, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_dq, 16, SCARA_C(1.0e30))
-        || !scara_within(ddq_by_input, 16, SCARA_C(1.0e30))) {
+    if (!scara_all_bounded(ddq, 4)
+        || !scara_all_bounded(ddq_by_q, 16)
+        || !scara_all_bounded(ddq_by_dq, 16)
+        || !scara_all_bounded(ddq_by_input, 16)) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);

@@ -79,7 +79,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xAD5E1746UL
+#if SCARA_GENERATION != 0x5A40077AUL
 #error "scara.h and scara_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,12 +111,12 @@ int scara_forward_dynamics_standard(
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
     const scara_real_t t0 = parameters[M3] + parameters[M4];
-    const scara_real_t t1 = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t2 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    const scara_real_t t2 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
     if (!(t2 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -130,7 +130,7 @@ int scara_forward_dynamics_standard(
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t13 = t12 - t6 * t8;
+    const scara_real_t t13 = scara_bounded(t12 - t6 * t8);
     if (!(t13 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -151,7 +151,7 @@ int scara_forward_dynamics_standard(
     const scara_real_t t24 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
         + SCARA_C(-2.0) * t18);
     const scara_real_t t25 = parameters[ZZ1] + t24 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t26 = t25 - t19 * t23 - t20 * t22;
+    const scara_real_t t26 = scara_bounded(t25 - t19 * t23 - t20 * t22);
     if (!(t26 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -193,9 +193,9 @@ int scara_forward_dynamics_standard(
     const scara_real_t t53 = SCARA_C(10.0) * input[1] - t52 + t50 * t8;
     const scara_real_t t54 = SCARA_C(16.0) * input[0] + t47 + t50 * t23 + t53 * t22;
     const scara_real_t t55 = SCARA_C(1.0) / t26;
-    const scara_real_t t56 = t54 * t55;
+    const scara_real_t t56 = scara_bounded(t54 * t55);
     out[0] = t56;
-    const scara_real_t t57 = t53 * t21 + t22 * t56;
+    const scara_real_t t57 = scara_bounded(t53 * t21 + t22 * t56);
     out[1] = t57;
     const scara_real_t t58 = scara_sign(dq[2]);
     const scara_real_t
@@ -204,7 +204,7 @@ int scara_forward_dynamics_standard(
     const scara_real_t t60 = SCARA_C(1.0) / t1;
     out[2] = (SCARA_C(31.415926535897935) * input[2] + t59) * t60;
     out[3] = t50 * t7 + t23 * t56 + t8 * t57;
-    if (!scara_within_joints(out, SCARA_C(1.0e30))) {
+    if (!scara_all_bounded(out, 4)) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }

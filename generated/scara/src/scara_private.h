@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0xAD5E1746UL
+#if SCARA_GENERATION != 0x5A40077AUL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int scara_within(const scara_real_t x[], int n, scara_real_t limit
 static inline int scara_within_joints(const scara_real_t x[], scara_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline scara_real_t scara_bounded(scara_real_t x)
+{
+    return x >= SCARA_C(-1.0e15) && x <= SCARA_C(1.0e15) ? x : SCARA_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int scara_all_bounded(const scara_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= SCARA_C(-1.0e15) && x[i] <= SCARA_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DSCARA_PARAMETERS_CHECKED, for parameters that scara_check_parameters has seen. */

@@ -31,7 +31,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x58A776D1UL
+#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
 #error "screw_axis.h and screw_axis_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -80,10 +80,10 @@ int screw_axis_forward_dynamics_derivatives(
     ddq_by_input[0] = t3;
     /* always zero */
     ddq_by_q[0] = SCREW_AXIS_C(0.0);
-    if (!screw_axis_within_joints(ddq, SCREW_AXIS_C(1.0e30))
-        || !screw_axis_within_joints(ddq_by_q, SCREW_AXIS_C(1.0e30))
-        || !screw_axis_within_joints(ddq_by_dq, SCREW_AXIS_C(1.0e30))
-        || !screw_axis_within_joints(ddq_by_input, SCREW_AXIS_C(1.0e30))) {
+    if (!screw_axis_all_bounded(ddq, 1)
+        || !screw_axis_all_bounded(ddq_by_q, 1)
+        || !screw_axis_all_bounded(ddq_by_dq, 1)
+        || !screw_axis_all_bounded(ddq_by_input, 1)) {
         screw_axis_zero(ddq, 1);
         screw_axis_zero(ddq_by_q, 1);
         screw_axis_zero(ddq_by_dq, 1);

@@ -13,7 +13,7 @@
 
 #include "screw_axis.h"
 
-#if SCREW_AXIS_GENERATION != 0x58A776D1UL
+#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
 #error "screw_axis.h and screw_axis_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int screw_axis_within(const screw_axis_real_t x[], int n, screw_ax
 static inline int screw_axis_within_joints(const screw_axis_real_t x[], screw_axis_real_t limit)
 {
     return x[0] * x[0] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline screw_axis_real_t screw_axis_bounded(screw_axis_real_t x)
+{
+    return x >= SCREW_AXIS_C(-1.0e15) && x <= SCREW_AXIS_C(1.0e15) ? x : SCREW_AXIS_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int screw_axis_all_bounded(const screw_axis_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= SCREW_AXIS_C(-1.0e15) && x[i] <= SCREW_AXIS_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DSCREW_AXIS_PARAMETERS_CHECKED, for parameters that screw_axis_check_parameters has seen. */

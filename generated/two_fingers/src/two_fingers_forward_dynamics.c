@@ -70,7 +70,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -105,12 +105,14 @@ int two_fingers_forward_dynamics(
     TWO_FINGERS_SINCOS(q[3], &t27, &t25);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -121,7 +123,7 @@ int two_fingers_forward_dynamics(
     const two_fingers_real_t t7 = t5 * t6;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4;
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
-    const two_fingers_real_t t10 = t9 - t5 * t7;
+    const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -137,7 +139,7 @@ int two_fingers_forward_dynamics(
     const two_fingers_real_t t17 = t15 * t16;
     const two_fingers_real_t t18 = TWO_FINGERS_C(0.1) * t14;
     const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
-    const two_fingers_real_t t20 = t19 - t15 * t17;
+    const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
     if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -185,7 +187,7 @@ int two_fingers_forward_dynamics(
     const two_fingers_real_t t56 = t38 * (t51 - parameters[XZ2R]) - t36 * (parameters[YZ2] + t52) + t53 * t17;
     const two_fingers_real_t t57 = TWO_FINGERS_C(1.0) / t20;
     const two_fingers_real_t t58 = t56 * t57;
-    const two_fingers_real_t t59 = t55 - t56 * t58;
+    const two_fingers_real_t t59 = two_fingers_bounded(t55 - t56 * t58);
     if (!(t59 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -328,15 +330,15 @@ int two_fingers_forward_dynamics(
         + parameters[FC2] * t164) - (t163 - (t158 - TWO_FINGERS_C(0.05) * t162));
     const two_fingers_real_t t166 = TWO_FINGERS_C(0.6) * input[1] - t165 + t161 * t17;
     const two_fingers_real_t t167 = TWO_FINGERS_C(1.0) / t59;
-    const two_fingers_real_t t168 = (t151 + t161 * t54 + t166 * t58) * t167;
+    const two_fingers_real_t t168 = two_fingers_bounded((t151 + t161 * t54 + t166 * t58) * t167);
     out[0] = t168;
-    const two_fingers_real_t t169 = t166 * t57 + t58 * t168;
+    const two_fingers_real_t t169 = two_fingers_bounded(t166 * t57 + t58 * t168);
     out[1] = t169;
     out[2] = t161 * t16 + t54 * t168 + t17 * t169;
-    const two_fingers_real_t t170 = t150 * t49 + t50 * t168;
+    const two_fingers_real_t t170 = two_fingers_bounded(t150 * t49 + t50 * t168);
     out[3] = t170;
     out[4] = t146 * t6 + t46 * t168 + t7 * t170;
-    if (!two_fingers_within_joints(out, TWO_FINGERS_C(1.0e30))) {
+    if (!two_fingers_all_bounded(out, 5)) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

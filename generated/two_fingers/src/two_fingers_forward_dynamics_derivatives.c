@@ -74,7 +74,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -115,7 +115,8 @@ int two_fingers_forward_dynamics_derivatives(
     TWO_FINGERS_SINCOS(q[3], &t29, &t26);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -123,7 +124,8 @@ int two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -137,7 +139,7 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t7 = t5 * t6;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4;
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
-    const two_fingers_real_t t10 = t9 - t5 * t7;
+    const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -159,7 +161,7 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t17 = t15 * t16;
     const two_fingers_real_t t18 = TWO_FINGERS_C(-0.1) * t14;
     const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
-    const two_fingers_real_t t20 = t19 - t15 * t17;
+    const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
     if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -221,7 +223,7 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t65 = t41 * t63 - t38 * t64 + t60 * t17;
     const two_fingers_real_t t66 = TWO_FINGERS_C(1.0) / t20;
     const two_fingers_real_t t67 = t65 * t66;
-    const two_fingers_real_t t68 = t62 - t65 * t67;
+    const two_fingers_real_t t68 = two_fingers_bounded(t62 - t65 * t67);
     if (!(t68 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -382,15 +384,15 @@ int two_fingers_forward_dynamics_derivatives(
         + parameters[FC2] * t188) - (t187 - (t182 - TWO_FINGERS_C(0.05) * t186));
     const two_fingers_real_t t190 = TWO_FINGERS_C(0.6) * input[1] - t189 + t185 * t17;
     const two_fingers_real_t t191 = TWO_FINGERS_C(1.0) / t68;
-    const two_fingers_real_t t192 = (t173 + t185 * t61 + t190 * t67) * t191;
+    const two_fingers_real_t t192 = two_fingers_bounded((t173 + t185 * t61 + t190 * t67) * t191);
     ddq[0] = t192;
-    const two_fingers_real_t t193 = t190 * t66 + t67 * t192;
+    const two_fingers_real_t t193 = two_fingers_bounded(t190 * t66 + t67 * t192);
     ddq[1] = t193;
-    const two_fingers_real_t t194 = t185 * t16 + t61 * t192 + t17 * t193;
+    const two_fingers_real_t t194 = two_fingers_bounded(t185 * t16 + t61 * t192 + t17 * t193);
     ddq[2] = t194;
-    const two_fingers_real_t t195 = t172 * t56 + t57 * t192;
+    const two_fingers_real_t t195 = two_fingers_bounded(t172 * t56 + t57 * t192);
     ddq[3] = t195;
-    const two_fingers_real_t t196 = t168 * t6 + t51 * t192 - t7 * t195;
+    const two_fingers_real_t t196 = two_fingers_bounded(t168 * t6 + t51 * t192 - t7 * t195);
     ddq[4] = t196;
     const two_fingers_real_t t197 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
     const two_fingers_real_t t198 = parameters[XX5R] - t197;
@@ -484,9 +486,9 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t277 = t237 - t233 + t238 + (t221 + t230 + t233) + t276;
     const two_fingers_real_t t278 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
         + TWO_FINGERS_C(0.8333333333333334) * t277;
-    const two_fingers_real_t t279 = TWO_FINGERS_C(2.4) * t191;
+    const two_fingers_real_t t279 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t191);
     const two_fingers_real_t t280 = t67 * t191;
-    const two_fingers_real_t t281 = TWO_FINGERS_C(0.6) * t280;
+    const two_fingers_real_t t281 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t280);
     const two_fingers_real_t t282 = parameters[XY3] * t242 + t245 * t240;
     const two_fingers_real_t t283 = parameters[XY3] * t245 - t242 * t239;
     const two_fingers_real_t t284 = parameters[MY3] * t242 + parameters[MX3] * t245;
@@ -509,7 +511,7 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t300 = t41 * t298 - t38 * t299 - (t41 * t14 - t38 * t39) * t290;
     const two_fingers_real_t t301 = TWO_FINGERS_C(1.6666666666666667) * t300;
     const two_fingers_real_t t302 = t57 * t191;
-    const two_fingers_real_t t303 = TWO_FINGERS_C(0.6) * t302;
+    const two_fingers_real_t t303 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t302);
     const two_fingers_real_t t304 = parameters[XY5] * t200 + t203 * t198;
     const two_fingers_real_t t305 = parameters[XY5] * t203 - t200 * t197;
     const two_fingers_real_t t306 = TWO_FINGERS_C(0.045) * t71;
@@ -534,29 +536,29 @@ int two_fingers_forward_dynamics_derivatives(
         + TWO_FINGERS_C(0.984807753012208) * t49 * t312);
     const two_fingers_real_t t324 = TWO_FINGERS_C(1.6666666666666667) * t323;
     ddq_by_dq[0] = t315 + t324 * t317;
-    const two_fingers_real_t t325 = TWO_FINGERS_C(2.4) * t280;
-    const two_fingers_real_t t326 = TWO_FINGERS_C(0.6) * (t66 + t67 * t280);
+    const two_fingers_real_t t325 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t280);
+    const two_fingers_real_t t326 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t66 + t67 * t280));
     const two_fingers_real_t t327 = t17 * t66 + t67 * t293;
-    const two_fingers_real_t t328 = TWO_FINGERS_C(0.6) * t327;
+    const two_fingers_real_t t328 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t327);
     const two_fingers_real_t t329 = t67 * t302;
-    const two_fingers_real_t t330 = TWO_FINGERS_C(0.6) * t329;
+    const two_fingers_real_t t330 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t329);
     const two_fingers_real_t t331 = t292 * t326 - t278 * t325 + t301 * t328 + t314 * t330;
     const two_fingers_real_t t332 = t67 * t316;
-    const two_fingers_real_t t333 = TWO_FINGERS_C(-0.6) * t332;
+    const two_fingers_real_t t333 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t332);
     ddq_by_dq[5] = t331 + t324 * t333;
-    const two_fingers_real_t t334 = TWO_FINGERS_C(2.4) * t293;
+    const two_fingers_real_t t334 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t293);
     const two_fingers_real_t t335 = TWO_FINGERS_C(0.6) * (t16 + t61 * t293 + t17 * t327);
-    const two_fingers_real_t t336 = TWO_FINGERS_C(0.6) * (t61 * t302 + t17 * t329);
+    const two_fingers_real_t t336 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t61 * t302 + t17 * t329));
     const two_fingers_real_t t337 = t292 * t328 - t278 * t334 + t301 * t335 + t314 * t336;
-    const two_fingers_real_t t338 = TWO_FINGERS_C(-0.6) * (t61 * t316 + t17 * t332);
+    const two_fingers_real_t t338 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * (t61 * t316 + t17 * t332));
     ddq_by_dq[10] = t337 + t324 * t338;
-    const two_fingers_real_t t339 = TWO_FINGERS_C(2.4) * t302;
-    const two_fingers_real_t t340 = TWO_FINGERS_C(0.6) * (t56 + t57 * t302);
+    const two_fingers_real_t t339 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t302);
+    const two_fingers_real_t t340 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t56 + t57 * t302));
     const two_fingers_real_t t341 = t292 * t330 - t278 * t339 + t301 * t336 + t314 * t340;
     const two_fingers_real_t t342 = t7 * t56 + t57 * t316;
-    const two_fingers_real_t t343 = TWO_FINGERS_C(-0.6) * t342;
+    const two_fingers_real_t t343 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t342);
     ddq_by_dq[15] = t341 + t324 * t343;
-    const two_fingers_real_t t344 = TWO_FINGERS_C(-2.4) * t316;
+    const two_fingers_real_t t344 = two_fingers_bounded(TWO_FINGERS_C(-2.4) * t316);
     const two_fingers_real_t t345 = t292 * t333 - t278 * t344 + t301 * t338 + t314 * t343;
     const two_fingers_real_t t346 = TWO_FINGERS_C(0.6) * (t6 - t51 * t316 + t7 * t342);
     ddq_by_dq[20] = t345 + t324 * t346;
@@ -879,10 +881,10 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_q[10] = TWO_FINGERS_C(0.0);
     ddq_by_q[15] = TWO_FINGERS_C(0.0);
     ddq_by_q[20] = TWO_FINGERS_C(0.0);
-    if (!two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_q, 25, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_dq, 25, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_input, 25, TWO_FINGERS_C(1.0e30))) {
+    if (!two_fingers_all_bounded(ddq, 5)
+        || !two_fingers_all_bounded(ddq_by_q, 25)
+        || !two_fingers_all_bounded(ddq_by_dq, 25)
+        || !two_fingers_all_bounded(ddq_by_input, 25)) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);

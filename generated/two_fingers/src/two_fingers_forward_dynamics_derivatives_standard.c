@@ -97,7 +97,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -139,7 +139,8 @@ int two_fingers_forward_dynamics_derivatives_standard(
     TWO_FINGERS_SINCOS(q[3], &t34, &t31);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -147,7 +148,8 @@ int two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -163,7 +165,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9);
     const two_fingers_real_t t11 = t10 + TWO_FINGERS_C(9.0e2) * parameters[IA4];
-    const two_fingers_real_t t12 = t11 - t5 * t7;
+    const two_fingers_real_t t12 = two_fingers_bounded(t11 - t5 * t7);
     if (!(t12 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -187,7 +189,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t21 = TWO_FINGERS_C(0.05) * (t20 + TWO_FINGERS_C(-2.0) * t16);
     const two_fingers_real_t t22 = parameters[ZZ2] + (parameters[ZZ3] + t21);
     const two_fingers_real_t t23 = t22 + TWO_FINGERS_C(9.0e2) * parameters[IA2];
-    const two_fingers_real_t t24 = t23 - t17 * t19;
+    const two_fingers_real_t t24 = two_fingers_bounded(t23 - t17 * t19);
     if (!(t24 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -265,7 +267,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t81 = t55 * t79 - t52 * t80 + t76 * t19;
     const two_fingers_real_t t82 = TWO_FINGERS_C(1.0) / t24;
     const two_fingers_real_t t83 = t81 * t82;
-    const two_fingers_real_t t84 = t78 - t81 * t83;
+    const two_fingers_real_t t84 = two_fingers_bounded(t78 - t81 * t83);
     if (!(t84 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -457,15 +459,15 @@ int two_fingers_forward_dynamics_derivatives_standard(
         + t220 * parameters[FC2]) - t219;
     const two_fingers_real_t t222 = TWO_FINGERS_C(0.6) * input[1] - t221 + t215 * t19;
     const two_fingers_real_t t223 = TWO_FINGERS_C(1.0) / t84;
-    const two_fingers_real_t t224 = (t211 + t215 * t77 + t222 * t83) * t223;
+    const two_fingers_real_t t224 = two_fingers_bounded((t211 + t215 * t77 + t222 * t83) * t223);
     ddq[0] = t224;
-    const two_fingers_real_t t225 = t222 * t82 + t83 * t224;
+    const two_fingers_real_t t225 = two_fingers_bounded(t222 * t82 + t83 * t224);
     ddq[1] = t225;
-    const two_fingers_real_t t226 = t215 * t18 + t77 * t224 + t19 * t225;
+    const two_fingers_real_t t226 = two_fingers_bounded(t215 * t18 + t77 * t224 + t19 * t225);
     ddq[2] = t226;
-    const two_fingers_real_t t227 = t210 * t72 + t73 * t224;
+    const two_fingers_real_t t227 = two_fingers_bounded(t210 * t72 + t73 * t224);
     ddq[3] = t227;
-    const two_fingers_real_t t228 = t206 * t6 + t67 * t224 - t7 * t227;
+    const two_fingers_real_t t228 = two_fingers_bounded(t206 * t6 + t67 * t224 - t7 * t227);
     ddq[4] = t228;
     const two_fingers_real_t t229 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
         + parameters[YY5]));
@@ -574,9 +576,9 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t318 = t273 + t269 + t274 + (t256 + t266 - t269) + (t317 + (t302 + t312 - t315));
     const two_fingers_real_t t319 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
         + TWO_FINGERS_C(0.8333333333333334) * t318;
-    const two_fingers_real_t t320 = TWO_FINGERS_C(2.4) * t223;
+    const two_fingers_real_t t320 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t223);
     const two_fingers_real_t t321 = t83 * t223;
-    const two_fingers_real_t t322 = TWO_FINGERS_C(0.6) * t321;
+    const two_fingers_real_t t322 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t321);
     const two_fingers_real_t t323 = t278 * parameters[XY3] + t281 * t276;
     const two_fingers_real_t t324 = t278 * t282 + t281 * parameters[XY3];
     const two_fingers_real_t t325 = t278 * parameters[MY3] + t281 * parameters[MX3];
@@ -598,7 +600,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t340 = t55 * t338 - t52 * t339 - (t55 * t16 - t52 * t53) * t330;
     const two_fingers_real_t t341 = TWO_FINGERS_C(1.6666666666666667) * t340;
     const two_fingers_real_t t342 = t73 * t223;
-    const two_fingers_real_t t343 = TWO_FINGERS_C(0.6) * t342;
+    const two_fingers_real_t t343 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t342);
     const two_fingers_real_t t344 = t232 * parameters[XY5] + t235 * t230;
     const two_fingers_real_t t345 = t232 * t236 + t235 * parameters[XY5];
     const two_fingers_real_t t346 = t2 * t345 - t3 * t344 + (TWO_FINGERS_C(0.045) * t271 + t37 * t251);
@@ -622,29 +624,29 @@ int two_fingers_forward_dynamics_derivatives_standard(
         + TWO_FINGERS_C(0.984807753012208) * t65 * t351);
     const two_fingers_real_t t363 = TWO_FINGERS_C(1.6666666666666667) * t362;
     ddq_by_dq[0] = t354 + t363 * t356;
-    const two_fingers_real_t t364 = TWO_FINGERS_C(2.4) * t321;
-    const two_fingers_real_t t365 = TWO_FINGERS_C(0.6) * (t82 + t83 * t321);
+    const two_fingers_real_t t364 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t321);
+    const two_fingers_real_t t365 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t82 + t83 * t321));
     const two_fingers_real_t t366 = t19 * t82 + t83 * t333;
-    const two_fingers_real_t t367 = TWO_FINGERS_C(0.6) * t366;
+    const two_fingers_real_t t367 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t366);
     const two_fingers_real_t t368 = t83 * t342;
-    const two_fingers_real_t t369 = TWO_FINGERS_C(0.6) * t368;
+    const two_fingers_real_t t369 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t368);
     const two_fingers_real_t t370 = t332 * t365 - t319 * t364 + t341 * t367 + t353 * t369;
     const two_fingers_real_t t371 = t83 * t355;
-    const two_fingers_real_t t372 = TWO_FINGERS_C(-0.6) * t371;
+    const two_fingers_real_t t372 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t371);
     ddq_by_dq[5] = t370 + t363 * t372;
-    const two_fingers_real_t t373 = TWO_FINGERS_C(2.4) * t333;
+    const two_fingers_real_t t373 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t333);
     const two_fingers_real_t t374 = TWO_FINGERS_C(0.6) * (t18 + t77 * t333 + t19 * t366);
-    const two_fingers_real_t t375 = TWO_FINGERS_C(0.6) * (t77 * t342 + t19 * t368);
+    const two_fingers_real_t t375 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t77 * t342 + t19 * t368));
     const two_fingers_real_t t376 = t332 * t367 - t319 * t373 + t341 * t374 + t353 * t375;
-    const two_fingers_real_t t377 = TWO_FINGERS_C(-0.6) * (t77 * t355 + t19 * t371);
+    const two_fingers_real_t t377 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * (t77 * t355 + t19 * t371));
     ddq_by_dq[10] = t376 + t363 * t377;
-    const two_fingers_real_t t378 = TWO_FINGERS_C(2.4) * t342;
-    const two_fingers_real_t t379 = TWO_FINGERS_C(0.6) * (t72 + t73 * t342);
+    const two_fingers_real_t t378 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t342);
+    const two_fingers_real_t t379 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t72 + t73 * t342));
     const two_fingers_real_t t380 = t332 * t369 - t319 * t378 + t341 * t375 + t353 * t379;
     const two_fingers_real_t t381 = t7 * t72 + t73 * t355;
-    const two_fingers_real_t t382 = TWO_FINGERS_C(-0.6) * t381;
+    const two_fingers_real_t t382 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t381);
     ddq_by_dq[15] = t380 + t363 * t382;
-    const two_fingers_real_t t383 = TWO_FINGERS_C(-2.4) * t355;
+    const two_fingers_real_t t383 = two_fingers_bounded(TWO_FINGERS_C(-2.4) * t355);
     const two_fingers_real_t t384 = t332 * t372 - t319 * t383 + t341 * t377 + t353 * t382;
     const two_fingers_real_t t385 = TWO_FINGERS_C(0.6) * (t6 - t67 * t355 + t7 * t381);
     ddq_by_dq[20] = t384 + t363 * t385;
@@ -999,10 +1001,10 @@ int two_fingers_forward_dynamics_derivatives_standard(
     ddq_by_q[10] = TWO_FINGERS_C(0.0);
     ddq_by_q[15] = TWO_FINGERS_C(0.0);
     ddq_by_q[20] = TWO_FINGERS_C(0.0);
-    if (!two_fingers_within_joints(ddq, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_q, 25, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_dq, 25, TWO_FINGERS_C(1.0e30))
-        || !two_fingers_within(ddq_by_input, 25, TWO_FINGERS_C(1.0e30))) {
+    if (!two_fingers_all_bounded(ddq, 5)
+        || !two_fingers_all_bounded(ddq_by_q, 25)
+        || !two_fingers_all_bounded(ddq_by_dq, 25)
+        || !two_fingers_all_bounded(ddq_by_input, 25)) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);

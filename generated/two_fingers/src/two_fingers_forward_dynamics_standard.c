@@ -93,7 +93,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -129,12 +129,14 @@ int two_fingers_forward_dynamics_standard(
     TWO_FINGERS_SINCOS(q[3], &t30, &t28);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
+        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -147,7 +149,7 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9)
         + TWO_FINGERS_C(9.0e2) * parameters[IA4];
-    const two_fingers_real_t t11 = t10 - t5 * t7;
+    const two_fingers_real_t t11 = two_fingers_bounded(t10 - t5 * t7);
     if (!(t11 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -165,7 +167,7 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * (t19 + TWO_FINGERS_C(2.0) * t15);
     const two_fingers_real_t t21 = parameters[ZZ2] + (parameters[ZZ3] + t20)
         + TWO_FINGERS_C(9.0e2) * parameters[IA2];
-    const two_fingers_real_t t22 = t21 - t16 * t18;
+    const two_fingers_real_t t22 = two_fingers_bounded(t21 - t16 * t18);
     if (!(t22 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -230,7 +232,7 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t67 = t66 + t63 * t18;
     const two_fingers_real_t t68 = TWO_FINGERS_C(1.0) / t22;
     const two_fingers_real_t t69 = t67 * t68;
-    const two_fingers_real_t t70 = t65 - t67 * t69;
+    const two_fingers_real_t t70 = two_fingers_bounded(t65 - t67 * t69);
     if (!(t70 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -397,15 +399,15 @@ int two_fingers_forward_dynamics_standard(
         + t186 * parameters[FC2]) - t185;
     const two_fingers_real_t t188 = TWO_FINGERS_C(0.6) * input[1] - t187 + t181 * t18;
     const two_fingers_real_t t189 = TWO_FINGERS_C(1.0) / t70;
-    const two_fingers_real_t t190 = (t177 + t181 * t64 + t188 * t69) * t189;
+    const two_fingers_real_t t190 = two_fingers_bounded((t177 + t181 * t64 + t188 * t69) * t189);
     out[0] = t190;
-    const two_fingers_real_t t191 = t188 * t68 + t69 * t190;
+    const two_fingers_real_t t191 = two_fingers_bounded(t188 * t68 + t69 * t190);
     out[1] = t191;
     out[2] = t181 * t17 + t64 * t190 + t18 * t191;
-    const two_fingers_real_t t192 = t176 * t59 + t60 * t190;
+    const two_fingers_real_t t192 = two_fingers_bounded(t176 * t59 + t60 * t190);
     out[3] = t192;
     out[4] = t172 * t6 + t56 * t190 + t7 * t192;
-    if (!two_fingers_within_joints(out, TWO_FINGERS_C(1.0e30))) {
+    if (!two_fingers_all_bounded(out, 5)) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

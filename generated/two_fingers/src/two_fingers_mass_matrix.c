@@ -67,7 +67,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_mass_matrix.c are of different generations: generate the arm again"
 #endif
 

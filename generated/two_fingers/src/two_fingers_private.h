@@ -13,7 +13,7 @@
 
 #include "two_fingers.h"
 
-#if TWO_FINGERS_GENERATION != 0xE4C46997UL
+#if TWO_FINGERS_GENERATION != 0x01C0F172UL
 #error "two_fingers.h and two_fingers_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int two_fingers_within(const two_fingers_real_t x[], int n, two_fi
 static inline int two_fingers_within_joints(const two_fingers_real_t x[], two_fingers_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline two_fingers_real_t two_fingers_bounded(two_fingers_real_t x)
+{
+    return x >= TWO_FINGERS_C(-1.0e15) && x <= TWO_FINGERS_C(1.0e15) ? x : TWO_FINGERS_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int two_fingers_all_bounded(const two_fingers_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= TWO_FINGERS_C(-1.0e15) && x[i] <= TWO_FINGERS_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DTWO_FINGERS_PARAMETERS_CHECKED, for parameters that two_fingers_check_parameters has seen. */

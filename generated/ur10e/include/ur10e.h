@@ -83,7 +83,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0xCAE53365UL
+#define UR10E_GENERATION 0xD097BE4EUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define UR10E_MODEL "7af72714a52b4b6a026bb82666db6346a9dd95fbc89b18b5f169b9ced95f8107"

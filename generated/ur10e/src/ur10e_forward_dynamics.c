@@ -82,7 +82,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xCAE53365UL
+#if UR10E_GENERATION != 0xD097BE4EUL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -119,7 +119,7 @@ int ur10e_forward_dynamics(
     UR10E_SINCOS(q[4], &t13, &t15);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -131,7 +131,7 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t7 = t2 * t6;
     const ur10e_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const ur10e_real_t t9 = t8 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t10 = t9 + t3 * t5;
+    const ur10e_real_t t10 = ur10e_bounded(t9 + t3 * t5);
     if (!(t10 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -162,7 +162,7 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t32 = UR10E_C(-0.2397) * t21;
     const ur10e_real_t t33 = parameters[ZZ4R] + (t28 + t31 + t32);
     const ur10e_real_t t34 = t33 + UR10E_C(10201.0) * parameters[IA4];
-    const ur10e_real_t t35 = t34 + t23 * t27 + t24 * t26;
+    const ur10e_real_t t35 = ur10e_bounded(t34 + t23 * t27 + t24 * t26);
     if (!(t35 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -190,7 +190,7 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t54 = parameters[ZZ3R] + (t33 + t53);
     const ur10e_real_t t55 = t54 + UR10E_C(10201.0) * parameters[IA3];
     const ur10e_real_t t56 = t48 * t25;
-    const ur10e_real_t t57 = t55 + t45 * t52 + t48 * t56 + t49 * t51;
+    const ur10e_real_t t57 = ur10e_bounded(t55 + t45 * t52 + t48 * t56 + t49 * t51);
     if (!(t57 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -220,7 +220,7 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t78 = t77 - t74 * t51;
     const ur10e_real_t t79 = UR10E_C(1.0) / t57;
     const ur10e_real_t t80 = t78 * t79;
-    const ur10e_real_t t81 = t76 - t78 * t80;
+    const ur10e_real_t t81 = ur10e_bounded(t76 - t78 * t80);
     if (!(t81 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -281,7 +281,7 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t131 = t130 + t127 * t80;
     const ur10e_real_t t132 = UR10E_C(1.0) / t81;
     const ur10e_real_t t133 = t131 * t132;
-    const ur10e_real_t t134 = t121 - t127 * t128 - t131 * t133;
+    const ur10e_real_t t134 = ur10e_bounded(t121 - t127 * t128 - t131 * t133);
     if (!(t134 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -472,20 +472,20 @@ int ur10e_forward_dynamics(
     const ur10e_real_t t284 = t283 - t271 * t75 + t277 * t80;
     const ur10e_real_t t285 = t266 + t271 * t120 + t277 * t128 + t284 * t133;
     const ur10e_real_t t286 = UR10E_C(1.0) / t134;
-    const ur10e_real_t t287 = t285 * t286;
+    const ur10e_real_t t287 = ur10e_bounded(t285 * t286);
     out[0] = t287;
-    const ur10e_real_t t288 = t284 * t132 + t133 * t287;
+    const ur10e_real_t t288 = ur10e_bounded(t284 * t132 + t133 * t287);
     out[1] = t288;
-    const ur10e_real_t t289 = t277 * t79 + t128 * t287 + t80 * t288;
+    const ur10e_real_t t289 = ur10e_bounded(t277 * t79 + t128 * t287 + t80 * t288);
     out[2] = t289;
-    const ur10e_real_t t290 = t120 * t287 - t271 * t50 - t75 * t288 - t51 * t289;
+    const ur10e_real_t t290 = ur10e_bounded(t120 * t287 - t271 * t50 - t75 * t288 - t51 * t289);
     out[3] = t290;
     const ur10e_real_t t291 = t111 * t287 - t265 * t25 + t72 * t288 + t56 * t289;
-    const ur10e_real_t t292 = t291 - t26 * t290;
+    const ur10e_real_t t292 = ur10e_bounded(t291 - t26 * t290);
     out[4] = t292;
     const ur10e_real_t t293 = t91 * t287 - t262 * t4 + t63 * t288 + t52 * t289;
     out[5] = t293 - t27 * t290 - t5 * t292;
-    if (!ur10e_within_joints(out, UR10E_C(1.0e30))) {
+    if (!ur10e_all_bounded(out, 6)) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

@@ -86,7 +86,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xCAE53365UL
+#if UR10E_GENERATION != 0xD097BE4EUL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -129,7 +129,7 @@ int ur10e_forward_dynamics_derivatives(
     UR10E_SINCOS(q[4], &t13, &t15);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -144,7 +144,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t7 = t2 * t6;
     const ur10e_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const ur10e_real_t t9 = t8 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t10 = t9 - t3 * t5;
+    const ur10e_real_t t10 = ur10e_bounded(t9 - t3 * t5);
     if (!(t10 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -181,7 +181,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t32 = UR10E_C(0.2397) * t21;
     const ur10e_real_t t33 = t28 - t31 + t32 - parameters[ZZ4R];
     const ur10e_real_t t34 = UR10E_C(10201.0) * parameters[IA4] - t33;
-    const ur10e_real_t t35 = t34 - t23 * t27 - t24 * t26;
+    const ur10e_real_t t35 = ur10e_bounded(t34 - t23 * t27 - t24 * t26);
     if (!(t35 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -215,7 +215,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t54 = t33 + t53 - parameters[ZZ3R];
     const ur10e_real_t t55 = UR10E_C(10201.0) * parameters[IA3] - t54;
     const ur10e_real_t t56 = t48 * t25;
-    const ur10e_real_t t57 = t55 - t45 * t52 - t48 * t56 - t49 * t51;
+    const ur10e_real_t t57 = ur10e_bounded(t55 - t45 * t52 - t48 * t56 - t49 * t51);
     if (!(t57 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -255,7 +255,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t82 = t63 * t52 - t81 + t74 * t56 - t78 * t51;
     const ur10e_real_t t83 = UR10E_C(1.0) / t57;
     const ur10e_real_t t84 = t82 * t83;
-    const ur10e_real_t t85 = t80 - t82 * t84;
+    const ur10e_real_t t85 = ur10e_bounded(t80 - t82 * t84);
     if (!(t85 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -326,7 +326,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t141 = t140 + t128 * t79 + t136 * t84;
     const ur10e_real_t t142 = UR10E_C(1.0) / t85;
     const ur10e_real_t t143 = t141 * t142;
-    const ur10e_real_t t144 = t130 - t136 * t137 - t141 * t143;
+    const ur10e_real_t t144 = ur10e_bounded(t130 - t136 * t137 - t141 * t143);
     if (!(t144 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -532,19 +532,19 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t305 = t304 + t292 * t79 - t298 * t84;
     const ur10e_real_t t306 = t287 + t292 * t129 - t298 * t137 + t305 * t143;
     const ur10e_real_t t307 = UR10E_C(1.0) / t144;
-    const ur10e_real_t t308 = t306 * t307;
+    const ur10e_real_t t308 = ur10e_bounded(t306 * t307);
     ddq[0] = t308;
-    const ur10e_real_t t309 = t305 * t142 + t143 * t308;
+    const ur10e_real_t t309 = ur10e_bounded(t305 * t142 + t143 * t308);
     ddq[1] = t309;
-    const ur10e_real_t t310 = t298 * t83 - t137 * t308 - t84 * t309;
+    const ur10e_real_t t310 = ur10e_bounded(t298 * t83 - t137 * t308 - t84 * t309);
     ddq[2] = t310;
-    const ur10e_real_t t311 = t292 * t50 + t129 * t308 + t79 * t309 + t51 * t310;
+    const ur10e_real_t t311 = ur10e_bounded(t292 * t50 + t129 * t308 + t79 * t309 + t51 * t310);
     ddq[3] = t311;
     const ur10e_real_t t312 = t286 * t25 + t119 * t308 - t75 * t309 + t56 * t310;
-    const ur10e_real_t t313 = t312 + t26 * t311;
+    const ur10e_real_t t313 = ur10e_bounded(t312 + t26 * t311);
     ddq[4] = t313;
     const ur10e_real_t t314 = t283 * t4 + t96 * t308 - t64 * t309 + t52 * t310;
-    const ur10e_real_t t315 = t314 + t27 * t311 + t5 * t313;
+    const ur10e_real_t t315 = ur10e_bounded(t314 + t27 * t311 + t5 * t313);
     ddq[5] = t315;
     const ur10e_real_t t316 = t92 * t61 + t94 * t60;
     const ur10e_real_t t317 = t94 * t61 - t92 * t60;
@@ -670,9 +670,9 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t436 = t94 * (t94 * (t429 - t427) + t92 * (t432 + t435));
     const ur10e_real_t t437 = UR10E_C(841.6666666666667) * parameters[FV1]
         + UR10E_C(0.16501650165016502) * (t427 + t436);
-    const ur10e_real_t t438 = UR10E_C(12.12) * t307;
+    const ur10e_real_t t438 = ur10e_bounded(UR10E_C(12.12) * t307);
     const ur10e_real_t t439 = t143 * t307;
-    const ur10e_real_t t440 = UR10E_C(12.12) * t439;
+    const ur10e_real_t t440 = ur10e_bounded(UR10E_C(12.12) * t439);
     const ur10e_real_t t441 = t13 * t354;
     const ur10e_real_t t442 = t322 * t384 - parameters[XY4] * t319 + (t441 - t349 + t39 * t362);
     const ur10e_real_t t443 = t13 * t373 + t15 * t374 + (UR10E_C(-0.11985) * t395 - t21 * t362);
@@ -687,7 +687,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t452 = UR10E_C(2.0) * t451;
     const ur10e_real_t t453 = UR10E_C(0.08250825082508251) * (t92 * t450 - t94 * t452);
     const ur10e_real_t t454 = t307 * (t137 + t84 * t143);
-    const ur10e_real_t t455 = UR10E_C(-10.100000000000001) * t454;
+    const ur10e_real_t t455 = ur10e_bounded(UR10E_C(-10.100000000000001) * t454);
     const ur10e_real_t t456 = UR10E_C(2.0) * t446;
     const ur10e_real_t t457 = UR10E_C(2.0) * t447;
     const ur10e_real_t t458 = UR10E_C(1.2254) * t147;
@@ -696,7 +696,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t461 = UR10E_C(0.099009900990099) * (t92 * t459 + t94 * t460);
     const ur10e_real_t t462 = t51 * t84 - t79;
     const ur10e_real_t t463 = t307 * (t51 * t137 - t129 + t143 * t462);
-    const ur10e_real_t t464 = UR10E_C(-9.09) * t463;
+    const ur10e_real_t t464 = ur10e_bounded(UR10E_C(-9.09) * t463);
     const ur10e_real_t t465 = UR10E_C(2.0) * t442;
     const ur10e_real_t t466 = UR10E_C(2.0) * t444;
     const ur10e_real_t t467 = UR10E_C(1.1431) * t392;
@@ -711,7 +711,7 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t476 = t75 - t26 * t79 + t84 * t475;
     const ur10e_real_t t477 = t137 * t475 - (t119 + t26 * t129) + t143 * t476;
     const ur10e_real_t t478 = t307 * t477;
-    const ur10e_real_t t479 = UR10E_C(-9.09) * t478;
+    const ur10e_real_t t479 = ur10e_bounded(UR10E_C(-9.09) * t478);
     const ur10e_real_t t480 = UR10E_C(2.0) * t382;
     const ur10e_real_t t481 = UR10E_C(2.0) * t383;
     const ur10e_real_t t482 = t13 * t481 - t15 * t480;
@@ -748,52 +748,52 @@ int ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t513 = t60 * t509 - t61 * t510 + t512 * t458;
     const ur10e_real_t t514 = UR10E_C(0.11001100110011001) * (t92 * t511 + t94 * t513);
     ddq_by_dq[0] = t514 * t501 - (t474 + t495 * t479);
-    const ur10e_real_t t515 = UR10E_C(12.12) * (t142 + t143 * t439);
+    const ur10e_real_t t515 = ur10e_bounded(UR10E_C(12.12) * (t142 + t143 * t439));
     const ur10e_real_t t516 = t84 * t142 + t143 * t454;
-    const ur10e_real_t t517 = UR10E_C(-10.100000000000001) * t516;
+    const ur10e_real_t t517 = ur10e_bounded(UR10E_C(-10.100000000000001) * t516);
     const ur10e_real_t t518 = t142 * t462 + t143 * t463;
-    const ur10e_real_t t519 = UR10E_C(-9.09) * t518;
+    const ur10e_real_t t519 = ur10e_bounded(UR10E_C(-9.09) * t518);
     const ur10e_real_t t520 = t437 * t440 + t453 * t515 + t461 * t517 + t473 * t519;
     const ur10e_real_t t521 = t142 * t476 + t143 * t478;
-    const ur10e_real_t t522 = UR10E_C(-9.09) * t521;
+    const ur10e_real_t t522 = ur10e_bounded(UR10E_C(-9.09) * t521);
     const ur10e_real_t t523 = t142 * t498 + t143 * t500;
     const ur10e_real_t t524 = UR10E_C(9.09) * t523;
     ddq_by_dq[6] = t514 * t524 - (t520 + t495 * t522);
-    const ur10e_real_t t525 = UR10E_C(-12.12) * t454;
-    const ur10e_real_t t526 = UR10E_C(-12.12) * t516;
-    const ur10e_real_t t527 = UR10E_C(10.100000000000001) * (t83 + t137 * t454 + t84 * t516);
+    const ur10e_real_t t525 = ur10e_bounded(UR10E_C(-12.12) * t454);
+    const ur10e_real_t t526 = ur10e_bounded(UR10E_C(-12.12) * t516);
+    const ur10e_real_t t527 = ur10e_bounded(UR10E_C(10.100000000000001) * (t83 + t137 * t454 + t84 * t516));
     const ur10e_real_t t528 = t51 * t83 + t137 * t463 + t84 * t518;
-    const ur10e_real_t t529 = UR10E_C(9.09) * t528;
+    const ur10e_real_t t529 = ur10e_bounded(UR10E_C(9.09) * t528);
     const ur10e_real_t t530 = t437 * t525 + t453 * t526 + t461 * t527 + t473 * t529;
     const ur10e_real_t t531 = t83 * t475 + t137 * t478 + t84 * t521;
-    const ur10e_real_t t532 = UR10E_C(9.09) * t531;
+    const ur10e_real_t t532 = ur10e_bounded(UR10E_C(9.09) * t531);
     const ur10e_real_t t533 = t83 * t497 + t137 * t500 + t84 * t523;
     const ur10e_real_t t534 = UR10E_C(-9.09) * t533;
     ddq_by_dq[12] = t514 * t534 - (t530 + t495 * t532);
-    const ur10e_real_t t535 = UR10E_C(-12.12) * t463;
-    const ur10e_real_t t536 = UR10E_C(-12.12) * t518;
-    const ur10e_real_t t537 = UR10E_C(10.100000000000001) * t528;
+    const ur10e_real_t t535 = ur10e_bounded(UR10E_C(-12.12) * t463);
+    const ur10e_real_t t536 = ur10e_bounded(UR10E_C(-12.12) * t518);
+    const ur10e_real_t t537 = ur10e_bounded(UR10E_C(10.100000000000001) * t528);
     const ur10e_real_t t538 = t50 - t129 * t463 - t79 * t518 + t51 * t528;
-    const ur10e_real_t t539 = UR10E_C(9.09) * t538;
+    const ur10e_real_t t539 = ur10e_bounded(UR10E_C(9.09) * t538);
     const ur10e_real_t t540 = t437 * t535 + t453 * t536 + t461 * t537 + t473 * t539;
     const ur10e_real_t t541 = t129 * t478 - t26 * t50 + t79 * t521 - t51 * t531;
-    const ur10e_real_t t542 = UR10E_C(-9.09) * t541;
+    const ur10e_real_t t542 = ur10e_bounded(UR10E_C(-9.09) * t541);
     const ur10e_real_t t543 = t129 * t500 - t50 * t496 + t79 * t523 - t51 * t533;
     const ur10e_real_t t544 = UR10E_C(9.09) * t543;
     ddq_by_dq[18] = t514 * t544 - (t540 + t495 * t542);
-    const ur10e_real_t t545 = UR10E_C(-12.12) * t478;
-    const ur10e_real_t t546 = UR10E_C(-12.12) * t521;
-    const ur10e_real_t t547 = UR10E_C(10.100000000000001) * t531;
+    const ur10e_real_t t545 = ur10e_bounded(UR10E_C(-12.12) * t478);
+    const ur10e_real_t t546 = ur10e_bounded(UR10E_C(-12.12) * t521);
+    const ur10e_real_t t547 = ur10e_bounded(UR10E_C(10.100000000000001) * t531);
     const ur10e_real_t t548 = t437 * t545 + t453 * t546 + t461 * t547 + t473 * t542;
     const ur10e_real_t t549 = t25 - t119 * t478 + t75 * t521 + t56 * t531;
-    const ur10e_real_t t550 = UR10E_C(9.09) * (t549 - t26 * t541);
+    const ur10e_real_t t550 = ur10e_bounded(UR10E_C(9.09) * (t549 - t26 * t541));
     const ur10e_real_t t551 = t5 * t25 - t119 * t500 + t75 * t523 + t56 * t533;
     const ur10e_real_t t552 = t551 - t26 * t543;
     const ur10e_real_t t553 = UR10E_C(-9.09) * t552;
     ddq_by_dq[24] = t514 * t553 - (t548 + t495 * t550);
-    const ur10e_real_t t554 = UR10E_C(-12.12) * t500;
-    const ur10e_real_t t555 = UR10E_C(-12.12) * t523;
-    const ur10e_real_t t556 = UR10E_C(10.100000000000001) * t533;
+    const ur10e_real_t t554 = ur10e_bounded(UR10E_C(-12.12) * t500);
+    const ur10e_real_t t555 = ur10e_bounded(UR10E_C(-12.12) * t523);
+    const ur10e_real_t t556 = ur10e_bounded(UR10E_C(10.100000000000001) * t533);
     const ur10e_real_t t557 = t437 * t554 + t453 * t555 + t461 * t556 - t473 * t544;
     const ur10e_real_t t558 = t4 - t96 * t500 + t64 * t523 + t52 * t533;
     const ur10e_real_t t559 = UR10E_C(9.09) * (t558 - t27 * t543 + t5 * t552);
@@ -1364,10 +1364,10 @@ int ur10e_forward_dynamics_derivatives(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
-    if (!ur10e_within_joints(ddq, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_q, 36, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_dq, 36, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_input, 36, UR10E_C(1.0e30))) {
+    if (!ur10e_all_bounded(ddq, 6)
+        || !ur10e_all_bounded(ddq_by_q, 36)
+        || !ur10e_all_bounded(ddq_by_dq, 36)
+        || !ur10e_all_bounded(ddq_by_input, 36)) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);

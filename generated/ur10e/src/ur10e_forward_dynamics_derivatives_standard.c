@@ -111,7 +111,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xCAE53365UL
+#if UR10E_GENERATION != 0xD097BE4EUL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -155,7 +155,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     UR10E_SINCOS(q[4], &t22, &t18);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -174,7 +174,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t11 = UR10E_C(0.11655) * (t10 + UR10E_C(2.0) * parameters[MZ6]);
     const ur10e_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
     const ur10e_real_t t13 = t12 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t14 = t13 - t4 * t6;
+    const ur10e_real_t t14 = ur10e_bounded(t13 - t4 * t6);
     if (!(t14 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -216,7 +216,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t41 = t40 + t32 * t6;
     const ur10e_real_t t42 = UR10E_C(1.0) / t14;
     const ur10e_real_t t43 = t41 * t42;
-    const ur10e_real_t t44 = t30 - t32 * t33 - t41 * t43;
+    const ur10e_real_t t44 = ur10e_bounded(t30 - t32 * t33 - t41 * t43);
     if (!(t44 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -253,7 +253,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t66 = parameters[ZZ3] + (t29 + t65);
     const ur10e_real_t t67 = t66 + UR10E_C(10201.0) * parameters[IA3];
     const ur10e_real_t t68 = t58 * t42;
-    const ur10e_real_t t69 = t67 - t55 * t62 - t58 * t68 - t59 * t61;
+    const ur10e_real_t t69 = ur10e_bounded(t67 - t55 * t62 - t58 * t68 - t59 * t61);
     if (!(t69 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -297,7 +297,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t98 = t97 + UR10E_C(10201.0) * parameters[IA2];
     const ur10e_real_t t99 = t82 * t42;
     const ur10e_real_t t100 = t98 - t78 * t93 - t82 * t99 - t83 * t92;
-    const ur10e_real_t t101 = t100 - t89 * t91;
+    const ur10e_real_t t101 = ur10e_bounded(t100 - t89 * t91);
     if (!(t101 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -372,7 +372,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t161 = t160 + t146 * t92 + t154 * t91;
     const ur10e_real_t t162 = UR10E_C(1.0) / t101;
     const ur10e_real_t t163 = t161 * t162;
-    const ur10e_real_t t164 = t148 - t154 * t155 - t161 * t163;
+    const ur10e_real_t t164 = ur10e_bounded(t148 - t154 * t155 - t161 * t163);
     if (!(t164 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -625,19 +625,19 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t357 = t356 + t343 * t92 - t349 * t91;
     const ur10e_real_t t358 = t338 + t343 * t147 - t349 * t155 + t357 * t163;
     const ur10e_real_t t359 = UR10E_C(1.0) / t164;
-    const ur10e_real_t t360 = t358 * t359;
+    const ur10e_real_t t360 = ur10e_bounded(t358 * t359);
     ddq[0] = t360;
-    const ur10e_real_t t361 = t357 * t162 + t163 * t360;
+    const ur10e_real_t t361 = ur10e_bounded(t357 * t162 + t163 * t360);
     ddq[1] = t361;
-    const ur10e_real_t t362 = t349 * t90 - t155 * t360 - t91 * t361;
+    const ur10e_real_t t362 = ur10e_bounded(t349 * t90 - t155 * t360 - t91 * t361);
     ddq[2] = t362;
-    const ur10e_real_t t363 = t343 * t60 + t147 * t360 + t92 * t361 + t61 * t362;
+    const ur10e_real_t t363 = ur10e_bounded(t343 * t60 + t147 * t360 + t92 * t361 + t61 * t362);
     ddq[3] = t363;
     const ur10e_real_t t364 = t337 * t42 + t138 * t360 - t99 * t361 + t68 * t362;
-    const ur10e_real_t t365 = t364 + t43 * t363;
+    const ur10e_real_t t365 = ur10e_bounded(t364 + t43 * t363);
     ddq[4] = t365;
     const ur10e_real_t t366 = t334 * t5 + t132 * t360 - t93 * t361 + t62 * t362;
-    const ur10e_real_t t367 = t366 + t33 * t363 + t6 * t365;
+    const ur10e_real_t t367 = ur10e_bounded(t366 + t33 * t363 + t6 * t365);
     ddq[5] = t367;
     const ur10e_real_t t368 = t122 * t73 + t119 * t72;
     const ur10e_real_t t369 = t119 * t73 - t122 * t72;
@@ -781,9 +781,9 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t504 = t119 * (t119 * (t495 - t493) + t122 * (t499 + t503));
     const ur10e_real_t t505 = UR10E_C(841.6666666666667) * parameters[FV1]
         + UR10E_C(0.16501650165016502) * (t493 + t504);
-    const ur10e_real_t t506 = UR10E_C(12.12) * t359;
+    const ur10e_real_t t506 = ur10e_bounded(UR10E_C(12.12) * t359);
     const ur10e_real_t t507 = t163 * t359;
-    const ur10e_real_t t508 = UR10E_C(12.12) * t507;
+    const ur10e_real_t t508 = ur10e_bounded(UR10E_C(12.12) * t507);
     const ur10e_real_t t509 = t22 * t419;
     const ur10e_real_t t510 = t374 * t449 - t371 * parameters[XY4] + (t418 + t509 + t49 * t426);
     const ur10e_real_t t511 = t22 * t437 + t18 * t438 + (UR10E_C(-0.11985) * t460 + t46 * t426);
@@ -798,7 +798,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t520 = UR10E_C(2.0) * t519;
     const ur10e_real_t t521 = UR10E_C(0.08250825082508251) * (t122 * t518 - t119 * t520);
     const ur10e_real_t t522 = t359 * (t155 + t91 * t163);
-    const ur10e_real_t t523 = UR10E_C(-10.100000000000001) * t522;
+    const ur10e_real_t t523 = ur10e_bounded(UR10E_C(-10.100000000000001) * t522);
     const ur10e_real_t t524 = UR10E_C(2.0) * t514;
     const ur10e_real_t t525 = UR10E_C(2.0) * t515;
     const ur10e_real_t t526 = UR10E_C(1.2254) * t167;
@@ -807,7 +807,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t529 = UR10E_C(0.099009900990099) * (t122 * t527 + t119 * t528);
     const ur10e_real_t t530 = t61 * t91 - t92;
     const ur10e_real_t t531 = t359 * (t61 * t155 - t147 + t163 * t530);
-    const ur10e_real_t t532 = UR10E_C(-9.09) * t531;
+    const ur10e_real_t t532 = ur10e_bounded(UR10E_C(-9.09) * t531);
     const ur10e_real_t t533 = UR10E_C(2.0) * t510;
     const ur10e_real_t t534 = UR10E_C(2.0) * t512;
     const ur10e_real_t t535 = UR10E_C(1.1431) * t457;
@@ -822,7 +822,7 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t544 = t99 - t43 * t92 + t91 * t543;
     const ur10e_real_t t545 = t155 * t543 - (t138 + t43 * t147) + t163 * t544;
     const ur10e_real_t t546 = t359 * t545;
-    const ur10e_real_t t547 = UR10E_C(-9.09) * t546;
+    const ur10e_real_t t547 = ur10e_bounded(UR10E_C(-9.09) * t546);
     const ur10e_real_t t548 = UR10E_C(2.0) * t446;
     const ur10e_real_t t549 = UR10E_C(2.0) * t448;
     const ur10e_real_t t550 = t18 * t548 + t22 * t549;
@@ -860,52 +860,52 @@ int ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t582 = t72 * t578 - t73 * t579 + t581 * t526;
     const ur10e_real_t t583 = UR10E_C(0.11001100110011001) * (t122 * t580 + t119 * t582);
     ddq_by_dq[0] = t583 * t569 - (t542 + t563 * t547);
-    const ur10e_real_t t584 = UR10E_C(12.12) * (t162 + t163 * t507);
+    const ur10e_real_t t584 = ur10e_bounded(UR10E_C(12.12) * (t162 + t163 * t507));
     const ur10e_real_t t585 = t91 * t162 + t163 * t522;
-    const ur10e_real_t t586 = UR10E_C(-10.100000000000001) * t585;
+    const ur10e_real_t t586 = ur10e_bounded(UR10E_C(-10.100000000000001) * t585);
     const ur10e_real_t t587 = t162 * t530 + t163 * t531;
-    const ur10e_real_t t588 = UR10E_C(-9.09) * t587;
+    const ur10e_real_t t588 = ur10e_bounded(UR10E_C(-9.09) * t587);
     const ur10e_real_t t589 = t505 * t508 + t521 * t584 + t529 * t586 + t541 * t588;
     const ur10e_real_t t590 = t162 * t544 + t163 * t546;
-    const ur10e_real_t t591 = UR10E_C(-9.09) * t590;
+    const ur10e_real_t t591 = ur10e_bounded(UR10E_C(-9.09) * t590);
     const ur10e_real_t t592 = t162 * t566 + t163 * t568;
     const ur10e_real_t t593 = UR10E_C(9.09) * t592;
     ddq_by_dq[6] = t583 * t593 - (t589 + t563 * t591);
-    const ur10e_real_t t594 = UR10E_C(-12.12) * t522;
-    const ur10e_real_t t595 = UR10E_C(-12.12) * t585;
-    const ur10e_real_t t596 = UR10E_C(10.100000000000001) * (t90 + t155 * t522 + t91 * t585);
+    const ur10e_real_t t594 = ur10e_bounded(UR10E_C(-12.12) * t522);
+    const ur10e_real_t t595 = ur10e_bounded(UR10E_C(-12.12) * t585);
+    const ur10e_real_t t596 = ur10e_bounded(UR10E_C(10.100000000000001) * (t90 + t155 * t522 + t91 * t585));
     const ur10e_real_t t597 = t61 * t90 + t155 * t531 + t91 * t587;
-    const ur10e_real_t t598 = UR10E_C(9.09) * t597;
+    const ur10e_real_t t598 = ur10e_bounded(UR10E_C(9.09) * t597);
     const ur10e_real_t t599 = t505 * t594 + t521 * t595 + t529 * t596 + t541 * t598;
     const ur10e_real_t t600 = t90 * t543 + t155 * t546 + t91 * t590;
-    const ur10e_real_t t601 = UR10E_C(9.09) * t600;
+    const ur10e_real_t t601 = ur10e_bounded(UR10E_C(9.09) * t600);
     const ur10e_real_t t602 = t90 * t565 + t155 * t568 + t91 * t592;
     const ur10e_real_t t603 = UR10E_C(-9.09) * t602;
     ddq_by_dq[12] = t583 * t603 - (t599 + t563 * t601);
-    const ur10e_real_t t604 = UR10E_C(-12.12) * t531;
-    const ur10e_real_t t605 = UR10E_C(-12.12) * t587;
-    const ur10e_real_t t606 = UR10E_C(10.100000000000001) * t597;
+    const ur10e_real_t t604 = ur10e_bounded(UR10E_C(-12.12) * t531);
+    const ur10e_real_t t605 = ur10e_bounded(UR10E_C(-12.12) * t587);
+    const ur10e_real_t t606 = ur10e_bounded(UR10E_C(10.100000000000001) * t597);
     const ur10e_real_t t607 = t60 - t147 * t531 - t92 * t587 + t61 * t597;
-    const ur10e_real_t t608 = UR10E_C(9.09) * t607;
+    const ur10e_real_t t608 = ur10e_bounded(UR10E_C(9.09) * t607);
     const ur10e_real_t t609 = t505 * t604 + t521 * t605 + t529 * t606 + t541 * t608;
     const ur10e_real_t t610 = t147 * t546 - t43 * t60 + t92 * t590 - t61 * t600;
-    const ur10e_real_t t611 = UR10E_C(-9.09) * t610;
+    const ur10e_real_t t611 = ur10e_bounded(UR10E_C(-9.09) * t610);
     const ur10e_real_t t612 = t147 * t568 - t60 * t564 + t92 * t592 - t61 * t602;
     const ur10e_real_t t613 = UR10E_C(9.09) * t612;
     ddq_by_dq[18] = t583 * t613 - (t609 + t563 * t611);
-    const ur10e_real_t t614 = UR10E_C(-12.12) * t546;
-    const ur10e_real_t t615 = UR10E_C(-12.12) * t590;
-    const ur10e_real_t t616 = UR10E_C(10.100000000000001) * t600;
+    const ur10e_real_t t614 = ur10e_bounded(UR10E_C(-12.12) * t546);
+    const ur10e_real_t t615 = ur10e_bounded(UR10E_C(-12.12) * t590);
+    const ur10e_real_t t616 = ur10e_bounded(UR10E_C(10.100000000000001) * t600);
     const ur10e_real_t t617 = t505 * t614 + t521 * t615 + t529 * t616 + t541 * t611;
     const ur10e_real_t t618 = t42 - t138 * t546 + t99 * t590 + t68 * t600;
-    const ur10e_real_t t619 = UR10E_C(9.09) * (t618 - t43 * t610);
+    const ur10e_real_t t619 = ur10e_bounded(UR10E_C(9.09) * (t618 - t43 * t610));
     const ur10e_real_t t620 = t6 * t42 - t138 * t568 + t99 * t592 + t68 * t602;
     const ur10e_real_t t621 = t620 - t43 * t612;
     const ur10e_real_t t622 = UR10E_C(-9.09) * t621;
     ddq_by_dq[24] = t583 * t622 - (t617 + t563 * t619);
-    const ur10e_real_t t623 = UR10E_C(-12.12) * t568;
-    const ur10e_real_t t624 = UR10E_C(-12.12) * t592;
-    const ur10e_real_t t625 = UR10E_C(10.100000000000001) * t602;
+    const ur10e_real_t t623 = ur10e_bounded(UR10E_C(-12.12) * t568);
+    const ur10e_real_t t624 = ur10e_bounded(UR10E_C(-12.12) * t592);
+    const ur10e_real_t t625 = ur10e_bounded(UR10E_C(10.100000000000001) * t602);
     const ur10e_real_t t626 = t505 * t623 + t521 * t624 + t529 * t625 - t541 * t613;
     const ur10e_real_t t627 = t5 - t132 * t568 + t93 * t592 + t62 * t602;
     const ur10e_real_t t628 = UR10E_C(9.09) * (t627 - t33 * t612 + t6 * t621);
@@ -1521,10 +1521,10 @@ int ur10e_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
-    if (!ur10e_within_joints(ddq, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_q, 36, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_dq, 36, UR10E_C(1.0e30))
-        || !ur10e_within(ddq_by_input, 36, UR10E_C(1.0e30))) {
+    if (!ur10e_all_bounded(ddq, 6)
+        || !ur10e_all_bounded(ddq_by_q, 36)
+        || !ur10e_all_bounded(ddq_by_dq, 36)
+        || !ur10e_all_bounded(ddq_by_input, 36)) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);

@@ -107,7 +107,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xCAE53365UL
+#if UR10E_GENERATION != 0xD097BE4EUL
 #error "ur10e.h and ur10e_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,7 +145,7 @@ int ur10e_forward_dynamics_standard(
     UR10E_SINCOS(q[4], &t22, &t18);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -161,7 +161,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t11 = UR10E_C(0.11655) * (t10 + UR10E_C(2.0) * parameters[MZ6]);
     const ur10e_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
     const ur10e_real_t t13 = t12 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t14 = t13 + t4 * t6;
+    const ur10e_real_t t14 = ur10e_bounded(t13 + t4 * t6);
     if (!(t14 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -196,7 +196,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t40 = t39 + t32 * t6;
     const ur10e_real_t t41 = UR10E_C(-1.0) / t14;
     const ur10e_real_t t42 = t40 * t41;
-    const ur10e_real_t t43 = t30 + t32 * t33 + t40 * t42;
+    const ur10e_real_t t43 = ur10e_bounded(t30 + t32 * t33 + t40 * t42);
     if (!(t43 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -226,7 +226,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t64 = parameters[ZZ3] + (t29 + t63);
     const ur10e_real_t t65 = t64 + UR10E_C(10201.0) * parameters[IA3];
     const ur10e_real_t t66 = t56 * t41;
-    const ur10e_real_t t67 = t65 + t53 * t60 + t56 * t66 + t57 * t59;
+    const ur10e_real_t t67 = ur10e_bounded(t65 + t53 * t60 + t56 * t66 + t57 * t59);
     if (!(t67 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -258,7 +258,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t89 = parameters[ZZ2] + (t64 + t88) + UR10E_C(10201.0) * parameters[IA2];
     const ur10e_real_t t90 = t76 * t41;
     const ur10e_real_t t91 = t89 + t73 * t87 + t76 * t90 + t77 * t86;
-    const ur10e_real_t t92 = t91 - t83 * t85;
+    const ur10e_real_t t92 = ur10e_bounded(t91 - t83 * t85);
     if (!(t92 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -321,7 +321,7 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t144 = t143 + t132 * t86 + t140 * t85;
     const ur10e_real_t t145 = UR10E_C(1.0) / t92;
     const ur10e_real_t t146 = t144 * t145;
-    const ur10e_real_t t147 = t134 - t140 * t141 - t144 * t146;
+    const ur10e_real_t t147 = ur10e_bounded(t134 - t140 * t141 - t144 * t146);
     if (!(t147 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -552,20 +552,20 @@ int ur10e_forward_dynamics_standard(
     const ur10e_real_t t322 = t321 - t308 * t86 + t314 * t85;
     const ur10e_real_t t323 = t303 + t308 * t133 + t314 * t141 + t322 * t146;
     const ur10e_real_t t324 = UR10E_C(1.0) / t147;
-    const ur10e_real_t t325 = t323 * t324;
+    const ur10e_real_t t325 = ur10e_bounded(t323 * t324);
     out[0] = t325;
-    const ur10e_real_t t326 = t322 * t145 + t146 * t325;
+    const ur10e_real_t t326 = ur10e_bounded(t322 * t145 + t146 * t325);
     out[1] = t326;
-    const ur10e_real_t t327 = t314 * t84 + t141 * t325 + t85 * t326;
+    const ur10e_real_t t327 = ur10e_bounded(t314 * t84 + t141 * t325 + t85 * t326);
     out[2] = t327;
-    const ur10e_real_t t328 = t133 * t325 - t308 * t58 - t86 * t326 - t59 * t327;
+    const ur10e_real_t t328 = ur10e_bounded(t133 * t325 - t308 * t58 - t86 * t326 - t59 * t327);
     out[3] = t328;
     const ur10e_real_t t329 = t125 * t325 - t302 * t41 + t90 * t326 + t66 * t327;
-    const ur10e_real_t t330 = t329 - t42 * t328;
+    const ur10e_real_t t330 = ur10e_bounded(t329 - t42 * t328);
     out[4] = t330;
     const ur10e_real_t t331 = t120 * t325 - t299 * t5 + t87 * t326 + t60 * t327;
     out[5] = t331 - t33 * t328 + t6 * t330;
-    if (!ur10e_within_joints(out, UR10E_C(1.0e30))) {
+    if (!ur10e_all_bounded(out, 6)) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

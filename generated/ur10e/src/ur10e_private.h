@@ -13,7 +13,7 @@
 
 #include "ur10e.h"
 
-#if UR10E_GENERATION != 0xCAE53365UL
+#if UR10E_GENERATION != 0xD097BE4EUL
 #error "ur10e.h and ur10e_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int ur10e_within(const ur10e_real_t x[], int n, ur10e_real_t limit
 static inline int ur10e_within_joints(const ur10e_real_t x[], ur10e_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline ur10e_real_t ur10e_bounded(ur10e_real_t x)
+{
+    return x >= UR10E_C(-1.0e15) && x <= UR10E_C(1.0e15) ? x : UR10E_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int ur10e_all_bounded(const ur10e_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= UR10E_C(-1.0e15) && x[i] <= UR10E_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DUR10E_PARAMETERS_CHECKED, for parameters that ur10e_check_parameters has seen. */

@@ -92,7 +92,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xBB60C589UL
+#if WAM7_GENERATION != 0x7A21915FUL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -132,7 +132,7 @@ int wam7_forward_dynamics(
     WAM7_SINCOS(q[5], &t13, &t15);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -144,7 +144,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const wam7_real_t t9 = t8 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t10 = t9 + t3 * t5;
+    const wam7_real_t t10 = wam7_bounded(t9 + t3 * t5);
     if (!(t10 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -169,7 +169,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
     const wam7_real_t t27 = t26 + WAM7_C(89.8704) * parameters[IA5];
     const wam7_real_t t28 = t18 * t4;
-    const wam7_real_t t29 = t27 + t18 * t28 + t19 * t21;
+    const wam7_real_t t29 = wam7_bounded(t27 + t18 * t28 + t19 * t21);
     if (!(t29 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -213,7 +213,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t64 = WAM7_C(-0.6) * t49;
     const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
     const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t67 = t66 + t47 * t57 + t52 * t56 - t53 * t55;
+    const wam7_real_t t67 = wam7_bounded(t66 + t47 * t57 + t52 * t56 - t53 * t55);
     if (!(t67 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -263,7 +263,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t108 = t85 * t20;
     const wam7_real_t t109 = t92 * t54;
     const wam7_real_t t110 = t106 + t79 * t107 + t85 * t108 - t92 * t109;
-    const wam7_real_t t111 = t110 - t93 * t95;
+    const wam7_real_t t111 = wam7_bounded(t110 - t93 * t95);
     if (!(t111 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -313,7 +313,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t152 = t151 - t144 * t95;
     const wam7_real_t t153 = WAM7_C(1.0) / t111;
     const wam7_real_t t154 = t152 * t153;
-    const wam7_real_t t155 = t141 - t144 * t145 - t152 * t154;
+    const wam7_real_t t155 = wam7_bounded(t141 - t144 * t145 - t152 * t154);
     if (!(t155 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -350,7 +350,7 @@ int wam7_forward_dynamics(
     const wam7_real_t t182 = t178 + t161 * t179 + t163 * t180 - t165 * t181;
     const wam7_real_t t183 = t169 * t94;
     const wam7_real_t t184 = t172 * t153;
-    const wam7_real_t t185 = t182 - t169 * t183 - t172 * t184 - t173 * t175;
+    const wam7_real_t t185 = wam7_bounded(t182 - t169 * t183 - t172 * t184 - t173 * t175);
     if (!(t185 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -598,24 +598,24 @@ int wam7_forward_dynamics(
     const wam7_real_t t383 = WAM7_C(12.910250000000001) * input[1] + t382 - t362 * t128 - t365 * t134;
     const wam7_real_t t384 = t383 + t369 * t140 + t373 * t145 + t377 * t154;
     const wam7_real_t t385 = WAM7_C(1.0) / t185;
-    const wam7_real_t t386 = (t378 + t384 * t175) * t385;
+    const wam7_real_t t386 = wam7_bounded((t378 + t384 * t175) * t385);
     out[0] = t386;
-    const wam7_real_t t387 = t384 * t174 + t175 * t386;
+    const wam7_real_t t387 = wam7_bounded(t384 * t174 + t175 * t386);
     out[1] = t387;
-    const wam7_real_t t388 = t377 * t153 + t184 * t386 + t154 * t387;
+    const wam7_real_t t388 = wam7_bounded(t377 * t153 + t184 * t386 + t154 * t387);
     out[2] = t388;
-    const wam7_real_t t389 = t373 * t94 + t183 * t386 + t145 * t387 - t95 * t388;
+    const wam7_real_t t389 = wam7_bounded(t373 * t94 + t183 * t386 + t145 * t387 - t95 * t388);
     out[3] = t389;
     const wam7_real_t t390 = t369 * t54 + t181 * t386 + t140 * t387 + t109 * t388;
-    const wam7_real_t t391 = t390 + t55 * t389;
+    const wam7_real_t t391 = wam7_bounded(t390 + t55 * t389);
     out[4] = t391;
     const wam7_real_t t392 = t365 * t20 + t180 * t386 + t134 * t387 + t108 * t388;
-    const wam7_real_t t393 = t21 * t391 - (t392 + t56 * t389);
+    const wam7_real_t t393 = wam7_bounded(t21 * t391 - (t392 + t56 * t389));
     out[5] = t393;
     const wam7_real_t t394 = t362 * t4 + t179 * t386 + t128 * t387 + t107 * t388;
     const wam7_real_t t395 = t28 * t391 - (t394 + t57 * t389) + t5 * t393;
     out[6] = t395;
-    if (!wam7_within_joints(out, WAM7_C(1.0e30))) {
+    if (!wam7_all_bounded(out, 7)) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

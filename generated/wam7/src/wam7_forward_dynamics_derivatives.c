@@ -96,7 +96,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xBB60C589UL
+#if WAM7_GENERATION != 0x7A21915FUL
 #error "wam7.h and wam7_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -142,7 +142,7 @@ int wam7_forward_dynamics_derivatives(
     WAM7_SINCOS(q[5], &t13, &t15);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -157,7 +157,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const wam7_real_t t9 = t8 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t10 = t9 - t3 * t5;
+    const wam7_real_t t10 = wam7_bounded(t9 - t3 * t5);
     if (!(t10 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -188,7 +188,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
     const wam7_real_t t27 = t26 + WAM7_C(89.8704) * parameters[IA5];
     const wam7_real_t t28 = t18 * t4;
-    const wam7_real_t t29 = t27 - t18 * t28 - t19 * t21;
+    const wam7_real_t t29 = wam7_bounded(t27 - t18 * t28 - t19 * t21);
     if (!(t29 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -238,7 +238,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t64 = WAM7_C(-0.6) * t49;
     const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
     const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t67 = t66 - t47 * t57 - t52 * t56 - t53 * t55;
+    const wam7_real_t t67 = wam7_bounded(t66 - t47 * t57 - t52 * t56 - t53 * t55);
     if (!(t67 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -294,7 +294,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t108 = t85 * t20;
     const wam7_real_t t109 = t92 * t54;
     const wam7_real_t t110 = t106 - t79 * t107 - t85 * t108 - t92 * t109;
-    const wam7_real_t t111 = t110 - t93 * t95;
+    const wam7_real_t t111 = wam7_bounded(t110 - t93 * t95);
     if (!(t111 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -358,7 +358,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t160 = t159 - t151 * t95;
     const wam7_real_t t161 = WAM7_C(1.0) / t111;
     const wam7_real_t t162 = t160 * t161;
-    const wam7_real_t t163 = t147 - t151 * t152 - t160 * t162;
+    const wam7_real_t t163 = wam7_bounded(t147 - t151 * t152 - t160 * t162);
     if (!(t163 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -407,7 +407,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t197 = t193 - t171 * t194 - t174 * t195 - t178 * t196;
     const wam7_real_t t198 = t182 * t94;
     const wam7_real_t t199 = t186 * t161;
-    const wam7_real_t t200 = t197 - t182 * t198 - t186 * t199 - t187 * t189;
+    const wam7_real_t t200 = wam7_bounded(t197 - t182 * t198 - t186 * t199 - t187 * t189);
     if (!(t200 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -688,25 +688,25 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t440 = WAM7_C(12.910250000000001) * input[1] + t439 - t419 * t130 - t422 * t138;
     const wam7_real_t t441 = t440 - t426 * t146 + t430 * t152 - t434 * t162;
     const wam7_real_t t442 = WAM7_C(1.0) / t200;
-    const wam7_real_t t443 = (t435 - t441 * t189) * t442;
+    const wam7_real_t t443 = wam7_bounded((t435 - t441 * t189) * t442);
     ddq[0] = t443;
-    const wam7_real_t t444 = t441 * t188 - t189 * t443;
+    const wam7_real_t t444 = wam7_bounded(t441 * t188 - t189 * t443);
     ddq[1] = t444;
-    const wam7_real_t t445 = t434 * t161 + t199 * t443 - t162 * t444;
+    const wam7_real_t t445 = wam7_bounded(t434 * t161 + t199 * t443 - t162 * t444);
     ddq[2] = t445;
-    const wam7_real_t t446 = t430 * t94 + t198 * t443 + t152 * t444 + t95 * t445;
+    const wam7_real_t t446 = wam7_bounded(t430 * t94 + t198 * t443 + t152 * t444 + t95 * t445);
     ddq[3] = t446;
     const wam7_real_t t447 = t426 * t54 + t196 * t443 - t146 * t444 + t109 * t445;
-    const wam7_real_t t448 = t447 + t55 * t446;
+    const wam7_real_t t448 = wam7_bounded(t447 + t55 * t446);
     ddq[4] = t448;
     const wam7_real_t t449 = t422 * t20 + t195 * t443 - t138 * t444 + t108 * t445;
-    const wam7_real_t t450 = t449 + t56 * t446 + t21 * t448;
+    const wam7_real_t t450 = wam7_bounded(t449 + t56 * t446 + t21 * t448);
     ddq[5] = t450;
     const wam7_real_t t451 = t419 * t4 + t194 * t443 - t130 * t444 - t107 * t445;
-    const wam7_real_t t452 = t451 + t57 * t446 - t28 * t448 - t5 * t450;
+    const wam7_real_t t452 = wam7_bounded(t451 + t57 * t446 - t28 * t448 - t5 * t450);
     ddq[6] = t452;
     const wam7_real_t t453 = t189 * t442;
-    const wam7_real_t t454 = WAM7_C(-12.910250000000001) * t453;
+    const wam7_real_t t454 = wam7_bounded(WAM7_C(-12.910250000000001) * t453);
     const wam7_real_t t455 = parameters[XZ7R] * t254;
     const wam7_real_t t456 = parameters[XY7] * t255;
     const wam7_real_t t457 = t455 + t456;
@@ -839,7 +839,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t583 = parameters[XY2] * t208 + t202 * t572 + (t115 * t579 - t118 * t578 - t582);
     const wam7_real_t t584 = WAM7_C(2.0) * t583;
     const wam7_real_t t585 = WAM7_C(0.07745783389167521) * (t166 * t575 - t168 * t584);
-    const wam7_real_t t586 = WAM7_C(19.194) * t442;
+    const wam7_real_t t586 = wam7_bounded(WAM7_C(19.194) * t442);
     const wam7_real_t t587 = t115 * t569;
     const wam7_real_t t588 = WAM7_C(0.55) * dq[1];
     const wam7_real_t t589 = t183 * t588;
@@ -864,7 +864,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t607 = WAM7_C(-91.90371991247264) * parameters[FV1]
         + WAM7_C(0.10419922892570596) * (t597 + t606);
     const wam7_real_t t608 = t442 * (t199 + t162 * t189);
-    const wam7_real_t t609 = WAM7_C(12.910250000000001) * t608;
+    const wam7_real_t t609 = wam7_bounded(WAM7_C(12.910250000000001) * t608);
     const wam7_real_t t610 = WAM7_C(2.0) * t601;
     const wam7_real_t t611 = WAM7_C(2.0) * t602;
     const wam7_real_t t612 = t118 * t611 - t115 * t610;
@@ -875,7 +875,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t617 = WAM7_C(0.07745783389167521) * (t166 * t612 + t168 * t616);
     const wam7_real_t t618 = t152 - t95 * t162;
     const wam7_real_t t619 = t442 * (t198 + t95 * t199 - t189 * t618);
-    const wam7_real_t t620 = WAM7_C(8.226) * t619;
+    const wam7_real_t t620 = wam7_bounded(WAM7_C(8.226) * t619);
     const wam7_real_t t621 = WAM7_C(2.0) * t562;
     const wam7_real_t t622 = WAM7_C(2.0) * t564;
     const wam7_real_t t623 = WAM7_C(-0.09) * t213;
@@ -892,7 +892,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t634 = t146 - t55 * t152 + t162 * t633;
     const wam7_real_t t635 = t196 + t55 * t198 + t199 * t633 + t189 * t634;
     const wam7_real_t t636 = t442 * t635;
-    const wam7_real_t t637 = WAM7_C(2.23728) * t636;
+    const wam7_real_t t637 = wam7_bounded(WAM7_C(2.23728) * t636);
     const wam7_real_t t638 = WAM7_C(2.0) * t527;
     const wam7_real_t t639 = WAM7_C(2.0) * t528;
     const wam7_real_t t640 = WAM7_C(0.09) * t219;
@@ -913,7 +913,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t655 = t138 + t21 * t146 - t152 * t653 + t162 * t654;
     const wam7_real_t t656 = t195 + t21 * t196 + t198 * t653 + t199 * t654;
     const wam7_real_t t657 = t442 * (t656 + t189 * t655);
-    const wam7_real_t t658 = WAM7_C(2.23728) * t657;
+    const wam7_real_t t658 = wam7_bounded(WAM7_C(2.23728) * t657);
     const wam7_real_t t659 = WAM7_C(2.0) * t495;
     const wam7_real_t t660 = WAM7_C(2.0) * t496;
     const wam7_real_t t661 = t15 * t659 + t13 * t660;
@@ -954,82 +954,82 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t696 = WAM7_C(0.9996900960702182) * (t166 * t693 + t168 * t695);
     const wam7_real_t t697 = t632 + t652 * t637 + t672 * t658 + t696 * t680;
     ddq_by_dq[0] = t697;
-    const wam7_real_t t698 = WAM7_C(-19.194) * t453;
-    const wam7_real_t t699 = WAM7_C(12.910250000000001) * (t188 + t189 * t453);
+    const wam7_real_t t698 = wam7_bounded(WAM7_C(-19.194) * t453);
+    const wam7_real_t t699 = wam7_bounded(WAM7_C(12.910250000000001) * (t188 + t189 * t453));
     const wam7_real_t t700 = t162 * t188 + t189 * t608;
-    const wam7_real_t t701 = WAM7_C(-12.910250000000001) * t700;
+    const wam7_real_t t701 = wam7_bounded(WAM7_C(-12.910250000000001) * t700);
     const wam7_real_t t702 = t189 * t619 - t188 * t618;
-    const wam7_real_t t703 = WAM7_C(-8.226) * t702;
+    const wam7_real_t t703 = wam7_bounded(WAM7_C(-8.226) * t702);
     const wam7_real_t t704 = t607 * t698 - t585 * t699 + t617 * t701 - t631 * t703;
     const wam7_real_t t705 = t188 * t634 + t189 * t636;
-    const wam7_real_t t706 = WAM7_C(-2.23728) * t705;
+    const wam7_real_t t706 = wam7_bounded(WAM7_C(-2.23728) * t705);
     const wam7_real_t t707 = t188 * t655 + t189 * t657;
-    const wam7_real_t t708 = WAM7_C(-2.23728) * t707;
+    const wam7_real_t t708 = wam7_bounded(WAM7_C(-2.23728) * t707);
     const wam7_real_t t709 = t188 * t677 + t189 * t679;
     const wam7_real_t t710 = WAM7_C(-1.00031) * t709;
     const wam7_real_t t711 = t704 + t652 * t706 + t672 * t708 + t696 * t710;
     ddq_by_dq[7] = t711;
-    const wam7_real_t t712 = WAM7_C(19.194) * t608;
-    const wam7_real_t t713 = WAM7_C(12.910250000000001) * (t161 + t199 * t608 + t162 * t700);
+    const wam7_real_t t712 = wam7_bounded(WAM7_C(19.194) * t608);
+    const wam7_real_t t713 = wam7_bounded(WAM7_C(12.910250000000001) * (t161 + t199 * t608 + t162 * t700));
     const wam7_real_t t714 = t95 * t161 + t199 * t619 + t162 * t702;
-    const wam7_real_t t715 = WAM7_C(8.226) * t714;
+    const wam7_real_t t715 = wam7_bounded(WAM7_C(8.226) * t714);
     const wam7_real_t t716 = t607 * t712 - t585 * t701 + t617 * t713 - t631 * t715;
     const wam7_real_t t717 = t161 * t633 + t199 * t636 + t162 * t705;
-    const wam7_real_t t718 = WAM7_C(2.23728) * t717;
+    const wam7_real_t t718 = wam7_bounded(WAM7_C(2.23728) * t717);
     const wam7_real_t t719 = t161 * t654 + t199 * t657 + t162 * t707;
-    const wam7_real_t t720 = WAM7_C(2.23728) * t719;
+    const wam7_real_t t720 = wam7_bounded(WAM7_C(2.23728) * t719);
     const wam7_real_t t721 = t161 * t675 + t199 * t679 + t162 * t709;
     const wam7_real_t t722 = WAM7_C(1.00031) * t721;
     const wam7_real_t t723 = t716 + t652 * t718 + t672 * t720 + t696 * t722;
     ddq_by_dq[14] = t723;
-    const wam7_real_t t724 = WAM7_C(19.194) * t619;
-    const wam7_real_t t725 = WAM7_C(-12.910250000000001) * t702;
-    const wam7_real_t t726 = WAM7_C(12.910250000000001) * t714;
+    const wam7_real_t t724 = wam7_bounded(WAM7_C(19.194) * t619);
+    const wam7_real_t t725 = wam7_bounded(WAM7_C(-12.910250000000001) * t702);
+    const wam7_real_t t726 = wam7_bounded(WAM7_C(12.910250000000001) * t714);
     const wam7_real_t t727 = t94 + t198 * t619 - t152 * t702 + t95 * t714;
-    const wam7_real_t t728 = WAM7_C(8.226) * t727;
+    const wam7_real_t t728 = wam7_bounded(WAM7_C(8.226) * t727);
     const wam7_real_t t729 = t607 * t724 - t585 * t725 + t617 * t726 - t631 * t728;
     const wam7_real_t t730 = t55 * t94 + t198 * t636 - t152 * t705 + t95 * t717;
-    const wam7_real_t t731 = WAM7_C(2.23728) * t730;
+    const wam7_real_t t731 = wam7_bounded(WAM7_C(2.23728) * t730);
     const wam7_real_t t732 = t152 * t707 - (t94 * t653 + t198 * t657) - t95 * t719;
-    const wam7_real_t t733 = WAM7_C(-2.23728) * t732;
+    const wam7_real_t t733 = wam7_bounded(WAM7_C(-2.23728) * t732);
     const wam7_real_t t734 = t152 * t709 - (t94 * t674 + t198 * t679) - t95 * t721;
     const wam7_real_t t735 = WAM7_C(-1.00031) * t734;
     const wam7_real_t t736 = t729 + t652 * t731 + t672 * t733 + t696 * t735;
     ddq_by_dq[21] = t736;
-    const wam7_real_t t737 = WAM7_C(19.194) * t636;
-    const wam7_real_t t738 = WAM7_C(-12.910250000000001) * t705;
-    const wam7_real_t t739 = WAM7_C(12.910250000000001) * t717;
-    const wam7_real_t t740 = WAM7_C(8.226) * t730;
+    const wam7_real_t t737 = wam7_bounded(WAM7_C(19.194) * t636);
+    const wam7_real_t t738 = wam7_bounded(WAM7_C(-12.910250000000001) * t705);
+    const wam7_real_t t739 = wam7_bounded(WAM7_C(12.910250000000001) * t717);
+    const wam7_real_t t740 = wam7_bounded(WAM7_C(8.226) * t730);
     const wam7_real_t t741 = t607 * t737 - t585 * t738 + t617 * t739 - t631 * t740;
     const wam7_real_t t742 = t54 + t196 * t636 + t146 * t705 + t109 * t717;
-    const wam7_real_t t743 = WAM7_C(2.23728) * (t742 + t55 * t730);
+    const wam7_real_t t743 = wam7_bounded(WAM7_C(2.23728) * (t742 + t55 * t730));
     const wam7_real_t t744 = t21 * t54 + t196 * t657 + t146 * t707 + t109 * t719;
     const wam7_real_t t745 = t744 - t55 * t732;
-    const wam7_real_t t746 = WAM7_C(2.23728) * t745;
+    const wam7_real_t t746 = wam7_bounded(WAM7_C(2.23728) * t745);
     const wam7_real_t t747 = t196 * t679 - t54 * t673 + t146 * t709 + t109 * t721;
     const wam7_real_t t748 = t747 - t55 * t734;
     const wam7_real_t t749 = WAM7_C(1.00031) * t748;
     const wam7_real_t t750 = t741 + t652 * t743 + t672 * t746 + t696 * t749;
     ddq_by_dq[28] = t750;
-    const wam7_real_t t751 = WAM7_C(19.194) * t657;
-    const wam7_real_t t752 = WAM7_C(-12.910250000000001) * t707;
-    const wam7_real_t t753 = WAM7_C(12.910250000000001) * t719;
-    const wam7_real_t t754 = WAM7_C(-8.226) * t732;
+    const wam7_real_t t751 = wam7_bounded(WAM7_C(19.194) * t657);
+    const wam7_real_t t752 = wam7_bounded(WAM7_C(-12.910250000000001) * t707);
+    const wam7_real_t t753 = wam7_bounded(WAM7_C(12.910250000000001) * t719);
+    const wam7_real_t t754 = wam7_bounded(WAM7_C(-8.226) * t732);
     const wam7_real_t t755 = t607 * t751 - t585 * t752 + t617 * t753 - t631 * t754;
     const wam7_real_t t756 = t20 + t195 * t657 + t138 * t707 + t108 * t719;
-    const wam7_real_t t757 = WAM7_C(2.23728) * (t756 - t56 * t732 + t21 * t745);
+    const wam7_real_t t757 = wam7_bounded(WAM7_C(2.23728) * (t756 - t56 * t732 + t21 * t745));
     const wam7_real_t t758 = t195 * t679 - t5 * t20 + t138 * t709 + t108 * t721;
     const wam7_real_t t759 = t758 - t56 * t734 + t21 * t748;
     const wam7_real_t t760 = WAM7_C(1.00031) * t759;
     const wam7_real_t t761 = t755 + t652 * t746 + t672 * t757 + t696 * t760;
     ddq_by_dq[35] = t761;
-    const wam7_real_t t762 = WAM7_C(19.194) * t679;
-    const wam7_real_t t763 = WAM7_C(-12.910250000000001) * t709;
-    const wam7_real_t t764 = WAM7_C(12.910250000000001) * t721;
-    const wam7_real_t t765 = WAM7_C(-8.226) * t734;
+    const wam7_real_t t762 = wam7_bounded(WAM7_C(19.194) * t679);
+    const wam7_real_t t763 = wam7_bounded(WAM7_C(-12.910250000000001) * t709);
+    const wam7_real_t t764 = wam7_bounded(WAM7_C(12.910250000000001) * t721);
+    const wam7_real_t t765 = wam7_bounded(WAM7_C(-8.226) * t734);
     const wam7_real_t t766 = t607 * t762 - t585 * t763 + t617 * t764 - t631 * t765;
-    const wam7_real_t t767 = WAM7_C(2.23728) * t748;
-    const wam7_real_t t768 = WAM7_C(2.23728) * t759;
+    const wam7_real_t t767 = wam7_bounded(WAM7_C(2.23728) * t748);
+    const wam7_real_t t768 = wam7_bounded(WAM7_C(2.23728) * t759);
     const wam7_real_t t769 = t4 + t194 * t679 + t130 * t709 - t107 * t721;
     const wam7_real_t t770 = t769 - t57 * t734 - t28 * t748 - t5 * t759;
     const wam7_real_t t771 = WAM7_C(1.00031) * t770;
@@ -1819,10 +1819,10 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
-    if (!wam7_within_joints(ddq, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_q, 49, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_dq, 49, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_input, 49, WAM7_C(1.0e30))) {
+    if (!wam7_all_bounded(ddq, 7)
+        || !wam7_all_bounded(ddq_by_q, 49)
+        || !wam7_all_bounded(ddq_by_dq, 49)
+        || !wam7_all_bounded(ddq_by_input, 49)) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);

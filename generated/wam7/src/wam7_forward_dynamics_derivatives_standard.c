@@ -125,7 +125,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xBB60C589UL
+#if WAM7_GENERATION != 0x7A21915FUL
 #error "wam7.h and wam7_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -172,7 +172,7 @@ int wam7_forward_dynamics_derivatives_standard(
     WAM7_SINCOS(q[5], &t22, &t18);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -191,7 +191,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t11 = WAM7_C(0.06) * (t10 + WAM7_C(2.0) * parameters[MZ7]);
     const wam7_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const wam7_real_t t13 = t12 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t14 = t13 - t4 * t6;
+    const wam7_real_t t14 = wam7_bounded(t13 - t4 * t6);
     if (!(t14 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -224,7 +224,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t32 = t27 * t6 - t31;
     const wam7_real_t t33 = WAM7_C(1.0) / t14;
     const wam7_real_t t34 = t32 * t33;
-    const wam7_real_t t35 = t26 - t27 * t28 - t32 * t34;
+    const wam7_real_t t35 = wam7_bounded(t26 - t27 * t28 - t32 * t34);
     if (!(t35 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -281,7 +281,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t77 = t76 - t67 * t28 + t71 * t34;
     const wam7_real_t t78 = WAM7_C(1.0) / t35;
     const wam7_real_t t79 = t77 * t78;
-    const wam7_real_t t80 = t62 - t67 * t68 - t71 * t72 - t77 * t79;
+    const wam7_real_t t80 = wam7_bounded(t62 - t67 * t68 - t71 * t72 - t77 * t79);
     if (!(t80 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -339,7 +339,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t123 = t122 + WAM7_C(798.0625) * parameters[IA3];
     const wam7_real_t t124 = t99 * t33;
     const wam7_real_t t125 = t123 - t93 * t108 - t99 * t124 - t100 * t107;
-    const wam7_real_t t126 = t125 - t104 * t106;
+    const wam7_real_t t126 = wam7_bounded(t125 - t104 * t106);
     if (!(t126 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -409,7 +409,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t181 = t180 - t171 * t106;
     const wam7_real_t t182 = WAM7_C(1.0) / t126;
     const wam7_real_t t183 = t181 * t182;
-    const wam7_real_t t184 = t167 - t171 * t172 - t181 * t183;
+    const wam7_real_t t184 = wam7_bounded(t167 - t171 * t172 - t181 * t183);
     if (!(t184 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -459,7 +459,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t219 = t215 - t192 * t216 - t195 * t217 - t199 * t218;
     const wam7_real_t t220 = t203 * t105;
     const wam7_real_t t221 = t207 * t182;
-    const wam7_real_t t222 = t219 - t203 * t220 - t207 * t221 - t208 * t210;
+    const wam7_real_t t222 = wam7_bounded(t219 - t203 * t220 - t207 * t221 - t208 * t210);
     if (!(t222 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -769,22 +769,22 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t494 = WAM7_C(12.910250000000001) * input[1] + t493 - t473 * t150 - t476 * t158;
     const wam7_real_t t495 = t494 - t480 * t166 + t484 * t172 - t488 * t183;
     const wam7_real_t t496 = WAM7_C(1.0) / t222;
-    const wam7_real_t t497 = (t489 - t495 * t210) * t496;
+    const wam7_real_t t497 = wam7_bounded((t489 - t495 * t210) * t496);
     ddq[0] = t497;
-    const wam7_real_t t498 = t495 * t209 - t210 * t497;
+    const wam7_real_t t498 = wam7_bounded(t495 * t209 - t210 * t497);
     ddq[1] = t498;
-    const wam7_real_t t499 = t488 * t182 + t221 * t497 - t183 * t498;
+    const wam7_real_t t499 = wam7_bounded(t488 * t182 + t221 * t497 - t183 * t498);
     ddq[2] = t499;
-    const wam7_real_t t500 = t484 * t105 + t220 * t497 + t172 * t498 + t106 * t499;
+    const wam7_real_t t500 = wam7_bounded(t484 * t105 + t220 * t497 + t172 * t498 + t106 * t499);
     ddq[3] = t500;
     const wam7_real_t t501 = t480 * t78 + t218 * t497 - t166 * t498 + t107 * t499;
-    const wam7_real_t t502 = t501 + t79 * t500;
+    const wam7_real_t t502 = wam7_bounded(t501 + t79 * t500);
     ddq[4] = t502;
     const wam7_real_t t503 = t476 * t33 + t217 * t497 - t158 * t498 + t124 * t499;
-    const wam7_real_t t504 = t503 + t72 * t500 + t34 * t502;
+    const wam7_real_t t504 = wam7_bounded(t503 + t72 * t500 + t34 * t502);
     ddq[5] = t504;
     const wam7_real_t t505 = t473 * t5 + t216 * t497 - t150 * t498 - t108 * t499;
-    const wam7_real_t t506 = t505 + t68 * t500 - t28 * t502 - t6 * t504;
+    const wam7_real_t t506 = wam7_bounded(t505 + t68 * t500 - t28 * t502 - t6 * t504);
     ddq[6] = t506;
     const wam7_real_t t507 = t276 * parameters[XZ7];
     const wam7_real_t t508 = t277 * parameters[XY7];
@@ -951,9 +951,9 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t667 = t189 * (t189 * (t651 - t648) + t187 * (t662 + t666));
     const wam7_real_t t668 = WAM7_C(-91.90371991247264) * parameters[FV1]
         + WAM7_C(0.10419922892570596) * (t648 + t667);
-    const wam7_real_t t669 = WAM7_C(19.194) * t496;
+    const wam7_real_t t669 = wam7_bounded(WAM7_C(19.194) * t496);
     const wam7_real_t t670 = t210 * t496;
-    const wam7_real_t t671 = WAM7_C(-12.910250000000001) * t670;
+    const wam7_real_t t671 = wam7_bounded(WAM7_C(-12.910250000000001) * t670);
     const wam7_real_t t672 = t134 * t636;
     const wam7_real_t t673 = t224 * parameters[XY2] + t226 * t665 + (t672 - t635 - t204 * t643);
     const wam7_real_t t674 = WAM7_C(2.0) * t673;
@@ -962,7 +962,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t677 = WAM7_C(2.0) * t676;
     const wam7_real_t t678 = WAM7_C(0.07745783389167521) * (t187 * t674 - t189 * t677);
     const wam7_real_t t679 = t496 * (t221 + t183 * t210);
-    const wam7_real_t t680 = WAM7_C(12.910250000000001) * t679;
+    const wam7_real_t t680 = wam7_bounded(WAM7_C(12.910250000000001) * t679);
     const wam7_real_t t681 = WAM7_C(2.0) * t663;
     const wam7_real_t t682 = WAM7_C(2.0) * t664;
     const wam7_real_t t683 = t134 * t682 - t130 * t681;
@@ -973,7 +973,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t688 = WAM7_C(0.07745783389167521) * (t187 * t683 + t189 * t687);
     const wam7_real_t t689 = t172 - t106 * t183;
     const wam7_real_t t690 = t496 * (t220 + t106 * t221 - t210 * t689);
-    const wam7_real_t t691 = WAM7_C(8.226) * t690;
+    const wam7_real_t t691 = wam7_bounded(WAM7_C(8.226) * t690);
     const wam7_real_t t692 = WAM7_C(2.0) * t629;
     const wam7_real_t t693 = WAM7_C(2.0) * t631;
     const wam7_real_t t694 = WAM7_C(-0.09) * t227;
@@ -990,7 +990,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t705 = t166 - t79 * t172 + t183 * t704;
     const wam7_real_t t706 = t218 + t79 * t220 + t221 * t704 + t210 * t705;
     const wam7_real_t t707 = t496 * t706;
-    const wam7_real_t t708 = WAM7_C(2.23728) * t707;
+    const wam7_real_t t708 = wam7_bounded(WAM7_C(2.23728) * t707);
     const wam7_real_t t709 = WAM7_C(2.0) * t599;
     const wam7_real_t t710 = WAM7_C(2.0) * t600;
     const wam7_real_t t711 = WAM7_C(0.09) * t230;
@@ -1011,7 +1011,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t726 = t158 + t34 * t166 - t172 * t724 + t183 * t725;
     const wam7_real_t t727 = t217 + t34 * t218 + t220 * t724 + t221 * t725;
     const wam7_real_t t728 = t496 * (t727 + t210 * t726);
-    const wam7_real_t t729 = WAM7_C(2.23728) * t728;
+    const wam7_real_t t729 = wam7_bounded(WAM7_C(2.23728) * t728);
     const wam7_real_t t730 = WAM7_C(2.0) * t561;
     const wam7_real_t t731 = WAM7_C(2.0) * t564;
     const wam7_real_t t732 = t18 * t730 + t22 * t731;
@@ -1053,82 +1053,82 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t768 = WAM7_C(0.9996900960702182) * (t187 * t765 + t189 * t767);
     const wam7_real_t t769 = t703 + t723 * t708 + t743 * t729 + t768 * t751;
     ddq_by_dq[0] = t769;
-    const wam7_real_t t770 = WAM7_C(-19.194) * t670;
-    const wam7_real_t t771 = WAM7_C(12.910250000000001) * (t209 + t210 * t670);
+    const wam7_real_t t770 = wam7_bounded(WAM7_C(-19.194) * t670);
+    const wam7_real_t t771 = wam7_bounded(WAM7_C(12.910250000000001) * (t209 + t210 * t670));
     const wam7_real_t t772 = t183 * t209 + t210 * t679;
-    const wam7_real_t t773 = WAM7_C(-12.910250000000001) * t772;
+    const wam7_real_t t773 = wam7_bounded(WAM7_C(-12.910250000000001) * t772);
     const wam7_real_t t774 = t210 * t690 - t209 * t689;
-    const wam7_real_t t775 = WAM7_C(-8.226) * t774;
+    const wam7_real_t t775 = wam7_bounded(WAM7_C(-8.226) * t774);
     const wam7_real_t t776 = t668 * t770 - t678 * t771 + t688 * t773 - t702 * t775;
     const wam7_real_t t777 = t209 * t705 + t210 * t707;
-    const wam7_real_t t778 = WAM7_C(-2.23728) * t777;
+    const wam7_real_t t778 = wam7_bounded(WAM7_C(-2.23728) * t777);
     const wam7_real_t t779 = t209 * t726 + t210 * t728;
-    const wam7_real_t t780 = WAM7_C(-2.23728) * t779;
+    const wam7_real_t t780 = wam7_bounded(WAM7_C(-2.23728) * t779);
     const wam7_real_t t781 = t209 * t748 + t210 * t750;
     const wam7_real_t t782 = WAM7_C(-1.00031) * t781;
     const wam7_real_t t783 = t776 + t723 * t778 + t743 * t780 + t768 * t782;
     ddq_by_dq[7] = t783;
-    const wam7_real_t t784 = WAM7_C(19.194) * t679;
-    const wam7_real_t t785 = WAM7_C(12.910250000000001) * (t182 + t221 * t679 + t183 * t772);
+    const wam7_real_t t784 = wam7_bounded(WAM7_C(19.194) * t679);
+    const wam7_real_t t785 = wam7_bounded(WAM7_C(12.910250000000001) * (t182 + t221 * t679 + t183 * t772));
     const wam7_real_t t786 = t106 * t182 + t221 * t690 + t183 * t774;
-    const wam7_real_t t787 = WAM7_C(8.226) * t786;
+    const wam7_real_t t787 = wam7_bounded(WAM7_C(8.226) * t786);
     const wam7_real_t t788 = t668 * t784 - t678 * t773 + t688 * t785 - t702 * t787;
     const wam7_real_t t789 = t182 * t704 + t221 * t707 + t183 * t777;
-    const wam7_real_t t790 = WAM7_C(2.23728) * t789;
+    const wam7_real_t t790 = wam7_bounded(WAM7_C(2.23728) * t789);
     const wam7_real_t t791 = t182 * t725 + t221 * t728 + t183 * t779;
-    const wam7_real_t t792 = WAM7_C(2.23728) * t791;
+    const wam7_real_t t792 = wam7_bounded(WAM7_C(2.23728) * t791);
     const wam7_real_t t793 = t182 * t746 + t221 * t750 + t183 * t781;
     const wam7_real_t t794 = WAM7_C(1.00031) * t793;
     const wam7_real_t t795 = t788 + t723 * t790 + t743 * t792 + t768 * t794;
     ddq_by_dq[14] = t795;
-    const wam7_real_t t796 = WAM7_C(19.194) * t690;
-    const wam7_real_t t797 = WAM7_C(-12.910250000000001) * t774;
-    const wam7_real_t t798 = WAM7_C(12.910250000000001) * t786;
+    const wam7_real_t t796 = wam7_bounded(WAM7_C(19.194) * t690);
+    const wam7_real_t t797 = wam7_bounded(WAM7_C(-12.910250000000001) * t774);
+    const wam7_real_t t798 = wam7_bounded(WAM7_C(12.910250000000001) * t786);
     const wam7_real_t t799 = t105 + t220 * t690 - t172 * t774 + t106 * t786;
-    const wam7_real_t t800 = WAM7_C(8.226) * t799;
+    const wam7_real_t t800 = wam7_bounded(WAM7_C(8.226) * t799);
     const wam7_real_t t801 = t668 * t796 - t678 * t797 + t688 * t798 - t702 * t800;
     const wam7_real_t t802 = t79 * t105 + t220 * t707 - t172 * t777 + t106 * t789;
-    const wam7_real_t t803 = WAM7_C(2.23728) * t802;
+    const wam7_real_t t803 = wam7_bounded(WAM7_C(2.23728) * t802);
     const wam7_real_t t804 = t172 * t779 - (t105 * t724 + t220 * t728) - t106 * t791;
-    const wam7_real_t t805 = WAM7_C(-2.23728) * t804;
+    const wam7_real_t t805 = wam7_bounded(WAM7_C(-2.23728) * t804);
     const wam7_real_t t806 = t172 * t781 - (t105 * t745 + t220 * t750) - t106 * t793;
     const wam7_real_t t807 = WAM7_C(-1.00031) * t806;
     const wam7_real_t t808 = t801 + t723 * t803 + t743 * t805 + t768 * t807;
     ddq_by_dq[21] = t808;
-    const wam7_real_t t809 = WAM7_C(19.194) * t707;
-    const wam7_real_t t810 = WAM7_C(-12.910250000000001) * t777;
-    const wam7_real_t t811 = WAM7_C(12.910250000000001) * t789;
-    const wam7_real_t t812 = WAM7_C(8.226) * t802;
+    const wam7_real_t t809 = wam7_bounded(WAM7_C(19.194) * t707);
+    const wam7_real_t t810 = wam7_bounded(WAM7_C(-12.910250000000001) * t777);
+    const wam7_real_t t811 = wam7_bounded(WAM7_C(12.910250000000001) * t789);
+    const wam7_real_t t812 = wam7_bounded(WAM7_C(8.226) * t802);
     const wam7_real_t t813 = t668 * t809 - t678 * t810 + t688 * t811 - t702 * t812;
     const wam7_real_t t814 = t78 + t218 * t707 + t166 * t777 + t107 * t789;
-    const wam7_real_t t815 = WAM7_C(2.23728) * (t814 + t79 * t802);
+    const wam7_real_t t815 = wam7_bounded(WAM7_C(2.23728) * (t814 + t79 * t802));
     const wam7_real_t t816 = t34 * t78 + t218 * t728 + t166 * t779 + t107 * t791;
     const wam7_real_t t817 = t816 - t79 * t804;
-    const wam7_real_t t818 = WAM7_C(2.23728) * t817;
+    const wam7_real_t t818 = wam7_bounded(WAM7_C(2.23728) * t817);
     const wam7_real_t t819 = t218 * t750 - t78 * t744 + t166 * t781 + t107 * t793;
     const wam7_real_t t820 = t819 - t79 * t806;
     const wam7_real_t t821 = WAM7_C(1.00031) * t820;
     const wam7_real_t t822 = t813 + t723 * t815 + t743 * t818 + t768 * t821;
     ddq_by_dq[28] = t822;
-    const wam7_real_t t823 = WAM7_C(19.194) * t728;
-    const wam7_real_t t824 = WAM7_C(-12.910250000000001) * t779;
-    const wam7_real_t t825 = WAM7_C(12.910250000000001) * t791;
-    const wam7_real_t t826 = WAM7_C(-8.226) * t804;
+    const wam7_real_t t823 = wam7_bounded(WAM7_C(19.194) * t728);
+    const wam7_real_t t824 = wam7_bounded(WAM7_C(-12.910250000000001) * t779);
+    const wam7_real_t t825 = wam7_bounded(WAM7_C(12.910250000000001) * t791);
+    const wam7_real_t t826 = wam7_bounded(WAM7_C(-8.226) * t804);
     const wam7_real_t t827 = t668 * t823 - t678 * t824 + t688 * t825 - t702 * t826;
     const wam7_real_t t828 = t33 + t217 * t728 + t158 * t779 + t124 * t791;
-    const wam7_real_t t829 = WAM7_C(2.23728) * (t828 - t72 * t804 + t34 * t817);
+    const wam7_real_t t829 = wam7_bounded(WAM7_C(2.23728) * (t828 - t72 * t804 + t34 * t817));
     const wam7_real_t t830 = t217 * t750 - t6 * t33 + t158 * t781 + t124 * t793;
     const wam7_real_t t831 = t830 - t72 * t806 + t34 * t820;
     const wam7_real_t t832 = WAM7_C(1.00031) * t831;
     const wam7_real_t t833 = t827 + t723 * t818 + t743 * t829 + t768 * t832;
     ddq_by_dq[35] = t833;
-    const wam7_real_t t834 = WAM7_C(19.194) * t750;
-    const wam7_real_t t835 = WAM7_C(-12.910250000000001) * t781;
-    const wam7_real_t t836 = WAM7_C(12.910250000000001) * t793;
-    const wam7_real_t t837 = WAM7_C(-8.226) * t806;
+    const wam7_real_t t834 = wam7_bounded(WAM7_C(19.194) * t750);
+    const wam7_real_t t835 = wam7_bounded(WAM7_C(-12.910250000000001) * t781);
+    const wam7_real_t t836 = wam7_bounded(WAM7_C(12.910250000000001) * t793);
+    const wam7_real_t t837 = wam7_bounded(WAM7_C(-8.226) * t806);
     const wam7_real_t t838 = t668 * t834 - t678 * t835 + t688 * t836 - t702 * t837;
-    const wam7_real_t t839 = WAM7_C(2.23728) * t820;
-    const wam7_real_t t840 = WAM7_C(2.23728) * t831;
+    const wam7_real_t t839 = wam7_bounded(WAM7_C(2.23728) * t820);
+    const wam7_real_t t840 = wam7_bounded(WAM7_C(2.23728) * t831);
     const wam7_real_t t841 = t5 + t216 * t750 + t150 * t781 - t108 * t793;
     const wam7_real_t t842 = t841 - t68 * t806 - t28 * t820 - t6 * t831;
     const wam7_real_t t843 = WAM7_C(1.00031) * t842;
@@ -1940,10 +1940,10 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
-    if (!wam7_within_joints(ddq, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_q, 49, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_dq, 49, WAM7_C(1.0e30))
-        || !wam7_within(ddq_by_input, 49, WAM7_C(1.0e30))) {
+    if (!wam7_all_bounded(ddq, 7)
+        || !wam7_all_bounded(ddq_by_q, 49)
+        || !wam7_all_bounded(ddq_by_dq, 49)
+        || !wam7_all_bounded(ddq_by_input, 49)) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);

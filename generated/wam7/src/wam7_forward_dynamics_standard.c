@@ -121,7 +121,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0xBB60C589UL
+#if WAM7_GENERATION != 0x7A21915FUL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -162,7 +162,7 @@ int wam7_forward_dynamics_standard(
     WAM7_SINCOS(q[5], &t22, &t18);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -178,7 +178,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t11 = WAM7_C(0.06) * (t10 + WAM7_C(2.0) * parameters[MZ7]);
     const wam7_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const wam7_real_t t13 = t12 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t14 = t13 + t4 * t6;
+    const wam7_real_t t14 = wam7_bounded(t13 + t4 * t6);
     if (!(t14 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -205,7 +205,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t32 = t31 + t27 * t6;
     const wam7_real_t t33 = WAM7_C(1.0) / t14;
     const wam7_real_t t34 = t32 * t33;
-    const wam7_real_t t35 = t26 + t27 * t28 - t32 * t34;
+    const wam7_real_t t35 = wam7_bounded(t26 + t27 * t28 - t32 * t34);
     if (!(t35 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -253,7 +253,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t74 = t73 + t64 * t28 + t68 * t34;
     const wam7_real_t t75 = WAM7_C(1.0) / t35;
     const wam7_real_t t76 = t74 * t75;
-    const wam7_real_t t77 = t59 + t64 * t65 - t68 * t69 - t74 * t76;
+    const wam7_real_t t77 = wam7_bounded(t59 + t64 * t65 - t68 * t69 - t74 * t76);
     if (!(t77 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -304,7 +304,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t119 = t118 + WAM7_C(798.0625) * parameters[IA3];
     const wam7_real_t t120 = t96 * t33;
     const wam7_real_t t121 = t119 + t90 * t105 - t96 * t120 - t97 * t104;
-    const wam7_real_t t122 = t121 - t101 * t103;
+    const wam7_real_t t122 = wam7_bounded(t121 - t101 * t103);
     if (!(t122 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -356,7 +356,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t164 = t163 - t156 * t103;
     const wam7_real_t t165 = WAM7_C(1.0) / t122;
     const wam7_real_t t166 = t164 * t165;
-    const wam7_real_t t167 = t153 - t156 * t157 - t164 * t166;
+    const wam7_real_t t167 = wam7_bounded(t153 - t156 * t157 - t164 * t166);
     if (!(t167 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -394,7 +394,7 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t194 = t190 + t173 * t191 - t175 * t192 - t177 * t193;
     const wam7_real_t t195 = t181 * t102;
     const wam7_real_t t196 = t184 * t165;
-    const wam7_real_t t197 = t194 - t181 * t195 - t184 * t196 - t185 * t187;
+    const wam7_real_t t197 = wam7_bounded(t194 - t181 * t195 - t184 * t196 - t185 * t187);
     if (!(t197 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -688,24 +688,24 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t424 = WAM7_C(12.910250000000001) * input[1] + t423 - t403 * t140 + t406 * t146;
     const wam7_real_t t425 = t424 + t410 * t152 + t414 * t157 + t418 * t166;
     const wam7_real_t t426 = WAM7_C(1.0) / t197;
-    const wam7_real_t t427 = (t419 + t425 * t187) * t426;
+    const wam7_real_t t427 = wam7_bounded((t419 + t425 * t187) * t426);
     out[0] = t427;
-    const wam7_real_t t428 = t425 * t186 + t187 * t427;
+    const wam7_real_t t428 = wam7_bounded(t425 * t186 + t187 * t427);
     out[1] = t428;
-    const wam7_real_t t429 = t418 * t165 + t196 * t427 + t166 * t428;
+    const wam7_real_t t429 = wam7_bounded(t418 * t165 + t196 * t427 + t166 * t428);
     out[2] = t429;
-    const wam7_real_t t430 = t414 * t102 + t195 * t427 + t157 * t428 - t103 * t429;
+    const wam7_real_t t430 = wam7_bounded(t414 * t102 + t195 * t427 + t157 * t428 - t103 * t429);
     out[3] = t430;
     const wam7_real_t t431 = t410 * t75 + t193 * t427 + t152 * t428 + t104 * t429;
-    const wam7_real_t t432 = t431 + t76 * t430;
+    const wam7_real_t t432 = wam7_bounded(t431 + t76 * t430);
     out[4] = t432;
     const wam7_real_t t433 = t406 * t33 + t192 * t427 + t146 * t428 + t120 * t429;
-    const wam7_real_t t434 = t433 + t69 * t430 + t34 * t432;
+    const wam7_real_t t434 = wam7_bounded(t433 + t69 * t430 + t34 * t432);
     out[5] = t434;
     const wam7_real_t t435 = t403 * t5 + t191 * t427 + t140 * t428 + t105 * t429;
     const wam7_real_t t436 = t28 * t432 - (t435 + t65 * t430) - t6 * t434;
     out[6] = t436;
-    if (!wam7_within_joints(out, WAM7_C(1.0e30))) {
+    if (!wam7_all_bounded(out, 7)) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0xBB60C589UL
+#if WAM7_GENERATION != 0x7A21915FUL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 
@@ -118,6 +118,24 @@ static inline int wam7_within_joints(const wam7_real_t x[], wam7_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6] <=
         limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline wam7_real_t wam7_bounded(wam7_real_t x)
+{
+    return x >= WAM7_C(-1.0e15) && x <= WAM7_C(1.0e15) ? x : WAM7_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int wam7_all_bounded(const wam7_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= WAM7_C(-1.0e15) && x[i] <= WAM7_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DWAM7_PARAMETERS_CHECKED, for parameters that wam7_check_parameters has seen. */

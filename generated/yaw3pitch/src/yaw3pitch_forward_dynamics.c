@@ -49,7 +49,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x97DAFF68UL
+#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -91,7 +91,7 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t5 = t3 * t4;
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-1.4) * t2;
     const yaw3pitch_real_t t7 = parameters[ZZ3R] + (parameters[ZZ4] + t6);
-    const yaw3pitch_real_t t8 = t7 + t3 * t5;
+    const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 + t3 * t5);
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -112,7 +112,7 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t20 = t16 * t4;
     const yaw3pitch_real_t t21 = YAW3PITCH_C(1.6) * t15;
     const yaw3pitch_real_t t22 = parameters[ZZ2R] + (t7 + t21);
-    const yaw3pitch_real_t t23 = t22 + t16 * t20 - t17 * t19;
+    const yaw3pitch_real_t t23 = yaw3pitch_bounded(t22 + t16 * t20 - t17 * t19);
     if (!(t23 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -151,7 +151,7 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t51 = t50 + t48 * t19;
     const yaw3pitch_real_t t52 = YAW3PITCH_C(1.0) / t23;
     const yaw3pitch_real_t t53 = t51 * t52;
-    const yaw3pitch_real_t t54 = t39 + t42 * t43 - t48 * t49 - t51 * t53;
+    const yaw3pitch_real_t t54 = yaw3pitch_bounded(t39 + t42 * t43 - t48 * t49 - t51 * t53);
     if (!(t54 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -249,15 +249,15 @@ int yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t128 = t127 - t117 * t20 + t123 * t19;
     const yaw3pitch_real_t t129 = input[0] + t104 + t117 * t43 + t123 * t49 + t128 * t53;
     const yaw3pitch_real_t t130 = YAW3PITCH_C(1.0) / t54;
-    const yaw3pitch_real_t t131 = t129 * t130;
+    const yaw3pitch_real_t t131 = yaw3pitch_bounded(t129 * t130);
     out[0] = t131;
-    const yaw3pitch_real_t t132 = t128 * t52 + t53 * t131;
+    const yaw3pitch_real_t t132 = yaw3pitch_bounded(t128 * t52 + t53 * t131);
     out[1] = t132;
-    const yaw3pitch_real_t t133 = t123 * t18 + t49 * t131 + t19 * t132;
+    const yaw3pitch_real_t t133 = yaw3pitch_bounded(t123 * t18 + t49 * t131 + t19 * t132);
     out[2] = t133;
     const yaw3pitch_real_t t134 = t43 * t131 - t117 * t4 - t20 * t132 - t5 * t133;
     out[3] = t134;
-    if (!yaw3pitch_within_joints(out, YAW3PITCH_C(1.0e30))) {
+    if (!yaw3pitch_all_bounded(out, 4)) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

@@ -53,7 +53,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x97DAFF68UL
+#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -104,7 +104,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t5 = t3 * t4;
     const yaw3pitch_real_t t6 = YAW3PITCH_C(1.4) * t2;
     const yaw3pitch_real_t t7 = parameters[ZZ3R] - (t6 - parameters[ZZ4]);
-    const yaw3pitch_real_t t8 = t7 - t3 * t5;
+    const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 - t3 * t5);
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -133,7 +133,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t22 = t18 * t4;
     const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t15;
     const yaw3pitch_real_t t24 = parameters[ZZ2R] - (t23 - t7);
-    const yaw3pitch_real_t t25 = t24 - t18 * t22 + t19 * t21;
+    const yaw3pitch_real_t t25 = yaw3pitch_bounded(t24 - t18 * t22 + t19 * t21);
     if (!(t25 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -182,7 +182,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t59 = t39 * t57 - t36 * t58 - t49 * t22 + t55 * t21;
     const yaw3pitch_real_t t60 = YAW3PITCH_C(1.0) / t25;
     const yaw3pitch_real_t t61 = t59 * t60;
-    const yaw3pitch_real_t t62 = t44 - t49 * t50 + t55 * t56 - t59 * t61;
+    const yaw3pitch_real_t t62 = yaw3pitch_bounded(t44 - t49 * t50 + t55 * t56 - t59 * t61);
     if (!(t62 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -291,14 +291,14 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t142 = input[1] + (t141 - (t137 - YAW3PITCH_C(0.8) * (t12 * t139 + t140)));
     const yaw3pitch_real_t t143 = t142 + t132 * t22 - t138 * t21;
     const yaw3pitch_real_t t144 = input[0] + t117 + t132 * t50 - t138 * t56 - t143 * t61;
-    const yaw3pitch_real_t t145 = YAW3PITCH_C(1.0) / t62;
-    const yaw3pitch_real_t t146 = t144 * t145;
+    const yaw3pitch_real_t t145 = yaw3pitch_bounded(YAW3PITCH_C(1.0) / t62);
+    const yaw3pitch_real_t t146 = yaw3pitch_bounded(t144 * t145);
     ddq[0] = t146;
-    const yaw3pitch_real_t t147 = t143 * t60 - t61 * t146;
+    const yaw3pitch_real_t t147 = yaw3pitch_bounded(t143 * t60 - t61 * t146);
     ddq[1] = t147;
     const yaw3pitch_real_t t148 = t138 * t20 + t56 * t146 + t21 * t147;
     ddq[2] = -t148;
-    const yaw3pitch_real_t t149 = t132 * t4 + t50 * t146 + t22 * t147 - t5 * t148;
+    const yaw3pitch_real_t t149 = yaw3pitch_bounded(t132 * t4 + t50 * t146 + t22 * t147 - t5 * t148);
     ddq[3] = t149;
     const yaw3pitch_real_t t150 = t39 * t14 + t36 * t12;
     const yaw3pitch_real_t t151 = t36 * t14 - t39 * t12;
@@ -388,7 +388,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t233 = t12 * t229 - t14 * t230 + t37 * t231;
     const yaw3pitch_real_t t234 = t39 * t232 + t36 * t233 - (t36 * t37 + t39 * t15) * t226;
     const yaw3pitch_real_t t235 = t22 - t5 * t21;
-    const yaw3pitch_real_t t236 = t145 * (t50 - t5 * t56 - t61 * t235);
+    const yaw3pitch_real_t t236 = yaw3pitch_bounded(t145 * (t50 - t5 * t56 - t61 * t235));
     const yaw3pitch_real_t t237 = YAW3PITCH_C(-2.0) * t213;
     const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * t214;
     const yaw3pitch_real_t t239 = YAW3PITCH_C(-1.4) * t174;
@@ -400,9 +400,9 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t245 = t39 * t242 + t36 * t244 + (t36 * t243 - t39 * t17) * t226;
     const yaw3pitch_real_t t246 = t227 * t212 - t145 * t211 + t234 * t228 - t245 * t236;
     ddq_by_dq[0] = t246;
-    const yaw3pitch_real_t t247 = t60 + t61 * t212;
-    const yaw3pitch_real_t t248 = t61 * t228 - t21 * t60;
-    const yaw3pitch_real_t t249 = t60 * t235 - t61 * t236;
+    const yaw3pitch_real_t t247 = yaw3pitch_bounded(t60 + t61 * t212);
+    const yaw3pitch_real_t t248 = yaw3pitch_bounded(t61 * t228 - t21 * t60);
+    const yaw3pitch_real_t t249 = yaw3pitch_bounded(t60 * t235 - t61 * t236);
     const yaw3pitch_real_t t250 = t211 * t212 - t227 * t247 - t234 * t248 - t245 * t249;
     ddq_by_dq[4] = t250;
     const yaw3pitch_real_t t251 = t20 - t56 * t228 + t21 * t248;
@@ -647,10 +647,10 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
-    if (!yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_q, 16, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_dq, 16, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_input, 16, YAW3PITCH_C(1.0e30))) {
+    if (!yaw3pitch_all_bounded(ddq, 4)
+        || !yaw3pitch_all_bounded(ddq_by_q, 16)
+        || !yaw3pitch_all_bounded(ddq_by_dq, 16)
+        || !yaw3pitch_all_bounded(ddq_by_input, 16)) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);

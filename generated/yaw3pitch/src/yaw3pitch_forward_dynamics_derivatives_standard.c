@@ -71,7 +71,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x97DAFF68UL
+#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -124,7 +124,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-0.7) * parameters[M4];
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] - (t7 - parameters[ZZ4]);
-    const yaw3pitch_real_t t9 = t8 - t3 * t5;
+    const yaw3pitch_real_t t9 = yaw3pitch_bounded(t8 - t3 * t5);
     if (!(t9 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -156,7 +156,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * t25;
     const yaw3pitch_real_t t27 = YAW3PITCH_C(0.8) * (t26 - YAW3PITCH_C(2.0) * t17);
     const yaw3pitch_real_t t28 = parameters[ZZ2] + (t8 + t27);
-    const yaw3pitch_real_t t29 = t28 - t20 * t24 + t21 * t23;
+    const yaw3pitch_real_t t29 = yaw3pitch_bounded(t28 - t20 * t24 + t21 * t23);
     if (!(t29 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -209,7 +209,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t66 = t44 * t64 - t41 * t65 - t55 * t24 + t61 * t23;
     const yaw3pitch_real_t t67 = YAW3PITCH_C(1.0) / t29;
     const yaw3pitch_real_t t68 = t66 * t67;
-    const yaw3pitch_real_t t69 = t50 - t55 * t56 + t61 * t62 - t66 * t68;
+    const yaw3pitch_real_t t69 = yaw3pitch_bounded(t50 - t55 * t56 + t61 * t62 - t66 * t68);
     if (!(t69 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -338,14 +338,14 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         + (t93 * parameters[MX2] + t88 * parameters[MY2]);
     const yaw3pitch_real_t t162 = input[1] + (t161 - t160) + t151 * t24 - t157 * t23;
     const yaw3pitch_real_t t163 = t149 + t151 * t56 - t157 * t62 - t162 * t68;
-    const yaw3pitch_real_t t164 = YAW3PITCH_C(1.0) / t69;
-    const yaw3pitch_real_t t165 = t163 * t164;
+    const yaw3pitch_real_t t164 = yaw3pitch_bounded(YAW3PITCH_C(1.0) / t69);
+    const yaw3pitch_real_t t165 = yaw3pitch_bounded(t163 * t164);
     ddq[0] = t165;
-    const yaw3pitch_real_t t166 = t162 * t67 - t68 * t165;
+    const yaw3pitch_real_t t166 = yaw3pitch_bounded(t162 * t67 - t68 * t165);
     ddq[1] = t166;
     const yaw3pitch_real_t t167 = t157 * t22 + t62 * t165 + t23 * t166;
     ddq[2] = -t167;
-    const yaw3pitch_real_t t168 = t151 * t4 + t56 * t165 + t24 * t166 - t5 * t167;
+    const yaw3pitch_real_t t168 = yaw3pitch_bounded(t151 * t4 + t56 * t165 + t24 * t166 - t5 * t167);
     ddq[3] = t168;
     const yaw3pitch_real_t t169 = t44 * t16 + t41 * t13;
     const yaw3pitch_real_t t170 = t44 * t13 - t41 * t16;
@@ -444,7 +444,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t258 = t13 * t254 - t16 * t255 + t42 * t256;
     const yaw3pitch_real_t t259 = t44 * t257 + t41 * t258 - (t41 * t42 + t44 * t17) * t251;
     const yaw3pitch_real_t t260 = t24 - t5 * t23;
-    const yaw3pitch_real_t t261 = t164 * (t56 - t5 * t62 - t68 * t260);
+    const yaw3pitch_real_t t261 = yaw3pitch_bounded(t164 * (t56 - t5 * t62 - t68 * t260));
     const yaw3pitch_real_t t262 = YAW3PITCH_C(2.0) * t240;
     const yaw3pitch_real_t t263 = YAW3PITCH_C(2.0) * t241;
     const yaw3pitch_real_t t264 = YAW3PITCH_C(1.4) * t193;
@@ -456,9 +456,9 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t270 = t44 * t267 + t41 * t269 + (t41 * t268 - t44 * t19) * t251;
     const yaw3pitch_real_t t271 = t252 * t239 - t164 * t238 + t259 * t253 - t270 * t261;
     ddq_by_dq[0] = t271;
-    const yaw3pitch_real_t t272 = t67 + t68 * t239;
-    const yaw3pitch_real_t t273 = t68 * t253 - t23 * t67;
-    const yaw3pitch_real_t t274 = t67 * t260 - t68 * t261;
+    const yaw3pitch_real_t t272 = yaw3pitch_bounded(t67 + t68 * t239);
+    const yaw3pitch_real_t t273 = yaw3pitch_bounded(t68 * t253 - t23 * t67);
+    const yaw3pitch_real_t t274 = yaw3pitch_bounded(t67 * t260 - t68 * t261);
     const yaw3pitch_real_t t275 = t238 * t239 - t252 * t272 - t259 * t273 - t270 * t274;
     ddq_by_dq[4] = t275;
     const yaw3pitch_real_t t276 = t22 - t62 * t253 + t23 * t273;
@@ -725,10 +725,10 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
-    if (!yaw3pitch_within_joints(ddq, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_q, 16, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_dq, 16, YAW3PITCH_C(1.0e30))
-        || !yaw3pitch_within(ddq_by_input, 16, YAW3PITCH_C(1.0e30))) {
+    if (!yaw3pitch_all_bounded(ddq, 4)
+        || !yaw3pitch_all_bounded(ddq_by_q, 16)
+        || !yaw3pitch_all_bounded(ddq_by_dq, 16)
+        || !yaw3pitch_all_bounded(ddq_by_input, 16)) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);

@@ -67,7 +67,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x97DAFF68UL
+#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,7 +111,7 @@ int yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * parameters[M4];
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(-2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] + (parameters[ZZ4] + t7);
-    const yaw3pitch_real_t t9 = t8 + t3 * t5;
+    const yaw3pitch_real_t t9 = yaw3pitch_bounded(t8 + t3 * t5);
     if (!(t9 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -134,7 +134,7 @@ int yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * t22;
     const yaw3pitch_real_t t24 = YAW3PITCH_C(0.8) * (t23 + YAW3PITCH_C(2.0) * t16);
     const yaw3pitch_real_t t25 = parameters[ZZ2] + (t8 + t24);
-    const yaw3pitch_real_t t26 = t25 + t17 * t21 - t18 * t20;
+    const yaw3pitch_real_t t26 = yaw3pitch_bounded(t25 + t17 * t21 - t18 * t20);
     if (!(t26 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -176,7 +176,7 @@ int yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t t56 = t55 + t47 * t21 + t53 * t20;
     const yaw3pitch_real_t t57 = YAW3PITCH_C(1.0) / t26;
     const yaw3pitch_real_t t58 = t56 * t57;
-    const yaw3pitch_real_t t59 = t44 + t47 * t48 - t53 * t54 - t56 * t58;
+    const yaw3pitch_real_t t59 = yaw3pitch_bounded(t44 + t47 * t48 - t53 * t54 - t56 * t58);
     if (!(t59 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
@@ -290,15 +290,15 @@ int yaw3pitch_forward_dynamics_standard(
         - (t81 * parameters[MX2] + t77 * parameters[MY2]);
     const yaw3pitch_real_t t141 = input[1] + (t140 - t139) - t129 * t21 + t136 * t20;
     const yaw3pitch_real_t t142 = YAW3PITCH_C(1.0) / t59;
-    const yaw3pitch_real_t t143 = (t130 + t136 * t54 + t141 * t58) * t142;
+    const yaw3pitch_real_t t143 = yaw3pitch_bounded((t130 + t136 * t54 + t141 * t58) * t142);
     out[0] = t143;
-    const yaw3pitch_real_t t144 = t141 * t57 + t58 * t143;
+    const yaw3pitch_real_t t144 = yaw3pitch_bounded(t141 * t57 + t58 * t143);
     out[1] = t144;
-    const yaw3pitch_real_t t145 = t136 * t19 + t54 * t143 + t20 * t144;
+    const yaw3pitch_real_t t145 = yaw3pitch_bounded(t136 * t19 + t54 * t143 + t20 * t144);
     out[2] = t145;
     const yaw3pitch_real_t t146 = t48 * t143 - t129 * t4 - t21 * t144 - t5 * t145;
     out[3] = t146;
-    if (!yaw3pitch_within_joints(out, YAW3PITCH_C(1.0e30))) {
+    if (!yaw3pitch_all_bounded(out, 4)) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

@@ -13,7 +13,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0x97DAFF68UL
+#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -117,6 +117,24 @@ static inline int yaw3pitch_within(const yaw3pitch_real_t x[], int n, yaw3pitch_
 static inline int yaw3pitch_within_joints(const yaw3pitch_real_t x[], yaw3pitch_real_t limit)
 {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
+}
+
+/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
+static inline yaw3pitch_real_t yaw3pitch_bounded(yaw3pitch_real_t x)
+{
+    return x >= YAW3PITCH_C(-1.0e15) && x <= YAW3PITCH_C(1.0e15) ? x : YAW3PITCH_C(2.0e15);
+}
+
+/* Whether every element of a result is within the limit; false where one is not a number. */
+static inline int yaw3pitch_all_bounded(const yaw3pitch_real_t x[], int n)
+{
+    int i;
+    for (i = 0; i < n; ++i) {
+        if (!(x[i] >= YAW3PITCH_C(-1.0e15) && x[i] <= YAW3PITCH_C(1.0e15))) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Left out of every call with -DYAW3PITCH_PARAMETERS_CHECKED, for parameters that yaw3pitch_check_parameters has seen. */

@@ -15,6 +15,7 @@ from modelgen.functions.objects import (
     Function,
     least_guarded,
 )
+from modelgen.graph import read
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
@@ -61,11 +62,34 @@ def arrays(function: Function) -> dict[str, int]:
     return lengths
 
 
-class CDialect:
-    """Statements of one function in C99."""
+def _read_on(function: Function) -> frozenset[int]:
+    """Temporaries that are elements of outputs and that later statements read."""
+    stored: set[int] = set()
+    found: set[int] = set()
+    for statement in function.program.statements:
+        found |= stored.intersection(read(statement.term))
+        if statement.term[0] == "let" and isinstance(statement.target, tuple):
+            stored.add(statement.term[1])
+    return frozenset(found)
 
-    def __init__(self, arm: str, function: Function, named: Mapping[str, Sequence[Element | None]]) -> None:
+
+class CDialect:
+    """Statements of one function in C99.
+
+    checked: whether the function tests its outputs at the end; those elements on which it builds before are
+    bounded where they are defined.
+    """
+
+    def __init__(
+        self,
+        arm: str,
+        function: Function,
+        named: Mapping[str, Sequence[Element | None]],
+        *,
+        checked: bool = False,
+    ) -> None:
         self.arm = arm
+        self.bounded = _read_on(function) if checked else frozenset()
         self.macro = arm.upper()
         self.named = named
         self.places = destinations(function)
@@ -115,6 +139,7 @@ class CDialect:
 
     def let(self, number: int, text: str) -> str:
         """An intermediate value is defined once and never changes."""
+        text = f"{self.arm}_bounded({text})" if number in self.bounded else text
         return wrapped_code(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
 
     def pair(self, pair: Pair) -> str:

@@ -14,7 +14,6 @@ from modelgen.functions.objects import STATUS_INPUT, STATUS_PIVOT, Function
 
 # Functions that make large numbers of small ones; what divides is guarded by the model.
 _UNBOUNDED = frozenset({"exp", "pow", "tan", "log"})
-_OUTPUT_LIMIT = 1e15  # largest length of an output where these are checked
 _UNROLLED = 8  # elements up to which a sum without a loop is shorter than the time it saves is worth
 
 
@@ -27,7 +26,8 @@ def statements(
     arm: str, function: Function, named: Mapping[str, Sequence[Element | None]], joints: int
 ) -> list[str]:
     """The body of the function, line by line. `joints`: size of q. Raises ValueError as `literal` does."""
-    dialect = CDialect(arm, function, named)
+    status = _checked_output(function)
+    dialect = CDialect(arm, function, named, checked=bool(status))
     macro = arm.upper()
     lines = [*dialect.indices(), f"{INDENT}int status = {macro}_STATUS_OK;", ""]
     lines += _checks(arm, function, joints)
@@ -36,17 +36,12 @@ def statements(
     lines += [dialect.pair(pair) for pair in together]
     lines += body(replace(function, program=rest), named, dialect)
     lines += _zeros(arm, function, dialect)
-    lines += _finite(arm, function, dialect, joints)
+    if status:
+        tests = [f"!{arm}_all_bounded({array}, {size})" for array, size in arrays(function).items()]
+        outside = f"\n{INDENT * 2}|| ".join(tests)
+        lines.append(dialect.leave(outside, f"{macro}_STATUS_{STATUS[status]}"))
     lines.append(f"{INDENT}return {macro}_STATUS_OK;")
     return lines
-
-
-def _within(arm: str, vector: str, size: int, bound: float, joints: int) -> str:
-    """The test that a vector's length is at most `bound`; false where an element is not a number."""
-    limit = literal(arm, bound * bound)
-    if size == joints and unrolled(joints):
-        return f"{arm}_within_joints({vector}, {limit})"
-    return f"{arm}_within({vector}, {size}, {limit})"
 
 
 def _checks(arm: str, function: Function, joints: int) -> list[str]:
@@ -54,7 +49,10 @@ def _checks(arm: str, function: Function, joints: int) -> list[str]:
     tests: dict[int, list[str]] = {}
     for a in function.arguments:
         if a.size:
-            inside = _within(arm, a.name, a.size, a.bound, joints)
+            limit = literal(arm, a.bound * a.bound)
+            inside = f"{arm}_within({a.name}, {a.size}, {limit})"
+            if a.size == joints and unrolled(joints):
+                inside = f"{arm}_within_joints({a.name}, {limit})"
             if a.name == "parameters":
                 inside = f"{arm.upper()}_PARAMETERS_USABLE({inside})"
             outside = f"!{inside}"
@@ -86,16 +84,6 @@ def _zeros(arm: str, function: Function, dialect: CDialect) -> list[str]:
                 chain = "".join(f"{array}[{offset + i}]{UNBROKEN}= " for i in columns)
                 lines.append(wrapped(f"{chain}{literal(arm, 0.0)};", INDENT, INDENT * 2))
     return lines
-
-
-def _finite(arm: str, function: Function, dialect: CDialect, joints: int) -> list[str]:
-    """The test of the outputs, once all are set: what is not finite on the way is not finite in the end."""
-    status = _checked_output(function)
-    if not status:
-        return []
-    tests = [_within(arm, array, size, _OUTPUT_LIMIT, joints) for array, size in arrays(function).items()]
-    outside = f"\n{INDENT * 2}|| ".join(f"!{inside}" for inside in tests)
-    return [dialect.leave(outside, f"{arm.upper()}_STATUS_{STATUS[status]}")]
 
 
 def _checked_output(function: Function) -> int:
