@@ -113,6 +113,7 @@ def export(
     to: str,
     out: Path | str | None = None,
     parameters: Path | str | Mapping[str, Any] | None = None,
+    fmi: str | None = None,
 ) -> ExportedModel:
     """Make the model of a simulator of an arm: MuJoCo's MJCF, URDF, or an FMU.
 
@@ -128,6 +129,8 @@ def export(
         Identified base parameters: <arm>_parameters.yaml of `identify`, or values by name. Bodies that could
         exist are found for them, as near to the description's links as can be. Default: the description's
         values; where it lacks some, the file beside it, if there is one.
+    fmi : str, optional
+        Version of FMI of an FMU, "2.0" or "3.0". Default: "2.0".
 
     Returns
     -------
@@ -137,10 +140,10 @@ def export(
     Raises
     ------
     InputError
-        For a format that does not exist, links without inertials, parameters that are not the arm's, and a
-        file that cannot be written.
+        For a format or a version that does not exist, links without inertials, parameters that are not the
+        arm's, and a file that cannot be written.
     """
-    check_format(to)
+    check_format(to, fmi)
     if out is not None:
         check_file("--out", Path(out))
     values, note = values_of(parameters, [arm.name]) or None, ""
@@ -148,7 +151,7 @@ def export(
         values = values_beside([arm], ModelOptions()).get(arm.name)
         if values is not None:
             note = f"parameters are those of {arm.name}_parameters.yaml beside the description"
-    found = ExportedModel(export_model(arm, to, values, [note] if note else []))
+    found = ExportedModel(export_model(arm, to, values, [note] if note else [], fmi))
     if out is not None:
         found.write(out)
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from modelgen.description.objects import Arm
@@ -12,7 +13,7 @@ from modelgen.errors import InputError, suggest
 from modelgen.exporting.account import Account, Format, described_rows, loaded
 from modelgen.exporting.build import machine_of
 from modelgen.exporting.exported import Exported, heading
-from modelgen.exporting.fmu import export_fmu
+from modelgen.exporting.fmu import FMI2, STANDARDS, export_fmu
 from modelgen.exporting.mjcf import MJCF
 from modelgen.exporting.states import Efforts, States
 from modelgen.exporting.urdf import URDF
@@ -30,23 +31,32 @@ def check_file(option: str, path: Path) -> None:
         raise InputError(f"{option} {path}: there is no folder {path.parent}; make it first")
 
 
-def check_format(name: str) -> None:
-    """Raises InputError where there is no such format."""
+def check_format(name: str, fmi: str | None = None) -> None:
+    """Raises InputError where there is no such format, or no such version of FMI of an FMU."""
     if name not in FORMATS:
         raise InputError(f"--to {name}: there is no such format{suggest(name, FORMATS)}")
+    if fmi is not None and name != FMU:
+        raise InputError(f"--fmi {fmi}: only --to {FMU} has a version of FMI; leave it out")
+    if fmi is not None and fmi not in STANDARDS:
+        raise InputError(f"--fmi {fmi}: there is no such version; expected {' or '.join(STANDARDS)}")
 
 
 def export_model(
-    arm: Arm, to: str, parameters: Mapping[str, float] | None = None, remarks: Sequence[str] = ()
+    arm: Arm,
+    to: str,
+    parameters: Mapping[str, float] | None = None,
+    remarks: Sequence[str] = (),
+    fmi: str | None = None,
 ) -> Exported:
     """The arm as a file that a simulator reads.
 
     parameters: base parameters by name; by default the description's nominal values. remarks: on where they
-    are from. Raises InputError for a format that does not exist, for links without inertials, and for
-    parameters that are not the arm's.
+    are from. fmi: version of an FMU. Raises InputError for a format that does not exist, for links without
+    inertials, and for parameters that are not the arm's.
     """
-    check_format(to)
-    return FORMATS[to](arm, parameters, remarks)
+    check_format(to, fmi)
+    made = FORMATS[to] if fmi is None else partial(export_fmu, standard=STANDARDS[fmi])
+    return made(arm, parameters, remarks)
 
 
 def _model(form: Format) -> Maker:
@@ -71,4 +81,9 @@ def _left(arm: Arm) -> list[str]:
     return ["buoyancy is left out: the description has no volumes"] if arm.fluid_density else []
 
 
-FORMATS: Mapping[str, Maker] = {MJCF.name: _model(MJCF), URDF.name: _model(URDF), "fmu": export_fmu}
+FMU = "fmu"
+FORMATS: Mapping[str, Maker] = {
+    MJCF.name: _model(MJCF),
+    URDF.name: _model(URDF),
+    FMU: partial(export_fmu, standard=FMI2),
+}

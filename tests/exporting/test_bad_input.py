@@ -33,6 +33,8 @@ def test_an_inertia_that_mujoco_refuses_is_named() -> None:
     ("words", "message"),
     [
         (("--to", "mjfc", "--out", "x.xml"), "did you mean 'mjcf'?"),
+        (("--to", "mjcf", "--out", "x.xml", "--fmi", "3.0"), "only --to fmu has a version of FMI"),
+        (("--to", "fmu", "--out", "x.xml", "--fmi", "1.0"), "expected 2.0 or 3.0"),
         (("--to", "mjcf", "--out", "none/x.xml"), "there is no folder none"),
         (("--to", "mjcf", "--out", "."), "found a folder"),
         (("--to", "mjcf", "--out", "x.xml", "--parameters", "none.yaml"), "no such file"),

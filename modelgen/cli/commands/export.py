@@ -17,6 +17,11 @@ OutFile = Annotated[
     Path, typer.Option("-o", "--out", metavar="FILE", help="File to write.", show_default=False)
 ]
 
+Fmi = Annotated[
+    str | None,
+    typer.Option("--fmi", metavar="VERSION", help="Of an FMU: 2.0 (the default) or 3.0.", show_default=False),
+]
+
 
 @guarded
 def export(
@@ -26,6 +31,7 @@ def export(
     parameters: Parameters = None,
     to: To,
     out: OutFile,
+    fmi: Fmi = None,
     as_json: Json = False,
 ) -> None:
     """Write an arm as a model of a simulator, and say of every effect whether it is exact there."""
@@ -33,6 +39,6 @@ def export(
     from modelgen.cli.arms import one
     from modelgen.cli.output import print_result
 
-    found = exported(one(arms, arm), to=to, out=out, parameters=parameters)
+    found = exported(one(arms, arm), to=to, out=out, parameters=parameters, fmi=fmi)
     print_result(found, as_json=as_json)
     typer.echo(f"wrote {out}", err=True)

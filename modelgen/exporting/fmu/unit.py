@@ -19,9 +19,9 @@ from modelgen.errors import InputError
 from modelgen.exporting.account import APPROXIMATED, EXACT, LEFT_OUT, Row, described_rows
 from modelgen.exporting.build import range_of
 from modelgen.exporting.exported import Exported, heading
+from modelgen.exporting.fmu.standard import Described, Standard
 from modelgen.exporting.fmu.variables import Variable, variables
 from modelgen.exporting.values import nominal, standard_of
-from modelgen.exporting.xml_lines import comment, element, figure
 from modelgen.functions import grouped
 from modelgen.functions.parameters_file import base_vector
 from modelgen.native import library_bytes
@@ -31,40 +31,40 @@ from modelgen.simulation.friction_set import elastic, slip, unsmoothed
 from modelgen.simulation.plant import Plant
 from modelgen.simulation.simulate import STEP, STIFF, fastest
 
-TITLE = "FMU"
 MAIN = "fmu.c"
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # of every entry, so that archives agree
-_FOLDERS = {  # of FMI 2.0, by system and processor
-    ("linux", "x86_64"): ("linux64", ".so"),
-    ("darwin", "x86_64"): ("darwin64", ".dylib"),
-    ("darwin", "arm64"): ("darwin64", ".dylib"),
-}
 
 
-def export_fmu(arm: Arm, parameters: Mapping[str, float] | None, remarks: Sequence[str]) -> Exported:
+def export_fmu(
+    arm: Arm, parameters: Mapping[str, float] | None, remarks: Sequence[str], standard: Standard
+) -> Exported:
     """The unit of an arm. Raises InputError as the other formats do, and for one too stiff for its steps."""
     plant, missing = _plant(arm, parameters)
     q = np.array([_start(*range_of(described(arm), i)) for i in arm.coordinates])
     step = _step(plant, q)
     names, units = _parameters(plant)
     listed = variables(plant, names, units, q, step)
-    files = _sources(plant, q, step)
+    files = _sources(plant, q, step, standard)
     guid = _guid(files, listed)
     files[MAIN] = files[MAIN].replace(_PENDING, guid)
     rows = [*described_rows(arm), *_rows(arm, missing)]
     notes = [*remarks]
     library = None
-    folder = _FOLDERS.get((sys.platform, platform.machine()))
+    folder = standard.folders.get((sys.platform, platform.machine()))
     try:
         library = library_bytes(files, MAIN) if folder is not None else None
     except RuntimeError as error:
         notes.append(f"there is no compiled library in the unit, its tool must compile the sources: {error}")
-    xml = _description(arm, plant, guid, listed, heading(arm.name, arm.source, rows, notes))
+    name = plant.arm.name
+    table = heading(arm.name, arm.source, rows, notes)
+    xml = standard.describe(Described(name, " ".join(arm.source.split()), guid, listed, table, MAIN))
     entries = {"modelDescription.xml": xml.encode()}
-    entries |= {f"sources/{name}": text.encode() for name, text in files.items()}
+    entries |= {f"sources/{file}": text.encode() for file, text in files.items()}
+    entries |= {file: text.encode() for file, text in standard.more(name, MAIN).items()}
     if folder is not None and library is not None:
-        entries[f"binaries/{folder[0]}/{plant.arm.name}{folder[1]}"] = library
-    return Exported(arm, "fmu", TITLE, xml, _archive(entries), tuple(rows), tuple(notes))
+        suffix = ".dylib" if sys.platform == "darwin" else ".so"
+        entries[f"binaries/{folder}/{name}{suffix}"] = library
+    return Exported(arm, "fmu", standard.title, xml, _archive(entries), tuple(rows), tuple(notes))
 
 
 def _plant(arm: Arm, parameters: Mapping[str, float] | None) -> tuple[Plant, list[str]]:
@@ -130,7 +130,7 @@ def _rows(arm: Arm, missing: Sequence[str]) -> list[Row]:
 _PENDING = "guid pending"
 
 
-def _sources(plant: Plant, q: Array, step: float) -> dict[str, str]:
+def _sources(plant: Plant, q: Array, step: float, standard: Standard) -> dict[str, str]:
     """C by name, all in one folder; MAIN includes the others."""
     motors = next(f for f in plant.model.functions if f.name == "motor_from_joint")
     files = {}
@@ -142,7 +142,7 @@ def _sources(plant: Plant, q: Array, step: float) -> dict[str, str]:
     low, high = (np.where(np.isfinite(x), x, np.sign(x) * 1e300) for x in plant.strokes)
     lines = [
         licence,
-        f"/* {name} as a unit after FMI 2.0. This file includes all others. */",
+        f"/* {name} as a unit after FMI {standard.version}. This file includes all others. */",
         f"#define begin {name}_begin",
         f"#define run {name}_run",
         f'#include "{fixed.MAIN}"',
@@ -160,8 +160,8 @@ def _sources(plant: Plant, q: Array, step: float) -> dict[str, str]:
         f"    return {name}_motor_from_joint(q, dq, zeros, out, out + N, rest);",
         "}",
     ]
-    own = (Path(__file__).parent / "fmi2.c").read_text(encoding="utf-8")
-    return {**files, MAIN: "\n".join([*lines, own])}
+    own = [(Path(__file__).parent / f).read_text(encoding="utf-8") for f in ("unit.c", standard.source)]
+    return {**files, MAIN: "\n".join([*lines, *own])}
 
 
 def _array(name: str, values: Array) -> str:
@@ -174,85 +174,6 @@ def _guid(files: Mapping[str, str], listed: Sequence[Variable]) -> str:
     text = "\0".join([*(f"{name}\0{files[name]}" for name in sorted(files)), *map(repr, listed)])
     digest = hashlib.sha256(text.encode()).hexdigest()
     return "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"
-
-
-# -- modelDescription.xml ---------------------------------------------------------------------
-
-
-def _description(arm: Arm, plant: Plant, guid: str, listed: Sequence[Variable], table: Sequence[str]) -> str:
-    name = plant.arm.name
-    sources = element("SourceFiles", element("File", name=MAIN))
-    kept = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
-    simulation = [
-        *element("ModelExchange", sources, modelIdentifier=name, **kept),
-        *element(
-            "CoSimulation",
-            sources,
-            modelIdentifier=name,
-            canHandleVariableCommunicationStepSize="true",
-            **kept,
-        ),
-    ]
-    units = [
-        line for unit in sorted({v.unit for v in listed if v.unit}) for line in element("Unit", name=unit)
-    ]
-    scalars = [line for k, variable in enumerate(listed) for line in _scalar(k, variable)]
-    outputs = [
-        line
-        for k, variable in enumerate(listed, 1)
-        if variable.causality == "output"
-        for line in element("Unknown", index=str(k))
-    ]
-    rates = [
-        line
-        for k, variable in enumerate(listed, 1)
-        if variable.rate_of is not None
-        for line in element("Unknown", index=str(k))
-    ]
-    structure = [
-        *element("Outputs", outputs),
-        *element("Derivatives", rates),
-        *element("InitialUnknowns", [*outputs, *rates]),
-    ]
-    inside = [
-        *comment(table),
-        *simulation,
-        *element("UnitDefinitions", units),
-        *element("DefaultExperiment", startTime="0", stopTime="1", stepSize="0.001"),
-        *element("ModelVariables", scalars),
-        *element("ModelStructure", structure),
-    ]
-    root = element(
-        "fmiModelDescription",
-        inside,
-        fmiVersion="2.0",
-        modelName=name,
-        guid=guid,
-        description=" ".join(arm.source.split()) or None,
-        generationTool="modelgen",
-        variableNamingConvention="flat",
-        numberOfEventIndicators=str(len(plant.slip.contacts)),
-    )
-    return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *root]) + "\n"
-
-
-def _scalar(reference: int, v: Variable) -> list[str]:
-    start = None if v.start is None else figure(v.start)
-    return element(
-        "ScalarVariable",
-        element(
-            "Real",
-            unit=v.unit or None,
-            start=start,
-            derivative=None if v.rate_of is None else str(v.rate_of + 1),
-        ),
-        name=v.name,
-        valueReference=str(reference),
-        description=v.text,
-        causality=v.causality,
-        variability=v.variability,
-        initial="calculated" if v.causality in ("output", "local") else None,
-    )
 
 
 def _archive(entries: Mapping[str, bytes]) -> bytes:

@@ -12,9 +12,10 @@ from modelgen.simulation.plant import Plant
 
 @dataclass(frozen=True)
 class Variable:
-    """One real variable. causality: "input", "output", "parameter" or "local"; start: None where computed.
+    """One real variable. causality: "input", "output", "parameter", "local" or "independent".
 
-    rate_of: number from 0 of the variable whose time derivative it is.
+    start: None where computed. rate_of: number from 0 of the variable whose time derivative it is. jumps: a
+    state that an event changes. indicates: its sign tells of an event.
     """
 
     name: str
@@ -24,6 +25,8 @@ class Variable:
     variability: str
     start: float | None = None
     rate_of: int | None = None
+    jumps: bool = False
+    indicates: bool = False
 
 
 def variables(
@@ -54,7 +57,7 @@ def variables(
     )
     for name, text, per, kinds in outputs:
         found += [
-            Variable(f"{joint.name}.{name}", f"{unit}{per}", text, "output", "continuous")
+            Variable(f"{joint.name}.{name}", f"{unit}{per}", text, "output", "continuous", jumps=name == "dq")
             for joint, unit in zip(joints, kinds, strict=True)
         ]
     found += [
@@ -64,6 +67,11 @@ def variables(
     n = len(joints)
     states = [*range(n, 3 * n), *range(5 * n, len(found))]
     found += [_rate(found[k], k) for k in states]
+    text = "above zero while a contact goes on to slide or to stick"
+    found += [
+        Variable(f"contact{c}", "", text, "local", "continuous", indicates=True)
+        for c in range(1, len(plant.slip.contacts) + 1)
+    ]
     for name, text, per, starts in (
         ("q_start", "coordinate at the beginning", "", q.tolist()),
         ("dq_start", "rate at the beginning", "/s", [0.0] * len(joints)),
@@ -73,10 +81,11 @@ def variables(
             for joint, unit, start in zip(joints, own, starts, strict=True)
         ]
     found.append(Variable("step", "s", "longest step of the integrator", "parameter", "fixed", step))
-    return found + [
+    found += [
         Variable(f"parameter.{name}", unit, "parameter of the model", "parameter", "tunable", float(value))
         for name, unit, value in zip(names, units, plant.parameters, strict=True)
     ]
+    return [*found, Variable("time", "s", "time", "independent", "continuous")]
 
 
 def _rate(v: Variable, number: int) -> Variable:
