@@ -68,8 +68,9 @@ class Definition(Traits):
 
         values: of all its parameters. The result is at its own coordinate x: forces that oppose the input,
         "damping" times v, "quadratic" times |v| v, "cubic" times v^3, "friction" times sign(v), "armature"
-        times the acceleration, "stiffness" times x - "rest", and "force"; or "lag" [s], the time constant by
-        which the effort follows the input.
+        times the acceleration, "stiffness" times x - "rest", "sine" and "cosine" times those of "wave" times
+        x, and "force"; with "bristle", the distance over which "friction" builds up (Dahl 1968); or "lag"
+        [s], the time constant by which the effort follows the input.
         """
         return {theirs: values[own] for theirs, own in cls.sources.items() if own in values}
 

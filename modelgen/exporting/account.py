@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.description.objects import Arm
 from modelgen.effects import AppliedEffect, DescriptionEffect, LinkEffect, applied_effects
 from modelgen.effects.applied import effect_class, uses
-from modelgen.exporting.machine import Axis, Coupling, Machine, Properties
+from modelgen.exporting.machine import POWERS, Axis, Coupling, Machine, Properties
 from modelgen.exporting.states import Efforts, States, force, largest
 from modelgen.importing.bodies import together
 from modelgen.importing.robot import Body
@@ -18,6 +18,7 @@ from modelgen.numeric import Array
 
 EXACT, APPROXIMATED, LEFT_OUT = "exact", "approximated", "left out"
 SAME = 1e-9  # of the largest effort of an effect, that is arithmetic
+WITH = {"rest": "stiffness", "wave": "sine"}  # what a format has where it has the other
 
 
 @dataclass(frozen=True)
@@ -100,12 +101,15 @@ class Account:
         if "lag" in found:
             self._axis(effect).input["lag"] = found["lag"]
             return Row(name, joint, EXACT, 0.0, self.to.laws["lag"])
+        if "bristle" in found:
+            self._axis(effect).alone.append((place, found))
+            return Row(name, joint, EXACT, 0.0, self.to.laws["bristle"])
         measured = self.efforts.of(effect) if effect.parameters else []
         total = largest(measured) if measured else None
         if not found:
             return Row(name, joint, LEFT_OUT, total, f"{self.to.title} has nothing like it")
         modelled = self._put(effect, place, found)
-        said = ", ".join(self.to.laws[law] for law in found if law in self.to.laws)
+        said = ", ".join(dict.fromkeys(self.to.laws[law] for law in found if law in self.to.laws))
         error = largest([efforts - modelled for efforts in measured])
         rest = [self._at_rest(effect, place, found[law]) for law in found if law in self.to.solved]
         if error <= SAME * (total or 0.0) + self.efforts.noise:
@@ -127,9 +131,9 @@ class Account:
     def _kept(self, effect: AppliedEffect, properties: Mapping[str, float]) -> Properties:
         """Those that the format has at the place of the effect."""
         place = effect.parts[0].place
-        known = set(self.to.laws) | ({"rest"} if "stiffness" in self.to.laws else set())
+        known = set(self.to.laws) | {more for more, law in WITH.items() if law in self.to.laws}
         if place == "pair":
-            known = known - {"force", "lag"} if self.to.pairs else set()
+            known = known & {"rest", *POWERS} if self.to.pairs else set()
         elif place == "input":
             known &= {"lag"}
         elif place == "joint" and self._axis(effect).lever is not None and self.to.levers:
@@ -152,6 +156,9 @@ class Account:
             efforts[:, axis.number], efforts[:, number] = of_pair, ratio * of_pair
             return efforts
         own = axis.at_joint if place == "joint" else axis.at_motor
+        if "wave" in properties:
+            axis.alone.append((place, properties))
+            own = {}
         for name, value in properties.items():
             own[name] = value if name == "rest" else own.get(name, 0.0) + value
         signal = s.joint(axis.number) if place == "joint" else s.carried(axis, self.to.levers)

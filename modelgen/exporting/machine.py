@@ -40,6 +40,7 @@ class Axis:
     number: from 0. ratio: motor coordinate per joint coordinate; where that changes, the one in the middle of
     the range, with joint and motor coordinate there in `middle`. gain: generalised force at the motor
     coordinate per input. varies: the ratio does. current: largest input. input: what lies before the effort.
+    alone: what stands by itself, with its place, "joint" or "motor".
     """
 
     number: int
@@ -53,6 +54,7 @@ class Axis:
     at_joint: Properties = field(default_factory=dict)
     at_motor: Properties = field(default_factory=dict)
     input: Properties = field(default_factory=dict)
+    alone: list[tuple[str, Properties]] = field(default_factory=list)
 
     def joined(self) -> Properties:
         """What the joint has with what its motor has, of a motor that turns with it by `ratio`.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -35,7 +36,7 @@ def write_mjcf(machine: Machine, table: Sequence[str]) -> str:
         *element("default", [*element("geom", contype="0", conaffinity="0", mass="0", rgba="0.5 0.6 0.7 1")]),
         *element("worldbody", [*anchors, *bodies]),
         *(element("tendon", tendons) if tendons else []),
-        *element("actuator", actuators),
+        *element("actuator", [*actuators, *(line for link in machine.moving for line in _alone(link))]),
     ]
     return "\n".join(element("mujoco", inside, model=machine.name)) + "\n"
 
@@ -195,6 +196,34 @@ def _actuator(link: Link) -> list[str]:
     )
 
 
+def _alone(link: Link) -> list[str]:
+    """What acts without an input: cogging, and bristles that bend before they slide (LuGre as Dahl 1968)."""
+    axis = link.axis
+    assert axis is not None
+    lines: list[str] = []
+    for k, (place, here) in enumerate(axis.alone, 1):
+        # of the coordinate x at its place: x = slope times that of the transmission, and shift
+        where, slope, shift = {"joint": link.name}, 1.0, 0.0
+        if place == "motor" and axis.lever is not None:
+            where, slope = {"tendon": f"{link.name}_actuator"}, axis.lever.per_length
+            shift = -slope * axis.lever.zero
+        elif place == "motor":
+            slope, shift = axis.ratio, axis.middle[1] - axis.ratio * axis.middle[0]
+        if "bristle" in here:
+            friction = here["friction"]
+            law = {"lugre": figures((friction / here["bristle"], 0.0, friction, friction, 1.0))}
+        else:
+            wave, sine, cosine = here["wave"], here["sine"], here["cosine"]
+            # it opposes the input, where the simulator's adds to it
+            phase = math.remainder(wave * shift + math.atan2(cosine, sine) + math.pi, math.tau)
+            law = {"cogging": figures((math.hypot(sine, cosine) / wave, 1.0, phase))}
+            slope *= wave
+        passive = {"motorconst": "0 0", "resistance": "1", "input": "none"}
+        name, gear = f"{link.name}_alone{k}", figure(slope)
+        lines += element("dcmotor", name=name, **where, gear=gear, **passive, **law)
+    return lines
+
+
 def remarks(machine: Machine) -> list[str]:
     """What the format cannot say of a machine besides the laws of effects."""
     fast = [link.name for link in machine.moving if link.velocity is not None]
@@ -207,6 +236,8 @@ def remarks(machine: Machine) -> list[str]:
         )
     if any({"quadratic", "cubic"} & set(p) for p in machine.properties()):
         found.append("damping has several coefficients, which MuJoCo 4.0 reads and older releases do not")
+    if any(link.axis is not None and link.axis.alone for link in machine.moving):
+        found.append("dcmotors without input, which MuJoCo 4.0 reads and older releases do not")
     if fast:
         found.append(f"limits of speed are left out: MuJoCo has none ({', '.join(fast)})")
     return found
@@ -221,6 +252,9 @@ _LAWS: Mapping[str, str] = {
     "stiffness": "stiffness",
     "force": "constant force of the actuator",
     "lag": "filter of the actuator",
+    "sine": "cogging of a dcmotor",
+    "cosine": "cogging of a dcmotor",
+    "bristle": "lugre of a dcmotor",
 }
 MJCF = Format(
     name="mjcf",

@@ -91,6 +91,8 @@ def force(signal: Signal, properties: Mapping[str, float]) -> Array:
     x, v, p = signal.position, signal.velocity, properties
     total = p.get("damping", 0.0) * v + p.get("quadratic", 0.0) * np.abs(v) * v + p.get("cubic", 0.0) * v**3
     total = total + p.get("friction", 0.0) * np.sign(v) + p.get("armature", 0.0) * signal.acceleration
+    phase = p.get("wave", 0.0) * x
+    total = total + p.get("sine", 0.0) * np.sin(phase) + p.get("cosine", 0.0) * np.cos(phase)
     return np.asarray(total + p.get("stiffness", 0.0) * (x - p.get("rest", 0.0)) + p.get("force", 0.0))
 
 

@@ -57,7 +57,21 @@ def test_friction_that_needs_states_is_measured_cold_and_settled() -> None:
     warm = with_effect(ARMS["gravity_arm"], 0, "friction_warm_up", dry=0.3, viscous=0.0, time=60.0, speed=1.0)
     assert row_of(warm) == ("left out", pytest.approx(0.3))
     bristles = with_effect(ARMS["gravity_arm"], 0, "presliding", magnitude=0.3, distance=0.01)
-    assert row_of(bristles) == ("approximated", pytest.approx(0.3))
+    assert row_of(bristles) == ("exact", 0.0)
+    assert mg.export(bristles, to="urdf").rows[0].status == "approximated"
+
+
+def test_bristles_bend_as_dahl_says() -> None:
+    magnitude, distance, ratio = 0.2, 0.5, -62.6111
+    arm = with_effect(ARMS["puma560"], 0, "presliding", magnitude=magnitude, distance=distance)
+    simulator = mujoco.MjModel.from_xml_string(mg.export(arm, to="mjcf").text)
+    data = mujoco.MjData(simulator)
+    for bend, speed in ((0.4, 0.01), (0.4, -0.01), (-1.0, 0.02), (0.0, -0.03)):
+        # the simulator's state is the deflection
+        data.act[:], data.qvel[0] = bend * distance, speed
+        mujoco.mj_forward(simulator, data)
+        assert data.qfrc_actuator[0] == pytest.approx(-ratio * magnitude * bend, abs=1e-12)
+        assert data.act_dot[0] == pytest.approx(ratio * speed - abs(ratio * speed) * bend, abs=1e-12)
 
 
 def test_a_linkage_that_mujoco_does_not_have_is_approximated_in_its_middle(tmp_path: Path) -> None:

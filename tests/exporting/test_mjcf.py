@@ -48,6 +48,8 @@ arms:
         effects:
           - viscous_friction: {coefficient: 2.0e-3}
           - friction_offset: {offset: 0.02}
+          - torque_ripple: {sine: 0.05, cosine: -0.02, harmonic: 4}
+          - presliding: {magnitude: 0.1, distance: 0.3}
           - drive_inertia: {inertia: 3.0e-4}
           - spring: {stiffness: 30, rest: 0.4}
           - encoder_offset: {offset: 0.05}
@@ -67,6 +69,7 @@ arms:
           - viscous_friction: {coefficient: 1.0e-6}
           - nonlinear_viscous_friction: {coefficient: 1.0e-5, exponent: 2, scale: 100}
           - friction_offset: {offset: 1.0e-3}
+          - torque_ripple: {sine: 4.0e-4, cosine: 6.0e-4, harmonic: 3, revolution: 1000}
           - drive_inertia: {inertia: 3.0e-8}
           - spring: {stiffness: 5, preload: -2}
           - lever_geometry: {l2: 0.003}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exporting_support import base_parameters, only_exact
 
 import modelgen as mg
 from modelgen.exporting.completion import completed
@@ -28,13 +29,18 @@ def back(arm: mg.Arm, parameters: dict[str, float] | None, folder: Path) -> mg.M
     return mg.build_model(mg.import_robot(file, exact=True).arm)
 
 
-@pytest.mark.parametrize("name", ["gravity_arm", "yaw3pitch", "ariane4_free"])
+@pytest.mark.parametrize("name", ARMS)
 def test_what_was_exported_is_imported_with_the_same_base_parameters(name: str, tmp_path: Path) -> None:
-    model = mg.build_model(ARMS[name])
-    assert model.nominal is not None
-    imported = back(ARMS[name], None, tmp_path)
-    assert imported.nominal is not None
-    assert dict(imported.nominal) == pytest.approx(dict(model.nominal), rel=1e-9, abs=1e-12)
+    file = tmp_path / "model.xml"
+    arm = only_exact(ARMS[name], mg.export(ARMS[name], to="mjcf", out=file))
+    mg.export(arm, to="mjcf", out=file)
+    ours, theirs = base_parameters(arm), base_parameters(mg.import_robot(file, exact=True).arm)
+    if name == "two_fingers":
+        # the import has the branch's first frame half a turn about its axis from the description's
+        turned = {k: -v for k, v in theirs.items() if k in ("XZ4", "YZ4", "MX4", "MY4")}
+        assert len(turned) == 4
+        theirs |= turned
+    assert theirs == pytest.approx(ours, rel=1e-9, abs=1e-12)
 
 
 def test_identified_values_come_back_without_any_nominal_ones(tmp_path: Path) -> None:

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 import modelgen as mg
 from modelgen.backends import NumpyFunction
+from modelgen.base_parameters import group
 from modelgen.effects import described
 from modelgen.exporting.states import States
 from modelgen.exporting.values import nominal, standard_of
 from modelgen.functions import Function
 from modelgen.functions.bare import bare
 from modelgen.functions.dynamics import Dynamics
+from modelgen.functions.nominal import base_of
 from modelgen.functions.parametric import standard_values
 from modelgen.model.equations import Equations
 
@@ -33,6 +35,14 @@ def only_exact(arm: mg.Arm, model: mg.ExportedModel) -> mg.Arm:
     return replace(
         arm, joints=joints, effects=tuple(use for use in arm.effects if (use.name, None) not in others)
     )
+
+
+def base_parameters(arm: mg.Arm) -> dict[str, float]:
+    """Values by name, without the mark of a sum of several, which fixed links and loads have."""
+    equations, known = Equations(described(arm)), standard_of(nominal(arm))
+    standard = [known[p.name] for p in equations.standard]
+    found = base_of(group(equations), arm, standard)
+    return {name.removesuffix("R"): value for name, value in found.items()}
 
 
 class Motion:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import modelgen as mg
 
 Array = NDArray[np.float64]
-SAMPLES = 20
+SAMPLES = 200
 
 
 class Arm:

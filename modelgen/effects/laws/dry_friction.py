@@ -225,8 +225,8 @@ class Presliding(Friction):
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:
-        """What it comes to over distances."""
-        return {"friction": values["magnitude"]}
+        """Bristles, or where there are none what it comes to over distances."""
+        return {"friction": values["magnitude"], "bristle": values["distance"]}
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FD z, where z is the bend of the bristles, from -1 to 1."""

@@ -136,6 +136,12 @@ class TorqueRipple(Effect):
             return ""
         return "it has one wave in a turn of the joint, as gravity has"
 
+    @classmethod
+    def simulated(cls, values: Numbers) -> Mapping[str, float]:
+        """A wave over its coordinate."""
+        wave = math.tau * values["harmonic"] / values["revolution"]
+        return {"sine": values["sine"], "cosine": values["cosine"], "wave": wave}
+
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """RS sin(phase) + RC cos(phase), phase = 2 pi harmonic x / revolution."""
         phase = (2 * math.pi) * p["harmonic"] / p["revolution"] * x.position

@@ -82,6 +82,9 @@ def with_actuators(root: Element, defaults: Defaults, levers: Levers) -> tuple[l
             if target not in by_name:
                 raise actuator.error(f"actuator {name}: there is no joint '{target}'")
             gear = _gear(actuator)
+            if given.get("input") == "none":
+                remarks.append(f"actuator {name} of joint {target} has no input and is left out")
+                continue
             if target in seen:
                 remarks.append(f"joint {target}: {seen[target]} is its drive, actuator {name} is left out")
                 continue
