@@ -47,7 +47,16 @@ PACKAGES = (
     "jobs",
 )
 GUIDES = {
-    "Start": ["tutorial", "from-a-drawing", "importing", "drawing", "exporting", "python", "theory"],
+    "Start": [
+        "tutorial",
+        "from-a-drawing",
+        "from-a-urdf",
+        "importing",
+        "drawing",
+        "exporting",
+        "python",
+        "theory",
+    ],
     "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
     "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
     "What a model lacks": [
