@@ -264,3 +264,14 @@ def test_modelgen_s_own_fit_finds_what_is_hidden(tmp_path: Path) -> None:
     ).parameters[f"FA{joint}"]
     assert found.value == pytest.approx(case.truth.values["skew"], abs=4 * found.std)
     assert abs(found.value) > 10 * found.std
+
+
+def test_a_locked_column_stands_where_the_description_has_its_base() -> None:
+    """In every record of a planar arm that is mounted aslant: else gravity would turn between records."""
+    rng = np.random.default_rng(3)
+    one = world.draw(rng, "planar")
+    for seed, period in ((1, 6.0), (2, None)):
+        plan = Plan(1, 100, 6.0, period, ("joint",) * 3, (20,) * 3, "instant", 0.0, 0.0, 1, False, None)
+        angles = [maker.command(one, plan, seed, k) for k in range(2)]
+        assert all(float(abs(a[:, 0]).max()) == 0.0 for a in angles)
+        assert all(float(np.ptp(a[:, 1:], axis=0).min()) > 0.1 for a in angles)

@@ -36,8 +36,12 @@ def command(world: World, plan: Plan, seed: int, k: int) -> Array:
     times = np.arange(round((SETTLE + plan.seconds + TAIL) / kernel.TICK)) * kernel.TICK - SETTLE
     span = (world.centre, world.reach, world.speed)
     if plan.period is not None:
-        return motion.fourier(rng, span, plan.period, times)
-    return motion.ordinary(rng, str(rng.choice(motion.ORDINARY)), span, times)
+        angles = motion.fourier(rng, span, plan.period, times)
+    else:
+        angles = motion.ordinary(rng, str(rng.choice(motion.ORDINARY)), span, times)
+    if world.arm["locked"]:  # where the description has its base, in every record
+        angles[:, 0] = 0.0
+    return angles
 
 
 def record(world: World, plan: Plan, seed: int, k: int, angles: Array, heat: Array) -> tuple[Record, Array]:
