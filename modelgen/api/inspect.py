@@ -11,7 +11,9 @@ from modelgen.api.logs import Log, listed
 from modelgen.api.results import Shown, Table
 from modelgen.dataset import Record, read
 from modelgen.dataset.inspection import Channel, Inspected, inspect, inspection_svg, skeleton
+from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.description import Arm
+from modelgen.identification.effort_instant import effort_instant
 
 
 class Inspection(Shown):
@@ -21,6 +23,8 @@ class Inspection(Shown):
     ----------
     found : modelgen.dataset.inspection.Inspected
         What the inspection gives back.
+    instant : EffortInstant, optional
+        When the efforts were read, as the model of an arm finds it.
 
     Attributes
     ----------
@@ -39,8 +43,8 @@ class Inspection(Shown):
         readings; a guess of the unit where nobody has said it.
     """
 
-    def __init__(self, found: Inspected) -> None:
-        self.found = found
+    def __init__(self, found: Inspected, instant: EffortInstant | None = None) -> None:
+        self.found, self.instant = found, instant
         self.name, self.samples = found.name, found.samples
         self.rate, self.jitter, self.period = found.rate, found.jitter, found.period
         self.channels: tuple[Channel, ...] = found.channels
@@ -78,6 +82,7 @@ class Inspection(Shown):
                 }
                 for c in x.channels
             ],
+            "effort_instant": None if self.instant is None else self.instant.to_json(),
             "without_numbers": list(x.without_numbers),
             "remarks": list(x.remarks),
         }
@@ -126,6 +131,8 @@ class Inspection(Shown):
         parts.append(Table("", columns, rows))
         if x.without_numbers:
             parts.append(f"no numbers: {', '.join(x.without_numbers)}")
+        if self.instant is not None:
+            parts.append(self.instant.line())
         return [*parts, *(f"note: {remark}" for remark in x.remarks)]
 
     def __repr__(self) -> str:
@@ -170,15 +177,15 @@ def read_log(log: Log, arm: Arm, *, mapping: Path | str | None = None) -> Record
 
 
 def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None = None) -> Inspection:
-    """Say what is in a log: ranges, rate, jitter, resolution, repeated readings, period.
+    """Say what is in a log: ranges, rate, jitter, resolution, repeated readings, period, instant of efforts.
 
     Parameters
     ----------
     log : log
         A path, "FILE@t0:t1" [s], a record, or a table of columns. Stamps t are in s.
     arm : Arm, optional
-        With it the columns are those that are read for the arm, in its units. Default: all columns as they
-        stand in the log.
+        With it the columns are those that are read for the arm, in its units, and its model says when the
+        efforts were read. Default: all columns as they stand in the log.
     mapping : Path or str, optional
         A mapping file that renames and scales the columns of a foreign log; it needs the arm.
 
@@ -193,7 +200,8 @@ def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None 
         For a log that cannot be opened, and with an arm for one that cannot be read for it.
     """
     (one,) = listed(log, "log")
-    return Inspection(inspect(one, arm, mapping))
+    found = inspect(one, arm, mapping)
+    return Inspection(found, None if arm is None else effort_instant([read(one, arm, mapping)], arm))
 
 
 def mapping_skeleton(log: Log, arm: Arm | None = None) -> str:

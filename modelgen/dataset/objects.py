@@ -58,6 +58,8 @@ class Record:
         moved to their uniform axis.
     effort_hold : str or float
         When the efforts were read: "following", "previous" or "instant", or their delay [s].
+    hold_known : str
+        What says so: "mapping", "readings", or nothing, where it is the default.
 
     Attributes
     ----------
@@ -91,6 +93,7 @@ class Record:
     repeats: float = 1.0
     jitter: float = 0.0
     effort_hold: str | float = "following"
+    hold_known: str = ""
 
     @property
     def n(self) -> int:

@@ -65,15 +65,22 @@ class Stream:
         result._asked = settings
         return result
 
+    def at_instants(self, hold: str | float) -> Stream:
+        """The same log with its efforts read as `hold` says."""
+        result = copy(self)
+        result.__dict__.pop("beginning", None)
+        result._source = replace(self._source, hold=hold)
+        return result
+
     @cached_property
     def settings(self) -> Chosen:
         """The settings as used, with every choice made."""
-        return choose(self._head, self._asked)
+        return choose(self.beginning, self._asked)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """For the user."""
-        return self._head.remarks
+        return self.beginning.remarks
 
     @cached_property
     def overlap(self) -> int:
@@ -130,8 +137,8 @@ class Stream:
         return found.axis()
 
     @cached_property
-    def _head(self) -> Record:
-        """The beginning of the log, for settings to be chosen from."""
+    def beginning(self) -> Record:
+        """The beginning of the log, for what is chosen from its content."""
         blocks = _Content(self).checked(self._source.blocks())
         table, t = _Rows(blocks, self.axis).table(0, min(self.samples, LONGEST_SAMPLE))
         return replace(record_of(self._source, self.arm, table, self.axis, t)[0], name=self.spec)

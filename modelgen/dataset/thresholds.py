@@ -107,6 +107,18 @@ class DatasetThresholds(Group):
     max_rate_difference: float = entry(
         0.02, "1", "Records whose rates differ by more cannot be processed alike and are refused.", _GUARD
     )
+    max_instant_std: float = entry(
+        0.15,
+        "sampling periods",
+        "When the efforts were read is not asked of records that tell it less surely.",
+        "conventions are half a period apart: more than three standard deviations",
+    )
+    instant_tolerance: float = entry(
+        0.1,
+        "sampling periods",
+        "A convention of when efforts were read is what the data say to this, or to three deviations.",
+        _CHOICE,
+    )
     max_noise_share: float = entry(
         1e-3,
         "of the power",

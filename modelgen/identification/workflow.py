@@ -31,6 +31,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.doubts import doubts
+from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
 from modelgen.identification.misread import check_reading
@@ -151,12 +152,14 @@ def _whole(
             raise InputError("found no test record, expected one: --test LOG")
         one, two = split(training[0])
         training, testing = [one], [two]
+    payloads = _payloads(o.payload, [*train, *test])
+    instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
+    training, testing = at_instants(training, instant), at_instants(testing, instant)
     asked = _settings(o)(1 / training[0].step)
     periods = [period_of(x, None) for x in training]
     chosen = with_whole_rows(choose(training, asked), periods)
     progress("identifying", 0, None)
     fitted, held = [[prepare(x, chosen) for x in part] for part in (training, testing)]
-    payloads = _payloads(o.payload, [*train, *test])
     tracking = Tracking(
         reduced(arm, options),
         o.control,
@@ -191,7 +194,7 @@ def _whole(
     if o.folds is not None:
         progress(f"holding out each of {o.folds} parts", 0, None)
         parts = folds(training, o.folds, chosen, identified)
-    log = inspect_records(fitted, testing, chosen, periods)
+    log = inspect_records(fitted, testing, chosen, periods, instant=instant)
     return Outcome(found, others, fitted[0], chosen, log, parts)
 
 
@@ -256,7 +259,11 @@ def _streamed(
     first = head.settled(_settings(o)(1 / head.axis.step))
     chosen = first.settings
     streams = [first, *(Stream(spec, arm, chosen, o.mapping) for spec in train[1:])]
-    testing: list[Prepared] = [prepare(read(spec, arm, o.mapping), chosen) for spec in test]
+    instant = effort_instant([first.beginning], arm)
+    tests = at_instants([read(spec, arm, o.mapping) for spec in test], instant)
+    if instant is not None and instant.known == "data":
+        streams = [stream.at_instants(instant.hold) for stream in streams]
+    testing: list[Prepared] = [prepare(record, chosen) for record in tests]
     doing = f"identifying, {sum(s.samples for s in streams):,} samples"
     progress(doing, 0, None)
     found = identify_streamed(
@@ -269,6 +276,6 @@ def _streamed(
         progress=lambda done, total: progress(doing, done, total),
     )
     heads = [next(iter(stream)) for stream in streams]
-    tests, samples = [p.record for p in testing], [stream.samples for stream in streams]
-    log = inspect_records(heads, tests, chosen, [None] * len(heads), samples)
+    samples = [stream.samples for stream in streams]
+    log = inspect_records(heads, tests, chosen, [None] * len(heads), samples, instant)
     return Outcome(found, (), heads[0], chosen, log)

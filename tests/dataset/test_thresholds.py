@@ -19,6 +19,7 @@ from modelgen.dataset import (
     prepare,
     read,
 )
+from modelgen.dataset.processing.instants import fitting
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.settings import chosen_cutoff, motion_bandwidth
 from modelgen.dataset.processing.stamps import true_stamps
@@ -184,6 +185,8 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "min_rest_time": (0.5, lambda limits: chosen(limits, cutoff=5.0)),
         "max_rest_weight": (0.5, moving),
         "short_rest_cutoff_periods": (0.2, awake),
+        "max_instant_std": (0.01, lambda limits: fitting(0.02, 0.05, STEP, limits)),
+        "instant_tolerance": (0.3, lambda limits: fitting(0.25, 0.01, STEP, limits)),
         "min_rows": (100, rows),
         "max_period_difference": (1e-6, lambda limits: period_of(drifting(), None, limits)),
         "max_given_period_difference": (1e-4, given_period),

@@ -10,6 +10,7 @@ import numpy as np
 
 from modelgen.dataset.inspection.channels import Channel, Inspected, inspect_record
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.prepare import Prepared
 from modelgen.dataset.processing.settings import Chosen
 
@@ -25,7 +26,8 @@ class RecordsInspected:
     train, test: by record. cutoff: of effort and regressor [Hz], 0 without a filter. hold: "following",
     "previous", "instant", or the delay [s] of the effort's samples; None for free motions. repeats: rows of
     the log per new reading, the most. left_out: samples of the training records (n,) that stand for no
-    equation of their joint: those at rest, and those that the filters trim.
+    equation of their joint: those at rest, and those that the filters trim. instant: what the data say of
+    `hold`; None where they were not asked.
     """
 
     train: tuple[Inspected, ...]
@@ -34,6 +36,7 @@ class RecordsInspected:
     hold: str | float | None
     repeats: float
     left_out: tuple[int, ...]
+    instant: EffortInstant | None = None
 
     @property
     def samples(self) -> int:
@@ -63,6 +66,7 @@ class RecordsInspected:
         """`log` of identification.json and diagnosis.json."""
         return {
             "hold": self.hold,
+            "effort_instant": None if self.instant is None else self.instant.to_json(),
             "rate": _rounded(self.train[0].rate),
             "jitter": round(max(x.jitter for x in self.train), 6),
             "repeated_readings": _rounded(self.repeats),
@@ -92,7 +96,9 @@ class RecordsInspected:
         period = "the motion does not repeat" if self.period is None else f"period {self.period:.6g} s"
         said = [f"{many}: {self.samples} samples at {self.train[0].rate:.6g} Hz, {period}"]
         if self.hold is not None and not any(f"hold: {self.hold}" in remark for remark in self.remarks):
-            said.append(_HELD[self.hold] if isinstance(self.hold, str) else _delayed(self.hold))
+            first = self.train[0]
+            instant = self.instant or EffortInstant(self.hold, "", 1.0 / first.rate)
+            said.append(instant.line())
         coarse = [_step(c) for c in self._channels if c.coarse(COARSE)]
         if coarse:
             said.append(f"coarse readings: {', '.join(dict.fromkeys(coarse))}")
@@ -111,22 +117,17 @@ class RecordsInspected:
         return [c for x in self.train for c in x.channels]
 
 
-_HELD = {
-    "following": "the effort is taken as held over the interval after the position's stamp (hold: following)",
-    "previous": "the effort is taken as held over the interval before the position's stamp (hold: previous)",
-    "instant": "the effort is taken as read at the position's stamp (hold: instant)",
-}
-
-
 def inspect_records(
     train: Sequence[Prepared],
     test: Sequence[Record],
     chosen: Chosen,
     periods: Sequence[float | None],
     samples: Sequence[int] | None = None,
+    instant: EffortInstant | None = None,
 ) -> RecordsInspected:
     """Facts of the records. chosen: how they were processed. periods: samples in a period of each training
-    record. samples: of each training record, where `train` holds the beginnings of streams.
+    record. samples: of each training record, where `train` holds the beginnings of streams. instant: when
+    their efforts were read, where the data were asked.
     """
     first = train[0].record
     counts = [len(p.time) for p in train] if samples is None else samples
@@ -144,16 +145,13 @@ def inspect_records(
         hold=None if first.input is None else first.effort_hold,
         repeats=max(p.record.repeats for p in train),
         left_out=tuple(int(x) for x in np.rint(left)),
+        instant=instant,
     )
 
 
 def _step(c: Channel) -> str:
     assert c.resolution is not None
     return f"{c.name} in steps of {c.resolution:.3g} {c.unit}, {(c.high - c.low) / c.resolution:.0f} of them"
-
-
-def _delayed(hold: float) -> str:
-    return f"the effort is taken as read {1e3 * hold:.4g} ms after the position's stamp"
 
 
 def _rounded(value: float) -> float:

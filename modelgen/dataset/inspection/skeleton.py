@@ -36,7 +36,10 @@ def skeleton(log: Log, arm: Arm | None = None) -> str:
     else:
         unit = unit_of_time(columns[time])
         lines.append(f"time: {{column: {json.dumps(time)}, unit: {unit}, relative: true}}  # ? unit")
-    lines += ["hold: following  # ? instant, where the effort was read with the position", "joints:"]
+    lines.append(
+        "# hold: following  # instant, previous, or a delay [s]; where nothing is said, the data are asked"
+    )
+    lines.append("joints:")
     for k in range(n):
         name = "" if arm is None else f"  # {arm.joints[arm.coordinates[k]].name}"
         prismatic = arm is not None and arm.joints[arm.coordinates[k]].type == "prismatic"

@@ -53,13 +53,16 @@ def read(
     if axis.method != "none" and source.rate is None and repeats == 1.0:
         rate = _rate_of_file(source)
         axis = survey(Survey(spec, rate, source.gap, thresholds), table[:, 0], BLOCK)
-    if repeats > 1.0 and not source.stated and any(source.signals.effort):
+    together = repeats > 1.0 and not source.stated and any(source.signals.effort)
+    if together:
         # Position and effort that are new together were read together, which no controller's output is.
         source = replace(source, hold="instant")
         found.append(
             "the effort is new where the position is: taken as read at the same instant (hold: instant)"
         )
     record, logged = record_of(source, arm, table, axis, axis.times())
+    if together:
+        record = replace(record, hold_known="readings")
     if found:
         record = replace(record, remarks=(*found, *record.remarks), repeats=repeats)
     held = tuple(k for k in range(record.n) if still and record.n > 1 and not np.ptp(logged[:, k]))
@@ -195,6 +198,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         held=source.hold in ("following", "previous"),
         jitter=axis.jitter,
         effort_hold=source.hold,
+        hold_known="mapping" if source.stated else "",
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged

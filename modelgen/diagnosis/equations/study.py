@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from modelgen.dataset import Record, Settings
+from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.periods import period_of
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.free_motion import released, settings_of_swings
@@ -14,13 +15,15 @@ from modelgen.diagnosis.options.thresholds import Thresholds
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
+from modelgen.identification.effort_instant import at_instants, effort_instant
 
 
 @dataclass(frozen=True)
 class Study:
     """Sources of equations. records: the last is the test record. lengths: samples in a period of each
     training record, None where nothing repeats. settings: of the usual band. narrower: whether that may give
-    way to a narrower one where coarse positions spoil it.
+    way to a narrower one where coarse positions spoil it. instant: when the efforts were read, None of free
+    motions.
     """
 
     model: Model
@@ -30,6 +33,7 @@ class Study:
     settings: Settings
     thresholds: Thresholds
     narrower: bool = False
+    instant: EffortInstant | None = None
 
 
 def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
@@ -51,8 +55,17 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
     ]
     if period is not None and all(p is None for p in lengths):
         raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
-    narrower = options.cutoff is None and not free
-    return Study(build_model(arm, EVALUATED), Evaluator(arm), found, lengths, settings, thresholds, narrower)
+    instant = effort_instant(found[:-1], arm, thresholds.dataset)
+    return Study(
+        model=build_model(arm, EVALUATED),
+        evaluator=Evaluator(arm),
+        records=at_instants(found, instant),
+        lengths=lengths,
+        settings=settings,
+        thresholds=thresholds,
+        narrower=options.cutoff is None and not free,
+        instant=instant,
+    )
 
 
 def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thresholds) -> Settings:

@@ -77,7 +77,11 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         added=added,
         identified=_identified(study, decision, extension),
         log=inspect_records(
-            [r.prepared for r in equations.rows], study.records[-1:], band.chosen, study.lengths
+            [r.prepared for r in equations.rows],
+            study.records[-1:],
+            band.chosen,
+            study.lengths,
+            instant=study.instant,
         ),
         settings=_settings(study, decision, selection, options),
         positions=Positions(decision.remains.feigned, decision.correlated),

@@ -1,0 +1,96 @@
+"""When efforts were read against the stamps of the positions: conventions of logs, and what the data say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
+
+# Sampling periods by which what an effort's sample stands for lies after the position's stamp.
+CONVENTIONS = {"following": 0.5, "instant": 0.0, "previous": -0.5}
+
+
+@dataclass(frozen=True)
+class EffortInstant:
+    """When the efforts of records were read.
+
+    hold: as used, one of CONVENTIONS or a delay [s]. known: what says so: "mapping", "readings", "data", or
+    nothing, where it is the default. delay, std: of the efforts' samples after the positions' stamps as the
+    data have it [sampling periods]; None where they do not say. fits: what that is, a convention or a delay
+    [s]; None where the data cannot tell. step: sampling period [s].
+    """
+
+    hold: str | float
+    known: str
+    step: float
+    delay: float | None = None
+    std: float | None = None
+    fits: str | float | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """`log.effort_instant` of identification.json and diagnosis.json."""
+        return {
+            "hold": self.hold,
+            "known_from": self.known or "default",
+            "delay_samples": None if self.delay is None else round(self.delay, 4),
+            "std_samples": None if self.std is None else float(f"{self.std:.3g}"),
+            "fits": self.fits,
+        }
+
+    def line(self) -> str:
+        """One line on it."""
+        said = _WORDS[self.hold] if isinstance(self.hold, str) else f"{self.hold * 1e3:.4g} ms after it"
+        text = f"the effort is taken as {'read ' if not isinstance(self.hold, str) else ''}{said}"
+        measured = "" if self.delay is None else f"{self.delay:.2f} ± {self.std:.2g} samples after it"
+        source = {"mapping": ", as the mapping says", "readings": ": it is new where the position is"}
+        text += f" (hold: {self.hold if isinstance(self.hold, str) else f'{self.hold:.4g}'})"
+        text += source.get(self.known, "")
+        if self.known == "data":
+            return f"{text}, found from the data: {measured}"
+        if self.fits is None:
+            return f"{text}; the data cannot tell" + (f": {measured}" if measured else "")
+        if agrees(self):
+            return f"{text}; the data agree: {measured}"
+        other = f"hold: {self.fits if isinstance(self.fits, str) else f'{self.fits:.4g}'}"
+        return f"{text}; but the data say {measured}, {other}"
+
+
+_WORDS = {
+    "following": "held over the interval after the position's stamp",
+    "previous": "held over the interval before the position's stamp",
+    "instant": "read at the position's stamp",
+}
+
+
+def agrees(found: EffortInstant, limits: DatasetThresholds = USUAL) -> bool:
+    """Whether the data agree with what is used, as far as they can tell."""
+    if found.fits is None or found.delay is None or found.std is None:
+        return True
+    used = CONVENTIONS[found.hold] if isinstance(found.hold, str) else found.hold / found.step
+    return abs(found.delay - used) <= _tolerance(found.std, limits)
+
+
+def fitting(delay: float, std: float, step: float, limits: DatasetThresholds = USUAL) -> str | float | None:
+    """The convention that a delay [sampling periods] is, else the delay [s]; None where it is neither.
+
+    A delay beyond a sample from the default is no convention of a log: something in the arm is late.
+    """
+    if std > limits.max_instant_std:
+        return None
+    apart, name = min((abs(delay - place), name) for name, place in CONVENTIONS.items())
+    if apart <= _tolerance(std, limits):
+        return name
+    return delay * step if abs(delay - CONVENTIONS["following"]) <= 1.0 + std else None
+
+
+def with_hold(record: Record, hold: str | float) -> Record:
+    """The record with its efforts read as `hold` says."""
+    step = record.step
+    later = CONVENTIONS[hold] * step if isinstance(hold, str) else hold
+    return replace(record, hold=later, held=hold in ("following", "previous"), effort_hold=hold)
+
+
+def _tolerance(std: float, limits: DatasetThresholds) -> float:
+    return max(3.0 * std, limits.instant_tolerance)

@@ -1,0 +1,150 @@
+"""When the efforts of a log were read: the delay at which the model explains them best.
+
+The delay of each joint's efforts is fitted beside the parameters by Gauss and Newton's steps. Its column is
+the slope of the efforts as the model has them, in which their noise has no part. The columns of inertia and
+friction are slopes of others, and what is left for the delay is little: its deviation says how little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.dataset import Prepared, Record, Settings, choose, prepare
+from modelgen.dataset.processing.filters import advanced
+from modelgen.dataset.processing.instants import EffortInstant, fitting, with_hold
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator, Motion
+from modelgen.functions import Model, Options, build_model
+from modelgen.functions.options import prepared as reduced
+from modelgen.numeric import Array
+from modelgen.regression.least_squares import Regression, Solution
+
+STEPS = 10  # of Gauss and Newton, at most
+LONGEST = 2.0  # samples, of a step
+SETTLED = 0.02  # samples, or this part of the deviation, at which they end
+ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
+APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
+
+
+def effort_instant(
+    records: Sequence[Record], arm: Arm, limits: DatasetThresholds = USUAL
+) -> EffortInstant | None:
+    """When the efforts of the records, which are read alike, were read; None of free motions.
+
+    What nobody has said is taken as the data say it, where they can tell, and as the default else.
+    """
+    first = records[0]
+    if any(r.input is None for r in records):
+        return None
+    known = EffortInstant(first.effort_hold, first.hold_known, first.step)
+    found = _delay(records, arm, limits)
+    if found is None:
+        return known
+    delay, std, alike = found
+    fits = fitting(delay, std, first.step, limits) if alike else None
+    said = EffortInstant(known.hold, known.known, known.step, delay, std, fits)
+    if fits is None or known.known or fits == known.hold:
+        return said
+    return EffortInstant(fits, "data", known.step, delay, std, fits)
+
+
+def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[Record]:
+    """The records with their efforts at the instants found."""
+    if found is None or found.known != "data":
+        return list(records)
+    return [record if record.input is None else with_hold(record, found.hold) for record in records]
+
+
+def _delay(
+    records: Sequence[Record], arm: Arm, limits: DatasetThresholds
+) -> tuple[float, float, bool] | None:
+    """Common delay and its deviation [samples], and whether the joints agree; None where there is none."""
+    chosen = Options().evaluated
+    model, evaluator = build_model(arm, chosen), Evaluator(reduced(arm, chosen))
+    n, p = records[0].n, len(model.grouping.base)
+    longest = max(limits.min_samples, ELEMENTS // (n * p * len(records)))
+    try:
+        settings = choose(list(records), Settings(thresholds=limits))
+        beginnings = [r.part(0, min(len(r.t), longest)) for r in records]
+        fit = _Fit([prepare(r, settings) for r in beginnings], model, evaluator)
+        found = fit.delays()
+    except (InputError, np.linalg.LinAlgError, FloatingPointError):
+        return None  # what is wrong is said where the parameters are found
+    if found is None:
+        return None
+    delays, deviations = found
+    weights = 1.0 / deviations**2
+    common = float(weights @ delays / weights.sum())
+    std = float(weights.sum() ** -0.5)
+    apart = np.maximum(APART * deviations, limits.instant_tolerance)
+    return common, std, bool((np.abs(delays - common) <= apart).all())
+
+
+class _Fit:
+    """Records, and the columns (M, n, p) of their model away from rest."""
+
+    def __init__(self, records: Sequence[Prepared], model: Model, evaluator: Evaluator) -> None:
+        self.records, self.model, self.evaluator = records, model, evaluator
+        self.n, self.p = records[0].n, len(model.grouping.base)
+        self.moving = [r.moving for r in records]
+        self.motions = [Motion(r.time, r.q, r.dq, r.ddq) for r in records]
+        self._evaluate(np.zeros(self.p))
+
+    def _evaluate(self, theta: Array) -> None:
+        pairs = list(zip(self.records, self.motions, strict=True))
+        self.full = [np.asarray(self.evaluator.regressor(self.model, m, theta)) for _, m in pairs]
+        self.columns = [
+            r.parallel(full * r.awake[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
+        ]
+
+    def delays(self) -> tuple[Array, Array] | None:
+        """Delays of the joints that tell (k,) and their deviations [samples]; None where none does."""
+        first = self.records[0].record
+        delays = np.full(self.n, first.hold / first.step)
+        efforts = self._efforts(delays)
+        if sum(int(m.sum()) for m in self.moving) < 3 * (self.p + self.n):
+            return None
+        theta = Regression(efforts, self.columns, self.moving).solve("wls").theta
+        self._evaluate(theta)
+        told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
+        for _ in range(STEPS):
+            solution = self._step(efforts, theta)
+            theta, moved = solution.theta[: self.p], solution.theta[self.p :]
+            told = solution.determined[self.p :] & np.isfinite(moved)
+            deviations = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
+            delays = delays + np.where(told, np.clip(moved, -LONGEST, LONGEST), 0.0)
+            if (np.abs(moved[told]) <= np.maximum(SETTLED, SETTLED * deviations[told])).all():
+                break
+            efforts = self._efforts(delays)
+        else:
+            told &= np.abs(moved) <= deviations
+        told &= deviations > 0.0
+        return (delays[told], deviations[told]) if told.any() else None
+
+    def _step(self, efforts: Sequence[Array], theta: Array) -> Solution:
+        """Parameters, and the changes of the delays after them."""
+        columns = []
+        for r, own, full in zip(self.records, self.columns, self.full, strict=True):
+            slope = r.parallel(np.gradient(full @ theta, axis=0) * r.awake)
+            more = np.zeros((len(slope), self.n, self.n))
+            more[:, range(self.n), range(self.n)] = slope
+            columns.append(np.concatenate([own, more], axis=2))
+        return Regression(efforts, columns, self.moving).solve("wls")
+
+    def _efforts(self, delays: Array) -> list[Array]:
+        """Efforts (M, n) at the positions' instants, where their samples lie `delays` samples after them."""
+        found = []
+        for r, motion in zip(self.records, self.motions, strict=True):
+            assert r.record.input is not None
+            given = np.column_stack(
+                [
+                    advanced(x[:, None], d, held=False)[:, 0]
+                    for x, d in zip(r.record.input.T, delays, strict=True)
+                ]
+            )
+            found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * r.awake))
+        return found

@@ -1,0 +1,157 @@
+"""When efforts were read is found from the data, whatever the log's convention, or said not to be told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import modelgen as mg
+from modelgen.description import loads
+from modelgen.effects import known_effects
+
+TWO = """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  two:
+    gravity: [0, -9.81, 0]
+    joints:
+      - {name: shoulder, alpha: 0, d: 0, r: 0, drive: {type: direct, ratio: 50, torque_constant: 0.1},
+         effects: [{viscous_friction: {coefficient: 0.002}}, {coulomb_friction: {magnitude: 0.02}}]}
+      - {name: elbow, alpha: 0, d: 0.4, r: 0, drive: {type: direct, ratio: 30, torque_constant: 0.05},
+         effects: [{viscous_friction: {coefficient: 0.001}}, {coulomb_friction: {magnitude: 0.01}}]}
+    links:
+      shoulder: {mass: 4, com: [0.2, 0.01, 0], inertia: [0.01, 0, 0, 0.06, 0, 0.06]}
+      elbow: {mass: 2, com: [0.15, 0.02, 0], inertia: [0.005, 0, 0, 0.02, 0, 0.02]}
+"""
+RATE = 200.0
+STEP = 1 / RATE
+Table = dict[str, np.ndarray]
+
+
+@pytest.fixture(scope="module")
+def arm() -> mg.Arm:
+    return loads(TWO, "arms.yaml", known_effects())["two"]
+
+
+class Motion:
+    """A smooth motion of the arm, and the currents that it takes, at any time."""
+
+    def __init__(self, arm: mg.Arm, seed: int) -> None:
+        random = np.random.default_rng(seed)
+        self.w = 2 * np.pi * np.outer([0.2, 0.7, 1.3, 2.1], [1.0, 1.1])
+        self.size, self.phase = random.uniform(0.05, 0.25, self.w.shape), random.uniform(0, 6, self.w.shape)
+        model = mg.build_model(arm)
+        self.dynamics = model.functions["inverse_dynamics"]
+        self.values = np.array(list(model.nominal.values()))
+
+    def q(self, t: np.ndarray, order: int = 0) -> np.ndarray:
+        angle = t[:, None, None] * self.w + self.phase + order * np.pi / 2
+        return np.asarray((self.size * self.w**order * np.sin(angle)).sum(axis=1))
+
+    def current(self, t: np.ndarray) -> np.ndarray:
+        q, dq, ddq = (self.q(t, k) for k in range(3))
+        return np.asarray(self.dynamics(q=q, dq=dq, ddq=ddq, parameters=self.values))
+
+
+def log(arm: mg.Arm, hold: str | float, seed: int, noise: float = 2e-3, late: float = 0.0) -> Table:
+    """20 s of readings of 16 bits. late: samples by which the elbow's current comes later."""
+    motion, random = Motion(arm, seed), np.random.default_rng(seed)
+    t = np.arange(int(20 * RATE)) * STEP
+
+    def held(at: np.ndarray) -> np.ndarray:  # the mean over the interval that follows, as a hold has it
+        return np.mean([motion.current(at + STEP * (k + 0.5) / 8) for k in range(8)], axis=0)
+
+    at = {"following": held, "previous": lambda t: held(t - STEP), "instant": motion.current}
+    made = at[hold] if isinstance(hold, str) else lambda t: motion.current(t + hold)
+    current = made(t)
+    current[:, 1] = made(t + late * STEP)[:, 1]
+    current = current + noise * random.normal(size=current.shape)
+    q = 2 * np.pi / 65536 * np.rint(motion.q(t) / (2 * np.pi / 65536))
+    return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0], "i2": current[:, 1]}
+
+
+@pytest.mark.parametrize(
+    ("hold", "samples"),
+    [("following", 0.5), ("instant", 0.0), ("previous", -0.5), (0.8 * STEP, 0.8), (1.3 * STEP, 1.3)],
+)
+def test_the_convention_of_a_log_is_found(hold: str | float, samples: float, arm: mg.Arm) -> None:
+    result = mg.identify(arm, log(arm, hold, 1), log(arm, hold, 2))
+    found = result.to_json()["log"]
+    about = found["effort_instant"]
+    assert about["std_samples"] < 0.05
+    assert about["delay_samples"] == pytest.approx(samples, abs=4 * about["std_samples"])
+    if isinstance(hold, str):
+        assert found["hold"] == about["fits"] == hold
+    else:
+        assert found["hold"] == pytest.approx(hold, abs=4 * about["std_samples"] * STEP)
+    lines = [x for x in result.shown() if isinstance(x, str) and "the effort is taken as" in x]
+    assert len(lines) == 1
+    # Readings of the right instants leave noise alone: parameters lie within their deviations.
+    truth = mg.build_model(arm).nominal
+    for name, e in result.parameters.items():
+        assert abs(e.value - truth[name]) < 5 * e.std, name
+
+
+def test_a_diagnosis_finds_the_same_and_names_no_delay(arm: mg.Arm) -> None:
+    train, test = [log(arm, "instant", 1), log(arm, "instant", 3)], log(arm, "instant", 2)
+    found = mg.diagnose(arm, train, test, experiment=False, effects=["time_delay", "friction_offset"])
+    data = found.to_json()
+    assert data["log"]["hold"] == "instant"
+    assert data["log"]["effort_instant"]["known_from"] == "data"
+    assert not data["causes"]
+    same = mg.identify(arm, train, test).to_json()["log"]["effort_instant"]
+    assert data["log"]["effort_instant"] == same
+
+
+def test_one_late_joint_is_no_convention_of_the_log(arm: mg.Arm) -> None:
+    found = mg.identify(arm, log(arm, "following", 1, late=0.7), log(arm, "following", 2, late=0.7))
+    about = found.to_json()["log"]["effort_instant"]
+    assert about["hold"] == "following"
+    assert about["fits"] is None
+
+
+def test_a_delay_of_several_samples_stays_in_the_log(arm: mg.Arm) -> None:
+    found = mg.identify(arm, log(arm, 3 * STEP, 1), log(arm, 3 * STEP, 2)).to_json()["log"]["effort_instant"]
+    assert found["hold"] == "following"
+    assert found["delay_samples"] == pytest.approx(3.0, abs=0.1)
+
+
+def test_what_noise_hides_is_said_to_be_hidden(arm: mg.Arm) -> None:
+    result = mg.identify(arm, log(arm, "instant", 1, noise=3.0), log(arm, "instant", 2, noise=3.0))
+    about = result.to_json()["log"]["effort_instant"]
+    assert about["hold"] == "following"
+    assert about["known_from"] == "default"
+    assert about["fits"] is None
+    assert any("the data cannot tell" in x for x in result.shown() if isinstance(x, str))
+
+
+@pytest.mark.parametrize("stated", ["instant", "previous"])
+def test_what_the_mapping_says_is_used_and_checked(stated: str, arm: mg.Arm, tmp_path: Path) -> None:
+    joints = ", ".join(
+        f"{{position: {{column: q{k}, unit: rad}}, effort: {{column: i{k}, unit: A}}}}" for k in (1, 2)
+    )
+    mapping = tmp_path / "m.yaml"
+    mapping.write_text(f"schema: 1\nhold: {stated}\njoints: [{joints}]\n", encoding="utf-8")
+    result = mg.identify(arm, log(arm, "instant", 1), log(arm, "instant", 2), mapping=mapping)
+    about = result.to_json()["log"]["effort_instant"]
+    assert about["hold"] == stated
+    assert about["known_from"] == "mapping"
+    assert about["fits"] == "instant"
+    (line,) = [x for x in result.shown() if isinstance(x, str) and "the effort is taken as" in x]
+    assert ("but the data say" in line) == (stated != "instant")
+
+
+def test_a_stream_is_read_as_the_whole_is(arm: mg.Arm, tmp_path: Path) -> None:
+    paths = []
+    for seed in (1, 2):
+        table = log(arm, "instant", seed)
+        paths.append(tmp_path / f"{seed}.csv")
+        rows = np.column_stack(list(table.values()))
+        np.savetxt(paths[-1], rows, delimiter=",", header=",".join(table), comments="")
+    whole, streamed = (mg.identify(arm, *map(str, paths), stream=s) for s in (False, True))
+    assert streamed.to_json()["log"]["effort_instant"]["hold"] == "instant"
+    for name, e in whole.parameters.items():
+        assert streamed.parameters[name].value == pytest.approx(e.value, abs=0.1 * e.std)
