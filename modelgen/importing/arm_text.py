@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modelgen.description.document import one_line
+from modelgen.description.plausible import MOST
 from modelgen.importing.bodies import doubt
 from modelgen.importing.frames import Parameters
 from modelgen.importing.poses import to_rpy
@@ -96,11 +97,11 @@ def _joint(joint: JointText) -> list[str]:
     if p.gamma:
         entries["gamma"] = written_angle(p.gamma)
     if p.b:
-        entries["b"] = shortest(p.b)
-    entries |= {"alpha": written_angle(p.alpha), "d": shortest(p.d)}
+        entries["b"] = _length(p.b)
+    entries |= {"alpha": written_angle(p.alpha), "d": _length(p.d)}
     if p.theta:
         entries["theta"] = written_angle(p.theta)
-    entries["r"] = shortest(p.r)
+    entries["r"] = _length(p.r)
     limits = _limits(joint)
     if limits:
         entries["limits"] = _flow(limits)
@@ -123,8 +124,33 @@ def _entry(value: Entry) -> str:
     return precise(value) if isinstance(value, float) else _list(map(precise, value))
 
 
+def unlikely(joint: JointText) -> list[str]:
+    """What looks as if it were in another unit than the source's m and rad; it is kept with its unit."""
+    p, asked = joint.parameters, []
+    longest = max((p.b, p.d, p.r), key=abs)
+    ends = joint.position or (0.0, 0.0)
+    slides = joint.kind == "prismatic"
+    if abs(longest) > MOST["length"]:
+        asked.append(f"joint {joint.name}: found a length of {longest:g} m: is the source in millimetres?")
+    if max(map(abs, ends)) > MOST["length" if slides else "range"]:
+        unit, other = ("m", "millimetres") if slides else ("rad", "degrees")
+        found = f"limits of {ends[0]:g} to {ends[1]:g} {unit}"
+        asked.append(f"joint {joint.name}: found {found}: is the source in {other}?")
+    return asked
+
+
+def _length(value: float) -> str:
+    """In m; with its unit where a reader would ask for it."""
+    return f"{shortest(value)} m" if abs(value) > MOST["length"] else shortest(value)
+
+
+def _turn(value: float) -> str:
+    """A joint's angle in rad; with its unit where a reader would ask for it."""
+    return f"{shortest(value)} rad" if abs(value) > MOST["range"] else written_angle(value)
+
+
 def _limits(joint: JointText) -> dict[str, str]:
-    written = shortest if joint.kind == "prismatic" else written_angle
+    written = _length if joint.kind == "prismatic" else _turn
     entries = {}
     if joint.position is not None:
         entries["position"] = _list(map(written, joint.position))

@@ -10,7 +10,7 @@ import numpy as np
 
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
-from modelgen.importing.arm_text import ArmText, JointText, ToolText, text_of
+from modelgen.importing.arm_text import ArmText, JointText, ToolText, text_of, unlikely
 from modelgen.importing.axes import Axis, Line, Nearness
 from modelgen.importing.bodies import moved_body, together
 from modelgen.importing.formats import read_robot
@@ -103,6 +103,7 @@ class _Writing:
     def imported(self, name: str, remarks: Sequence[str]) -> Imported:
         """The arm, its text and where the source's links are."""
         base = self.placed.base
+        joints = [self._joint(i) for i in range(len(self.names))]
         own_base = bool(np.abs(base - np.eye(4)).max() > 0)
         tools = self._tools()
         text = text_of(
@@ -113,7 +114,7 @@ class _Writing:
                 gravity=base[:3, :3].T @ self.mechanism.gravity,
                 base=base if own_base else None,
                 base_note=f"the world is link {self.mechanism.root}",
-                joints=[self._joint(i) for i in range(len(self.names))],
+                joints=joints,
                 tools=tools,
             )
         )
@@ -128,7 +129,7 @@ class _Writing:
                 if axis.joint is not None
             },
             links=self._links(),
-            remarks=(*remarks, *arm.notes),
+            remarks=(*remarks, *(asked for joint in joints for asked in unlikely(joint)), *arm.notes),
         )
 
     def _joint(self, i: int) -> JointText:

@@ -130,6 +130,8 @@ def _axis(element: Element, name: str, kind: str) -> Array:
 
 def _range(limit: Element) -> tuple[float, float] | None:
     low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
+    if low > high:
+        raise limit.error(f"<limit>: found {low:g} to {high:g}, expected the lower end first")
     return (low, high) if low < high else None
 
 

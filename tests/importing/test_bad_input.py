@@ -57,6 +57,10 @@ BAD = {
         links("a", "b") + JOINT.format("j", "revolute", "a", "b", "0 0 up", ""),
         "found 'up', expected a number",
     ),
+    "limits the wrong way round": (
+        (links("a", "b") + JOINT.format("j", "revolute", "a", "b", "0 0 1", "")).replace('"-1"', '"2"'),
+        r":4:\d+.*found 2 to 1, expected the lower end first",
+    ),
     "entities": ('<!DOCTYPE r [<!ENTITY a "b">]>', "DOCTYPE|no XML"),
 }
 
@@ -78,6 +82,27 @@ def test_an_inertia_of_no_matter_is_kept_with_a_remark(tmp_path: Path) -> None:
     robot = mg.import_robot(path)
     assert any("link arm" in remark and "-0.25" in remark for remark in robot.remarks)
     assert "as_given: true" in robot.text
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "limit", "remark"),
+    [
+        ("revolute", '<origin xyz="0 0 350"/>', "-1", "a length of 350 m: is the source in millimetres?"),
+        ("revolute", "", "-180", "limits of -180 to 1 rad: is the source in degrees?"),
+        ("prismatic", "", "-500", "limits of -500 to 1 m: is the source in millimetres?"),
+    ],
+)
+def test_what_looks_like_another_unit_is_kept_with_a_remark(
+    kind: str, more: str, limit: str, remark: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "r.urdf"
+    content = links("a", "b") + JOINT.format("j", kind, "a", "b", "0 0 1", more).replace('"-1"', f'"{limit}"')
+    path.write_text(f"<robot name='r'>{content}</robot>", "utf-8")
+    robot = mg.import_robot(path)
+    assert [text for text in robot.remarks if remark in text] == [f"joint j: found {remark}"]
+    (joint,) = robot.arm.joints
+    assert joint.limits.position == (float(limit), 1.0)
+    assert float(joint.r) == (350.0 if more else 0.0)
 
 
 def test_the_command_writes_what_the_function_gives_and_leaves_what_is_there(tmp_path: Path) -> None:

@@ -154,6 +154,9 @@ class Bodies:
         if limited == "auto" and not self.compiler.autolimits:
             return None
         ends = self.compiler.angles(joint, "range", 2) if kind == "revolute" else joint.vector("range", 2)
+        if ends[0] > ends[1]:
+            given = joint.attributes["range"]
+            raise joint.error(f"<joint range>: found '{given}', expected the lower end first")
         return (float(ends[0]), float(ends[1])) if ends[0] < ends[1] else None
 
     def _properties(self, joint: Element, kind: str, name: str) -> dict[str, float]:
