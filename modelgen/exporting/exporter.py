@@ -7,6 +7,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from modelgen.description.objects import Arm
 from modelgen.effects import described
 from modelgen.errors import InputError, suggest
@@ -17,9 +19,11 @@ from modelgen.exporting.fmu import FMI2, STANDARDS, export_fmu
 from modelgen.exporting.mjcf import MJCF
 from modelgen.exporting.states import Efforts, States
 from modelgen.exporting.urdf import URDF
-from modelgen.exporting.values import identified, nominal, standard_of
+from modelgen.exporting.values import Values, identified, nominal, standard_of
 from modelgen.files import check_writable
-from modelgen.functions import EVALUATED, build_model
+from modelgen.functions import EVALUATED, Model, build_model
+from modelgen.functions.nominal import base_matrix
+from modelgen.functions.parameters_file import base_vector
 
 Maker = Callable[[Arm, Mapping[str, float] | None, Sequence[str]], Exported]
 
@@ -64,17 +68,41 @@ def _model(form: Format) -> Maker:
 
     def made(arm: Arm, parameters: Mapping[str, float] | None, remarks: Sequence[str]) -> Exported:
         plain = described(arm)
-        values = nominal(plain) if parameters is None else identified(build_model(arm, EVALUATED), parameters)
+        states, changed = States(plain), []
+        if parameters is None:
+            values = nominal(plain)
+        else:
+            model = build_model(arm, EVALUATED)
+            values = identified(model, parameters)
+            changed = _changed(model, states, parameters, values)
         machine = machine_of(plain, replace(values, bodies=loaded(plain, values.bodies)))
-        states = States(plain)
         efforts = Efforts(plain, states, standard_of(values))
         account = Account(plain, machine, states, values.effects, efforts, form)
         rows = [*described_rows(arm), *account.rows()]
-        notes = [*remarks, *values.notes, *_left(arm), *form.remarks(machine)]
+        notes = [*remarks, *changed, *_left(arm), *form.remarks(machine)]
         text = form.write(machine, heading(arm.name, arm.source, rows, notes))
         return Exported(arm, form.name, form.title, text, text.encode(), tuple(rows), tuple(notes))
 
     return made
+
+
+def _changed(model: Model, states: States, given: Mapping[str, float], values: Values) -> list[str]:
+    """What it takes to have bodies that could exist, in parameters and in efforts."""
+    if not values.off:
+        return []
+    known, (worst, share) = standard_of(values), next(iter(values.off.items()))
+    kept = base_matrix(model) @ np.array([known[p.name] for p in model.standard])
+    wanted = states.efforts(model, base_vector(model, given))
+    apart = np.abs(states.efforts(model, kept) - wanted).max(axis=0)
+    part = apart / np.maximum(np.abs(wanted).max(axis=0), 1e-300)
+    n = int(np.argmax(part))
+    joint = model.arm.joints[model.arm.coordinates[n]]
+    unit = "N" if joint.type == "prismatic" else "N m"
+    return [
+        "no bodies that could exist have these parameters: the nearest are taken, whose efforts are at most "
+        f"{apart[n]:.2g} {unit} off ({joint.name}, {part[n]:.1%} of its largest), and parameters {share:.1%} "
+        f"({worst})"
+    ]
 
 
 def _left(arm: Arm) -> list[str]:

@@ -14,6 +14,7 @@ from modelgen.description.objects import Arm
 from modelgen.effects import AppliedEffect
 from modelgen.exporting.build import range_of
 from modelgen.exporting.machine import Axis
+from modelgen.functions import Model
 from modelgen.functions.bare import bare
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.parametric import standard_values
@@ -52,6 +53,14 @@ class States:
         given = [joint.limits.acceleration for joint in joints]
         most = np.array([np.nan if a is None else a for a in given])
         self.ddq = (2 * draw[2] - 1) * np.where(np.isnan(most), speed / RISE, most)
+
+    def efforts(self, model: Model, parameters: Array) -> Array:
+        """Efforts (N, n) at the joints with these base parameters, states of effects at zero."""
+        function = next(f for f in model.functions if f.name == "inverse_dynamics")
+        given = {"q": self.q, "dq": self.dq, "ddq": self.ddq, "parameters": parameters}
+        named = {a.name: given.get(a.name, np.zeros(a.size)) for a in function.arguments}
+        gains = np.array([drive.gain(self.q[:, n]) for n, drive in enumerate(self.drives)])
+        return np.asarray(NumpyFunction(function)(**named)) * gains.T
 
     def _fastest(self, n: int) -> Array:
         """Highest speed of a joint in every state (N,)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,11 +23,14 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Values:
-    """bodies: by joint, in the link's frame. effects: linear parameters by symbol. notes: for the user."""
+    """bodies: by joint, in the link's frame. effects: linear parameters by symbol.
+
+    off: names of base parameters whose values no bodies have, each with its relative error, the worst first.
+    """
 
     bodies: tuple[Body, ...]
     effects: Mapping[str, float]
-    notes: tuple[str, ...] = ()
+    off: Mapping[str, float] = field(default_factory=dict)
 
 
 def nominal(arm: Arm) -> Values:
@@ -55,25 +58,20 @@ def _described(link: Inertial) -> Body:
 def identified(model: Model, parameters: Mapping[str, float]) -> Values:
     """Bodies that could exist and give these base parameters, as near to the description's as can be.
 
-    Where no such bodies do, those nearest to them, with a remark. Raises InputError for parameters that are
-    not the arm's, and for an arm in a fluid.
+    Where no such bodies do, those nearest to them. Raises InputError for parameters that are not the arm's,
+    and for an arm in a fluid.
     """
     if model.arm.fluid_density:
         raise InputError(
             f"{model.arm.name}: --parameters of an arm in a fluid hold its buoyancy; expected none"
         )
     exact, off = completed(model, base_vector(model, parameters))
-    notes = []
-    if off.any():
-        worst = int(np.argmax(np.abs(off)))
-        notes.append(
-            "no bodies that could exist have these parameters: the nearest are taken, "
-            f"{abs(off[worst]):.1%} off at most ({model.grouping.base[worst].name})"
-        )
+    worst = [int(k) for k in np.argsort(-np.abs(off)) if off[k]]
     count = 10 * len(model.arm.links)
     bodies = tuple(_body(exact[k : k + 10]) for k in range(0, count, 10))
     names = [p.name for p in model.standard[count:]]
-    return Values(bodies, dict(zip(names, map(float, exact[count:]), strict=True)), tuple(notes))
+    effects = dict(zip(names, map(float, exact[count:]), strict=True))
+    return Values(bodies, effects, {model.grouping.base[k].name: abs(float(off[k])) for k in worst})
 
 
 def _body(ten: Array) -> Body:

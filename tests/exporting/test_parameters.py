@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 from exporting_support import base_parameters, only_exact
 
 import modelgen as mg
 from modelgen.exporting.completion import completed
+from modelgen.exporting.states import States
 from modelgen.functions.nominal import base_matrix
 from modelgen.identification.bodies import violations
 from modelgen.numeric import Array
@@ -83,7 +86,24 @@ def test_parameters_of_no_body_are_replaced_by_the_nearest_and_it_is_said() -> N
     # link 2 with less inertia about its joint than its own mass at its centre has
     values["ZZ2"] = 1e-4 * values["MX2"] ** 2
     found = mg.export(arm, to="mjcf", parameters=values)
-    assert any("no bodies that could exist" in note for note in found.notes)
+    (note,) = [note for note in found.notes if "no bodies that could exist" in note]
+    read = re.search(r"efforts are at most (\S+) N m off \((j\d)", note)
+    assert read is not None
+    # the file's own efforts, gravity and inertia, are as far from those asked for
+    simulator = mujoco.MjModel.from_xml_string(found.text)
+    data, off = mujoco.MjData(simulator), []
+    states = States(arm)
+    for q, dq, ddq in zip(states.q, states.dq, states.ddq, strict=True):
+        data.qpos[:], data.qvel[:] = q, dq
+        full = np.zeros((2, 2))
+        mujoco.mj_fwdPosition(simulator, data)
+        mujoco.mj_fwdVelocity(simulator, data)
+        mujoco.mj_fullM(simulator, data, full)
+        dry = simulator.dof_frictionloss * np.sign(dq)
+        theirs = full @ ddq + data.qfrc_bias - data.qfrc_passive + dry
+        off.append(theirs - model.functions["inverse_dynamics"](q, dq, ddq, np.array(list(values.values()))))
+    n = int(read[2][1:]) - 1
+    assert float(read[1]) == pytest.approx(np.abs(off).max(axis=0)[n], rel=0.05)
 
 
 def test_a_file_beside_the_description_is_taken_where_it_has_no_values(tmp_path: Path) -> None:
